@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+PYTHON ?= python3
+VENV := .tools/python-5.2/bin/python
+
+.PHONY: help setup demo test test-core lint build clean
+
+help:       ## this list
+	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
+
+setup:      ## everything the other targets need, into .tools/ (made once)
+	@$(PYTHON) -m tools.setup
+
+demo: setup ## bake, build and render the storm of examples/storm.json into build/demo/
+	@$(VENV) -m tools.demo
+
+test: setup ## every test: in the bpy wheels of 5.2 and 4.5, and of the installed zip in a real Blender
+	@$(VENV) -m tools.run_tests
+
+test-core:  ## the tests of the core alone
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m pytest -q tests/core
+
+lint:       ## formatting, lint, types of the core, import layers
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m tools.lint
+
+build:      ## the extension's zip, into build/
+	@$(PYTHON) -m tools.setup python-5.2 blender
+	@$(VENV) -m tools.build
+
+clean:      ## remove what was made, except .tools/
+	rm -rf build wheels .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -name __pycache__ -not -path './.tools/*' -prune -exec rm -rf {} +
