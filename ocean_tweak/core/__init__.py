@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sea itself: NumPy and the standard library, nothing else."""
+
+from .ocean import Ocean
+from .parameters import OceanParameters, ParameterError, Timing, Water, WaveLayer
+
+__all__ = ["Ocean", "OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer"]

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The wave vectors that a periodic square patch can hold, in the layout of a real FFT."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WaveVectorGrid:
+    """Wave vectors 2π/L · (j, i) of an N x N patch with side L metres, in FFT order.
+
+    Arrays are [ky, kx] with shape (N, N//2+1), the half plane kx ≥ 0 of `numpy.fft.rfft2`; the other
+    half is its point reflection. Mean and Nyquist modes are not waves: see `usable`.
+    """
+
+    resolution: int
+    domain_size: float
+
+    @property
+    def spacing(self) -> float:
+        """Δk = 2π/L, rad/m."""
+        return 2.0 * np.pi / self.domain_size
+
+    @property
+    def cell_area(self) -> float:
+        """Δkx Δky, rad²/m²."""
+        return self.spacing**2
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.resolution, self.resolution // 2 + 1
+
+    @cached_property
+    def kx(self) -> Array:
+        """(1, N//2+1) rad/m, ascending from 0."""
+        return (self.spacing * np.arange(self.resolution // 2 + 1, dtype=np.float64))[np.newaxis, :]
+
+    @cached_property
+    def ky(self) -> Array:
+        """(N, 1) rad/m in FFT order: 0, Δk, …, -N/2 Δk, …, -Δk."""
+        n = self.resolution
+        index = np.arange(n, dtype=np.float64)
+        return (self.spacing * np.where(index < n // 2, index, index - n))[:, np.newaxis]
+
+    @cached_property
+    def k(self) -> Array:
+        """(N, N//2+1) rad/m, the wave numbers."""
+        return np.hypot(self.kx, self.ky)
+
+    @cached_property
+    def usable(self) -> NDArray[np.bool_]:
+        """(N, N//2+1) bool: all modes but the mean and those at Nyquist."""
+        mask = np.ones(self.shape, bool)
+        mask[0, 0] = False
+        mask[:, -1] = False
+        mask[self.resolution // 2, :] = False
+        return mask
+
+    @cached_property
+    def multiplicity(self) -> Array:
+        """(1, N//2+1): how many modes of the full plane each column stands for, 1 or 2."""
+        weight = np.full(self.resolution // 2 + 1, 2.0)
+        weight[0] = weight[-1] = 1.0
+        return weight[np.newaxis, :]
