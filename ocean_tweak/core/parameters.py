@@ -166,7 +166,7 @@ class WaveLayer(_Validated):
     limit_fetch: bool = switch(True, "End the growth of the sea where it is fully developed for its wind")
     spreading: str = choice("DONELAN_BANNER", SPREADINGS, "How the energy is shared among directions")
     swell: float = number(
-        0.0, 0.0, 4.0, "", "Draws waves out into long parallel trains; 0 to 1 is the useful range",
+        0.3, 0.0, 4.0, "", "Draws waves out into long parallel trains; 0 to 1 is the useful range",
         "beyond 4 a wave train is a single direction",
     )  # fmt: skip
     gain: float = number(

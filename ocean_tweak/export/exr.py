@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fields as OpenEXR images: one map a file, plain channel names, float, data rather than colour.
+
+Row 0 of an EXR image is its top row, so arrays [y, x] are written with their rows reversed.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.fields import SurfaceFields
+from ..core.parameters import OceanParameters
+from .files import whole_file
+
+FORMAT_VERSION = 1
+METADATA_ATTRIBUTE = "oceanTweak"
+
+#: largest relative error of a stored value, by compression
+COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0}
+
+
+class ExrError(RuntimeError):
+    """An image that cannot be written or read, with its path and the reason."""
+
+
+def _openexr() -> Any:
+    try:
+        import OpenEXR
+    except ImportError as error:
+        raise ExrError(
+            f"the OpenEXR package cannot be loaded ({error}): install it with 'pip install OpenEXR', "
+            "or in Blender install the extension from its zip, which brings it along"
+        ) from error
+    return OpenEXR
+
+
+@dataclass(frozen=True)
+class ExrSequence:
+    """A sink for frames: NAME_disp.####.exr in a folder.
+
+    parameters : what made the frames; stands in every header
+    compression : a key of COMPRESSION_ERROR
+    """
+
+    directory: Path
+    name: str
+    parameters: OceanParameters
+    compression: str = "PXR24"
+
+    def path(self, frame: int, map_name: str = "disp") -> Path:
+        """Where a frame's map goes."""
+        return self.directory / f"{self.name}_{map_name}.{frame:04d}.exr"
+
+    def write(self, frame: int, fields: SurfaceFields) -> Path:
+        """Write the frame's displacement, metres in R, G, B = (dx, dy, dz). Returns the file's path."""
+        path = self.path(frame)
+        metadata = {
+            "format": FORMAT_VERSION,
+            "map": "disp",
+            "unit": "m",
+            "frame": frame,
+            "time": fields.time,
+            "domain_size": self.parameters.domain_size,
+            "parameters": self.parameters.to_dict(),
+        }
+        write_image(path, fields.displacement, metadata, self.parameters.timing.fps, self.compression)
+        return path
+
+
+def write_image(
+    path: Path,
+    image: NDArray[np.floating],
+    metadata: dict[str, Any],
+    fps: Fraction,
+    compression: str = "PXR24",
+) -> None:
+    """Write an (N, M, 3) array [y, x] as float R, G, B; the file appears whole or not at all.
+
+    Raises ExrError for a value that is not finite and OSError for what the disk refuses.
+    """
+    openexr = _openexr()
+    if not np.all(np.isfinite(image)):
+        raise ExrError(f"{path}: the image holds values that are not finite")
+    header = {
+        "compression": getattr(openexr, f"{'NO' if compression == 'NONE' else compression}_COMPRESSION"),
+        "type": openexr.scanlineimage,
+        "colorInteropID": "data",
+        "framesPerSecond": fps,
+        METADATA_ATTRIBUTE: json.dumps(metadata),
+    }
+    # OpenEXR writes arrays that are not contiguous wrongly, without a word
+    rows = np.asarray(image, np.float32)[::-1]
+    channels = {name: np.ascontiguousarray(rows[..., index]) for index, name in enumerate("RGB")}
+    with whole_file(path) as beside:
+        try:
+            openexr.File(header, channels).write(str(beside))
+        except RuntimeError as error:
+            raise ExrError(f"{path}: {error}") from error
+
+
+def read_image(path: Path) -> tuple[NDArray[np.float32], dict[str, Any]]:
+    """The (N, M, 3) array [y, x] and the metadata of an image written by `write_image`.
+
+    Raises ExrError for a file that is damaged or not one of ours.
+    """
+    openexr = _openexr()
+    try:
+        with openexr.File(str(path), separate_channels=True) as file:
+            header, channels = file.header(), file.channels()
+            rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
+            metadata = json.loads(header[METADATA_ATTRIBUTE])
+    except (RuntimeError, KeyError, ValueError) as error:
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
+    return np.ascontiguousarray(rows[::-1], np.float32), metadata
