@@ -6,7 +6,6 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Optional
 
 ROOT = Path(__file__).resolve().parent.parent
 TOOLS = ROOT / ".tools"
@@ -19,7 +18,7 @@ class ToolError(Exception):
     """A failure the user can mend; its text is one clear line, followed by a log where there is one."""
 
 
-def run_logged(command: Sequence[str], log: Path, env: Optional[Mapping[str, str]] = None) -> None:
+def run_logged(command: Sequence[str], log: Path, env: Mapping[str, str] | None = None) -> None:
     """Run a command with its output appended to `log`; raise `ToolError` with the log's end if it fails."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("ab") as output:

@@ -9,8 +9,6 @@ import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Optional
 
 from . import stamps
 from .project import ROOT, TOOLS, ToolError, run_logged
@@ -18,12 +16,11 @@ from .project import ROOT, TOOLS, ToolError, run_logged
 MINIMUM = (4, 5)
 DEBIAN_ROOT = TOOLS / "blender-root"
 DEBIAN_SUITE = "sid"
-DEBIAN_PACKAGES = (
-    # the extension commands of Debian's Blender fail without these Python packages
-    "blender python3-numpy python3-requests python3-cattr python3-zstandard "
-    # drawing and a display without hardware
-    "libgl1-mesa-dri libgl1 libegl1 libglx-mesa0 xvfb xauth xdotool"
-).split()
+# the extension commands of Debian's Blender fail without these Python packages
+PYTHON_PACKAGES = ("python3-numpy", "python3-requests", "python3-cattr", "python3-zstandard")
+# drawing, a display and a mouse without hardware
+DISPLAY_PACKAGES = ("libgl1-mesa-dri", "libgl1", "libegl1", "libglx-mesa0", "xvfb", "xauth", "xdotool")
+DEBIAN_PACKAGES = ("blender", *PYTHON_PACKAGES, *DISPLAY_PACKAGES)
 LOG = TOOLS / "logs" / "blender.log"
 
 
@@ -56,7 +53,9 @@ def find(make: bool = False) -> RealBlender:
         command = (os.environ["BLENDER"],)
         found = _try(command)
         if found is None:
-            raise ToolError(f"BLENDER={command[0]} is not a Blender {_minimum()} or newer that runs: correct or unset it")
+            raise ToolError(
+                f"BLENDER={command[0]} is not a Blender {_minimum()} or newer that runs: correct or unset it"
+            )
         return found
     if shutil.which("blender"):
         found = _try(("blender",))
@@ -72,7 +71,7 @@ def find(make: bool = False) -> RealBlender:
     return found
 
 
-def _try(command: Sequence[str]) -> Optional[RealBlender]:
+def _try(command: Sequence[str]) -> RealBlender | None:
     try:
         answer = subprocess.run(
             [*command, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120
@@ -96,8 +95,8 @@ def _recipe() -> str:
 def _make_debian_root() -> None:
     if shutil.which("apt-get") is None or os.geteuid() != 0:
         raise NoBlender(
-            f"`blender` {_minimum()} or newer is not on PATH, and only root on a Debian machine can install one "
-            "into .tools: set BLENDER=/path/to/blender"
+            f"`blender` {_minimum()} or newer is not on PATH, and only root on a Debian machine can install "
+            "one into .tools: set BLENDER=/path/to/blender"
         )
     apt = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     try:
@@ -105,7 +104,9 @@ def _make_debian_root() -> None:
         if shutil.which("mmdebstrap") is None:
             run_logged(["apt-get", "install", "-y", "--no-install-recommends", "mmdebstrap"], LOG, apt)
         with stamps.making(DEBIAN_ROOT, _recipe()):
-            run_logged(["unshare", "--mount", "--propagation", "private", *_mmdebstrap(_debian_mirror())], LOG, apt)
+            run_logged(
+                ["unshare", "--mount", "--propagation", "private", *_mmdebstrap(_debian_mirror())], LOG, apt
+            )
             mtab = DEBIAN_ROOT / "etc" / "mtab"
             if not mtab.is_symlink():
                 mtab.symlink_to("/proc/self/mounts")
@@ -135,5 +136,7 @@ def _debian_mirror() -> str:
     )  # fmt: skip
     mirrors = answer.stdout.split()
     if not mirrors:
-        raise NoBlender("this machine's apt sources name no mirror of Debian's main archive: set BLENDER=/path/to/blender")
+        raise NoBlender(
+            "this machine's apt sources name no mirror of Debian's main archive: set BLENDER=/path/to/blender"
+        )
     return mirrors[0]

@@ -9,16 +9,14 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Optional
 
 from . import real_blender, venvs
 from .project import TOOLS, ToolError
 
-
 PARTS = ("python-5.2", "python-4.5", "blender")
 
 
-def main(arguments: Optional[Sequence[str]] = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Make the parts asked for (all by default); return the exit code."""
     parser = argparse.ArgumentParser(prog="python3 -m tools.setup", description=__doc__)
     parser.add_argument("part", nargs="*", help=f"any of {', '.join(PARTS)}; all of them by default")

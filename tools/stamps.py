@@ -11,6 +11,7 @@ from pathlib import Path
 from .project import ToolError
 
 STAMP = ".made-by"
+MOUNTS = Path("/proc/self/mounts")
 
 
 def is_made(folder: Path, recipe: str) -> bool:
@@ -33,8 +34,7 @@ def making(folder: Path, recipe: str) -> Iterator[Path]:
 def remove(folder: Path) -> None:
     """Delete a folder and what is in it, but never through a mount."""
     inside = f"{folder}/"
-    mounts = Path("/proc/self/mounts")
-    mounted = [line.split()[1] for line in mounts.read_text().splitlines()] if mounts.exists() else []
+    mounted = [line.split()[1] for line in MOUNTS.read_text().splitlines()] if MOUNTS.exists() else []
     for place in mounted:
         if place.startswith(inside):
             raise ToolError(f"{folder} cannot be replaced while {place} is mounted: umount it first")

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Optional
 
 from . import interpreters, stamps
 from .project import REQUIREMENTS, TOOLS, run_logged
@@ -18,7 +17,7 @@ def python(blender: str) -> Path:
     return _folder(blender) / "bin" / "python"
 
 
-def interpreter_to_use(blender: str) -> Optional[str]:
+def interpreter_to_use(blender: str) -> str | None:
     """Return the Python to make this Blender's environment with, None if it stands already.
 
     Raises `ToolError` if there is no such Python.

@@ -46,6 +46,6 @@ def _download_one(wheel: str) -> None:
     code = subprocess.call(pip, stdin=subprocess.DEVNULL)
     if code or not (WHEELS / wheel).exists():
         raise ToolError(
-            f"{wheel} could not be downloaded (pip's exit code {code}): correct `wheels` in blender_manifest.toml "
-            "or try again when the package index can be reached"
+            f"{wheel} could not be downloaded (pip's exit code {code}): correct `wheels` in "
+            "blender_manifest.toml, or try again when the package index can be reached"
         )

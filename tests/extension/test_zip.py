@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import importlib.metadata
+import os
+import tomllib
+import zipfile
+from pathlib import Path
+
+
+def manifest_in(zip_file):
+    return tomllib.loads(zipfile.ZipFile(zip_file).read("blender_manifest.toml").decode())
+
+
+def test_zip_is_valid(run_blender, zip_file):
+    answer = run_blender("--command", "extension", "validate", zip_file)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+
+
+def test_validation_refuses_a_zip_without_manifest(run_blender, tmp_path):
+    broken = tmp_path / "broken.zip"
+    with zipfile.ZipFile(broken, "w") as file:
+        file.writestr("__init__.py", "")
+    answer = run_blender("--command", "extension", "validate", broken)
+    assert answer.returncode != 0
+    assert "manifest" in answer.stdout + answer.stderr
+
+
+def test_zip_holds_the_extension_and_nothing_else(zip_file):
+    names = zipfile.ZipFile(zip_file).namelist()
+    wheels = {path.removeprefix("./") for path in manifest_in(zip_file)["wheels"]}
+    expected = {"__init__.py", "blender_manifest.toml", "LICENSE", *wheels}
+    code = {name for name in names if name.startswith("ocean_tweak/")}
+    assert set(names) - code == expected
+    assert {"ocean_tweak/registration.py", "ocean_tweak/core/__init__.py"} <= code
+    assert not [name for name in code if "__pycache__" in name or "/." in name]
+
+
+def test_blender_imports_the_wheel_of_the_manifest(package, zip_file):
+    import OpenEXR
+
+    site = Path(OpenEXR.__file__).resolve().parent
+    assert Path(os.environ["BLENDER_USER_RESOURCES"]).resolve() in site.parents
+    versions = {Path(wheel).name.split("-")[1] for wheel in manifest_in(zip_file)["wheels"]}
+    assert versions == {importlib.metadata.version("OpenEXR")}
+
+
+def test_installed_code_is_the_one_under_test(installed):
+    assert installed("core").__name__.startswith("bl_ext.user_default.ocean_tweak.")

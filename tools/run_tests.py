@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every test there is: from source in both bpy wheels, and of the installed zip in a real Blender."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from . import build, real_blender, venvs
+from .project import ROOT, TOOLS, ToolError
+
+SOURCE_SUITES = ("tests/core", "tests/export", "tests/cli", "tests/tools", "tests/blender")
+EXTENSION_SUITE = "tests/extension"
+PROFILE = TOOLS / "test-profile"
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+CLOSING_LINE = re.compile(
+    r"^=* ?((?:no tests ran|\d+ [a-z]+(?:, \d+ [a-z]+)*) in [\d.]+s.*?)(?: =+)?$", re.MULTILINE
+)
+PYTEST = ("-p", "no:cacheprovider", "-q")
+
+
+@dataclass(frozen=True)
+class Result:
+    """How one suite ended in one place."""
+
+    place: str
+    suite: str
+    passed: bool
+    closing_line: str
+
+    def __str__(self) -> str:
+        return f"{'ok    ' if self.passed else 'FAILED'} {self.place:12} {self.suite:16} {self.closing_line}"
+
+
+def main() -> int:
+    """Run everything; return the exit code."""
+    begin = time.monotonic()
+    with ThreadPoolExecutor(2) as pool:
+        both = pool.map(run_source_suites, ("5.2", "4.5"))
+        results = [result for of_one in both for result in of_one]
+    try:
+        blender = real_blender.find()
+        results.append(run_extension_suite(blender))
+        last_line, missing = f"real Blender: {blender}", False
+    except real_blender.NoBlender as reason:
+        last_line = f"no real Blender, so the installed extension was not tested: {reason}"
+        missing = real_blender.required()
+    except ToolError as error:
+        last_line, missing = f"the extension was not tested: {error}", True
+    failed = missing or not all(result.passed for result in results)
+    print("\n== summary", *results, sep="\n")
+    print(f"{'FAILED' if failed else 'all passed'} in {time.monotonic() - begin:.0f} s")
+    print(last_line)
+    return 1 if failed else 0
+
+
+def run_source_suites(blender: str) -> list[Result]:
+    """Run the suites that need no installed extension in the environment of this Blender's wheel."""
+    command = [str(venvs.python(blender)), "-m", "pytest", *PYTEST]
+    env = {**os.environ, **ONE_THREAD}
+    suites = [suite for suite in SOURCE_SUITES if (ROOT / suite).is_dir()]
+    return [run_suite(f"bpy {blender}", suite, [*command, suite], env) for suite in suites]
+
+
+def run_extension_suite(blender: real_blender.RealBlender) -> Result:
+    """Build the zip, install it into a fresh profile as an artist would, and test it there."""
+    zip_file = build.build(blender)
+    shutil.rmtree(PROFILE, ignore_errors=True)
+    env = {
+        **os.environ,
+        **ONE_THREAD,
+        "BLENDER_USER_RESOURCES": str(PROFILE),
+        "OCEAN_TWEAK_ZIP": str(zip_file),
+    }
+    build.extension(blender, "install-file", "-r", "user_default", "--enable", str(zip_file), env=env)
+    command = [*blender.command, "--background", "--python-exit-code", "1"]
+    script = ["--python", str(ROOT / "tools" / "pytest_in_blender.py"), "--", str(venvs.PYTEST_IN_BLENDER)]
+    return run_suite(
+        "real Blender",
+        EXTENSION_SUITE,
+        [*command, *script, *PYTEST, f"--rootdir={ROOT}", EXTENSION_SUITE],
+        env,
+    )
+
+
+def run_suite(place: str, suite: str, command: Sequence[str], env: Mapping[str, str]) -> Result:
+    """Run one suite, print what it said when it is through, and return how it ended."""
+    answer = subprocess.run(
+        command,
+        cwd=ROOT,
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    )
+    print(f"\n== {place}: {suite}\n{answer.stdout.rstrip()}", flush=True)
+    return Result(place, suite, answer.returncode == 0, closing_line(answer.stdout, answer.returncode))
+
+
+def closing_line(output: str, code: int) -> str:
+    """Return pytest's own last word, or say that there was none."""
+    found = CLOSING_LINE.findall(output)
+    if found:
+        return found[-1]
+    return f"ended with exit code {code} before pytest was through"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
