@@ -17,8 +17,7 @@ from . import build, real_blender, venvs
 from .project import ROOT, TOOLS, ToolError
 
 SOURCE_SUITES = ("tests/core", "tests/export", "tests/cli", "tests/tools", "tests/blender")
-EXTENSION_SUITE = "tests/extension"
-PROFILE = TOOLS / "test-profile"
+INSTALLED_SUITES = ("tests/blender", "tests/extension")
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 CLOSING_LINE = re.compile(
     r"^=* ?((?:no tests ran|\d+ [a-z]+(?:, \d+ [a-z]+)*) in [\d.]+s.*?)(?: =+)?$", re.MULTILINE
@@ -47,7 +46,7 @@ def main() -> int:
         results = [result for of_one in both for result in of_one]
     try:
         blender = real_blender.find()
-        results.append(run_extension_suite(blender))
+        results += run_installed_suites(blender)
         last_line, missing = f"real Blender: {blender}", False
     except real_blender.NoBlender as reason:
         last_line = f"no real Blender, so the installed extension was not tested: {reason}"
@@ -62,32 +61,36 @@ def main() -> int:
 
 
 def run_source_suites(blender: str) -> list[Result]:
-    """Run the suites that need no installed extension in the environment of this Blender's wheel."""
+    """Run the suites from source in the environment of this Blender's wheel."""
     command = [str(venvs.python(blender)), "-m", "pytest", *PYTEST]
-    env = {**os.environ, **ONE_THREAD}
+    env = test_environment(f"bpy-{blender}")
     suites = [suite for suite in SOURCE_SUITES if (ROOT / suite).is_dir()]
     return [run_suite(f"bpy {blender}", suite, [*command, suite], env) for suite in suites]
 
 
-def run_extension_suite(blender: real_blender.RealBlender) -> Result:
+def run_installed_suites(blender: real_blender.RealBlender) -> list[Result]:
     """Build the zip, install it into a fresh profile as an artist would, and test it there."""
     zip_file = build.build(blender)
-    shutil.rmtree(PROFILE, ignore_errors=True)
-    env = {
-        **os.environ,
-        **ONE_THREAD,
-        "BLENDER_USER_RESOURCES": str(PROFILE),
-        "OCEAN_TWEAK_ZIP": str(zip_file),
-    }
+    env = {**test_environment("real-blender"), "OCEAN_TWEAK_ZIP": str(zip_file)}
     build.extension(blender, "install-file", "-r", "user_default", "--enable", str(zip_file), env=env)
-    command = [*blender.command, "--background", "--python-exit-code", "1"]
-    script = ["--python", str(ROOT / "tools" / "pytest_in_blender.py"), "--", str(venvs.PYTEST_IN_BLENDER)]
-    return run_suite(
-        "real Blender",
-        EXTENSION_SUITE,
-        [*command, *script, *PYTEST, f"--rootdir={ROOT}", EXTENSION_SUITE],
-        env,
-    )
+    options = [
+        "--background",
+        "--python-exit-code",
+        "1",
+        "--python",
+        str(ROOT / "tools/pytest_in_blender.py"),
+    ]
+    command = [*blender.command, *options, "--", str(venvs.PYTEST_IN_BLENDER), *PYTEST, f"--rootdir={ROOT}"]
+    suites = [suite for suite in INSTALLED_SUITES if (ROOT / suite).is_dir()]
+    return [run_suite("real Blender", suite, [*command, suite], env) for suite in suites]
+
+
+def test_environment(place: str) -> dict[str, str]:
+    """Return the environment of a test run: an empty profile of its own, and no threads beside the tests'."""
+    profile = TOOLS / "test-profiles" / place
+    shutil.rmtree(profile, ignore_errors=True)
+    own = {name: value for name, value in os.environ.items() if name != "OCEAN_TWEAK_ZIP"}
+    return {**own, **ONE_THREAD, "BLENDER_USER_RESOURCES": str(profile)}
 
 
 def run_suite(place: str, suite: str, command: Sequence[str], env: Mapping[str, str]) -> Result:

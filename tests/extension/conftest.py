@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside a real Blender whose fresh profile has the zip installed and enabled."""
 
-import importlib
 import os
 import subprocess
 from pathlib import Path
@@ -9,28 +8,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-PACKAGE = "bl_ext.user_default.ocean_tweak"
-
-
-@pytest.fixture(scope="session")
-def package():
-    """The installed extension's name, as Blender's preferences have it."""
-    enabled = [addon.module for addon in bpy.context.preferences.addons]
-    assert PACKAGE in enabled, f"{PACKAGE} is not enabled; enabled are {enabled}"
-    return PACKAGE
-
-
-@pytest.fixture(scope="session")
-def installed(package):
-    """Import a module of the installed extension: `installed("core")`."""
-
-    def import_installed(name=""):
-        module = importlib.import_module(f"{package}.ocean_tweak{'.' if name else ''}{name}")
-        profile = Path(os.environ["BLENDER_USER_RESOURCES"]).resolve()
-        assert profile in Path(module.__file__).resolve().parents, f"{module.__file__} is not in {profile}"
-        return module
-
-    return import_installed
+from tests.blender_fixtures import empty_scene, extension, package  # noqa: F401 - fixtures for every test here
 
 
 @pytest.fixture(scope="session")
@@ -54,10 +32,3 @@ def run_blender():
         )
 
     return run
-
-
-@pytest.fixture
-def empty_scene():
-    """A new file without objects."""
-    bpy.ops.wm.read_homefile(use_empty=True)
-    return bpy.context.scene

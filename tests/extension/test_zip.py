@@ -43,5 +43,11 @@ def test_blender_imports_the_wheel_of_the_manifest(package, zip_file):
     assert versions == {importlib.metadata.version("OpenEXR")}
 
 
-def test_installed_code_is_the_one_under_test(installed):
-    assert installed("core").__name__.startswith("bl_ext.user_default.ocean_tweak.")
+def test_installed_code_is_the_one_under_test(extension):
+    assert extension("core").__name__.startswith("bl_ext.user_default.ocean_tweak.")
+
+
+def test_enabled_extension_is_loaded_by_a_new_blender(run_blender, package):
+    script = f"import sys; sys.exit(40 + ('{package}.ocean_tweak.registration' in sys.modules))"
+    answer = run_blender("--background", "--python-expr", script)
+    assert answer.returncode == 41, answer.stdout + answer.stderr
