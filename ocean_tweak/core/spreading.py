@@ -17,7 +17,10 @@ from . import constants
 Array = NDArray[np.float64]
 
 #: ω/ω_p at which normalisations are tabulated; outside, the shape at the nearer end holds
-_TABLE_FROM, _TABLE_TO, _TABLE_SIZE = 0.01, 1000.0, 4096
+_TABLE_FROM, _TABLE_TO, _TABLE_SIZE = 0.03, 300.0, 6144
+
+#: ω/ω_p at which the shape of a model jumps
+_BREAKS = (constants.DONELAN_MIDDLE_FROM, constants.BANNER_FROM)
 
 
 def wrap_angle(theta: ArrayLike) -> Array:
@@ -66,8 +69,11 @@ def _log_density(theta: Array, ratio: Array, model: str, swell: float) -> Array:
 
 @lru_cache(maxsize=1)
 def _half_circle_rule() -> tuple[Array, Array]:
-    """Nodes and weights on [0, π], in panels that halve towards 0, where narrow peaks stand."""
-    edges = np.concatenate(([0.0], np.pi * 2.0 ** np.arange(-10.0, 1.0)))
+    """Nodes and weights on [0, π], in panels that halve towards 0, where narrow peaks stand, and towards π,
+    where a small power of cos(θ/2) falls steeply."""
+    towards_zero = np.pi * 2.0 ** np.arange(-10.0, 0.0)
+    towards_pi = np.pi * (1.0 - 2.0 ** np.arange(-2.0, -25.0, -1.0))
+    edges = np.concatenate(([0.0], towards_zero, towards_pi, [np.pi]))
     x, w = np.polynomial.legendre.leggauss(16)
     width = np.diff(edges)[:, np.newaxis]
     return (edges[:-1, np.newaxis] + 0.5 * width * (x + 1.0)).ravel(), (0.5 * width * w).ravel()
@@ -75,11 +81,13 @@ def _half_circle_rule() -> tuple[Array, Array]:
 
 @lru_cache(maxsize=32)
 def _normalisation_table(model: str, swell: float) -> tuple[Array, Array]:
-    """ln(ω/ω_p) and ln Q(ω), Q = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
+    """ω/ω_p and ln Q(ω), Q = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
     theta, weight = _half_circle_rule()
-    log_ratio = np.linspace(np.log(_TABLE_FROM), np.log(_TABLE_TO), _TABLE_SIZE)
-    density = np.exp(_log_density(theta, np.exp(log_ratio)[:, np.newaxis], model, swell))
-    return log_ratio, -np.log(2.0 * density @ weight)
+    # a node on either side of each jump: nothing is interpolated across it
+    even = np.geomspace(_TABLE_FROM, _TABLE_TO, _TABLE_SIZE)
+    ratio = np.sort(np.concatenate((even, _BREAKS, np.nextafter(_BREAKS, 0.0))))
+    density = np.exp(_log_density(theta, ratio[:, np.newaxis], model, swell))
+    return ratio, -np.log(2.0 * density @ weight)
 
 
 def spreading(omega_ratio: ArrayLike, theta: ArrayLike, model: str, swell: float = 0.0) -> Array:
@@ -89,6 +97,5 @@ def spreading(omega_ratio: ArrayLike, theta: ArrayLike, model: str, swell: float
     theta : angle to the wind in rad, any value (it is wrapped: sech² is not periodic)
     """
     ratio = np.clip(np.asarray(omega_ratio, np.float64), _TABLE_FROM, _TABLE_TO)
-    log_ratio, log_q = _normalisation_table(model, swell)
-    q = np.interp(np.log(ratio), log_ratio, log_q)
-    return np.exp(_log_density(wrap_angle(theta), ratio, model, swell) + q)
+    log_q = np.interp(ratio, *_normalisation_table(model, swell))
+    return np.exp(_log_density(wrap_angle(theta), ratio, model, swell) + log_q)

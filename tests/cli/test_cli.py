@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: results, messages and exit codes."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.core import Ocean, OceanParameters, ParameterError, WaveLayer
+from ocean_tweak.core.bake import parse_frames
+from ocean_tweak.export.exr import read_image
+
+ROOT = Path(__file__).parents[2]
+SMALL = {"resolution": 32, "domain_size": 200.0, "seed": 5, "timing": {"fps": 25, "start_frame": 1001}}
+
+
+@pytest.fixture
+def params(tmp_path: Path) -> Path:
+    path = tmp_path / "small.json"
+    path.write_text(json.dumps(SMALL))
+    return path
+
+
+def test_bake_gives_the_array_of_python(params: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "new" / "folder"
+    code = main(["bake", "--params", str(params), "--frames", "1003,1001", "--out", str(out), "--compression", "ZIP"])
+    assert code == 0
+    assert sorted(p.name for p in out.iterdir()) == ["small_disp.1001.exr", "small_disp.1003.exr"]
+    parameters = OceanParameters.from_json(params.read_text())
+    pixels, _ = read_image(out / "small_disp.1003.exr")
+    np.testing.assert_array_equal(pixels, Ocean(parameters).surface(2 / 25).displacement)
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 2
+    assert "(1/2)" in lines[0]
+
+
+def test_the_range_never_moves_time(params: Path, tmp_path: Path) -> None:
+    for name, frames in (("whole", "1001-1003"), ("part", "1003")):
+        assert main(["bake", "--params", str(params), "--frames", frames, "--out", str(tmp_path / name)]) == 0
+    file = "small_disp.1003.exr"
+    assert (tmp_path / "whole" / file).read_bytes() == (tmp_path / "part" / file).read_bytes()
+
+
+def test_set_fps_and_start_frame(params: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["info", "--json", "--params", str(params), "--set", "layers.0.wind_speed=25",
+                 "--set", "dispersion=DEEP", "--fps", "24000/1001", "--start-frame", "7"]  # fmt: skip
+    assert main(arguments) == 0
+    report = json.loads(capsys.readouterr().out)["small"]
+    changed = OceanParameters.from_dict(report["parameters"])
+    expected = OceanParameters.from_dict(
+        {**SMALL, "dispersion": "DEEP", "timing": {"fps": "24000/1001", "start_frame": 7},
+         "layers": [{"wind_speed": 25.0}]}
+    )  # fmt: skip
+    assert changed == expected
+    assert report["statistics"]["spectrum"]["significant_wave_height"] > 5.0
+
+
+def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info"]) == 0
+    text = capsys.readouterr().out
+    assert "3.15 m" in text  # the default sea
+    assert "7.58 s" in text
+    assert main(["info", "--set", "domain_size=100", "--set", "resolution=32"]) == 0
+    assert "warning: The domain of 100 m holds only 1.1" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["info", "--set", "layers.0.wind_speed=-3"], 2, "layers.0.wind_speed = -3: must be from 0.1 to 100 m/s"),
+        (["info", "--set", "layers.0.wind_speed=NaN"], 2, "finite"),
+        (["info", "--set", "layers.0.wind_sped=3"], 2, "did you mean wind_speed?"),
+        (["info", "--set", "layers.4.wind_speed=3"], 2, "from 0 to 0"),
+        (["info", "--set", "water.depth.x=3"], 2, "water.depth.x"),
+        (["info", "--set", "resolution"], 2, "must look like"),
+        (["info", "--params", "absent.json"], 2, "absent.json"),
+        (["info", "--params", "."], 2, "--params"),
+        (["info", "--fps", "0"], 2, "timing.fps = 0"),
+        (["bake", "--frames", "3-1", "--out", "x"], 2, "frames = '3-1'"),
+        (["bake", "--frames", "1"], 2, "--out"),
+        (["bake", "--frames", "1", "--out", "/proc/nowhere/x"], 1, "/proc/nowhere"),
+        (["sail"], 2, "sail"),
+        ([], 2, "COMMAND"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_said_in_one_line(
+    arguments: list[str], code: int, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == code
+    captured = capsys.readouterr()
+    assert said in captured.err.splitlines()[-1]
+    assert "Traceback" not in captured.err
+    assert not captured.out
+
+
+def test_a_bad_file_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "bad.json"
+    for content in (b"{", b"\xff\xfe\x00", b'{"depth": 3}'):
+        path.write_bytes(content)
+        assert main(["bake", "--params", str(path), "--frames", "1", "--out", str(tmp_path / "out")]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_is_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "file"
+    target.write_text("mine")
+    assert main(["bake", "--frames", "1", "--out", str(target), "--set", "resolution=16"]) == 1
+    assert str(target) in capsys.readouterr().err
+    assert target.read_text() == "mine"
+
+
+def test_scene_oceans(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    oceans = {
+        "Bay.001": OceanParameters(resolution=16),
+        "Open/Sea": OceanParameters(resolution=32, layers=(WaveLayer(wind_speed=20.0),)),
+    }
+    assert main(["bake", "--frames", "2", "--out", str(tmp_path)], lambda: oceans) == 0
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["Bay_001_disp.0002.exr", "Open_Sea_disp.0002.exr"]
+    assert main(["info", "--object", "Bay.001"], lambda: oceans) == 0
+    capsys.readouterr()
+    assert main(["info", "--object", "Lake"], lambda: oceans) == 2
+    assert "Bay.001, Open/Sea" in capsys.readouterr().err
+    assert main(["info"], dict) == 2
+    assert main(["bake", "--frames", "2", "--out", str(tmp_path), "--name", "x"], lambda: oceans) == 2
+
+
+def test_as_a_program(params: Path) -> None:
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "ocean_tweak", *arguments]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+    assert run("--version").stdout.startswith("Ocean Tweak ")
+    good = run("info", "--params", str(params))
+    assert (good.returncode, good.stderr) == (0, "")
+    assert run("info", "--set", "seed=-1").returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "frames"),
+    [
+        ("1-4", (1, 2, 3, 4)),
+        ("7", (7,)),
+        ("1-10x4", (1, 5, 9)),
+        ("1001,1005-1007", (1001, 1005, 1006, 1007)),
+        ("3,1-3", (1, 2, 3)),
+        ("-2-1", (-2, -1, 0, 1)),
+        ("-5--3", (-5, -4, -3)),
+        ("99999-100000", (99999, 100000)),
+    ],
+)
+def test_frame_ranges(text: str, frames: tuple[int, ...]) -> None:
+    assert parse_frames(text) == frames
+
+
+@pytest.mark.parametrize("text", ["", "a", "1-", "4-1", "1-5x0", "1..5", "1-2000000", "1,,2"])
+def test_frame_ranges_that_are_none(text: str) -> None:
+    with pytest.raises(ParameterError, match="frames"):
+        parse_frames(text)

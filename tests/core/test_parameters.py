@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parameters: what is refused and how it is said, and JSON both ways."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import OceanParameters, ParameterError, Timing, Water, WaveLayer
+
+
+def test_json_round_trip_keeps_every_field() -> None:
+    parameters = OceanParameters(
+        resolution=128,
+        domain_size=123.456,
+        seed=7,
+        choppiness=0.7,
+        dispersion="DEEP",
+        water=Water(depth=12.5, gravity=3.7, density=1025.0, surface_tension=0.05),
+        layers=(WaveLayer(wind_speed=0.1 + 0.2, wind_direction=math.pi / 4), WaveLayer(swell=1.0, gain=0.5)),
+        timing=Timing(fps=Fraction(24000, 1001), start_frame=1001),
+    )
+    again = OceanParameters.from_json(parameters.to_json())
+    assert again == parameters
+    assert hash(again) == hash(parameters)
+
+
+def test_missing_keys_keep_their_defaults() -> None:
+    parameters = OceanParameters.from_json('{"layers": [{"wind_speed": 20}]}')
+    assert parameters == OceanParameters(layers=(WaveLayer(wind_speed=20.0),))
+
+
+def test_parameters_cannot_be_changed() -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        OceanParameters().seed = 3  # type: ignore[misc]
+
+
+def test_numpy_numbers_are_numbers() -> None:
+    parameters = OceanParameters(resolution=np.int64(64), domain_size=np.float32(400.0), seed=np.uint8(3))
+    assert json.loads(parameters.to_json())["resolution"] == 64
+    assert type(parameters.domain_size) is float
+
+
+@pytest.mark.parametrize(
+    ("data", "field", "said"),
+    [
+        ({"layers": [{"wind_speed": math.nan}]}, "layers.0.wind_speed", "finite number from 0.1 to 100 m/s"),
+        ({"layers": [{}, {"fetch": math.inf}]}, "layers.1.fetch", "finite"),
+        ({"layers": [{"wind_speed": 0}]}, "layers.0.wind_speed", "from 0.1 to 100 m/s"),
+        ({"water": {"depth": -5}}, "water.depth", "from 0.1 to 11000 m"),
+        ({"water": {"depth": 0}}, "water.depth", "from 0.1 to 11000 m"),
+        ({"resolution": 17}, "resolution", "even number"),
+        ({"resolution": 14}, "resolution", "from 16 to 8192"),
+        ({"resolution": 8194}, "resolution", "from 16 to 8192"),
+        ({"resolution": 64.5}, "resolution", "whole number"),
+        ({"resolution": True}, "resolution", "whole number"),
+        ({"domain_size": "400"}, "domain_size", "must be a number"),
+        ({"seed": -1}, "seed", "from 0"),
+        ({"dispersion": "deep"}, "dispersion", "CAPILLARY, FINITE_DEPTH, DEEP"),
+        ({"layers": [{"spectrum": "SWELL"}]}, "layers.0.spectrum", "TMA"),
+        ({"layers": [{"limit_fetch": 1}]}, "layers.0.limit_fetch", "true or false"),
+        ({"layers": []}, "layers", "from 1 to 64"),
+        ({"layers": {"wind_speed": 3}}, "layers", "sequence of WaveLayer"),
+        ({"water": 3}, "water.Water", "JSON object"),
+        ({"timing": {"fps": 0}}, "timing.fps", "24000/1001"),
+        ({"timing": {"fps": "fast"}}, "timing.fps", "24000/1001"),
+        ({"timing": {"fps": "1/0"}}, "timing.fps", "24000/1001"),
+        ({"timing": {"start_frame": 1.5}}, "timing.start_frame", "whole number"),
+        ({"layers": [{"wind_sped": 3}]}, "layers.0.wind_sped", "did you mean wind_speed?"),
+        ({"depth": 3}, "depth", "unknown key"),
+    ],
+)  # fmt: skip
+def test_bad_values_are_refused_by_name(data: dict, field: str, said: str) -> None:
+    with pytest.raises(ParameterError) as caught:
+        OceanParameters.from_dict(data)
+    assert caught.value.field == field
+    assert said in str(caught.value)
+    assert str(caught.value).startswith(f"{field} = ")
+    assert "\n" not in str(caught.value)
+
+
+def test_direct_construction_is_validated_too() -> None:
+    with pytest.raises(ValueError, match="wind_speed = -1"):
+        WaveLayer(wind_speed=-1)
+    with pytest.raises(ValueError, match="water"):
+        OceanParameters(water=None)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"seed": 1, "seed": 2}', '{"seed": NaN}', "[" * 100_000])
+def test_text_that_is_not_a_sea_is_refused(text: str) -> None:
+    with pytest.raises(ParameterError):
+        OceanParameters.from_json(text)
+
+
+def test_frames_become_seconds_exactly() -> None:
+    timing = Timing(fps=Fraction(24000, 1001), start_frame=1001)
+    assert timing.time(1001) == 0.0
+    assert timing.time(1001 + 24000) == 1001.0
+    assert timing.time(1001.5) == 0.5 * 1001 / 24000
+    assert Timing(fps=24).time(25) == 1.0  # type: ignore[arg-type]
+    assert Timing(fps=23.976).fps == Fraction(23976, 1000)  # type: ignore[arg-type]

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surface against a direct sum of cosines, and single waves against theory."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer
+from ocean_tweak.core.fields import displacement
+from ocean_tweak.core.grid import WaveVectorGrid
+from ocean_tweak.core.initial_state import InitialState
+from ocean_tweak.core.propagation import propagate
+
+
+def sum_of_cosines(state: InitialState, time: float, choppiness: float) -> np.ndarray:
+    """(N, N, 3) m: h = Σ a cos(k·x - ωt + ε), D = -λ Σ (k/|k|) a sin(k·x - ωt + ε), wave by wave.
+
+    Chen (2014), eq. 5 and 11. Each coefficient h_plus is one wave along +k; each h_minus one along -k, which
+    in the column kx = 0 is another row's h_plus and must not count twice.
+    """
+    grid = state.grid
+    n = grid.resolution
+    x = grid.domain_size / n * np.arange(n)
+    X, Y = np.meshgrid(x, x)
+    result = np.zeros((n, n, 3))
+    for (i, j), omega in np.ndenumerate(state.omega):
+        kx, ky = grid.kx[0, j], grid.ky[i, 0]
+        waves = [(kx, ky, state.h_plus[i, j])]
+        if j > 0:
+            waves.append((-kx, -ky, np.conj(state.h_minus[i, j])))
+        for wave_x, wave_y, coefficient in waves:
+            if coefficient == 0.0:
+                continue
+            angle = wave_x * X + wave_y * Y - omega * time + np.angle(coefficient)
+            amplitude = 2.0 * np.abs(coefficient)
+            k = np.hypot(wave_x, wave_y)
+            result[..., 0] -= choppiness * wave_x / k * amplitude * np.sin(angle)
+            result[..., 1] -= choppiness * wave_y / k * amplitude * np.sin(angle)
+            result[..., 2] += amplitude * np.cos(angle)
+    return result
+
+
+@pytest.mark.parametrize("time", [0.0, 1.7, 3600.0])
+def test_transform_equals_the_sum_of_cosines(time: float) -> None:
+    parameters = OceanParameters(
+        resolution=16,
+        domain_size=300.0,
+        seed=4,
+        choppiness=0.8,
+        water=Water(depth=20.0),
+        layers=(WaveLayer(wind_speed=15.0, wind_direction=1.1, fetch=200e3, swell=0.2),),
+    )
+    ocean = Ocean(parameters)
+    expected = sum_of_cosines(ocean.initial_state, time, 0.8)
+    error = np.abs(ocean.surface(time).displacement - expected)
+    assert np.max(error) < 1e-6 * np.max(np.abs(expected))
+    assert np.any(ocean.initial_state.h_plus[:, 0])
+
+
+def single_wave(amplitude: float, index: tuple[int, int], n: int = 256) -> InitialState:
+    """One cosine that travels along +k, with k = 1 rad/m times the index, in deep water."""
+    grid = WaveVectorGrid(n, 2 * np.pi)
+    h_plus = np.zeros(grid.shape, np.complex128)
+    h_plus[index] = 0.5 * amplitude
+    omega = np.sqrt(9.81 * grid.k)
+    h_minus = np.zeros_like(h_plus)
+    return InitialState(grid, h_plus, h_minus, omega, np.abs(h_plus) ** 2)
+
+
+def test_crests_sharpen() -> None:
+    """A = 0.1 m, k = 1: at fixed x the second harmonic is +½kA², the mean -½kA², the skewness +0.106."""
+    A = 0.1
+    state = single_wave(A, (0, 1), n=1024)
+    moved = displacement(propagate(state, 0.0, np.complex128), state.grid, 1.0)[0]
+    x = 2 * np.pi / 1024 * np.arange(1024)
+    position, height = x + moved[:, 0], moved[:, 2]
+    elevation = np.interp(x, position, height, period=2 * np.pi)
+    coefficients = np.fft.rfft(elevation) / 1024
+    assert 2 * coefficients[2].real == pytest.approx(0.5 * A**2, rel=0.02)
+    assert coefficients[0].real == pytest.approx(-0.5 * A**2, rel=0.02)
+    skewness = np.mean((elevation - elevation.mean()) ** 3) / np.std(elevation) ** 3
+    assert skewness == pytest.approx(0.106, abs=0.02 * 0.106 + 0.004)
+
+
+@pytest.mark.parametrize("index", [(0, 3), (2, 3), (-2, 3), (5, 0)])
+def test_a_wave_travels_along_its_wave_vector(index: tuple[int, int]) -> None:
+    state = single_wave(0.2, index, n=64)
+    if index[1] == 0:  # the column holds a wave twice, at ky and conjugated at -ky
+        state.h_minus[-index[0], 0] = np.conj(state.h_plus[index])
+    k = np.array([index[1], index[0]], float)
+    speed = np.sqrt(9.81 / np.hypot(*k))
+    time = 0.37
+    x = 2 * np.pi / 64 * np.arange(64)
+    X, Y = np.meshgrid(x, x)
+    along = (k[0] * X + k[1] * Y) - np.hypot(*k) * speed * time
+    elevation = displacement(propagate(state, time), state.grid, 1.0)[..., 2]
+    np.testing.assert_allclose(elevation, 0.2 * np.cos(along), atol=1e-6)
+
+
+def test_wind_direction_is_where_the_waves_go() -> None:
+    """Most energy travels along the wind: the mean of k over h_plus and h_minus points with it."""
+    for direction in (0.0, 2.0, -2.5):
+        layer = WaveLayer(wind_direction=direction, swell=0.5)
+        state = Ocean(OceanParameters(resolution=64, domain_size=400.0, layers=(layer,))).initial_state
+        flow = np.abs(state.h_plus) ** 2 - np.abs(state.h_minus) ** 2
+        vector = np.array([np.sum(flow * state.grid.kx), np.sum(flow * state.grid.ky)])
+        difference = np.arctan2(vector[1], vector[0]) - direction
+        assert abs((difference + np.pi) % (2 * np.pi) - np.pi) < 0.25
+
+
+def test_single_precision_stays_exact_after_hours(windy: OceanParameters) -> None:
+    state = Ocean(windy).initial_state
+    single = displacement(propagate(state, 1e4), state.grid, 1.0)
+    double = displacement(propagate(state, 1e4, np.complex128), state.grid, 1.0)
+    assert single.dtype == np.float32
+    rms = np.sqrt(np.mean((single - double) ** 2) / np.mean(double**2))
+    assert rms < 5e-7
+
+
+def test_frames_belong_to_the_shot(windy: OceanParameters) -> None:
+    shot = windy.replace(timing=Timing(fps=25, start_frame=1001))  # type: ignore[arg-type]
+    np.testing.assert_array_equal(
+        Ocean(shot).frame(1011).displacement, Ocean(windy).surface(0.4).displacement
+    )
+
+
+def test_any_frame_alone_has_the_same_bytes(windy: OceanParameters) -> None:
+    in_order = [Ocean(windy).frame(frame).displacement.tobytes() for frame in (1, 2, 3)]
+    backwards = [Ocean(windy).frame(frame).displacement.tobytes() for frame in (3, 2, 1)]
+    assert in_order == backwards[::-1]
+
+
+def test_outputs_that_were_not_asked_for_are_named(windy: OceanParameters) -> None:
+    ocean = Ocean(windy)
+    with pytest.raises(AttributeError, match="displacement was not computed"):
+        _ = ocean.surface(0.0, outputs=()).displacement
+    with pytest.raises(ValueError, match="'foam_colour'"):
+        ocean.surface(0.0, outputs={"foam_colour"})
+    with pytest.raises(ValueError, match="time = nan"):
+        ocean.surface(float("nan"))

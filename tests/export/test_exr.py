@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""EXR images: what is written is what is read, precise, whole or absent."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, Timing
+from ocean_tweak.export import files
+from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, write_image
+
+FPS = Fraction(24000, 1001)
+
+
+@pytest.fixture
+def image() -> np.ndarray:
+    return np.random.default_rng(0).normal(scale=5.0, size=(32, 32, 3)).astype(np.float32)
+
+
+@pytest.mark.parametrize("compression", COMPRESSION_ERROR)
+def test_round_trip_within_the_documented_error(tmp_path: Path, image: np.ndarray, compression: str) -> None:
+    path = tmp_path / "sea_disp.0001.exr"
+    write_image(path, image, {"frame": 1}, FPS, compression)
+    again, metadata = read_image(path)
+    assert metadata == {"frame": 1}
+    assert again.dtype == np.float32
+    np.testing.assert_allclose(again, image, rtol=COMPRESSION_ERROR[compression])
+
+
+def test_rows_are_top_down_in_the_file(tmp_path: Path, image: np.ndarray) -> None:
+    path = tmp_path / "a.exr"
+    write_image(path, image[:, ::-1], {}, FPS, "ZIP")  # a view with a negative stride
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        channels, header = file.channels(), dict(file.header())
+        names, red = sorted(channels), channels["R"].pixels
+    np.testing.assert_array_equal(red, image[::-1, ::-1, 0])
+    assert names == ["B", "G", "R"]
+    assert header["framesPerSecond"] == FPS
+    assert header["colorInteropID"] == "data"
+
+
+def test_sequence_names_frames_and_keeps_parameters(tmp_path: Path) -> None:
+    parameters = OceanParameters(resolution=16, timing=Timing(start_frame=1001))
+    sink = ExrSequence(tmp_path, "sea", parameters)
+    path = sink.write(1013, Ocean(parameters).frame(1013))
+    assert path == tmp_path / "sea_disp.1013.exr"
+    pixels, metadata = read_image(path)
+    assert OceanParameters.from_dict(metadata["parameters"]) == parameters
+    assert metadata["time"] == 0.5
+    np.testing.assert_allclose(pixels, Ocean(parameters).surface(0.5).displacement, rtol=2.0**-16)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path, image: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.exr"
+    write_image(path, image, {}, FPS)
+    before = path.read_bytes()
+
+    def full_disk(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(files.os, "fsync", full_disk)
+    with pytest.raises(OSError, match="No space"):
+        write_image(path, 2 * image, {}, FPS)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.exr"]
+
+
+def test_values_that_are_not_finite_are_refused(tmp_path: Path, image: np.ndarray) -> None:
+    image[3, 4, 1] = np.nan
+    with pytest.raises(ExrError, match="not finite"):
+        write_image(tmp_path / "a.exr", image, {}, FPS)
+    assert not list(tmp_path.iterdir())
+
+
+def test_damaged_and_foreign_files_are_named(tmp_path: Path, image: np.ndarray) -> None:
+    whole = tmp_path / "whole.exr"
+    write_image(whole, image, {}, FPS)
+    truncated = tmp_path / "truncated.exr"
+    truncated.write_bytes(whole.read_bytes()[:-2000])
+    foreign = tmp_path / "foreign.exr"
+    OpenEXR.File({}, {"Y": np.zeros((4, 4), np.float32)}).write(str(foreign))
+    for path in (truncated, foreign, tmp_path / "absent.exr"):
+        with pytest.raises(ExrError, match=path.name):
+            read_image(path)
