@@ -10,7 +10,8 @@ help:       ## this list
 setup:      ## everything the other targets need, into .tools/ (made once)
 	@$(PYTHON) -m tools.setup
 
-demo: setup ## bake, build and render the storm of examples/storm.json into build/demo/
+demo:       ## bake, build and render the storm of examples/storm.json into build/demo/
+	@$(PYTHON) -m tools.setup python-5.2 blender
 	@$(VENV) -m tools.demo
 
 test: setup ## every test: in the bpy wheels of 5.2 and 4.5, and of the installed zip in a real Blender
@@ -20,7 +21,7 @@ test-core:  ## the tests of the core alone
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m pytest -q tests/core
 
-lint:       ## formatting, lint, types of the core, import layers
+lint:       ## formatting, lint, types of the core, import layers; FIX=1 formats first
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.lint
 
