@@ -11,7 +11,12 @@ def traces(package):
     owners = (bpy.types.Object, bpy.types.Scene, bpy.types.WindowManager, bpy.types.Image, bpy.types.Mesh)
     menus = [getattr(bpy.types, name) for name in dir(bpy.types) if "_MT_" in name]
     return {
-        *(f"type {name}" for name in dir(bpy.types)),
+        *(f"type {name}" for name in dir(bpy.types)),  # all but the property groups
+        *(
+            f"type {group.__name__}"
+            for group in bpy.types.PropertyGroup.__subclasses__()
+            if group.is_registered
+        ),
         *(
             f"property {owner.__name__}.{name}"
             for owner in owners
