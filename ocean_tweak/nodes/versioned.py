@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node groups of this extension, found by what made them rather than by their name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import bpy
+
+_KEY = "ocean_tweak_group"
+
+
+@dataclass(frozen=True)
+class GroupKind:
+    """One node group that the extension can build.
+
+    name : shown to the user
+    version : raised whenever `build` changes, so that a group from an older file is not taken for this one
+    build : fills an empty group with sockets and nodes
+    """
+
+    name: str
+    version: int
+    build: Callable[[bpy.types.NodeTree], None]
+
+    @property
+    def tag(self) -> str:
+        """What stands in the group's custom property."""
+        return f"{self.name} {self.version}"
+
+
+def node_group(kind: GroupKind) -> bpy.types.NodeTree:
+    """The group of this kind and version in the file; made when there is none."""
+    for group in bpy.data.node_groups:
+        if group.library is None and group.get(_KEY) == kind.tag:
+            return group
+    group = bpy.data.node_groups.new(kind.name, "GeometryNodeTree")
+    kind.build(group)
+    group[_KEY] = kind.tag
+    return group
+
+
+def is_of_kind(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
+    """Whether a group was built as this kind, in any version."""
+    return group is not None and str(group.get(_KEY, "")).rpartition(" ")[0] == kind.name

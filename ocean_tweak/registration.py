@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender is told when the extension is enabled, and what is taken back when it is disabled."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import cli
+from .core import OceanParameters
+from .scene import handlers
+from .scene.settings import all_oceans, settings_of
+from .ui import properties
+
+CLASSES = (*properties.CLASSES,)
+
+_COMMAND = "ocean_tweak"
+# what Blender gave for the command line's command, needed to take it back
+_commands: list[object] = []
+
+
+def scene_oceans() -> dict[str, OceanParameters]:
+    """Parameters of the oceans of the open file by object name. Raises ParameterError for what is no sea."""
+    return {
+        item.name: settings_of(item).to_parameters(item.users_scene[0])
+        for item in all_oceans()
+        if item.users_scene
+    }
+
+
+def run_command(argv: list[str]) -> int:
+    """What `blender --command ocean_tweak …` does. Returns the exit code."""
+    return cli.main(argv, scene_oceans=scene_oceans)
+
+
+def register(package: str | None = None) -> None:
+    """Enable the extension.
+
+    package : the name that Blender knows the extension by
+    """
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(type=properties.OCEAN_PG_ocean)
+    handlers.register()
+    _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
+
+
+def unregister() -> None:
+    """Disable the extension; oceans in the file keep their settings."""
+    while _commands:
+        bpy.utils.unregister_cli_command(_commands.pop())
+    handlers.unregister()
+    del bpy.types.Object.ocean_tweak
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What keeps live oceans moving: frame changes, opened files, undo, changed units and frame rates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+from bpy.app.handlers import persistent
+
+from .evaluation import forget_all
+from .ocean_object import refresh_and_tell
+from .settings import all_oceans, oceans_in, settings_of
+
+# scene settings that change an ocean and have no update callback of ours
+_FOLLOWED = (("UnitSettings", "scale_length"), ("RenderSettings", "fps"), ("RenderSettings", "fps_base"))
+# subscriptions to properties are made and cleared under this owner
+_OWNER = object()
+
+
+@persistent
+def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+    """Show the frame that the scene is about to evaluate, sub-frame included."""
+    for item in oceans_in(scene):
+        if settings_of(item).source == "LIVE":
+            refresh_and_tell(item, scene)
+
+
+@persistent
+def refresh_after_load(_path: object = None, _unused: object = None) -> None:
+    """Fill the live images of an opened file: generated images are saved without their texels."""
+    forget_all()
+    _subscribe()
+    refresh_live_oceans()
+
+
+@persistent
+def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
+    """Undo restores settings, but neither the texels nor what was made anew since."""
+    refresh_live_oceans()
+
+
+def refresh_live_oceans() -> None:
+    """Refresh every live ocean of the file in its own scene."""
+    for item in list(all_oceans()):
+        if settings_of(item).source == "LIVE" and item.users_scene:
+            refresh_and_tell(item, item.users_scene[0])
+
+
+def refresh_all_oceans() -> None:
+    """Refresh every ocean of the file in its own scene."""
+    for item in list(all_oceans()):
+        if item.users_scene:
+            refresh_and_tell(item, item.users_scene[0])
+
+
+_HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
+    ("frame_change_pre", refresh_on_frame_change),
+    ("load_post", refresh_after_load),
+    ("undo_post", refresh_after_undo),
+    ("redo_post", refresh_after_undo),
+)
+
+
+def register() -> None:
+    """Attach the handlers."""
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+    _subscribe()
+
+
+def unregister() -> None:
+    """Detach the handlers and forget the seas."""
+    bpy.msgbus.clear_by_owner(_OWNER)
+    for name, handler in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
+    forget_all()
+
+
+def _subscribe() -> None:
+    bpy.msgbus.clear_by_owner(_OWNER)
+    for owner, name in _FOLLOWED:
+        key = (getattr(bpy.types, owner), name)
+        bpy.msgbus.subscribe_rna(key=key, owner=_OWNER, args=(), notify=refresh_all_oceans)

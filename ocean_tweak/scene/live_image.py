@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Generated float images that hold a sea's displacement in metres."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+
+def new_image(name: str, samples: int) -> bpy.types.Image:
+    """A float image of samples x samples texels, data rather than colour."""
+    image = bpy.data.images.new(name, samples, samples, alpha=False, float_buffer=True, is_data=True)
+    mark_as_data(image)
+    return image
+
+
+def mark_as_data(image: bpy.types.Image) -> None:
+    """Keep Blender from changing the image's numbers.
+
+    `is_data` is set rather than a colour space by name: a studio's OCIO configuration may lack "Non-Color".
+    """
+    image.colorspace_settings.is_data = True
+    image.alpha_mode = "NONE"
+
+
+def resize(image: bpy.types.Image, samples: int) -> None:
+    """Give the image samples x samples texels; it stays the same image for materials that use it."""
+    if tuple(image.size) != (samples, samples):
+        image.generated_width = image.generated_height = samples
+
+
+def write(image: bpy.types.Image, displacement: NDArray[np.floating]) -> None:
+    """Put an (N, N, 3) field [y, x] into the image; row 0 is the bottom row in both."""
+    texels = np.ones((*displacement.shape[:2], 4), np.float32)
+    texels[..., :3] = displacement
+    image.pixels.foreach_set(texels.reshape(-1))
+    # without the tag the dependency graph does not see the new texels
+    image.update_tag()

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What this layer needs to know about an ocean object.
+
+The settings themselves are the property group `object.ocean_tweak`, which the layer above registers:
+it owns labels, ranges and units; here only this interface is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+import bpy
+
+from ..core import OceanParameters
+
+METHODS = {
+    "DISPLACE": ("Displace Modifier", "The Displace modifier moves the mesh by the image"),
+    "NODES": ("Geometry Nodes", "A geometry nodes modifier moves the mesh by the image"),
+}
+SOURCES = {
+    "LIVE": ("Live", "Compute the sea on every frame change. Needs no files, but this extension"),
+    "SEQUENCE": ("Sequence", "Read a baked EXR sequence. Also works where this extension is not installed"),
+}
+
+
+class OceanObjectError(ValueError):
+    """Something in the file or on disk that keeps an ocean from being shown, and the remedy."""
+
+
+class OceanSettings(Protocol):
+    """The part of `object.ocean_tweak` that the scene layer reads and writes.
+
+    error : why the ocean cannot be shown, "" when all is well
+    statistics : JSON of the sea's statistics, "" when there are none
+    sequence_first, sequence_last, sequence_samples : file numbers, and texels along each side
+    mesh_resolution : quads along each side; 0 for as many as the image has samples
+    """
+
+    is_ocean: bool
+    method: str
+    source: str
+    mesh_resolution: int
+    live_image: bpy.types.Image | None
+    sequence_image: bpy.types.Image | None
+    sequence_first: int
+    sequence_last: int
+    sequence_samples: int
+    texture: bpy.types.Texture | None
+    error: str
+    statistics: str
+    id_data: bpy.types.Object
+
+    def to_parameters(self, scene: bpy.types.Scene) -> OceanParameters:
+        """The sea; raises ParameterError for settings that are no sea."""
+
+    def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
+        """Take over a sea; the scene is not changed."""
+
+    def quiet(self) -> AbstractContextManager[None]:
+        """While this is open, a changed property refreshes nothing."""
+
+
+def settings_of(item: bpy.types.Object) -> OceanSettings:
+    """The ocean settings of an object. Raises RuntimeError when the extension is not enabled."""
+    try:
+        return item.ocean_tweak
+    except AttributeError:
+        raise RuntimeError("Ocean Tweak is not enabled: call registration.register() first") from None
+
+
+def is_ocean(item: bpy.types.Object | None) -> bool:
+    """Whether an object was made as an ocean."""
+    return item is not None and item.type == "MESH" and settings_of(item).is_ocean
+
+
+def oceans_in(scene: bpy.types.Scene) -> Iterator[bpy.types.Object]:
+    """Each ocean of a scene once: its own objects, instanced collections and background scenes."""
+    seen: set[bpy.types.Object] = set()
+    waiting: list[bpy.types.Object] = []
+    background: bpy.types.Scene | None = scene
+    scenes = set()
+    while background is not None and background not in scenes:
+        scenes.add(background)
+        waiting += background.objects
+        background = background.background_set
+    while waiting:
+        item = waiting.pop()
+        if item in seen:
+            continue
+        seen.add(item)
+        if item.instance_collection is not None:
+            waiting += item.instance_collection.all_objects
+        if is_ocean(item):
+            yield item
+
+
+def all_oceans() -> Iterator[bpy.types.Object]:
+    """Every ocean of the file."""
+    return (item for item in bpy.data.objects if is_ocean(item))

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of an ocean object, `object.ocean_tweak`, and their way to and from OceanParameters."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from ..core import OceanParameters, Timing, Water, WaveLayer
+from ..scene.ocean_object import refresh_and_tell
+from ..scene.settings import METHODS, SOURCES
+from ..scene.units import frame_rate, metres_per_unit
+from . import parameter_properties
+
+# the frame rate is the scene's
+_FROM_SCENE = ("fps",)
+
+
+def _changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    item = group.id_data
+    settings = item.ocean_tweak
+    if settings.is_quiet or not settings.is_ocean:
+        return
+    scenes = item.users_scene
+    if scenes:
+        refresh_and_tell(item, context.scene if context.scene in scenes else scenes[0])
+
+
+def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
+    return [(key, label, description) for key, (label, description) in table.items()]
+
+
+def _hidden(kind: type) -> PointerProperty:
+    return PointerProperty(type=kind, options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"})
+
+
+class OCEAN_PG_water(bpy.types.PropertyGroup):
+    """The body of water."""
+
+    __annotations__ = parameter_properties.annotations(Water, _changed)
+
+
+class OCEAN_PG_layer(bpy.types.PropertyGroup):
+    """One wave system."""
+
+    __annotations__ = parameter_properties.annotations(WaveLayer, _changed)
+
+
+class OCEAN_PG_timing(bpy.types.PropertyGroup):
+    """How frames become seconds."""
+
+    __annotations__ = parameter_properties.annotations(Timing, _changed, _FROM_SCENE)
+
+
+class OCEAN_PG_ocean(bpy.types.PropertyGroup):
+    """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
+
+    __annotations__ = {
+        **parameter_properties.annotations(OceanParameters, _changed),
+        "water": PointerProperty(type=OCEAN_PG_water),
+        "layers": CollectionProperty(type=OCEAN_PG_layer),
+        "timing": PointerProperty(type=OCEAN_PG_timing),
+        "is_ocean": BoolProperty(options={"HIDDEN"}),
+        "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
+        "method": EnumProperty(
+            name="Method", items=_choices(METHODS), default="NODES", options=set(), update=_changed,
+            description="What moves the mesh",
+        ),
+        "source": EnumProperty(
+            name="Source", items=_choices(SOURCES), default="LIVE", options=set(), update=_changed,
+            description="Where the displacement comes from",
+        ),
+        "mesh_resolution": IntProperty(
+            name="Mesh Resolution", min=0, max=8192, options=set(), update=_changed,
+            description="Quads along each side of the mesh; 0 for one per sample",
+        ),
+        "live_image": _hidden(bpy.types.Image),
+        "sequence_image": _hidden(bpy.types.Image),
+        "texture": _hidden(bpy.types.Texture),
+        "sequence_first": IntProperty(options={"HIDDEN"}),
+        "sequence_last": IntProperty(options={"HIDDEN"}),
+        "sequence_samples": IntProperty(options={"HIDDEN"}),
+        "error": StringProperty(options={"HIDDEN"}),
+        "statistics": StringProperty(options={"HIDDEN"}),
+    }  # fmt: skip
+
+    @contextmanager
+    def quiet(self) -> Iterator[None]:
+        """While this is open, a changed property refreshes nothing."""
+        before, self.is_quiet = self.is_quiet, True
+        try:
+            yield
+        finally:
+            self.is_quiet = before
+
+    def to_parameters(self, scene: bpy.types.Scene) -> OceanParameters:
+        """The sea of these settings, at the scene's units and frame rate.
+
+        Raises ParameterError naming the field, its value and what is allowed.
+        """
+        metres = metres_per_unit(scene)
+        data = parameter_properties.read(self, OceanParameters, metres)
+        data["water"] = parameter_properties.read(self.water, Water, metres)
+        data["layers"] = [parameter_properties.read(layer, WaveLayer, metres) for layer in self.layers]
+        data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
+        data["timing"]["fps"] = str(frame_rate(scene))
+        return OceanParameters.from_dict(data)
+
+    def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
+        """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are."""
+        metres = metres_per_unit(scene)
+        with self.quiet():
+            parameter_properties.write(self, parameters, metres)
+            parameter_properties.write(self.water, parameters.water, metres)
+            parameter_properties.write(self.timing, parameters.timing, metres, _FROM_SCENE)
+            self.layers.clear()
+            for layer in parameters.layers:
+                parameter_properties.write(self.layers.add(), layer, metres)
+        _changed(self, bpy.context)
+
+
+CLASSES = (OCEAN_PG_water, OCEAN_PG_layer, OCEAN_PG_timing, OCEAN_PG_ocean)
