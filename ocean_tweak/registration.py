@@ -9,9 +9,9 @@ from . import cli
 from .core import OceanParameters
 from .scene import handlers
 from .scene.settings import all_oceans, settings_of
-from .ui import properties
+from .ui import operators, panels, properties
 
-CLASSES = (*properties.CLASSES,)
+CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
 _COMMAND = "ocean_tweak"
 # what Blender gave for the command line's command, needed to take it back
@@ -40,6 +40,7 @@ def register(package: str | None = None) -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(type=properties.OCEAN_PG_ocean)
+    bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     handlers.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
@@ -49,6 +50,7 @@ def unregister() -> None:
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
     handlers.unregister()
+    bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

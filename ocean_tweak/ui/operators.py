@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the artist can do: add an ocean, take parameters in and out, switch between live and baked."""
+
+from pathlib import Path
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from ..core import OceanParameters, ParameterError, Timing, WaveLayer
+from ..export.exr import ExrError, read_image
+from ..scene import ocean_object
+from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
+from ..scene.settings import METHODS, is_ocean, settings_of
+from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
+
+# far beyond any sea; keeps a file chosen by mistake from filling the memory
+_LARGEST_JSON = 1_000_000
+
+
+def default_sea(scene: bpy.types.Scene) -> OceanParameters:
+    """A fresh breeze on the open sea, its time zero at the scene's first frame."""
+    timing = Timing(fps=frame_rate(scene), start_frame=scene.frame_start)
+    return OceanParameters(layers=(WaveLayer(swell=0.3),), timing=timing)
+
+
+class MESH_OT_ocean_tweak_add(bpy.types.Operator):
+    """Add a patch of sea that moves on playback."""
+
+    bl_idname = "mesh.ocean_tweak_add"
+    bl_description = "Add a patch of sea that moves on playback"
+    bl_label = "Ocean Tweak"
+    bl_options = {"REGISTER", "UNDO"}
+
+    method: EnumProperty(
+        name="Method",
+        items=[(key, *texts) for key, texts in METHODS.items()],
+        default="NODES",
+        description="What moves the mesh",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Objects are added in Object Mode."""
+        cls.poll_message_set("Switch to Object Mode to add an ocean")
+        return context.mode == "OBJECT"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add the default sea around the 3D cursor."""
+        scene = context.scene
+        parameters = default_sea(scene)
+        try:
+            item = ocean_object.add(scene, parameters, method=self.method, collection=context.collection)
+        except ocean_object.EXPECTED_ERRORS as error:
+            return _refuse(self, error)
+        half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))
+        item.location = scene.cursor.location
+        item.location.x -= half
+        item.location.y -= half
+        for other in context.selected_objects:
+            other.select_set(False)
+        # an excluded collection keeps its objects out of the view layer
+        if item.name in context.view_layer.objects:
+            item.select_set(True)
+            context.view_layer.objects.active = item
+        return {"FINISHED"}
+
+
+class _OfActiveOcean:
+    """Operators that act on the active object."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An ocean is active, and it is this file's own."""
+        item = context.active_object
+        if not is_ocean(item):
+            cls.poll_message_set("Select an ocean first")
+            return False
+        if item.library is not None:
+            cls.poll_message_set("The ocean is linked from another file: make it local or override it")
+            return False
+        return True
+
+
+class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelper):
+    """Give the active ocean the parameters of a JSON file."""
+
+    bl_idname = "ocean.import_parameters"
+    bl_description = "Give the active ocean the parameters of a JSON file"
+    bl_label = "Import Parameters"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    use_frame_rate: BoolProperty(
+        name="Set Frame Rate",
+        description="Give the scene the file's frame rate, so that every frame shows the file's waves",
+        default=True,
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read the file and apply it as a whole, or not at all."""
+        try:
+            parameters = OceanParameters.from_json(_read_text(Path(self.filepath)))
+        except (ParameterError, OSError, UnicodeDecodeError) as error:
+            return _refuse(self, error)
+        _apply(context, parameters, self.use_frame_rate)
+        return {"FINISHED"}
+
+
+class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelper):
+    """Write the parameters of the active ocean to a JSON file, for the command line or another scene."""
+
+    bl_idname = "ocean.export_parameters"
+    bl_description = (
+        "Write the parameters of the active ocean to a JSON file, for the command line or another scene"
+    )
+    bl_label = "Export Parameters"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Write the file; settings that are no sea are refused."""
+        try:
+            parameters = settings_of(context.active_object).to_parameters(context.scene)
+            Path(self.filepath).write_text(parameters.to_json() + "\n", encoding="utf-8")
+        except (ParameterError, OSError) as error:
+            return _refuse(self, error)
+        self.report({"INFO"}, f"Parameters written to {self.filepath}")
+        return {"FINISHED"}
+
+
+class OCEAN_OT_use_sequence(_OfActiveOcean, bpy.types.Operator, ImportHelper):
+    """Let baked files move the active ocean."""
+
+    bl_idname = "ocean.use_sequence"
+    bl_description = "Let baked files move the active ocean: choose any file NAME_disp.####.exr, or a folder"
+    bl_label = "Use Baked Sequence"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".exr"
+    filter_glob: StringProperty(default="*_disp.*.exr", options={"HIDDEN"})
+    use_parameters: BoolProperty(
+        name="Use Its Parameters",
+        description="Take over the sea that the files were baked from, with its domain size and frame rate",
+        default=True,
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Find the sequence and switch to it."""
+        item, scene = context.active_object, context.scene
+        try:
+            sequence = find_sequence(self.filepath)
+            parameters = _baked_parameters(sequence) if self.use_parameters else None
+            ocean_object.use_sequence(item, scene, sequence)
+        except (ExrError, *ocean_object.EXPECTED_ERRORS) as error:
+            return _refuse(self, error)
+        if parameters is not None:
+            _apply(context, parameters, use_frame_rate=True)
+        self.report({"INFO"}, f"{sequence.name}: frames {sequence.first} to {sequence.last}")
+        return {"FINISHED"}
+
+
+class OCEAN_OT_use_live(_OfActiveOcean, bpy.types.Operator):
+    """Compute the active ocean on every frame again."""
+
+    bl_idname = "ocean.use_live"
+    bl_description = "Compute the active ocean on every frame again"
+    bl_label = "Back to Live"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Switch the source; what is wrong with the settings stands in the panel."""
+        settings_of(context.active_object).source = "LIVE"
+        return {"FINISHED"}
+
+
+def _apply(context: bpy.types.Context, parameters: OceanParameters, use_frame_rate: bool) -> None:
+    if use_frame_rate:
+        set_frame_rate(context.scene, parameters.timing.fps)
+    settings_of(context.active_object).from_parameters(parameters, context.scene)
+
+
+def _baked_parameters(sequence: ImageSequence) -> OceanParameters:
+    path = sequence.path(sequence.first)
+    _, metadata = read_image(path)
+    if "parameters" not in metadata:
+        raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
+    return OceanParameters.from_dict(metadata["parameters"])
+
+
+def _read_text(path: Path) -> str:
+    with path.open("rb") as file:
+        data = file.read(_LARGEST_JSON + 1)
+    if len(data) > _LARGEST_JSON:
+        raise ParameterError("file", str(path), f"is larger than {_LARGEST_JSON // 1000} kB: not parameters")
+    return data.decode("utf-8")
+
+
+def _refuse(operator: bpy.types.Operator, error: BaseException) -> set[str]:
+    operator.report({"ERROR"}, str(error) or type(error).__name__)
+    return {"CANCELLED"}
+
+
+CLASSES = (
+    MESH_OT_ocean_tweak_add,
+    OCEAN_OT_import_parameters,
+    OCEAN_OT_export_parameters,
+    OCEAN_OT_use_sequence,
+    OCEAN_OT_use_live,
+)
