@@ -22,7 +22,7 @@ def main() -> int:
     for name, *arguments in (*fixes, *CHECKS):
         print(f"== {' '.join([name, *arguments])}", flush=True)
         if subprocess.call([str(BIN / name), *arguments], cwd=ROOT):
-            failed.append(name)
+            failed.append(" ".join([name, *arguments]))
     print(f"lint failed: {', '.join(failed)}" if failed else "lint: all checks passed")
     return 1 if failed else 0
 
