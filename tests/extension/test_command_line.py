@@ -48,7 +48,7 @@ def test_bake_writes_what_python_computes(ocean_tweak, extension, params, tmp_pa
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["info", "--set", "water.depth=-1"], 2, "water.depth = -1"),
+        (["info", "--params", "PARAMS", "--set", "water.depth=-1"], 2, "water.depth = -1"),
         (["info", "--object", "Lake"], 2, "no ocean"),
         (["sail"], 2, "sail"),
         (["bake", "--frames", "1", "--out", "/proc/nowhere/x", "--params", "PARAMS"], 1, "/proc/nowhere"),
