@@ -6,7 +6,10 @@ GRAVITY = 9.81  # m/s²
 WATER_DENSITY = 1000.0  # kg/m³
 SURFACE_TENSION = 0.074  # N/m
 
-# Pierson-Moskowitz (1964), after Horvath (2015), eq. 19
+# Pierson & Moskowitz (1964), after Horvath (2015), eq. 18 and 19
+PM_ALPHA = 8.1e-3
+PM_BETA = 0.74
+PM_WIND_FACTOR = 1.026  # wind at 19.5 m over wind at 10 m
 PM_PEAK = 0.855  # ω_p U / g of a fully developed sea, U at 10 m
 
 # JONSWAP, Hasselmann et al. (1973), after Horvath (2015), eq. 28
@@ -16,6 +19,27 @@ JONSWAP_PEAK = 22.0  # ω_p U / g at g F / U² = 1
 JONSWAP_SIGMA_BELOW = 0.07  # relative peak width at and below the peak frequency
 JONSWAP_SIGMA_ABOVE = 0.09  # and above it
 PEAK_ENHANCEMENT = 3.3  # γ, the mean of the JONSWAP records
+DEVELOPMENT = 1.25  # exponent factor of exp(-5/4 (ω_p/ω)⁴), which puts the peak at ω_p
+
+# Wind over height, Horvath (2015), § 5.1.3, corrected to 10⁻³ and the log law's 1/κ
+DRAG_OFFSET = 0.8e-3
+DRAG_SLOPE = 0.065e-3  # s/m
+KARMAN = 0.4
+
+# Mitsuyasu (1975), after Horvath (2015), eq. 35 and 36
+MITSUYASU_PEAK = 11.5
+MITSUYASU_WIND_EXPONENT = -2.5
+MITSUYASU_BELOW_EXPONENT = 5.0
+MITSUYASU_ABOVE_EXPONENT = -2.5
+
+# Hasselmann, Dunckel & Ewing (1980), after Horvath (2015), eq. 37
+HASSELMANN_BELOW = 6.97
+HASSELMANN_BELOW_EXPONENT = 4.06
+HASSELMANN_ABOVE = 9.77
+HASSELMANN_ABOVE_EXPONENT = -2.33
+HASSELMANN_WIND_FACTOR = -1.45
+HASSELMANN_WIND_OFFSET = 1.17  # U ω_p / g
+HASSELMANN_ABOVE_FROM = 1.05  # ω/ω_p
 
 # Donelan, Hamilton & Hui (1985) with Banner's high-frequency part, after Horvath (2015), eq. 38
 DONELAN_BELOW = 2.61
@@ -29,3 +53,6 @@ BANNER_EXPONENT = -0.567
 
 # Swell, Horvath (2015), eq. 45
 SWELL_SHAPE = 16.0
+
+# Trough damping: the long waves are those below this multiple of the peak wave number
+TROUGH_FILTER = 3.0

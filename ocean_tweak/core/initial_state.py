@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 
 import numpy as np
@@ -12,10 +13,12 @@ from numpy.typing import NDArray
 from . import dispersion, random
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
-from .parameters import OceanParameters
+from .parameters import OceanParameters, WaveLayer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+_NORMAL, _PHASE = 0, 2  # streams of a wave vector's random numbers; a normal number takes two
 
 
 @dataclass(frozen=True)
@@ -24,46 +27,38 @@ class InitialState:
 
     h_plus, h_minus : (N, N//2+1) complex128, m. The elevation's coefficient at time t is
         h_plus·exp(-iωt) + h_minus·exp(+iωt); h_minus(k) is the conjugate of h_plus(-k).
-    omega : (N, N//2+1) float64, rad/s
-    expected : (N, N//2+1) float64, m²: mean over all seeds of the energy |h_plus|² + |h_minus|²
+    omega : (N, N//2+1) float64, rad/s; in a loop a multiple of 2π/T
+    expected_plus, expected_minus : (N, N//2+1) float64, m²: means over all seeds of |h_plus|², |h_minus|²
+    loop_duration : T in s, or None
     """
 
     grid: WaveVectorGrid
     h_plus: ComplexArray
     h_minus: ComplexArray
     omega: Array
-    expected: Array
-
-    @property
-    def energy(self) -> Array:
-        """(N, N//2+1) m²: this seed's share of the elevation's variance, averaged over time, of each
-        mode of the full plane that the half plane stands for; its sum is m0 of the seed."""
-        both = np.abs(self.h_plus) ** 2 + np.abs(self.h_minus) ** 2
-        return both * self.grid.multiplicity
-
-    @property
-    def expected_energy(self) -> Array:
-        """(N, N//2+1) m²: the mean of `energy` over all seeds; its sum is m0 resolved by the grid."""
-        return self.expected * self.grid.multiplicity
+    expected_plus: Array
+    expected_minus: Array
+    loop_duration: Fraction | None = None
 
 
 @lru_cache(maxsize=4)
-def random_phasors(grid: WaveVectorGrid, seed: int) -> tuple[ComplexArray, ComplexArray]:
-    """ν·exp(iε) for k and for -k, (N, N//2+1) each: ν standard normal, ε uniform in [0, 2π).
-
-    Horvath (2015), eq. 47 and § 7.1.2.
-    """
-    return _phasors(grid.kx, grid.ky, seed), _phasors(-grid.kx, -grid.ky, seed)
+def random_phasors(grid: WaveVectorGrid, seed: int, amplitudes: str) -> tuple[ComplexArray, ComplexArray]:
+    """ν·exp(iε) for k and for -k, (N, N//2+1) each: ε uniform in [0, 2π); ν standard normal
+    (Horvath 2015, eq. 47 and § 7.1.2) or, for FIXED amplitudes, 1 (Chen 2014, eq. 19)."""
+    return _phasors(grid.kx, grid.ky, seed, amplitudes), _phasors(-grid.kx, -grid.ky, seed, amplitudes)
 
 
-def _phasors(kx: Array, ky: Array, seed: int) -> ComplexArray:
+def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
     key = random.hash_wave_vectors(kx, ky, seed)
-    return random.normal(key, 0) * np.exp(2j * np.pi * random.uniform(key, 2))
+    phasors: ComplexArray = np.exp(2j * np.pi * random.uniform(key, _PHASE))
+    if amplitudes == "GAUSSIAN":
+        phasors *= random.normal(key, _NORMAL)
+    return phasors
 
 
-def layer_seed(parameters: OceanParameters, index: int) -> int:
-    """The seed of one layer: layers of a sea are independent of each other."""
-    return random.combine(parameters.seed, index)
+def layer_seed(parameters: OceanParameters, layer: WaveLayer) -> int:
+    """The seed of one layer: its own, or one that follows from the ocean's seed and the layer's id."""
+    return layer.seed if layer.seed >= 0 else random.combine(parameters.seed, layer.id)
 
 
 def initial_state(parameters: OceanParameters) -> InitialState:
@@ -73,15 +68,37 @@ def initial_state(parameters: OceanParameters) -> InitialState:
     corrected by this half; Chen 2014, eq. 10 and 18), and the elevation's variance is ΣΨΔkxΔky = m0.
     """
     grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
-    omega = dispersion.angular_frequency(grid.k, parameters.dispersion, parameters.water)
-    h_plus = np.zeros(grid.shape, np.complex128)
-    h_minus = np.zeros(grid.shape, np.complex128)
-    expected = np.zeros(grid.shape)
-    for index, layer in enumerate(parameters.layers):
+    h_plus, h_minus = (np.zeros(grid.shape, np.complex128) for _ in range(2))
+    expected_plus, expected_minus = (np.zeros(grid.shape) for _ in range(2))
+    for layer in parameters.active_layers:
         spectrum = DirectionalSpectrum(layer, parameters.water, parameters.dispersion)
-        forward, backward = spectrum.cell_means(grid)
-        along, against = random_phasors(grid, layer_seed(parameters, index))
-        h_plus += along * np.sqrt(0.5 * grid.cell_area * forward)
-        h_minus += np.conj(against) * np.sqrt(0.5 * grid.cell_area * backward)
-        expected += 0.5 * grid.cell_area * (forward + backward)
-    return InitialState(grid, h_plus, h_minus, omega, expected)
+        forward, backward = (0.5 * grid.cell_area * mean for mean in spectrum.cell_means(grid))
+        along, against = random_phasors(grid, layer_seed(parameters, layer), parameters.amplitudes)
+        h_plus += along * np.sqrt(forward)
+        h_minus += np.conj(against) * np.sqrt(backward)
+        expected_plus += forward
+        expected_minus += backward
+    if parameters.match_height:
+        _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
+    omega = _angular_frequency(grid, parameters)
+    return InitialState(
+        grid, h_plus, h_minus, omega, expected_plus, expected_minus, parameters.loop_duration
+    )
+
+
+def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, expected: Array) -> None:
+    """Scale a seed's coefficients so that its energy is the expected one."""
+    energy = np.sum((np.abs(h_plus) ** 2 + np.abs(h_minus) ** 2) * grid.multiplicity)
+    if energy > 0.0:
+        factor = np.sqrt(np.sum(expected * grid.multiplicity) / energy)
+        h_plus *= factor
+        h_minus *= factor
+
+
+def _angular_frequency(grid: WaveVectorGrid, parameters: OceanParameters) -> Array:
+    """ω(k); in a loop of duration T the nearest multiple of 2π/T, at least one."""
+    omega = dispersion.angular_frequency(grid.k, parameters.dispersion, parameters.water)
+    if parameters.loop_duration is None:
+        return omega
+    fundamental = 2.0 * np.pi / float(parameters.loop_duration)
+    return fundamental * np.maximum(1.0, np.rint(omega / fundamental))

@@ -8,127 +8,28 @@ table that validation, tooltips, the command line and the documentation read.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import json
-import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from . import constants
+from .plain_data import from_plain, parse_json, to_plain
+from .validation import ParameterError, Validated, choice, integer, nested, number, rational, switch
 
-SPECTRA = ("TMA",)
-SPREADINGS = ("DONELAN_BANNER",)
+__all__ = ["OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer", "parse_json"]
+
+SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
+SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
-
-
-class ParameterError(ValueError):
-    """A parameter that cannot be used: names the field, its value and what is allowed."""
-
-    def __init__(self, field: str, value: object, reason: str) -> None:
-        self.field = field
-        self.value = value
-        self.reason = reason
-        super().__init__(f"{field} = {_shown(value)}: {reason}")
-
-    def inside(self, container: str) -> ParameterError:
-        """The same error with the field's path lengthened at the front."""
-        return ParameterError(f"{container}.{self.field}", self.value, self.reason)
-
-
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else text[:77] + "..."
-
-
-def number(
-    default: float, minimum: float, maximum: float, unit: str, description: str, why: str = ""
-) -> Any:
-    """A real-valued dataclass field with its range, unit, description and the reason for the range."""
-    return dataclasses.field(
-        default=default,
-        metadata={
-            "kind": float, "minimum": minimum, "maximum": maximum,
-            "unit": unit, "description": description, "why": why,
-        },
-    )  # fmt: skip
-
-
-def integer(default: int, minimum: int, maximum: int, description: str, why: str = "") -> Any:
-    """A whole-number dataclass field with its range."""
-    return dataclasses.field(
-        default=default,
-        metadata={
-            "kind": int, "minimum": minimum, "maximum": maximum,
-            "unit": "", "description": description, "why": why,
-        },
-    )  # fmt: skip
-
-
-def choice(default: str, choices: tuple[str, ...], description: str) -> Any:
-    """A dataclass field that is one of the given names."""
-    return dataclasses.field(
-        default=default, metadata={"kind": str, "choices": choices, "description": description}
-    )
-
-
-def switch(default: bool, description: str) -> Any:
-    """A dataclass field that is on or off."""
-    return dataclasses.field(default=default, metadata={"kind": bool, "description": description})
-
-
-def _range_text(minimum: float, maximum: float, unit: str) -> str:
-    span = f"from {minimum:g} to {maximum:g}" if math.isfinite(maximum) else "of any size"
-    return f"{span} {unit}".rstrip()
-
-
-def _checked_number(name: str, value: object, meta: Any) -> float:
-    allowed = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
-    if isinstance(value, bool) or not hasattr(value, "__float__"):
-        raise ParameterError(name, value, f"must be a number {allowed}")
-    result = float(value)
-    if not math.isfinite(result):
-        raise ParameterError(name, value, f"must be a finite number {allowed}")
-    if not meta["minimum"] <= result <= meta["maximum"]:
-        raise ParameterError(name, value, f"must be {allowed}")
-    return result + 0.0  # -0.0 and 0.0 are the same sea and must hash alike in JSON
-
-
-def _checked_integer(name: str, value: object, meta: Any) -> int:
-    allowed = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
-    whole = hasattr(value, "__index__") or (isinstance(value, float) and value.is_integer())
-    if isinstance(value, bool) or not whole:
-        raise ParameterError(name, value, f"must be a whole number {allowed}")
-    result = int(value)  # type: ignore[call-overload]
-    if not meta["minimum"] <= result <= meta["maximum"]:
-        raise ParameterError(name, value, f"must be {allowed}")
-    return int(result)
-
-
-def _checked(field: dataclasses.Field[Any], value: object) -> object:
-    meta = field.metadata
-    kind = meta.get("kind")
-    if kind is float:
-        return _checked_number(field.name, value, meta)
-    if kind is int:
-        return _checked_integer(field.name, value, meta)
-    if kind is str and value not in meta["choices"]:
-        raise ParameterError(field.name, value, "must be one of " + ", ".join(meta["choices"]))
-    if kind is bool and not isinstance(value, bool):
-        raise ParameterError(field.name, value, "must be true or false")
-    return value
-
-
-class _Validated:
-    """Checks each field against its metadata when an instance is made."""
-
-    def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            object.__setattr__(self, field.name, _checked(field, getattr(self, field.name)))
+DEFINITIONS = ("WIND", "SEA_STATE")
+DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
+AMPLITUDES = ("GAUSSIAN", "FIXED")
+ORBITS = ("DEEP", "FINITE_DEPTH")
 
 
 @dataclass(frozen=True)
-class Water(_Validated):
+class Water(Validated):
     """The body of water: the same for every wave layer."""
 
     depth: float = number(
@@ -148,16 +49,16 @@ class Water(_Validated):
 
 
 @dataclass(frozen=True)
-class WaveLayer(_Validated):
-    """One wave system: a wind over a fetch, with its spectrum and its spreading."""
+class WaveLayer(Validated):
+    """One wave system, given by its wind and fetch or by its height and period."""
 
     spectrum: str = choice("TMA", SPECTRA, "How the energy is shared among wavelengths")
     wind_speed: float = number(
-        12.0, 0.1, 100.0, "m/s", "Mean wind speed 10 m above the water. Sets wave height and length",
+        12.0, 0.1, 100.0, "m/s", "Mean wind speed. Sets wave height and length",
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
     wind_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which the wind blows, counter-clockwise from +x"
+        0.0, -1e6, 1e6, "rad", "Direction towards which the waves run, counter-clockwise from +x"
     )
     fetch: float = number(
         150e3, 1.0, 20e6, "m", "Distance of open water over which the wind has blown",
@@ -172,43 +73,83 @@ class WaveLayer(_Validated):
     gain: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's gain"
     )
+    peak_enhancement: float = number(
+        constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "γ of JONSWAP and TMA: how sharply the longest waves stand out",
+        "records lie between 1 and 7",
+    )  # fmt: skip
+    depth_factor: str = choice(
+        "KITAIGORODSKII", DEPTH_FACTORS, "How TMA loses energy in shallow water: exact, or the approximation"
+    )
+    generalized_a: float = number(
+        0.7795, 0.0, 1e6, "m²/s⁴", "A of the generalised spectrum A/ω⁵ exp(-B/ω⁴)", "beyond it no liquid holds together"
+    )
+    generalized_b: float = number(
+        0.6185, 1e-12, 1e12, "1/s⁴", "B of the generalised spectrum A/ω⁵ exp(-B/ω⁴)",
+        "peaks from a thousandth to a thousand rad/s",
+    )  # fmt: skip
+    short_wave_cutoff: float = number(
+        0.0, 0.0, 1e3, "m", "Length l of the factor exp(-k²l²) that takes away waves shorter than about 2πl",
+        "longer than any wave's cut-off",
+    )  # fmt: skip
+    wind_height: float = number(
+        10.0, 1.0, 100.0, "m", "Height above the water at which the wind was measured", "the range of the log law"
+    )
+    definition: str = choice(
+        "WIND", DEFINITIONS, "What gives the layer's energy: wind and fetch, or wave height and period"
+    )
+    significant_wave_height: float = number(
+        2.0, 0.0, 100.0, "m", "Wave height Hs of a layer defined by its sea state", "thrice the largest measured"
+    )
+    peak_period: float = number(
+        10.0, 0.05, 60.0, "s", "Peak period Tp of a layer defined by its sea state", "from ripples to long swell"
+    )
+    spreading_exponent: float = number(
+        1.0, 0.0, 1e4, "", "s of the spreading cos²ˢ(θ/2) with a fixed exponent", "beyond it the wave is a plane one"
+    )
+    second_spreading: str = choice("FLAT", SPREADINGS, "The spreading that is mixed in")
+    spreading_mix: float = number(0.0, 0.0, 1.0, "", "Share of the second spreading", "a share")
+    shortest_wavelength: float = number(
+        0.0, 0.0, 1e6, "m", "The band's short end: waves below it are left out", "0 keeps all short waves"
+    )
+    longest_wavelength: float = number(
+        1e6, 1e-3, 1e6, "m", "The band's long end: waves above it are left out", "1000 km keeps all long waves"
+    )
+    band_softness: float = number(
+        0.0, 0.0, 4.0, "octaves", "Width over which the band's ends fade; 0 cuts sharply", "a band's own width"
+    )
+    band_inverted: bool = switch(False, "Keep what lies outside the band instead")
+    muted: bool = switch(False, "Leave the layer out; no other layer changes")
+    id: int = integer(
+        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free number"
+    )
+    seed: int = integer(-1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.shortest_wavelength >= self.longest_wavelength:
+            raise ParameterError(
+                "shortest_wavelength", self.shortest_wavelength,
+                f"must be below longest_wavelength = {self.longest_wavelength:g} m",
+            )  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Timing:
+class Timing(Validated):
     """How frames of the shot become seconds: ocean time 0 is at ``start_frame``.
 
     ``fps`` is kept as an exact fraction, so that 24000/1001 is what it says.
     """
 
-    fps: Fraction = Fraction(24)
+    fps: Fraction = rational(Fraction(24), 0.01, 1000.0, "frames per second", "Frames per second of the shot")
     start_frame: int = integer(1, -1_000_000, 10_000_000, "Frame at which the ocean's time is zero")
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "fps", _checked_fps(self.fps))
-        field = next(f for f in dataclasses.fields(self) if f.name == "start_frame")
-        object.__setattr__(self, "start_frame", _checked(field, self.start_frame))
-
-    def time(self, frame: float | Fraction) -> float:
-        """Ocean time in seconds at a frame, which may hold a sub-frame."""
-        return float((Fraction(frame) - self.start_frame) / self.fps)
-
-
-def _checked_fps(value: object) -> Fraction:
-    allowed = "must be a number of frames per second from 0.01 to 1000, or a fraction such as \"24000/1001\""
-    try:
-        if isinstance(value, bool) or not isinstance(value, (int, float, str, Fraction)):
-            raise TypeError
-        fps = Fraction(str(value).strip())
-    except (TypeError, ValueError, ZeroDivisionError):
-        raise ParameterError("fps", value, allowed) from None
-    if not Fraction(1, 100) <= fps <= 1000 or fps.denominator > 10**9:
-        raise ParameterError("fps", value, allowed)
-    return fps
+    def time(self, frame: float | Fraction) -> Fraction:
+        """Ocean time in seconds at a frame, which may hold a sub-frame; exact."""
+        return (Fraction(frame) - self.start_frame) / self.fps
 
 
 @dataclass(frozen=True)
-class OceanParameters(_Validated):
+class OceanParameters(Validated):
     """Everything that determines a sea. Equal parameters give equal fields.
 
     Raises ParameterError (a ValueError) naming the field, its value and what is allowed.
@@ -228,18 +169,34 @@ class OceanParameters(_Validated):
         "far beyond 1 the surface folds",
     )  # fmt: skip
     dispersion: str = choice("CAPILLARY", DISPERSIONS, "How fast a wave of a given length travels")
-    water: Water = Water()
-    layers: tuple[WaveLayer, ...] = (WaveLayer(),)
-    timing: Timing = Timing()
+    loop_duration: Fraction | None = rational(
+        None, 0.01, 1e6, "s", "Time after which the sea repeats itself exactly; none if it never does", optional=True
+    )
+    amplitudes: str = choice(
+        "GAUSSIAN", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
+    )
+    match_height: bool = switch(False, "Scale this seed to the wave height that the spectrum expects")
+    trough_damping: float = number(
+        0.0, 0.0, 1.0, "", "Takes short waves out of the troughs of the long ones", "a share"
+    )
+    orbits: str = choice(
+        "DEEP", ORBITS, "Horizontal motion as in deep water, or wider as linear theory has it in finite depth"
+    )
+    water: Water = nested(Water)
+    layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
+    timing: Timing = nested(Timing)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
-        object.__setattr__(self, "layers", _instances("layers", self.layers, WaveLayer))
-        for name, kind in (("water", Water), ("timing", Timing)):
-            if not isinstance(getattr(self, name), kind):
-                raise ParameterError(name, getattr(self, name), f"must be a {kind.__name__}")
+        object.__setattr__(self, "layers", _identified(self.layers))
+        _check_loop(self.loop_duration, self.timing)
+
+    @property
+    def active_layers(self) -> tuple[WaveLayer, ...]:
+        """The layers that are not muted."""
+        return tuple(layer for layer in self.layers if not layer.muted)
 
     def replace(self, **changes: Any) -> OceanParameters:
         """A copy with some fields changed, validated anew."""
@@ -247,7 +204,7 @@ class OceanParameters(_Validated):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionaries, lists and numbers, as they stand in a JSON file."""
-        return _to_plain(self)  # type: ignore[no-any-return]
+        return to_plain(self)  # type: ignore[no-any-return]
 
     def to_json(self, indent: int | None = 2) -> str:
         """JSON text that `from_json` reads back to equal parameters."""
@@ -256,7 +213,7 @@ class OceanParameters(_Validated):
     @classmethod
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
-        return _from_plain(cls, data)  # type: ignore[no-any-return]
+        return from_plain(cls, data)  # type: ignore[no-any-return]
 
     @classmethod
     def from_json(cls, text: str) -> OceanParameters:
@@ -264,78 +221,25 @@ class OceanParameters(_Validated):
         return cls.from_dict(parse_json(text))
 
 
-def parse_json(text: str) -> Any:
-    """JSON text as plain data, with duplicate keys refused. Raises ParameterError."""
-    try:
-        return json.loads(text, object_pairs_hook=_unique_keys)
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise ParameterError("JSON", text[:40], f"is not valid JSON at {place}: {error.msg}") from None
-    except RecursionError:
-        raise ParameterError("JSON", text[:40], "is nested too deeply") from None
+def _identified(layers: tuple[WaveLayer, ...]) -> tuple[WaveLayer, ...]:
+    """Layers with distinct ids; those without one take the first numbers that are free."""
+    taken: set[int] = set()
+    for index, layer in enumerate(layers):
+        if layer.id >= 0 and layer.id in taken:
+            raise ParameterError(f"layers.{index}.id", layer.id, "is the id of another layer too")
+        taken.add(layer.id)
+    free = (number for number in range(len(layers) + len(taken)) if number not in taken)
+    return tuple(layer if layer.id >= 0 else dataclasses.replace(layer, id=next(free)) for layer in layers)
 
 
-def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    result: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in result:
-            raise ParameterError(key, value, "stands twice in the same JSON object")
-        result[key] = value
-    return result
-
-
-def _instances(name: str, values: object, kind: type) -> tuple[Any, ...]:
-    if not isinstance(values, (tuple, list)) or not all(isinstance(v, kind) for v in values):
-        raise ParameterError(name, values, f"must be a sequence of {kind.__name__}")
-    if not 1 <= len(values) <= 64:
-        raise ParameterError(name, f"{len(values)} entries", "must have from 1 to 64 entries")
-    return tuple(values)
-
-
-_NESTED = {"water": Water, "timing": Timing}
-_NESTED_LISTS = {"layers": WaveLayer}
-
-
-def _to_plain(value: Any) -> Any:
-    if dataclasses.is_dataclass(value):
-        return {f.name: _to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
-    if isinstance(value, tuple):
-        return [_to_plain(item) for item in value]
-    if isinstance(value, Fraction):
-        return value.numerator if value.denominator == 1 else str(value)
-    return value
-
-
-def _from_plain(cls: type, data: object) -> Any:
-    if not isinstance(data, dict):
-        raise ParameterError(cls.__name__, data, "must be a JSON object")
-    known = [f.name for f in dataclasses.fields(cls)]
-    arguments = {}
-    for key, value in data.items():
-        if key not in known:
-            raise ParameterError(str(key), value, _unknown_key(str(key), known))
-        try:
-            arguments[key] = _nested_value(key, value)
-        except ParameterError as error:
-            raise error.inside(key) from None
-    return cls(**arguments)
-
-
-def _nested_value(key: str, value: object) -> object:
-    if key in _NESTED:
-        return _from_plain(_NESTED[key], value)
-    if key in _NESTED_LISTS and isinstance(value, list):
-        items = []
-        for index, item in enumerate(value):
-            try:
-                items.append(_from_plain(_NESTED_LISTS[key], item))
-            except ParameterError as error:
-                raise error.inside(str(index)) from None
-        return tuple(items)
-    return value
-
-
-def _unknown_key(key: str, known: list[str]) -> str:
-    near = difflib.get_close_matches(key, known, n=1)
-    hint = f"did you mean {near[0]}? " if near else ""
-    return f"unknown key; {hint}Known keys: {', '.join(known)}"
+def _check_loop(duration: Fraction | None, timing: Timing) -> None:
+    if duration is None:
+        return
+    frames = duration * timing.fps
+    if frames.denominator != 1:
+        nearest = max(1, round(frames))
+        raise ParameterError(
+            "loop_duration", str(duration),
+            f"is {float(frames):.6g} frames at {timing.fps} frames per second, not a whole number; "
+            f"the nearest that is: {to_plain(nearest / timing.fps)} s, {nearest} frames",
+        )  # fmt: skip

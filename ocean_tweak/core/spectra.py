@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Non-directional wave spectra S(ω) in m²·s/rad over the angular frequency ω in rad/s.
 
-Symbols as in Horvath (2015): U wind speed at 10 m in m/s, F fetch in m, h depth in m, g in m/s².
-All functions take arrays of any shape and return float64 arrays of that shape.
+Symbols as in Horvath (2015): U wind speed in m/s (at 10 m unless said otherwise), F fetch in m, h depth
+in m, g in m/s². Functions of ω take arrays of any shape and return float64 arrays of that shape, with
+S(0) = 0.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +17,40 @@ from . import constants, dispersion
 from .parameters import Water
 
 Array = NDArray[np.float64]
+
+
+def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
+    """S = A/ω⁵ exp(-B/ω⁴), A in m²/s⁴ and B in 1/s⁴. Horvath (2015), eq. 20."""
+    omega = np.asarray(omega, np.float64)
+    # the exponential is zero in double precision where B/ω⁴ > 745: the floor keeps the quotient finite
+    w = np.maximum(omega, (B / 1e4) ** 0.25)
+    return A / w**5 * np.exp(-B / w**4)
+
+
+def pierson_moskowitz(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
+    """Pierson-Moskowitz spectrum of a fully developed sea. Horvath (2015), eq. 18."""
+    omega_0 = g / (constants.PM_WIND_FACTOR * U)
+    return generalized_ab(omega, constants.PM_ALPHA * g**2, constants.PM_BETA * omega_0**4)
+
+
+def pierson_moskowitz_peak(U: float, g: float = constants.GRAVITY) -> float:
+    """ω_p in rad/s, 0.855 g/U. Horvath (2015), eq. 19, as it follows from eq. 18."""
+    return (constants.PM_BETA / constants.DEVELOPMENT) ** 0.25 * g / (constants.PM_WIND_FACTOR * U)
+
+
+def phillips(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
+    """The Phillips (Tessendorf) spectrum with the energy of Pierson-Moskowitz at the same wind.
+
+    Horvath (2015), eq. 26 and 27: A = 2 A_T g², B = (g/U)⁴ with U at 19.5 m. Chen (2014) sets its
+    constant so that both spectra hold the same energy, A/4B: A = α g²/β.
+    """
+    A = constants.PM_ALPHA / constants.PM_BETA * g**2
+    return generalized_ab(omega, A, (g / (constants.PM_WIND_FACTOR * U)) ** 4)
+
+
+def phillips_peak(U: float, g: float = constants.GRAVITY) -> float:
+    """ω_p in rad/s of the Phillips spectrum: (4B/5)^¼."""
+    return constants.DEVELOPMENT**-0.25 * g / (constants.PM_WIND_FACTOR * U)
 
 
 def full_development_fetch(U: float, g: float = constants.GRAVITY) -> float:
@@ -39,13 +76,18 @@ def jonswap(
     gamma: float = constants.PEAK_ENHANCEMENT,
     g: float = constants.GRAVITY,
 ) -> Array:
-    """JONSWAP spectrum, m²·s/rad; 0 at ω = 0. Horvath (2015), eq. 28, corrected: γ^r, not γ⁴."""
-    omega = np.asarray(omega, np.float64)
-    # ω⁻⁵ exp(-5/4 (ω_p/ω)⁴) is zero in double precision below 0.2 ω_p: the floor keeps it finite
-    w = np.maximum(omega, 0.1 * omega_p)
+    """JONSWAP spectrum: α g²/ω⁵ exp(-5/4 (ω_p/ω)⁴) γ^r.
+
+    Horvath (2015), eq. 28, corrected: γ^r, where the paper prints γ⁴. With γ = 1 it is the generalised
+    A,B spectrum of eq. 20.
+    """
+    base = generalized_ab(omega, alpha * g**2, constants.DEVELOPMENT * omega_p**4)
+    if gamma == 1.0:
+        return base
+    w = np.asarray(omega, np.float64)
     sigma = np.where(w <= omega_p, constants.JONSWAP_SIGMA_BELOW, constants.JONSWAP_SIGMA_ABOVE)
     r = np.exp(-0.5 * ((w - omega_p) / (sigma * omega_p)) ** 2)
-    return alpha * g**2 / w**5 * np.exp(-1.25 * (omega_p / w) ** 4) * gamma**r
+    return base * gamma**r
 
 
 def kitaigorodskii(omega_h: ArrayLike) -> Array:
@@ -59,14 +101,30 @@ def kitaigorodskii(omega_h: ArrayLike) -> Array:
     return np.tanh(kh) ** 2 / (1.0 + x / np.sinh(x))
 
 
+def thompson_vincent(omega_h: ArrayLike) -> Array:
+    """Thompson and Vincent's (1983) approximation of Kitaigorodskii's factor, within 0.023 of it.
+
+    Horvath (2015), after eq. 29, completed: 1 for ω_h ≥ 2, where the printed branch turns down.
+    """
+    w = np.clip(np.asarray(omega_h, np.float64), 0.0, 2.0)
+    return np.where(w <= 1.0, 0.5 * w**2, 1.0 - 0.5 * (2.0 - w) ** 2)
+
+
+DEPTH_FACTORS: dict[str, Callable[[ArrayLike], Array]] = {
+    "KITAIGORODSKII": kitaigorodskii,
+    "THOMPSON_VINCENT": thompson_vincent,
+}
+
+
 def tma(
     omega: ArrayLike,
     alpha: float,
     omega_p: float,
     water: Water,
     gamma: float = constants.PEAK_ENHANCEMENT,
+    depth_factor: str = "KITAIGORODSKII",
 ) -> Array:
-    """TMA spectrum, m²·s/rad: JONSWAP times the depth factor. Horvath (2015), eq. 30."""
+    """TMA spectrum: JONSWAP times the depth factor. Horvath (2015), eq. 30."""
     omega = np.asarray(omega, np.float64)
-    omega_h = omega * np.sqrt(water.depth / water.gravity)
-    return jonswap(omega, alpha, omega_p, gamma, water.gravity) * kitaigorodskii(omega_h)
+    factor = DEPTH_FACTORS[depth_factor](omega * np.sqrt(water.depth / water.gravity))
+    return jonswap(omega, alpha, omega_p, gamma, water.gravity) * factor

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Directional spreading D(ω, θ) in 1/rad: how the energy at a frequency is shared among directions.
 
-θ is the angle in rad between a wave and its wind, in (-π, π]. Every model is evaluated as
-D = Q · base · swell, with Q from a table over ω/ω_p so that ∫D dθ = 1.
+θ is the angle in rad between a wave and its wind. Every model has a shape that is 1 along the wind;
+its normalisation is tabulated over ω/ω_p, so that ∫D dθ = 1.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -19,8 +21,31 @@ Array = NDArray[np.float64]
 #: ω/ω_p at which normalisations are tabulated; outside, the shape at the nearer end holds
 _TABLE_FROM, _TABLE_TO, _TABLE_SIZE = 0.03, 300.0, 6144
 
-#: ω/ω_p at which the shape of a model jumps
-_BREAKS = (constants.DONELAN_MIDDLE_FROM, constants.BANNER_FROM)
+#: ω/ω_p at which the shape of a model jumps or bends
+_BREAKS = (
+    constants.DONELAN_MIDDLE_FROM,
+    1.0,
+    constants.HASSELMANN_ABOVE_FROM,
+    constants.BANNER_FROM,
+)
+
+
+@dataclass(frozen=True)
+class Spreading:
+    """A spreading model with its parameters.
+
+    model, second : names in `SHAPES`; `mix` is the share of the second
+    swell : ξ of Horvath (2015), eq. 45
+    exponent : s of COSINE_2S
+    wind_frequency : U ω_p / g, which Mitsuyasu's and Hasselmann's models know
+    """
+
+    model: str
+    swell: float = 0.0
+    second: str = "FLAT"
+    mix: float = 0.0
+    exponent: float = 1.0
+    wind_frequency: float = constants.PM_PEAK
 
 
 def wrap_angle(theta: ArrayLike) -> Array:
@@ -28,50 +53,89 @@ def wrap_angle(theta: ArrayLike) -> Array:
     return (np.asarray(theta, np.float64) + np.pi) % (2.0 * np.pi) - np.pi
 
 
+def cosine_power(theta: ArrayLike, s: ArrayLike) -> Array:
+    """|cos(θ/2)|^2s, the Longuet-Higgins shape. Horvath (2015), eq. 33 and 44; Chen (2014), eq. 29."""
+    cosine = np.maximum(np.abs(np.cos(0.5 * np.asarray(theta, np.float64))), 1e-150)
+    return np.exp(2.0 * np.asarray(s, np.float64) * np.log(cosine))
+
+
 def donelan_banner_beta(ratio: ArrayLike) -> Array:
     """β_s of Donelan-Banner over ω/ω_p. Horvath (2015), eq. 38; the first branch holds down to ω = 0."""
-    x = np.asarray(ratio, np.float64)
+    x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     below = constants.DONELAN_BELOW * x**constants.DONELAN_EXPONENT
-    x1 = np.maximum(x, 1e-6)
-    middle = constants.DONELAN_MIDDLE * x1**-constants.DONELAN_EXPONENT
-    epsilon = constants.BANNER_OFFSET + constants.BANNER_FACTOR * x1 ** (2.0 * constants.BANNER_EXPONENT)
-    return np.where(
-        x < constants.DONELAN_MIDDLE_FROM, below, np.where(x < constants.BANNER_FROM, middle, 10.0**epsilon)
-    )
+    middle = constants.DONELAN_MIDDLE * x**-constants.DONELAN_EXPONENT
+    epsilon = constants.BANNER_OFFSET + constants.BANNER_FACTOR * x ** (2.0 * constants.BANNER_EXPONENT)
+    above = np.where(x < constants.BANNER_FROM, middle, 10.0**epsilon)
+    return np.where(x < constants.DONELAN_MIDDLE_FROM, below, above)
 
 
-def log_donelan_banner(theta: Array, ratio: Array) -> Array:
-    """ln sech²(β_s θ), not normalised. Horvath (2015), eq. 38."""
-    x = np.abs(donelan_banner_beta(ratio) * theta)
-    return -2.0 * (x + np.log1p(np.exp(-2.0 * x)) - np.log(2.0))
+def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
+    """s of Mitsuyasu's model over ω/ω_p. Horvath (2015), eq. 35 and 36."""
+    x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
+    s_p = constants.MITSUYASU_PEAK * wind_frequency**constants.MITSUYASU_WIND_EXPONENT
+    below, above = constants.MITSUYASU_BELOW_EXPONENT, constants.MITSUYASU_ABOVE_EXPONENT
+    return s_p * np.where(x <= 1.0, x**below, x**above)
 
 
-def swell_shape(ratio: ArrayLike, swell: float) -> Array:
+def hasselmann_s(ratio: ArrayLike, wind_frequency: float) -> Array:
+    """s of Hasselmann's model over ω/ω_p. Horvath (2015), eq. 37, corrected: the second branch begins at
+    1.05 ω_p, as Hasselmann, Dunckel & Ewing (1980) have it."""
+    x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
+    growth = wind_frequency - constants.HASSELMANN_WIND_OFFSET
+    exponent = constants.HASSELMANN_ABOVE_EXPONENT + constants.HASSELMANN_WIND_FACTOR * growth
+    below = constants.HASSELMANN_BELOW * x**constants.HASSELMANN_BELOW_EXPONENT
+    return np.where(x < constants.HASSELMANN_ABOVE_FROM, below, constants.HASSELMANN_ABOVE * x**exponent)
+
+
+def swell_s(ratio: ArrayLike, swell: float) -> Array:
     """s_ξ of the swell factor over ω/ω_p. Horvath (2015), eq. 45."""
-    return constants.SWELL_SHAPE * np.tanh(1.0 / np.maximum(np.asarray(ratio, np.float64), 1e-6)) * swell**2
+    x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
+    return constants.SWELL_SHAPE * np.tanh(1.0 / x) * swell**2
 
 
-def log_cosine_power(theta: Array, s: Array) -> Array:
-    """ln |cos(θ/2)|^2s, not normalised. Longuet-Higgins form, Horvath (2015), eq. 33 and 44."""
-    return 2.0 * s * np.log(np.maximum(np.abs(np.cos(0.5 * theta)), 1e-150))
+def _donelan_banner(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+    """sech²(β_s θ). Horvath (2015), eq. 38."""
+    e = np.exp(-2.0 * donelan_banner_beta(ratio) * np.abs(theta))
+    return 4.0 * e / (1.0 + e) ** 2
 
 
-BASE_MODELS = {"DONELAN_BANNER": log_donelan_banner}
+def _hasselmann(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+    return cosine_power(theta, hasselmann_s(ratio, spreading.wind_frequency))
 
 
-def _log_density(theta: Array, ratio: Array, model: str, swell: float) -> Array:
-    """ln (D_base D_ξ) up to a factor of ω. Horvath (2015), eq. 42."""
-    result = BASE_MODELS[model](theta, ratio)
-    if swell > 0.0:
-        result = result + log_cosine_power(theta, swell_shape(ratio, swell))
-    return result
+def _mitsuyasu(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+    return cosine_power(theta, mitsuyasu_s(ratio, spreading.wind_frequency))
+
+
+def _cosine_squared(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+    """cos²θ along the wind, 0 against it. Horvath (2015), eq. 32."""
+    return np.maximum(np.cos(theta), 0.0) ** 2 * np.ones_like(ratio)
+
+
+def _cosine_2s(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+    return cosine_power(theta, spreading.exponent) * np.ones_like(ratio)
+
+
+def _flat(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+    """The same for all directions. Horvath (2015), eq. 39."""
+    return np.ones(np.broadcast_shapes(theta.shape, ratio.shape))
+
+
+SHAPES: dict[str, Callable[[Array, Array, Spreading], Array]] = {
+    "DONELAN_BANNER": _donelan_banner,
+    "HASSELMANN": _hasselmann,
+    "MITSUYASU": _mitsuyasu,
+    "COSINE_SQUARED": _cosine_squared,
+    "COSINE_2S": _cosine_2s,
+    "FLAT": _flat,
+}
 
 
 @lru_cache(maxsize=1)
-def _half_circle_rule() -> tuple[Array, Array]:
+def direction_rule() -> tuple[Array, Array]:
     """Nodes and weights on [0, π], in panels that halve towards 0, where narrow peaks stand, and towards π,
     where a small power of cos(θ/2) falls steeply."""
-    towards_zero = np.pi * 2.0 ** np.arange(-10.0, 0.0)
+    towards_zero = np.pi * 2.0 ** np.arange(-12.0, 0.0)
     towards_pi = np.pi * (1.0 - 2.0 ** np.arange(-2.0, -25.0, -1.0))
     edges = np.concatenate(([0.0], towards_zero, towards_pi, [np.pi]))
     x, w = np.polynomial.legendre.leggauss(16)
@@ -79,23 +143,63 @@ def _half_circle_rule() -> tuple[Array, Array]:
     return (edges[:-1, np.newaxis] + 0.5 * width * (x + 1.0)).ravel(), (0.5 * width * w).ravel()
 
 
-@lru_cache(maxsize=32)
-def _normalisation_table(model: str, swell: float) -> tuple[Array, Array]:
-    """ω/ω_p and ln Q(ω), Q = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
-    theta, weight = _half_circle_rule()
-    # a node on either side of each jump: nothing is interpolated across it
+def _table_ratios() -> Array:
+    """The tabulated ω/ω_p, with a node on either side of each jump: nothing is interpolated across it."""
     even = np.geomspace(_TABLE_FROM, _TABLE_TO, _TABLE_SIZE)
-    ratio = np.sort(np.concatenate((even, _BREAKS, np.nextafter(_BREAKS, 0.0))))
-    density = np.exp(_log_density(theta, ratio[:, np.newaxis], model, swell))
+    return np.unique(np.concatenate((even, _BREAKS, np.nextafter(_BREAKS, 0.0))))
+
+
+@lru_cache(maxsize=32)
+def _base_table(spreading: Spreading) -> tuple[Array, Array]:
+    """ω/ω_p and ln Q of the first model alone, Q = 1/∫shape dθ; eq. 34 for the cosine powers."""
+    theta, weight = direction_rule()
+    ratio = _table_ratios()
+    shape = SHAPES[spreading.model](theta, ratio[:, np.newaxis], spreading)
+    return ratio, -np.log(2.0 * shape @ weight)
+
+
+@lru_cache(maxsize=32)
+def _final_table(spreading: Spreading) -> tuple[Array, Array]:
+    """ω/ω_p and ln Q_final(ω), Q_final = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
+    theta, weight = direction_rule()
+    ratio = _table_ratios()
+    density = _not_normalised(ratio[:, np.newaxis], theta, spreading)
     return ratio, -np.log(2.0 * density @ weight)
 
 
-def spreading(omega_ratio: ArrayLike, theta: ArrayLike, model: str, swell: float = 0.0) -> Array:
+def _alone(spreading: Spreading, model: str) -> Spreading:
+    """One of the models without swell, as the key of its table."""
+    return Spreading(model, exponent=spreading.exponent, wind_frequency=spreading.wind_frequency)
+
+
+def _not_normalised(ratio: Array, theta: Array, spreading: Spreading) -> Array:
+    """D_base·D_ξ up to a factor of ω. Horvath (2015), eq. 40, 42 and 44."""
+    result = SHAPES[spreading.model](theta, ratio, spreading)
+    if spreading.mix > 0.0:
+        first, second = (
+            np.exp(np.interp(ratio, *_base_table(_alone(spreading, model))))
+            for model in (spreading.model, spreading.second)
+        )
+        other = SHAPES[spreading.second](theta, ratio, spreading)
+        result = (1.0 - spreading.mix) * first * result + spreading.mix * second * other
+    if spreading.swell > 0.0:
+        result = result * cosine_power(theta, swell_s(ratio, spreading.swell))
+    return result
+
+
+def directional_spreading(omega_ratio: ArrayLike, theta: ArrayLike, spreading: Spreading) -> Array:
     """D(ω, θ) in 1/rad, normalised for every ω. Horvath (2015), eq. 42.
 
     omega_ratio : ω/ω_p, > 0, broadcast against theta
     theta : angle to the wind in rad, any value (it is wrapped: sech² is not periodic)
     """
     ratio = np.clip(np.asarray(omega_ratio, np.float64), _TABLE_FROM, _TABLE_TO)
-    log_q = np.interp(ratio, *_normalisation_table(model, swell))
-    return np.exp(_log_density(wrap_angle(theta), ratio, model, swell) + log_q)
+    q = np.exp(np.interp(ratio, *_final_table(spreading)))
+    return q * _not_normalised(ratio, wrap_angle(theta), spreading)
+
+
+def mean_cosine(omega_ratio: ArrayLike, spreading: Spreading) -> Array:
+    """∫D cos θ dθ over ω/ω_p: how strongly the waves keep to the wind's direction, -1…1."""
+    theta, weight = direction_rule()
+    ratio = np.asarray(omega_ratio, np.float64)[..., np.newaxis]
+    return 2.0 * (directional_spreading(ratio, theta, spreading) * np.cos(theta)) @ weight

@@ -101,6 +101,6 @@ def test_frames_become_seconds_exactly() -> None:
     timing = Timing(fps=Fraction(24000, 1001), start_frame=1001)
     assert timing.time(1001) == 0.0
     assert timing.time(1001 + 24000) == 1001.0
-    assert timing.time(1001.5) == 0.5 * 1001 / 24000
+    assert timing.time(1001.5) == Fraction(1001, 48000)
     assert Timing(fps=24).time(25) == 1.0  # type: ignore[arg-type]
     assert Timing(fps=23.976).fps == Fraction(23976, 1000)  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ import pytest
 from scipy import integrate
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, spectra
-from ocean_tweak.core.spreading import donelan_banner_beta, spreading
+from ocean_tweak.core.spreading import Spreading, directional_spreading, donelan_banner_beta
 from tests import reference
 
 
@@ -102,7 +102,7 @@ def test_donelan_banner_beta() -> None:
 def test_spreading_sums_to_one(swell: float) -> None:
     for ratio in np.append(np.geomspace(0.1, 30.0, 40), [0.95, 1.0, 1.6]):
         def density(theta: float, ratio: float = ratio) -> float:
-            return float(spreading(ratio, theta, "DONELAN_BANNER", swell))
+            return float(directional_spreading(ratio, theta, Spreading("DONELAN_BANNER", swell)))
 
         assert density(np.pi) >= 0.0
         half, _ = integrate.quad(density, 0.0, np.pi, epsabs=1e-9, limit=200)
@@ -115,14 +115,14 @@ def test_spreading_without_swell_is_the_published_one() -> None:
     for ratio in (0.5, 1.0, 3.0):
         beta = float(donelan_banner_beta(ratio))
         expected = beta / (2 * np.tanh(beta * np.pi)) / np.cosh(beta * theta) ** 2
-        np.testing.assert_allclose(spreading(ratio, theta, "DONELAN_BANNER"), expected, rtol=2e-6)
+        np.testing.assert_allclose(directional_spreading(ratio, theta, Spreading("DONELAN_BANNER")), expected, rtol=2e-6)
 
 
 def test_swell_draws_long_waves_together() -> None:
-    straight = [float(spreading(1.0, 0.0, "DONELAN_BANNER", swell)) for swell in (0.0, 0.5, 1.0, 2.0)]
+    straight = [float(directional_spreading(1.0, 0.0, Spreading("DONELAN_BANNER", swell))) for swell in (0.0, 0.5, 1.0, 2.0)]
     assert straight == sorted(straight)
     assert straight[2] > 1.2 * straight[0]
     # the angle is wrapped: sech² is not periodic
-    assert spreading(1.0, 0.3 + 2 * np.pi, "DONELAN_BANNER", 0.5) == pytest.approx(
-        float(spreading(1.0, 0.3, "DONELAN_BANNER", 0.5))
-    )
+    model = Spreading("DONELAN_BANNER", 0.5)
+    once, again = directional_spreading(1.0, [0.3, 0.3 + 2 * np.pi], model)
+    assert once == pytest.approx(again)

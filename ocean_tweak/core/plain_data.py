@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Dataclasses as plain data and back, with unknown keys refused by their path."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import json
+from fractions import Fraction
+from typing import Any
+
+from .validation import ParameterError
+
+
+def parse_json(text: str) -> Any:
+    """JSON text as plain data, with duplicate keys refused. Raises ParameterError."""
+    try:
+        return json.loads(text, object_pairs_hook=_unique_keys)
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise ParameterError("JSON", text[:40], f"is not valid JSON at {place}: {error.msg}") from None
+    except RecursionError:
+        raise ParameterError("JSON", text[:40], "is nested too deeply") from None
+
+
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    result: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in result:
+            raise ParameterError(key, value, "stands twice in the same JSON object")
+        result[key] = value
+    return result
+
+
+def to_plain(value: Any) -> Any:
+    """Dictionaries, lists and numbers of a dataclass; a fraction that is no short decimal is text."""
+    if dataclasses.is_dataclass(value):
+        return {f.name: to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    if isinstance(value, tuple):
+        return [to_plain(item) for item in value]
+    if isinstance(value, Fraction):
+        decimal = int(value) if value.denominator == 1 else float(value)
+        return decimal if Fraction(str(decimal)) == value else str(value)
+    return value
+
+
+def from_plain(cls: type, data: object) -> Any:
+    """An instance of a dataclass from plain data; what is missing keeps its default.
+
+    A field whose metadata has "nested" is a dataclass of its own, with "many" a list of them.
+    Raises ParameterError with the path of what is wrong.
+    """
+    if not isinstance(data, dict):
+        raise ParameterError(cls.__name__, data, "must be a JSON object")
+    fields = {f.name: f for f in dataclasses.fields(cls)}
+    arguments = {}
+    for key, value in data.items():
+        if key not in fields:
+            raise ParameterError(str(key), value, _unknown_key(str(key), list(fields)))
+        try:
+            arguments[key] = _nested_value(fields[key], value)
+        except ParameterError as error:
+            raise error.inside(key) from None
+    return cls(**arguments)
+
+
+def _nested_value(field: dataclasses.Field[Any], value: object) -> object:
+    nested = field.metadata.get("nested")
+    if nested is None:
+        return value
+    if not field.metadata.get("many"):
+        return from_plain(nested, value)
+    if not isinstance(value, list):
+        return value
+    items = []
+    for index, item in enumerate(value):
+        try:
+            items.append(from_plain(nested, item))
+        except ParameterError as error:
+            raise error.inside(str(index)) from None
+    return tuple(items)
+
+
+def _unknown_key(key: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(key, known, n=1)
+    hint = f"did you mean {near[0]}? " if near else ""
+    return f"unknown key; {hint}Known keys: {', '.join(known)}"

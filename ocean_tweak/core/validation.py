@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Dataclass fields that carry their unit, range and description, and are checked against them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from fractions import Fraction
+from typing import Any
+
+
+class ParameterError(ValueError):
+    """A parameter that cannot be used: names the field, its value and what is allowed."""
+
+    def __init__(self, field: str, value: object, reason: str) -> None:
+        self.field = field
+        self.value = value
+        self.reason = reason
+        super().__init__(f"{field} = {_shown(value)}: {reason}")
+
+    def inside(self, container: str) -> ParameterError:
+        """The same error with the field's path lengthened at the front."""
+        return ParameterError(f"{container}.{self.field}", self.value, self.reason)
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."
+
+
+def number(
+    default: float, minimum: float, maximum: float, unit: str, description: str, why: str = ""
+) -> Any:
+    """A real-valued dataclass field with its range, unit, description and the reason for the range."""
+    return dataclasses.field(
+        default=default,
+        metadata={
+            "kind": float, "minimum": minimum, "maximum": maximum,
+            "unit": unit, "description": description, "why": why,
+        },
+    )  # fmt: skip
+
+
+def integer(default: int, minimum: int, maximum: int, description: str, why: str = "") -> Any:
+    """A whole-number dataclass field with its range."""
+    return dataclasses.field(
+        default=default,
+        metadata={
+            "kind": int, "minimum": minimum, "maximum": maximum,
+            "unit": "", "description": description, "why": why,
+        },
+    )  # fmt: skip
+
+
+def choice(default: str, choices: tuple[str, ...], description: str) -> Any:
+    """A dataclass field that is one of the given names."""
+    return dataclasses.field(
+        default=default, metadata={"kind": str, "choices": choices, "description": description}
+    )
+
+
+def switch(default: bool, description: str) -> Any:
+    """A dataclass field that is on or off."""
+    return dataclasses.field(default=default, metadata={"kind": bool, "description": description})
+
+
+def rational(
+    default: Fraction | None, minimum: float, maximum: float, unit: str, description: str, optional: bool = False
+) -> Any:
+    """A dataclass field that is kept as an exact fraction; None is allowed where it is optional."""
+    return dataclasses.field(
+        default=default,
+        metadata={
+            "kind": Fraction, "minimum": minimum, "maximum": maximum,
+            "unit": unit, "description": description, "optional": optional,
+        },
+    )  # fmt: skip
+
+
+def _range_text(minimum: float, maximum: float, unit: str) -> str:
+    span = f"from {minimum:g} to {maximum:g}" if math.isfinite(maximum) else "of any size"
+    return f"{span} {unit}".rstrip()
+
+
+def _checked_number(name: str, value: object, meta: Any) -> float:
+    allowed = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
+    if isinstance(value, bool) or not hasattr(value, "__float__"):
+        raise ParameterError(name, value, f"must be a number {allowed}")
+    result = float(value)
+    if not math.isfinite(result):
+        raise ParameterError(name, value, f"must be a finite number {allowed}")
+    if not meta["minimum"] <= result <= meta["maximum"]:
+        raise ParameterError(name, value, f"must be {allowed}")
+    return result + 0.0  # -0.0 and 0.0 are the same sea and must hash alike in JSON
+
+
+def _checked_integer(name: str, value: object, meta: Any) -> int:
+    allowed = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
+    whole = hasattr(value, "__index__") or (isinstance(value, float) and value.is_integer())
+    if isinstance(value, bool) or not whole:
+        raise ParameterError(name, value, f"must be a whole number {allowed}")
+    result = int(value)  # type: ignore[call-overload]
+    if not meta["minimum"] <= result <= meta["maximum"]:
+        raise ParameterError(name, value, f"must be {allowed}")
+    return int(result)
+
+
+def _checked_fraction(name: str, value: object, meta: Any) -> Fraction:
+    allowed = f"must be {_range_text(meta['minimum'], meta['maximum'], meta['unit'])}, also as a fraction: \"24000/1001\""
+    try:
+        if isinstance(value, bool) or not isinstance(value, (int, float, str, Fraction)):
+            raise TypeError
+        result = Fraction(str(value).strip())  # 23.976 is what its digits say, not the nearest binary number
+    except (TypeError, ValueError, ZeroDivisionError):
+        raise ParameterError(name, value, allowed) from None
+    if not meta["minimum"] <= result <= meta["maximum"] or result.denominator > 10**9:
+        raise ParameterError(name, value, allowed)
+    return result
+
+
+def _checked(field: dataclasses.Field[Any], value: object) -> object:
+    meta = field.metadata
+    kind = meta.get("kind")
+    if value is None and meta.get("optional"):
+        return None
+    if "nested" in meta:
+        return _checked_nested(field, value)
+    if kind is Fraction:
+        return _checked_fraction(field.name, value, meta)
+    if kind is float:
+        return _checked_number(field.name, value, meta)
+    if kind is int:
+        return _checked_integer(field.name, value, meta)
+    if kind is str and value not in meta["choices"]:
+        raise ParameterError(field.name, value, "must be one of " + ", ".join(meta["choices"]))
+    if kind is bool and not isinstance(value, bool):
+        raise ParameterError(field.name, value, "must be true or false")
+    return value
+
+
+def nested(kind: type, many: bool = False) -> Any:
+    """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them."""
+    default = (kind(),) if many else kind()
+    return dataclasses.field(default=default, metadata={"nested": kind, "many": many})
+
+
+def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
+    kind = field.metadata["nested"]
+    if not field.metadata["many"]:
+        if not isinstance(value, kind):
+            raise ParameterError(field.name, value, f"must be a {kind.__name__}")
+        return value
+    if not isinstance(value, (tuple, list)) or not all(isinstance(v, kind) for v in value):
+        raise ParameterError(field.name, value, f"must be a sequence of {kind.__name__}")
+    if not 1 <= len(value) <= 64:
+        raise ParameterError(field.name, f"{len(value)} entries", "must have from 1 to 64 entries")
+    return tuple(value)
+
+
+class Validated:
+    """Checks each field against its metadata when an instance is made."""
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+            object.__setattr__(self, field.name, _checked(field, getattr(self, field.name)))

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Chen's spectra over wave vectors, Ψ(k, θ) in m⁴, in deep water, in closed form.
+
+k in rad/m, > 0; θ the angle to the wind in rad; both of any shape, broadcast against each other. They
+equal S·D·(dω/dk)/k with S and D of `spectra` and `spreading` and ω² = g k (Chen 2014, eq. 28).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import constants, spectra
+
+Array = NDArray[np.float64]
+
+
+def phillips(k: ArrayLike, theta: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
+    """Phillips spectrum with U at 19.5 m: A/k⁴ exp(-g²/U⁴k²) cos²θ for waves along the wind.
+
+    Chen (2014), eq. 4 with A = α/(πβ) = 3.48·10⁻³. Corrected: with this constant, waves against the wind
+    (cos θ < 0) must be left out.
+    """
+    k = np.asarray(k, np.float64)
+    A = constants.PM_ALPHA / (np.pi * constants.PM_BETA)
+    return A / k**4 * np.exp(-(g**2) / (U**4 * k**2)) * np.maximum(np.cos(theta), 0.0) ** 2
+
+
+def pierson_moskowitz(k: ArrayLike, theta: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
+    """Pierson-Moskowitz spectrum with U at 19.5 m and cos²(θ/2). Chen (2014), eq. 32."""
+    k = np.asarray(k, np.float64)
+    A = constants.PM_ALPHA / (2.0 * np.pi)
+    return A / k**4 * np.exp(-constants.PM_BETA * g**2 / (U**4 * k**2)) * np.cos(0.5 * np.asarray(theta)) ** 2
+
+
+def jonswap(
+    k: ArrayLike,
+    theta: ArrayLike,
+    U: float,
+    F: float,
+    gamma: float = constants.PEAK_ENHANCEMENT,
+    g: float = constants.GRAVITY,
+) -> Array:
+    """JONSWAP spectrum with U at 10 m and cos²(θ/2). Chen (2014), eq. 33.
+
+    The peak frequency has the exponent -1/3, as in Hasselmann et al. (1973), where Chen prints -0.33.
+    """
+    k = np.asarray(k, np.float64)
+    omega, omega_p = np.sqrt(g * k), spectra.jonswap_peak(U, F, g)
+    sigma = np.where(omega <= omega_p, constants.JONSWAP_SIGMA_BELOW, constants.JONSWAP_SIGMA_ABOVE)
+    r = np.exp(-((omega - omega_p) ** 2) / (2.0 * sigma**2 * omega_p**2))
+    A = spectra.jonswap_alpha(U, F, g) / (2.0 * np.pi)
+    fall = np.exp(-constants.DEVELOPMENT * omega_p**4 / (g * k) ** 2)
+    return A / k**4 * fall * gamma**r * np.cos(0.5 * np.asarray(theta)) ** 2
