@@ -3,5 +3,14 @@
 
 from .ocean import Ocean
 from .parameters import OceanParameters, ParameterError, Timing, Water, WaveLayer
+from .sea_state_match import layer_for_sea_state
 
-__all__ = ["Ocean", "OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer"]
+__all__ = [
+    "Ocean",
+    "OceanParameters",
+    "ParameterError",
+    "Timing",
+    "Water",
+    "WaveLayer",
+    "layer_for_sea_state",
+]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,7 @@ from . import dispersion
 from .grid import WaveVectorGrid
 from .layer_scales import LayerScales, layer_scales, scaled_spectrum
 from .parameters import Water, WaveLayer
-from .spreading import Spreading, directional_spreading
+from .spreading import WIND_MODELS, Spreading, directional_spreading
 
 Array = NDArray[np.float64]
 
@@ -54,14 +54,16 @@ class DirectionalSpectrum:
     def spreading(self) -> Spreading:
         """The layer's spreading model."""
         layer = self.layer
-        return Spreading(
+        model = Spreading(
             layer.spreading,
             swell=layer.swell,
             second=layer.second_spreading,
             mix=layer.spreading_mix,
             exponent=layer.spreading_exponent,
-            wind_frequency=self.scales.wind_frequency,
         )
+        if WIND_MODELS.isdisjoint((model.model, model.second)):
+            return model  # its tables serve every wind
+        return replace(model, wind_frequency=self.scales.wind_frequency)
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:
         """S(ω) in m²·s/rad, any shape, with the layer's gain, band and short-wave cut-off."""

@@ -48,6 +48,10 @@ class Spreading:
     wind_frequency: float = constants.PM_PEAK
 
 
+#: the models whose shape depends on the wind
+WIND_MODELS = frozenset({"HASSELMANN", "MITSUYASU"})
+
+
 def wrap_angle(theta: ArrayLike) -> Array:
     """The same direction in [-π, π)."""
     return (np.asarray(theta, np.float64) + np.pi) % (2.0 * np.pi) - np.pi
@@ -135,10 +139,10 @@ SHAPES: dict[str, Callable[[Array, Array, Spreading], Array]] = {
 def direction_rule() -> tuple[Array, Array]:
     """Nodes and weights on [0, π], in panels that halve towards 0, where narrow peaks stand, and towards π,
     where a small power of cos(θ/2) falls steeply."""
-    towards_zero = np.pi * 2.0 ** np.arange(-12.0, 0.0)
-    towards_pi = np.pi * (1.0 - 2.0 ** np.arange(-2.0, -25.0, -1.0))
+    towards_zero = np.pi * 2.0 ** np.arange(-10.0, 0.0)
+    towards_pi = np.pi * (1.0 - 2.0 ** np.arange(-2.0, -19.0, -1.0))
     edges = np.concatenate(([0.0], towards_zero, towards_pi, [np.pi]))
-    x, w = np.polynomial.legendre.leggauss(16)
+    x, w = np.polynomial.legendre.leggauss(10)
     width = np.diff(edges)[:, np.newaxis]
     return (edges[:-1, np.newaxis] + 0.5 * width * (x + 1.0)).ravel(), (0.5 * width * w).ravel()
 

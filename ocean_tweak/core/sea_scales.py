@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scales by which sailors and forecasters name wind and sea, both ways."""
+
+from __future__ import annotations
+
+import bisect
+from typing import NamedTuple
+
+#: WMO-No. 306, code table 1100: mean wind speeds in m/s at which Beaufort numbers 1…12 begin
+BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
+
+#: WMO-No. 306, code table 3700: significant wave heights in m at which sea states 1…9 begin
+SEA_STATE_FROM = (0.0, 0.1, 0.5, 1.25, 2.5, 4.0, 6.0, 9.0, 14.0)
+
+SEA_STATE_NAMES = (
+    "Calm (glassy)",
+    "Calm (rippled)",
+    "Smooth",
+    "Slight",
+    "Moderate",
+    "Rough",
+    "Very rough",
+    "High",
+    "Very high",
+    "Phenomenal",
+)
+
+#: Douglas sea scale: the same ten degrees of wind sea by height, with names of its own for two of them
+DOUGLAS_NAMES = ("No wave", "Calm (rippled)", *SEA_STATE_NAMES[2:])
+
+
+class Span(NamedTuple):
+    """Values of one degree of a scale: from `low` up to `high`, which is infinite for the last."""
+
+    low: float
+    high: float
+
+
+def beaufort_number(wind_speed: float) -> int:
+    """Beaufort number 0…12 of a mean wind in m/s at 10 m. Raises ValueError for a negative or NaN wind."""
+    return bisect.bisect_right(BEAUFORT_FROM, _not_negative("wind_speed", wind_speed))
+
+
+def beaufort_wind(number: int) -> Span:
+    """Wind speeds in m/s of a Beaufort number. Raises ValueError outside 0…12."""
+    return _span("Beaufort number", number, BEAUFORT_FROM)
+
+
+def sea_state(significant_wave_height: float) -> int:
+    """WMO sea state code 0…9 of a significant wave height in m; only a flat sea is 0."""
+    height = _not_negative("significant_wave_height", significant_wave_height)
+    return 0 if height == 0.0 else max(1, bisect.bisect_left(SEA_STATE_FROM, height))
+
+
+def sea_state_heights(code: int) -> Span:
+    """Significant wave heights in m of a WMO sea state code; its upper end belongs to it."""
+    return _span("sea state", code, SEA_STATE_FROM)
+
+
+def douglas_degree(significant_wave_height: float) -> int:
+    """Degree 0…9 of the Douglas sea scale, which has the WMO's heights."""
+    return sea_state(significant_wave_height)
+
+
+def douglas_heights(degree: int) -> Span:
+    """Significant wave heights in m of a degree of the Douglas sea scale."""
+    return _span("Douglas degree", degree, SEA_STATE_FROM)
+
+
+def _not_negative(name: str, value: float) -> float:
+    if not value >= 0.0:
+        raise ValueError(f"{name} = {value!r}: must be 0 or more")
+    return float(value)
+
+
+def _span(name: str, degree: int, begins: tuple[float, ...]) -> Span:
+    if degree not in range(len(begins) + 1):
+        raise ValueError(f"{name} = {degree!r}: must be a whole number from 0 to {len(begins)}")
+    low = begins[degree - 1] if degree > 0 else 0.0
+    high = begins[degree] if degree < len(begins) else float("inf")
+    return Span(low, high)
