@@ -52,3 +52,13 @@ def jonswap(
     A = spectra.jonswap_alpha(U, F, g) / (2.0 * np.pi)
     fall = np.exp(-constants.DEVELOPMENT * omega_p**4 / (g * k) ** 2)
     return A / k**4 * fall * gamma**r * np.cos(0.5 * np.asarray(theta)) ** 2
+
+
+def tessendorf_constant(domain_size: float) -> float:
+    """The A in m² with which Tessendorf's amplitudes are right on a domain of this size in m: ½ΔkxΔky A_Ψ.
+
+    His Fourier coefficients leave out the area of the spectral cell; any constant that does not hold it is
+    right for one domain only. Chen (2014), eq. 25.
+    """
+    A = constants.PM_ALPHA / (np.pi * constants.PM_BETA)
+    return float(0.5 * (2.0 * np.pi / domain_size) ** 2 * A)
