@@ -48,6 +48,9 @@ def own_modifiers(item: bpy.types.Object, texture: bpy.types.Texture | None) -> 
 def apply_displace(item: bpy.types.Object, texture: bpy.types.Texture, shown: Displacement) -> None:
     """Let a Displace modifier with this texture move the object; geometry nodes of ours go."""
     modifier = _only_modifier(item, texture, "DISPLACE")
+    if texture.image != shown.image:
+        # whether the modifier depends on time is found out only when its texture is assigned
+        modifier.texture = None
     _set_texture(texture, shown)
     _assign(
         modifier,

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..core import OceanParameters, ParameterError, Timing, WaveLayer
+from ..core import OceanParameters, ParameterError, Timing
 from ..export.exr import ExrError, read_image
 from ..scene import ocean_object
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
@@ -19,9 +19,8 @@ _LARGEST_JSON = 1_000_000
 
 
 def default_sea(scene: bpy.types.Scene) -> OceanParameters:
-    """A fresh breeze on the open sea, its time zero at the scene's first frame."""
-    timing = Timing(fps=frame_rate(scene), start_frame=scene.frame_start)
-    return OceanParameters(layers=(WaveLayer(swell=0.3),), timing=timing)
+    """The core's default, a strong breeze on the open sea, with time zero at the scene's first frame."""
+    return OceanParameters(timing=Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
 
 
 class MESH_OT_ocean_tweak_add(bpy.types.Operator):
@@ -109,12 +108,10 @@ class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelpe
 
 
 class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelper):
-    """Write the parameters of the active ocean to a JSON file, for the command line or another scene."""
+    """Write the parameters of the active ocean to a JSON file."""
 
     bl_idname = "ocean.export_parameters"
-    bl_description = (
-        "Write the parameters of the active ocean to a JSON file, for the command line or another scene"
-    )
+    bl_description = "Write the parameters of the active ocean to a JSON file"
     bl_label = "Export Parameters"
     bl_options = {"REGISTER"}
 

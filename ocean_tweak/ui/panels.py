@@ -148,14 +148,15 @@ def _statistics_rows(scene: bpy.types.Scene, values: dict[str, Any]) -> list[tup
         system = "IMPERIAL" if scene.unit_settings.system == "IMPERIAL" else "METRIC"
         return bpy.utils.units.to_string(system, "LENGTH", metres, precision=3)
 
+    expected = values["spectrum"]
     rows = [
-        ("Wave Height", length(values["spectrum"]["significant_wave_height"])),
+        ("Wave Height", length(expected["significant_wave_height"])),
         ("This Seed", length(values["seed"]["significant_wave_height"])),
     ]
-    if values["spectrum"]["peak_period"] is not None:
+    if expected["peak_period"] is not None:  # a flat sea has none
         rows += [
-            ("Period", f"{values['spectrum']['peak_period']:.1f} s"),
-            ("Wavelength", length(values["peak_wavelength"])),
+            ("Period", f"{expected['peak_period']:.1f} s"),
+            ("Wavelength", length(expected["peak_wavelength"])),
             ("Domain", f"{values['wavelengths_per_domain']:.1f} wavelengths"),
         ]
     return [*rows, ("Sample", length(values["sample_spacing"]))]

@@ -22,8 +22,10 @@ from ..scene.units import shortest_decimal
 
 _Field = dataclasses.Field[Any]
 
-# Blender's unit of a core unit. All of these grow with the scene's unit scale, angles do not
-_LENGTHS = {"m": "LENGTH", "m/s": "VELOCITY", "m/s²": "ACCELERATION"}
+# Blender's unit of a core unit: such a property is in Blender units and grows with the scene's unit scale
+_LENGTHS = {"m": "LENGTH", "m/s": "VELOCITY"}
+# what belongs to the instrument and not to the scene stays in metres
+_ABSOLUTE = {"wind_height"}
 _SUBTYPES = {"rad": {"subtype": "ANGLE", "unit": "ROTATION", "soft_min": -math.pi, "soft_max": math.pi}}
 _FLOAT32_MAX = 3e38
 _ACRONYMS = {"TMA", "JONSWAP"}
@@ -44,20 +46,21 @@ def annotations(
 
 
 def write(
-    group: bpy.types.PropertyGroup, values: object, metres: Fraction, without: tuple[str, ...] = ()
+    group: bpy.types.PropertyGroup,
+    kind: type,
+    data: dict[str, Any],
+    metres: Fraction,
+    without: tuple[str, ...] = (),
 ) -> None:
-    """Set a group's properties from a parameter object.
+    """Set a group's properties from the plain data of a parameter class.
 
+    data : as it stands in a JSON file; nested parameters in it have groups of their own
     metres : in a Blender unit
     """
-    exact = {}
-    for field in dataclasses.fields(values):  # type: ignore[arg-type]
-        value = getattr(values, field.name)
-        if not dataclasses.is_dataclass(value) and not isinstance(value, tuple) and field.name not in without:
-            exact[field.name] = value
-    group.exact = json.dumps(exact)
-    for field in _plain_fields(type(values), without):
-        setattr(group, field.name, _to_blender(field, exact[field.name], metres))
+    own = [field.name for field in dataclasses.fields(kind) if "nested" not in field.metadata]
+    group.exact = json.dumps({name: data[name] for name in own if name not in without})
+    for field in _plain_fields(kind, without):
+        setattr(group, field.name, _to_blender(field, data[field.name], metres))
 
 
 def read(
@@ -67,18 +70,15 @@ def read(
     result: dict[str, Any] = json.loads(group.exact) if group.exact else {}
     for field in _plain_fields(kind, without):
         value = getattr(group, field.name)
-        exact = result.get(field.name)
         if field.metadata["kind"] is float:
-            value = _exact_float(field, value, exact, metres)
+            value = _exact_float(field, value, result.get(field.name), metres)
         result[field.name] = value
     return result
 
 
 def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
     for field in dataclasses.fields(kind):
-        # a field that may be None has no number or choice to show
-        shown = field.metadata.get("kind") in _BUILDERS and field.default is not None
-        if shown and field.name not in without:
+        if field.metadata.get("kind") in _BUILDERS and field.name not in without:
             yield field
 
 
@@ -98,13 +98,13 @@ def _float_property(field: _Field, common: dict[str, Any]) -> Any:
     low, high = meta["minimum"], meta["maximum"]
     soft_low, soft_high = _SOFT_RANGES.get(field.name, (low, high))
     limits = {"min": low, "max": high, "soft_min": soft_low, "soft_max": soft_high}
-    if meta["unit"] in _LENGTHS:
+    if _is_length(field):
         # the range is in metres and the property in Blender units: the core says what is out of range
         limits |= {"min": 0.0, "max": _FLOAT32_MAX, "unit": _LENGTHS[meta["unit"]]}
     limits |= _SUBTYPES.get(meta["unit"], {})
     return bpy.props.FloatProperty(
         description=f"{meta['description']} ({low:g} to {high:g} {meta['unit']})".replace(" )", ")"),
-        precision=3 if meta["unit"] in _LENGTHS or high > 10.0 else 2,
+        precision=3 if _is_length(field) else 2,
         **limits,
         **common,
     )
@@ -140,8 +140,12 @@ def _label(choice: str) -> str:
     return choice if choice in _ACRONYMS else choice.replace("_", " ").title()
 
 
+def _is_length(field: _Field) -> bool:
+    return field.metadata.get("unit") in _LENGTHS and field.name not in _ABSOLUTE
+
+
 def _unit(field: _Field, metres: Fraction) -> Fraction:
-    return metres if field.metadata.get("unit") in _LENGTHS else Fraction(1)
+    return metres if _is_length(field) else Fraction(1)
 
 
 def _to_blender(field: _Field, value: Any, metres: Fraction) -> Any:

@@ -116,14 +116,14 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are."""
-        metres = metres_per_unit(scene)
+        metres, data = metres_per_unit(scene), parameters.to_dict()
         with self.quiet():
-            parameter_properties.write(self, parameters, metres)
-            parameter_properties.write(self.water, parameters.water, metres)
-            parameter_properties.write(self.timing, parameters.timing, metres, _FROM_SCENE)
+            parameter_properties.write(self, OceanParameters, data, metres)
+            parameter_properties.write(self.water, Water, data["water"], metres)
+            parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
             self.layers.clear()
-            for layer in parameters.layers:
-                parameter_properties.write(self.layers.add(), layer, metres)
+            for layer in data["layers"]:
+                parameter_properties.write(self.layers.add(), WaveLayer, layer, metres)
         _changed(self, bpy.context)
 
 

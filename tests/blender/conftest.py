@@ -1,2 +1,104 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-from tests.blender_fixtures import empty_scene, extension, package  # noqa: F401 - fixtures for every test here
+"""What the tests inside Blender share: seas small enough to be quick, and what they must look like."""
+
+from fractions import Fraction
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+
+from tests import blender_fixtures
+
+# fixtures for every test here
+package, extension = blender_fixtures.package, blender_fixtures.extension
+empty_scene = blender_fixtures.empty_scene
+
+SAMPLES = 32
+DOMAIN = 150.0  # m
+
+
+@pytest.fixture
+def core(extension):
+    return extension("core")
+
+
+@pytest.fixture
+def ocean_object(extension):
+    return extension("scene.ocean_object")
+
+
+@pytest.fixture
+def make_parameters(core):
+    """A small sea that looks different along x and y and when mirrored."""
+
+    def make(start_frame=1, fps=24, wind_direction=0.4, **changes):
+        layer = core.WaveLayer(wind_speed=11.0, fetch=80e3, wind_direction=wind_direction)
+        timing = core.Timing(fps=Fraction(fps), start_frame=start_frame)
+        values = {
+            "resolution": SAMPLES,
+            "domain_size": DOMAIN,
+            "seed": 7,
+            "layers": (layer,),
+            "timing": timing,
+        }
+        return core.OceanParameters(**{**values, **changes})
+
+    return make
+
+
+@pytest.fixture
+def expected(core):
+    """Where the vertices of a sea must be, in Blender units, straight from the core and arithmetic."""
+
+    def positions(parameters, frame, metres_per_unit=1.0):
+        time = float((Fraction(frame) - parameters.timing.start_frame) / parameters.timing.fps)
+        moved = core.Ocean(parameters).surface(time).displacement.astype(np.float64)
+        samples, domain = parameters.resolution, parameters.domain_size
+        grid = np.zeros((samples + 1, samples + 1, 3))
+        for row in range(samples + 1):
+            for column in range(samples + 1):
+                flat = (column * domain / samples, row * domain / samples, 0.0)
+                grid[row, column] = flat + moved[row % samples, column % samples]
+        return grid / metres_per_unit
+
+    return positions
+
+
+@pytest.fixture
+def bake(extension, core, tmp_path):
+    """Write a sequence; returns where it is."""
+
+    def write(parameters, first, last, name="sea", directory=tmp_path / "frames"):
+        directory.mkdir(exist_ok=True)
+        sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP")
+        ocean = core.Ocean(parameters)
+        for frame in range(first, last + 1):
+            sink.write(frame, ocean.frame(frame))
+        return extension("scene.image_sequence").ImageSequence(directory, name, first, last)
+
+    return write
+
+
+def vertices(item):
+    """(M+1, M+1, 3) float64: the object's evaluated vertices [y, x], Blender units."""
+    mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", flat)
+    side = round(len(mesh.vertices) ** 0.5)
+    return flat.reshape(side, side, 3).astype(np.float64)
+
+
+@pytest.fixture
+def evaluated():
+    return vertices
+
+
+@pytest.fixture
+def window():
+    """A window's context: undo wants one, and Blender has one in the background too."""
+    manager = bpy.context.window_manager
+    first = manager.windows[0]
+    return SimpleNamespace(
+        override=lambda: bpy.context.temp_override(window=first, area=first.screen.areas[0])
+    )

@@ -54,7 +54,7 @@ def disabled(package):
 
 def test_disabling_leaves_nothing(disabled):
     before = traces(disabled)
-    for _ in range(2):
+    for _ in range(10):
         assert addon_utils.enable(disabled) is not None
         added = traces(disabled) - before
         assert {line.split()[0] for line in added} >= {"type", "property", "handler", "menu"}

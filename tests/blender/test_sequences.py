@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Folders that hold a baked sequence, and those that do not."""
+
+import dataclasses
+
+import bpy
+import pytest
+
+
+@pytest.fixture
+def sequences(extension, package):
+    return extension("scene.image_sequence")
+
+
+def test_found_by_folder_and_by_file(sequences, bake, make_parameters):
+    baked = bake(make_parameters(), 1001, 1004)
+    assert sequences.find_sequence(baked.directory) == baked
+    assert sequences.find_sequence(baked.path(1003)) == baked
+
+
+def test_one_of_several_is_found_by_file(sequences, bake, make_parameters):
+    bake(make_parameters(), 1, 2, name="calm")
+    storm = bake(make_parameters(), 5, 6, name="storm")
+    assert sequences.find_sequence(storm.path(6)) == storm
+    with pytest.raises(sequences.SequenceError, match="more than one: calm, storm"):
+        sequences.find_sequence(storm.directory)
+
+
+def test_refused(sequences, bake, make_parameters, tmp_path):
+    baked = bake(make_parameters(), 1, 4)
+    baked.path(3).unlink()
+    for sequence, said in (
+        (baked, "1 of the frames 1 to 4 have no file, the first of them .*sea_disp.0003.exr"),
+        (dataclasses.replace(baked, first=9), "first frame 9 lies after the last frame 4"),
+        (dataclasses.replace(baked, name="lake"), "no files lake_disp.####.exr .*it holds sea"),
+        (dataclasses.replace(baked, directory=tmp_path / "nowhere"), "folder .*nowhere does not exist"),
+    ):
+        with pytest.raises(sequences.SequenceError, match=said):
+            sequence.check()
+    with pytest.raises(sequences.SequenceError, match="has none"):
+        sequences.find_sequence(tmp_path)
+    with pytest.raises(sequences.SequenceError, match="neither a folder nor"):
+        sequences.find_sequence(tmp_path / "picture.png")
+
+
+def test_nothing_is_added_for_a_sequence_that_cannot_be_used(
+    sequences, bake, ocean_object, make_parameters, empty_scene
+):
+    baked = bake(make_parameters(), 1, 2)
+    baked.path(1).write_bytes(b"no image")
+    for sequence, said in ((baked, "cannot be read"), (None, "needs an image sequence")):
+        with pytest.raises(sequences.SequenceError, match=said):
+            ocean_object.add(empty_scene, make_parameters(), source="SEQUENCE", sequence=sequence)
+    with pytest.raises(ValueError, match="method = 'MAGIC'"):
+        ocean_object.add(empty_scene, make_parameters(), method="MAGIC")
+    assert not empty_scene.objects
+    assert not bpy.data.meshes
+    assert not bpy.data.images
+
+
+def test_source_without_files_is_shown(ocean_object, make_parameters, empty_scene):
+    settings = ocean_object.add(empty_scene, make_parameters()).ocean_tweak
+    settings.source = "SEQUENCE"
+    assert "no image sequence is chosen" in settings.error
+    settings.source = "LIVE"
+    assert settings.error == ""
+
+
+def test_oceans_share_an_image_of_the_same_files(ocean_object, bake, make_parameters, empty_scene):
+    baked = bake(make_parameters(), 1, 2)
+    seas = [
+        ocean_object.add(empty_scene, make_parameters(), method, "SEQUENCE", baked)
+        for method in ("NODES", "DISPLACE")
+    ]
+    assert len({sea.ocean_tweak.sequence_image for sea in seas}) == 1
+    assert len(bpy.data.images) == 1
