@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds storm.blend: one sea in three scenes, each moved in another way.
+
+blender --background --python examples/storm_scene.py -- --params examples/storm.json --sequence DIR --frames 1-24 --out storm.blend
+
+"Displace" and "Geometry nodes" read the EXR sequence and need no extension, "Live" computes each frame.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from extension import enable
+from look import ripples, sky, stage, water
+
+#: scene name → method and source of its ocean
+SCENES = {
+    "Displace": ("DISPLACE", "SEQUENCE"),
+    "Geometry nodes": ("NODES", "SEQUENCE"),
+    "Live": ("NODES", "LIVE"),
+}
+OPENED = "Geometry nodes"
+
+LOOKING = math.radians(235.0)  # the wind blows along +x: waves come towards the camera, from its right
+LIGHT = math.radians(222.0)
+LENS = 40.0  # mm
+TILT = math.radians(1.0)
+RINGS = 3
+HAZE = (0.56, 0.60, 0.63)
+VISIBILITY = 25e3  # m
+
+
+def main() -> None:
+    """Build the file from the command line's arguments."""
+    arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
+    extension = enable()
+    core = extension.module("core")
+    parameters = core.OceanParameters.from_json(arguments.params.read_text(encoding="utf-8"))
+    first, last = arguments.frames
+    sequence = extension.module("scene.image_sequence").ImageSequence(
+        arguments.sequence, arguments.params.stem, first, last
+    )
+    bpy.ops.wm.read_homefile(use_empty=True)
+    for scene in make_scenes(extension, first, last, parameters.timing.fps):
+        method, source = SCENES[scene.name]
+        add_ocean(extension, scene, parameters, method, source, sequence if source == "SEQUENCE" else None)
+    dress(core, parameters)
+    save(arguments.out)
+
+
+def parse(argv: list[str]) -> argparse.Namespace:
+    """The arguments after "--"."""
+    parser = argparse.ArgumentParser(prog="storm_scene.py")
+    parser.add_argument("--params", type=Path, required=True, help="parameters of the sea, JSON")
+    parser.add_argument("--sequence", type=Path, required=True, help="folder of the baked frames")
+    parser.add_argument("--frames", type=_range, required=True, metavar="FIRST-LAST")
+    parser.add_argument("--out", type=Path, required=True, help="the .blend file to write")
+    return parser.parse_args(argv)
+
+
+def _range(text: str) -> tuple[int, int]:
+    first, last = text.split("-")
+    return int(first), int(last)
+
+
+def make_scenes(extension, first, last, fps):
+    """The three scenes, with the shot's frames."""
+    scenes = [bpy.context.scene]
+    scenes += [bpy.data.scenes.new(name) for name in list(SCENES)[1:]]
+    for scene, name in zip(scenes, SCENES):
+        scene.name = name
+        scene.frame_start, scene.frame_end = first, last
+        scene.frame_set(first)
+        extension.module("scene.units").set_frame_rate(scene, fps)
+        stage.render_settings(scene)
+    return scenes
+
+
+def add_ocean(extension, scene, parameters, method, source, sequence):
+    """The ocean of a scene, and around it the instances that reach to the horizon."""
+    ocean = extension.module("scene.ocean_object").add(
+        scene, parameters, method=method, source=source, sequence=sequence, name=f"Ocean {scene.name}"
+    )
+    grids = [
+        other.data for other in bpy.data.objects if other.type == "MESH" and other.data.get("shared_grid")
+    ]
+    if grids:  # all three are moved from the same flat grid: one of them is enough in the file
+        own, ocean.data = ocean.data, grids[0]
+        bpy.data.meshes.remove(own)
+    else:
+        ocean.data["shared_grid"] = True
+    scene.collection.objects.link(stage.tile(ocean, f"Horizon {scene.name}", parameters.domain_size, RINGS))
+    return ocean
+
+
+def dress(core, parameters):
+    """Sky, water and camera, the same in all scenes."""
+    world = sky.storm_sky("Storm", LIGHT)
+    small = ripples.make(core, parameters, "Ripples")
+    material = water.storm_water("Storm water", small, parameters.domain_size, HAZE, VISIBILITY)
+    ocean = core.Ocean(parameters)
+    height = ocean.statistics().significant_wave_height
+    place = stage.before_the_highest_crest(
+        ocean.surface(0.5).displacement[..., 2], parameters.domain_size, LOOKING, 17.0 * height, 0.72 * height
+    )
+    camera = stage.camera("Camera", place, LOOKING, TILT, LENS)
+    for scene in bpy.data.scenes:
+        scene.world = world
+        scene.collection.objects.link(camera)
+        scene.camera = camera
+    for mesh in {item.data for item in bpy.data.objects if item.name.startswith("Ocean ")}:
+        mesh.materials.append(material)
+
+
+def save(path: Path) -> None:
+    """Write the file so that it can be moved together with its frames."""
+    path = path.resolve()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if bpy.context.window:
+        bpy.context.window.scene = bpy.data.scenes[OPENED]
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
+    bpy.ops.file.make_paths_relative()
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
+
+
+if __name__ == "__main__":
+    main()
