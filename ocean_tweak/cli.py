@@ -65,11 +65,14 @@ def _complain(message: object) -> None:
 def _parser(in_blender: bool) -> argparse.ArgumentParser:
     program = "blender --command ocean_tweak" if in_blender else "python -m ocean_tweak"
     parser = argparse.ArgumentParser(
-        prog=program, description="Ocean Tweak: seas with true wave heights, from wind, fetch, depth and swell."
+        prog=program,
+        description="Ocean Tweak: seas with true wave heights, from wind, fetch, depth and swell.",
     )
     parser.add_argument("--version", action="version", version=f"Ocean Tweak {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    info = commands.add_parser("info", help="print what the sea will be", description="Print what the sea will be.")
+    info = commands.add_parser(
+        "info", help="print what the sea will be", description="Print what the sea will be."
+    )
     info.set_defaults(run=_info)
     baking = commands.add_parser(
         "bake", help="write frames as EXR displacement", description="Write frames as EXR displacement."
@@ -89,7 +92,9 @@ def _parser(in_blender: bool) -> argparse.ArgumentParser:
 
 def _add_sea_arguments(command: argparse.ArgumentParser, in_blender: bool) -> None:
     default = "the file's oceans" if in_blender else "the default sea"
-    command.add_argument("--params", type=Path, metavar="FILE.json", help=f"parameters; without them {default}")
+    command.add_argument(
+        "--params", type=Path, metavar="FILE.json", help=f"parameters; without them {default}"
+    )
     command.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", dest="assignments",
         help="change one parameter, for example layers.0.wind_speed=25 (may be repeated)",
@@ -202,7 +207,8 @@ def _info(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
 
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
     def row(title: str, state: SeaState, note: str = "") -> str:
-        return f"  {title:<18}{state.significant_wave_height:>8.2f} m {state.peak_period:>8.2f} s  {note}".rstrip()
+        height, period = state.significant_wave_height, state.peak_period
+        return f"  {title:<18}{height:>8.2f} m {period:>8.2f} s  {note}".rstrip()
 
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     return [
@@ -227,9 +233,13 @@ def _bake(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
         sink = ExrSequence(folder, name, parameters, arguments.compression)
         for done, baked in enumerate(bake(Ocean(parameters), frames, sink), start=1):
             if arguments.json:
-                line = json.dumps({"frame": baked.frame, "path": str(baked.path), "seconds": round(baked.seconds, 4)})
+                line = json.dumps(
+                    {"frame": baked.frame, "path": str(baked.path), "seconds": round(baked.seconds, 4)}
+                )
             else:
-                line = f"{name}: frame {baked.frame} ({done}/{len(frames)}) {baked.seconds:.2f} s  {baked.path}"
+                line = (
+                    f"{name}: frame {baked.frame} ({done}/{len(frames)}) {baked.seconds:.2f} s  {baked.path}"
+                )
             print(line, flush=True)
     return DONE
 

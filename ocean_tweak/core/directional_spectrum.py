@@ -43,6 +43,7 @@ class DirectionalSpectrum:
 
     @property
     def fetch_is_limited(self) -> bool:
+        """Whether the sea is fully developed before its fetch ends."""
         return self.scales.fetch < self.layer.fetch
 
     @property

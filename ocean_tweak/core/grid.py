@@ -35,6 +35,7 @@ class WaveVectorGrid:
 
     @property
     def shape(self) -> tuple[int, int]:
+        """(N, N//2+1), of arrays over the half plane."""
         return self.resolution, self.resolution // 2 + 1
 
     @cached_property

@@ -81,9 +81,7 @@ def initial_state(parameters: OceanParameters) -> InitialState:
     if parameters.match_height:
         _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
     omega = _angular_frequency(grid, parameters)
-    return InitialState(
-        grid, h_plus, h_minus, omega, expected_plus, expected_minus, parameters.loop_duration
-    )
+    return InitialState(grid, h_plus, h_minus, omega, expected_plus, expected_minus, parameters.loop_duration)
 
 
 def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, expected: Array) -> None:

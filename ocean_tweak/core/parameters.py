@@ -37,7 +37,12 @@ class Water(Validated):
         "from a puddle to the deepest trench",
     )  # fmt: skip
     gravity: float = number(
-        constants.GRAVITY, 0.1, 100.0, "m/s²", "Gravitational acceleration", "from a small moon to a gas giant"
+        constants.GRAVITY,
+        0.1,
+        100.0,
+        "m/s²",
+        "Gravitational acceleration",
+        "from a small moon to a gas giant",
     )
     density: float = number(
         constants.WATER_DENSITY, 100.0, 20e3, "kg/m³", "Density of the liquid", "liquids up to mercury"
@@ -74,14 +79,19 @@ class WaveLayer(Validated):
         1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's gain"
     )
     peak_enhancement: float = number(
-        constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "γ of JONSWAP and TMA: how sharply the longest waves stand out",
+        constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "γ of JONSWAP and TMA: how far long waves stand out",
         "records lie between 1 and 7",
     )  # fmt: skip
     depth_factor: str = choice(
         "KITAIGORODSKII", DEPTH_FACTORS, "How TMA loses energy in shallow water: exact, or the approximation"
     )
     generalized_a: float = number(
-        0.7795, 0.0, 1e6, "m²/s⁴", "A of the generalised spectrum A/ω⁵ exp(-B/ω⁴)", "beyond it no liquid holds together"
+        0.7795,
+        0.0,
+        1e6,
+        "m²/s⁴",
+        "A of the generalised spectrum A/ω⁵ exp(-B/ω⁴)",
+        "beyond it no liquid holds together",
     )
     generalized_b: float = number(
         0.6185, 1e-12, 1e12, "1/s⁴", "B of the generalised spectrum A/ω⁵ exp(-B/ω⁴)",
@@ -92,19 +102,39 @@ class WaveLayer(Validated):
         "longer than any wave's cut-off",
     )  # fmt: skip
     wind_height: float = number(
-        10.0, 1.0, 100.0, "m", "Height above the water at which the wind was measured", "the range of the log law"
+        10.0,
+        1.0,
+        100.0,
+        "m",
+        "Height above the water at which the wind was measured",
+        "the range of the log law",
     )
     definition: str = choice(
         "WIND", DEFINITIONS, "What gives the layer's energy: wind and fetch, or wave height and period"
     )
     significant_wave_height: float = number(
-        2.0, 0.0, 100.0, "m", "Wave height Hs of a layer defined by its sea state", "thrice the largest measured"
+        2.0,
+        0.0,
+        100.0,
+        "m",
+        "Wave height Hs of a layer defined by its sea state",
+        "thrice the largest measured",
     )
     peak_period: float = number(
-        10.0, 0.05, 60.0, "s", "Peak period Tp of a layer defined by its sea state", "from ripples to long swell"
+        10.0,
+        0.05,
+        60.0,
+        "s",
+        "Peak period Tp of a layer defined by its sea state",
+        "from ripples to long swell",
     )
     spreading_exponent: float = number(
-        1.0, 0.0, 1e4, "", "s of the spreading cos²ˢ(θ/2) with a fixed exponent", "beyond it the wave is a plane one"
+        1.0,
+        0.0,
+        1e4,
+        "",
+        "s of the spreading cos²ˢ(θ/2) with a fixed exponent",
+        "beyond it the wave is a plane one",
     )
     second_spreading: str = choice("FLAT", SPREADINGS, "The spreading that is mixed in")
     spreading_mix: float = number(0.0, 0.0, 1.0, "", "Share of the second spreading", "a share")
@@ -112,17 +142,32 @@ class WaveLayer(Validated):
         0.0, 0.0, 1e6, "m", "The band's short end: waves below it are left out", "0 keeps all short waves"
     )
     longest_wavelength: float = number(
-        1e6, 1e-3, 1e6, "m", "The band's long end: waves above it are left out", "1000 km keeps all long waves"
+        1e6,
+        1e-3,
+        1e6,
+        "m",
+        "The band's long end: waves above it are left out",
+        "1000 km keeps all long waves",
     )
     band_softness: float = number(
-        0.0, 0.0, 4.0, "octaves", "Width over which the band's ends fade; 0 cuts sharply", "a band's own width"
+        0.0,
+        0.0,
+        4.0,
+        "octaves",
+        "Width over which the band's ends fade; 0 cuts sharply",
+        "a band's own width",
     )
     band_inverted: bool = switch(False, "Keep what lies outside the band instead")
     muted: bool = switch(False, "Leave the layer out; no other layer changes")
     id: int = integer(
-        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free number"
+        -1,
+        -1,
+        2**31 - 1,
+        "Identity of the layer, from which its seed follows; -1 takes the first free number",
     )
-    seed: int = integer(-1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id")
+    seed: int = integer(
+        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id"
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -170,7 +215,12 @@ class OceanParameters(Validated):
     )  # fmt: skip
     dispersion: str = choice("CAPILLARY", DISPERSIONS, "How fast a wave of a given length travels")
     loop_duration: Fraction | None = rational(
-        None, 0.01, 1e6, "s", "Time after which the sea repeats itself exactly; none if it never does", optional=True
+        None,
+        0.01,
+        1e6,
+        "s",
+        "Time after which the sea repeats itself exactly; none if it never does",
+        optional=True,
     )
     amplitudes: str = choice(
         "GAUSSIAN", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
@@ -204,7 +254,7 @@ class OceanParameters(Validated):
 
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionaries, lists and numbers, as they stand in a JSON file."""
-        return to_plain(self)  # type: ignore[no-any-return]
+        return to_plain(self)
 
     def to_json(self, indent: int | None = 2) -> str:
         """JSON text that `from_json` reads back to equal parameters."""
@@ -213,7 +263,7 @@ class OceanParameters(Validated):
     @classmethod
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
-        return from_plain(cls, data)  # type: ignore[no-any-return]
+        return from_plain(cls, data)
 
     @classmethod
     def from_json(cls, text: str) -> OceanParameters:

@@ -53,7 +53,7 @@ def propagate(
     """
     real = np.float32 if dtype is np.complex64 else np.float64
     angle = phase(state, time).astype(real, copy=False)
-    turn = np.empty(angle.shape, dtype)
+    turn: ComplexArray = np.empty(angle.shape, dtype)
     turn.real, turn.imag = np.cos(angle), np.sin(angle)
     along = state.h_plus.astype(dtype, copy=False) * turn.conj()
     against = state.h_minus.astype(dtype, copy=False) * turn

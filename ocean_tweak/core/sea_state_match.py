@@ -61,14 +61,12 @@ def layer_for_sea_state(
     X = (scales.alpha / constants.JONSWAP_ALPHA) ** (-1.0 / constants.JONSWAP_ALPHA_EXPONENT)
     U = constants.JONSWAP_PEAK * water.gravity * X ** (-1.0 / 3.0) / scales.peak_frequency
     F = X * U**2 / water.gravity
-    if F > spectra.full_development_fetch(U, water.gravity):
+    if spectra.full_development_fetch(U, water.gravity) < F:
         return Match(swell, False, f"{wanted} is flatter than any wind sea: set directly, as swell")
     if X < LEAST_DIMENSIONLESS_FETCH:
         return Match(swell, False, f"{wanted} is steeper than any wind sea: set directly")
     try:
-        wind = replace(
-            template, definition="WIND", wind_speed=wind_at(U, template.wind_height), fetch=F
-        )
+        wind = replace(template, definition="WIND", wind_speed=wind_at(U, template.wind_height), fetch=F)
     except ParameterError as error:
         return Match(swell, False, f"{wanted} is set directly: {error}")
     return Match(wind, True, f"{wanted} is made by a wind of {U:.3g} m/s over {F / 1e3:.3g} km")

@@ -95,18 +95,22 @@ class Statistics:
 
     @property
     def m0(self) -> float:
+        """Variance of the elevation, m², of the continuous spectrum."""
         return self.spectrum.m0
 
     @property
     def significant_wave_height(self) -> float:
+        """Hs of the continuous spectrum, m."""
         return self.spectrum.significant_wave_height
 
     @property
     def peak_period(self) -> float:
+        """Tp of the continuous spectrum, s."""
         return self.spectrum.peak_period
 
     @property
     def peak_wavelength(self) -> float:
+        """Wavelength at the peak of the continuous spectrum, m."""
         return self.spectrum.peak_wavelength
 
     @property
@@ -156,7 +160,9 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
     if not cumulated[-1] > 0.0:
         return 0.0
     carrying = order[: int(np.searchsorted(cumulated, 0.99 * cumulated[-1])) + 1]
-    true = dispersion.angular_frequency(state.grid.k.ravel()[carrying], parameters.dispersion, parameters.water)
+    true = dispersion.angular_frequency(
+        state.grid.k.ravel()[carrying], parameters.dispersion, parameters.water
+    )
     return float(np.max(np.abs(state.omega.ravel()[carrying] / true - 1.0)))
 
 
@@ -175,8 +181,9 @@ def _grid_warnings(parameters: OceanParameters, statistics: Statistics) -> list[
     wavelength = statistics.peak_wavelength
     if statistics.wavelengths_per_domain < _LEAST_WAVELENGTHS:
         warnings.append(
-            f"The domain of {parameters.domain_size:g} m holds only {statistics.wavelengths_per_domain:.2g} of the "
-            f"longest waves ({wavelength:.3g} m): wave height will differ much between seeds. "
+            f"The domain of {parameters.domain_size:g} m holds only "
+            f"{statistics.wavelengths_per_domain:.2g} of the longest waves ({wavelength:.3g} m): "
+            "wave height will differ much between seeds. "
             f"Make the domain at least {_round_up(_LEAST_WAVELENGTHS * wavelength)} m"
         )
     if statistics.resolved_share < _LEAST_RESOLVED_SHARE:
@@ -244,7 +251,9 @@ def mode_state(along: Array, against: Array, grid: WaveVectorGrid, parameters: O
     along, against : (N, N//2+1) m², |h_plus|² and |h_minus|²: energies of the waves along +k and -k
     """
     energy = (along + against) * grid.multiplicity
-    direction = np.divide(grid.kx + 1j * grid.ky, grid.k, out=np.zeros(grid.shape, complex), where=grid.k > 0.0)
+    direction = np.divide(
+        grid.kx + 1j * grid.ky, grid.k, out=np.zeros(grid.shape, complex), where=grid.k > 0.0
+    )
     vector = np.sum((along - against) * grid.multiplicity * direction)
     return _state_of_modes(energy, vector, grid, parameters)
 

@@ -9,7 +9,7 @@ sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .grid import WaveVectorGrid
 from .parameters import OceanParameters
@@ -28,8 +28,10 @@ def inverse_transform(coefficients: ComplexArray) -> RealArray:
     NumPy before 2.0 transforms in double precision only; the result is rounded back.
     """
     n = coefficients.shape[0]
-    real = np.float32 if coefficients.dtype == np.complex64 else np.float64
-    return np.fft.irfft2(coefficients, s=(n, n)).astype(real, copy=False) * real(n * n)
+    field: RealArray = np.fft.irfft2(coefficients, s=(n, n))
+    field = field.astype(np.float32 if coefficients.dtype == np.complex64 else np.float64, copy=False)
+    field *= n * n
+    return field
 
 
 class Synthesis:
@@ -72,17 +74,19 @@ class Synthesis:
         source = self._state.rate if derivative == "t" else self._state.elevation
         if source is None:
             raise ValueError("the state was propagated without its rate, so there is no velocity")
-        factor = self._horizontal[component] if component != Z else 1.0
+        factor: ArrayLike = self._horizontal[component] if component != Z else 1.0
         if derivative == "x":
-            factor = factor * (1j * self._grid.kx)
+            factor = np.multiply(factor, 1j * self._grid.kx)
         elif derivative == "y":
-            factor = factor * (1j * self._grid.ky)
+            factor = np.multiply(factor, 1j * self._grid.ky)
         if long and self._damping is not None:
-            factor = factor * self._damping.long_waves
+            factor = np.multiply(factor, self._damping.long_waves)
         return source * np.asarray(factor, dtype=self._dtype)
 
 
-def _horizontal_factors(grid: WaveVectorGrid, parameters: OceanParameters) -> tuple[ComplexArray, ComplexArray]:
+def _horizontal_factors(
+    grid: WaveVectorGrid, parameters: OceanParameters
+) -> tuple[ComplexArray, ComplexArray]:
     """iλ kx/k and iλ ky/k, (N, N//2+1): elevation to horizontal displacement.
 
     In finite depth the water's orbits are wider by coth kh (linear theory, Airy) where `orbits` asks for it.

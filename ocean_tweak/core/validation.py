@@ -28,9 +28,7 @@ def _shown(value: object) -> str:
     return text if len(text) <= 80 else text[:77] + "..."
 
 
-def number(
-    default: float, minimum: float, maximum: float, unit: str, description: str, why: str = ""
-) -> Any:
+def number(default: float, minimum: float, maximum: float, unit: str, description: str, why: str = "") -> Any:
     """A real-valued dataclass field with its range, unit, description and the reason for the range."""
     return dataclasses.field(
         default=default,
@@ -65,7 +63,12 @@ def switch(default: bool, description: str) -> Any:
 
 
 def rational(
-    default: Fraction | None, minimum: float, maximum: float, unit: str, description: str, optional: bool = False
+    default: Fraction | None,
+    minimum: float,
+    maximum: float,
+    unit: str,
+    description: str,
+    optional: bool = False,
 ) -> Any:
     """A dataclass field that is kept as an exact fraction; None is allowed where it is optional."""
     return dataclasses.field(
@@ -106,7 +109,8 @@ def _checked_integer(name: str, value: object, meta: Any) -> int:
 
 
 def _checked_fraction(name: str, value: object, meta: Any) -> Fraction:
-    allowed = f"must be {_range_text(meta['minimum'], meta['maximum'], meta['unit'])}, also as a fraction: \"24000/1001\""
+    span = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
+    allowed = f'must be {span}, also as a fraction: "24000/1001"'
     try:
         if isinstance(value, bool) or not isinstance(value, (int, float, str, Fraction)):
             raise TypeError

@@ -27,9 +27,13 @@ def params(tmp_path: Path) -> Path:
     return path
 
 
-def test_bake_gives_the_array_of_python(params: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bake_gives_the_array_of_python(
+    params: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "new" / "folder"
-    code = main(["bake", "--params", str(params), "--frames", "1003,1001", "--out", str(out), "--compression", "ZIP"])
+    code = main(
+        ["bake", "--params", str(params), "--frames", "1003,1001", "--out", str(out), "--compression", "ZIP"]
+    )
     assert code == 0
     assert sorted(p.name for p in out.iterdir()) == ["small_disp.1001.exr", "small_disp.1003.exr"]
     parameters = OceanParameters.from_json(params.read_text())
@@ -73,7 +77,7 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["info", "--set", "layers.0.wind_speed=-3"], 2, "layers.0.wind_speed = -3: must be from 0.1 to 100 m/s"),
+        (["info", "--set", "layers.0.wind_speed=-3"], 2, "wind_speed = -3: must be from 0.1 to 100 m/s"),
         (["info", "--set", "layers.0.wind_speed=NaN"], 2, "finite"),
         (["info", "--set", "layers.0.wind_sped=3"], 2, "did you mean wind_speed?"),
         (["info", "--set", "layers.4.wind_speed=3"], 2, "from 0 to 0"),

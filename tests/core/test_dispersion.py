@@ -9,13 +9,20 @@ import pytest
 from ocean_tweak.core import Water, dispersion
 
 K = np.geomspace(1e-4, 1e4, 400)
-WATERS = [Water(depth=0.1), Water(depth=15.0), Water(depth=11e3), Water(depth=5.0, gravity=1.62, surface_tension=0.4)]
+WATERS = [
+    Water(depth=0.1),
+    Water(depth=15.0),
+    Water(depth=11e3),
+    Water(depth=5.0, gravity=1.62, surface_tension=0.4),
+]
 
 
 def test_textbook_values() -> None:
     # a 156 m long wave in deep water has a period of 10 s (λ = g T² / 2π)
     wavelength = 9.81 * 10.0**2 / (2.0 * np.pi)
-    assert dispersion.angular_frequency(2 * np.pi / wavelength, "DEEP", Water()) == pytest.approx(2 * np.pi / 10)
+    assert dispersion.angular_frequency(2 * np.pi / wavelength, "DEEP", Water()) == pytest.approx(
+        2 * np.pi / 10
+    )
     # very long waves travel at √(g h)
     k = 1e-6
     assert dispersion.angular_frequency(k, "FINITE_DEPTH", Water(depth=4000.0)) / k == pytest.approx(
@@ -33,7 +40,9 @@ def test_derivative_is_that_of_the_relation(name: str, water: Water) -> None:
     step = 1e-5 * K
     upper = dispersion.angular_frequency(K + step, name, water)
     lower = dispersion.angular_frequency(K - step, name, water)
-    np.testing.assert_allclose(dispersion.group_velocity(K, name, water), (upper - lower) / (2 * step), rtol=1e-8)
+    np.testing.assert_allclose(
+        dispersion.group_velocity(K, name, water), (upper - lower) / (2 * step), rtol=1e-8
+    )
 
 
 @pytest.mark.parametrize("name", dispersion.RELATIONS)
@@ -52,7 +61,9 @@ def test_relations_agree_where_they_should() -> None:
     np.testing.assert_allclose(
         dispersion.capillary(long_waves, shallow), dispersion.finite_depth(long_waves, shallow), rtol=1e-5
     )
-    np.testing.assert_allclose(dispersion.finite_depth(short, shallow), dispersion.deep(short, shallow), rtol=1e-12)
+    np.testing.assert_allclose(
+        dispersion.finite_depth(short, shallow), dispersion.deep(short, shallow), rtol=1e-12
+    )
     np.testing.assert_allclose(
         dispersion.finite_depth(K[K > 1e-2], ocean), dispersion.deep(K[K > 1e-2], ocean), rtol=1e-12
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Energy: the variance of the sea is the spectrum's integral, whatever the domain and the wind's direction."""
+"""Energy: the variance of the sea is the spectrum's integral, whatever the domain and the wind."""
 
 from __future__ import annotations
 
@@ -43,7 +43,11 @@ def test_cells_hold_the_integral_of_the_spectrum(wavelengths: float, direction: 
     layer = WaveLayer(wind_speed=17.0, fetch=300e3, swell=0.3, wind_direction=direction)
     spectrum = DirectionalSpectrum(layer, Water(depth=11e3), "DEEP")
     integral, _ = integrate.quad(
-        lambda w: float(spectrum.frequency_spectrum(w)), 0.0, 40.0, points=[spectrum.peak_frequency], limit=1000
+        lambda w: float(spectrum.frequency_spectrum(w)),
+        0.0,
+        40.0,
+        points=[spectrum.peak_frequency],
+        limit=1000,
     )
     domain = wavelengths * 2 * np.pi * 9.81 / spectrum.peak_frequency**2
     grid = WaveVectorGrid(2 * round(16 * wavelengths), domain)

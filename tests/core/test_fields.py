@@ -28,13 +28,17 @@ SEAS = {
         layers=(
             WaveLayer(wind_direction=1.0),
             WaveLayer(spectrum="JONSWAP", spreading="HASSELMANN", wind_direction=-2.0, wind_speed=8.0),
-            WaveLayer(definition="SEA_STATE", significant_wave_height=1.5, peak_period=9.0, wind_direction=4.0),
+            WaveLayer(
+                definition="SEA_STATE", significant_wave_height=1.5, peak_period=9.0, wind_direction=4.0
+            ),
         ),
     ),
     "loop": OceanParameters(
         resolution=16, domain_size=250.0, loop_duration=Fraction(15), amplitudes="FIXED", dispersion="DEEP"
     ),
-    "wide orbits": OceanParameters(resolution=16, domain_size=250.0, orbits="FINITE_DEPTH", water=Water(depth=5.0)),
+    "wide orbits": OceanParameters(
+        resolution=16, domain_size=250.0, orbits="FINITE_DEPTH", water=Water(depth=5.0)
+    ),
 }
 
 
@@ -74,7 +78,9 @@ def assert_fields_equal(fields, expected: dict[str, np.ndarray]) -> None:
             assert np.all(actual[..., 0] >= 0.0)
             actual = np.abs(np.sum(actual * value, axis=-1))
             value = np.ones_like(actual)
-        np.testing.assert_allclose(actual, value, atol=1e-12 * max(1.0, np.max(np.abs(value))), rtol=0, err_msg=name)
+        np.testing.assert_allclose(
+            actual, value, atol=1e-12 * max(1.0, np.max(np.abs(value))), rtol=0, err_msg=name
+        )
 
 
 @pytest.mark.parametrize("name", SEAS)
@@ -115,7 +121,9 @@ def test_trough_damping(strength: float) -> None:
         for d in ("_x", "_y", "_t"):
             inside = (u > 0) & (u < 1)
             w_rate = np.where(inside, -strength * 6 * u * (1 - u) * -low["z" + d] / (2 * s), 0.0)
-            expected[c + d] = low[c + d] + w * (everything[c + d] - low[c + d]) + w_rate * (everything[c] - low[c])
+            expected[c + d] = (
+                low[c + d] + w * (everything[c + d] - low[c + d]) + w_rate * (everything[c] - low[c])
+            )
     assert_fields_equal(ocean.surface(3.0, OUTPUTS), outputs_from(expected))
     assert np.min(w) < 1.0 - 0.3 * strength
 
@@ -157,7 +165,9 @@ def test_a_single_wave() -> None:
     np.testing.assert_allclose(-normal[:, 0] / normal[:, 2], -A * np.sin(x) / (1 - A * np.cos(x)), atol=1e-12)
 
 
-@pytest.mark.parametrize("changes", [{}, {"trough_damping": 0.8}, {"loop_duration": 12, "orbits": "FINITE_DEPTH"}])
+@pytest.mark.parametrize(
+    "changes", [{}, {"trough_damping": 0.8}, {"loop_duration": 12, "orbits": "FINITE_DEPTH"}]
+)
 def test_velocity_is_the_rate_of_displacement(changes: dict) -> None:
     """Central differences in time converge to the velocity with the square of the step."""
     parameters = OceanParameters(resolution=32, domain_size=200.0, water=Water(depth=30.0), **changes)
@@ -179,7 +189,10 @@ def test_a_loop_ends_where_it_began() -> None:
     parameters = OceanParameters(resolution=32, loop_duration=Fraction("4.004"), timing=timing)
     ocean = Ocean(parameters)
     assert ocean.frame(1001).displacement.tobytes() == ocean.frame(1001 + 96).displacement.tobytes()
-    assert ocean.frame(1001 + 7).displacement.tobytes() == ocean.frame(1001 + 7 + 96 * 1000).displacement.tobytes()
+    assert (
+        ocean.frame(1001 + 7).displacement.tobytes()
+        == ocean.frame(1001 + 7 + 96 * 1000).displacement.tobytes()
+    )
     assert ocean.frame(990).displacement.tobytes() == ocean.frame(990 + 96).displacement.tobytes()
     assert ocean.frame(1001).displacement.tobytes() != ocean.frame(1001 + 48).displacement.tobytes()
 

@@ -16,7 +16,9 @@ WIND = WaveLayer(wind_speed=15.0, fetch=200e3, id=4)
 SWELL = WaveLayer(
     definition="SEA_STATE", significant_wave_height=2.5, peak_period=14.0, swell=1.0, wind_direction=0.7, id=2
 )
-BASE = OceanParameters(resolution=64, domain_size=1500.0, seed=6, water=Water(depth=1000.0), layers=(WIND, SWELL))
+BASE = OceanParameters(
+    resolution=64, domain_size=1500.0, seed=6, water=Water(depth=1000.0), layers=(WIND, SWELL)
+)
 
 
 def h(parameters: OceanParameters) -> np.ndarray:
@@ -66,7 +68,9 @@ def test_all_muted_is_a_flat_sea() -> None:
 
 @pytest.mark.parametrize("softness", [0.0, 1.0])
 def test_a_band_and_its_inverse_are_the_whole(softness: float) -> None:
-    band = dataclasses.replace(WIND, shortest_wavelength=60.0, longest_wavelength=200.0, band_softness=softness)
+    band = dataclasses.replace(
+        WIND, shortest_wavelength=60.0, longest_wavelength=200.0, band_softness=softness
+    )
     inverse = dataclasses.replace(band, band_inverted=True)
     parts = [initial_state(BASE.replace(layers=(layer,))).expected_plus for layer in (band, inverse)]
     whole = initial_state(BASE.replace(layers=(WIND,))).expected_plus
@@ -84,7 +88,7 @@ def test_a_sharp_band_holds_only_its_waves() -> None:
     outside = (wavelength < 90.0) | (wavelength > 170.0)
     assert not np.any(state.expected_plus[outside])
     assert np.any(state.expected_plus)
-    with pytest.raises(ParameterError, match="shortest_wavelength = 100.0: must be below longest_wavelength"):
+    with pytest.raises(ParameterError, match=r"shortest_wavelength = 100\.0: must be below"):
         WaveLayer(shortest_wavelength=100.0, longest_wavelength=50.0)
 
 
@@ -105,7 +109,8 @@ def test_a_sea_state_is_what_was_asked_for(spectrum: str, depth: float) -> None:
 
 
 def test_crossing_seas_of_the_reference() -> None:
-    # long swell (Hs 2.5, Tp 14) with 5 m/s over 30 km: Hs 2.57; crossing (Hs 2, Tp 11) with 10 m/s over 100 km: 2.93
+    # long swell (Hs 2.5, Tp 14) with 5 m/s over 30 km has Hs 2.57;
+    # crossing seas (Hs 2, Tp 11) with 10 m/s over 100 km have 2.93
     breeze = WaveLayer(wind_speed=5.0, fetch=30e3)
     assert Ocean(BASE.replace(layers=(SWELL, breeze))).statistics().significant_wave_height == pytest.approx(
         2.57, abs=0.006
@@ -138,11 +143,16 @@ def test_height_can_be_matched() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wind", "fetch_km", "depth"), [(12.0, 150.0, 200.0), (25.0, 300.0, 15.0), (6.7, 48.0, 200.0), (75.0, 1250.0, 150.0)]
+    ("wind", "fetch_km", "depth"),
+    [(12.0, 150.0, 200.0), (25.0, 300.0, 15.0), (6.7, 48.0, 200.0), (75.0, 1250.0, 150.0)],
 )
 def test_wind_and_fetch_are_found_again(wind: float, fetch_km: float, depth: float) -> None:
     water = Water(depth=depth)
-    sea = Ocean(OceanParameters(resolution=16, water=water, layers=(WaveLayer(wind_speed=wind, fetch=fetch_km * 1e3),)))
+    sea = Ocean(
+        OceanParameters(
+            resolution=16, water=water, layers=(WaveLayer(wind_speed=wind, fetch=fetch_km * 1e3),)
+        )
+    )
     statistics = sea.statistics()
     match = layer_for_sea_state(statistics.significant_wave_height, statistics.peak_period, water)
     assert match.from_wind

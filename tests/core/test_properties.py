@@ -17,11 +17,13 @@ from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing, Wat
 from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.propagation import propagate
 
-QUICK = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+QUICK = settings(
+    max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
 
 
 def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
-    """Values of a field over its whole range, its ends included; ranges of many decades by their logarithm."""
+    """Values of a field over its whole range and its ends; many decades by their logarithm."""
     meta = field.metadata
     if meta["kind"] is str:
         return st.sampled_from(meta["choices"])
@@ -38,7 +40,9 @@ def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
 
 
 def instances(cls: type, **fixed: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
-    strategies = {f.name: fixed.get(f.name, values(f)) for f in dataclasses.fields(cls) if f.name not in fixed}
+    strategies = {
+        f.name: fixed.get(f.name, values(f)) for f in dataclasses.fields(cls) if f.name not in fixed
+    }
     return st.builds(cls, **strategies, **fixed)
 
 
@@ -84,14 +88,19 @@ def test_json_round_trip(parameters: OceanParameters) -> None:
 def outside(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
     meta = field.metadata
     if meta["kind"] is str:
-        return st.one_of(st.text(max_size=8).filter(lambda t: t not in meta["choices"]), st.none(), st.integers())
+        return st.one_of(
+            st.text(max_size=8).filter(lambda t: t not in meta["choices"]), st.none(), st.integers()
+        )
     if meta["kind"] is bool:
         return st.one_of(st.integers(), st.none(), st.text(max_size=3))
     bad = [math.nan, math.inf, -math.inf, "3x", [], {}, True]
     if not meta.get("optional"):
         bad.append(None)
     low, high = meta["minimum"], meta["maximum"]
-    beyond = [st.floats(max_value=math.nextafter(low, -math.inf)), st.floats(min_value=math.nextafter(high, math.inf))]
+    beyond = [
+        st.floats(max_value=math.nextafter(low, -math.inf)),
+        st.floats(min_value=math.nextafter(high, math.inf)),
+    ]
     if meta["kind"] is int:
         beyond = [st.integers(max_value=low - 1), st.integers(min_value=high + 1)]
         bad.append(low + 0.5)
@@ -122,7 +131,11 @@ def test_any_invalid_value_is_refused_by_name(cls: type, field: dataclasses.Fiel
     [
         {"domain_size": 100e3, "layers": (WaveLayer(wind_speed=0.1),)},
         {"domain_size": 0.1, "layers": (WaveLayer(wind_speed=100.0, fetch=20e6),)},
-        {"water": Water(depth=0.1), "layers": (WaveLayer(wind_speed=100.0, fetch=20e6),), "orbits": "FINITE_DEPTH"},
+        {
+            "water": Water(depth=0.1),
+            "layers": (WaveLayer(wind_speed=100.0, fetch=20e6),),
+            "orbits": "FINITE_DEPTH",
+        },
         {"layers": (WaveLayer(fetch=1.0, swell=4.0),)},
         {"layers": (WaveLayer(spreading="MITSUYASU", limit_fetch=False, fetch=20e6, wind_speed=0.1),)},
         {"layers": (WaveLayer(spectrum="GENERALIZED_AB", generalized_b=1e-12),)},

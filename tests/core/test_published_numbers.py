@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from scipy import integrate, special
 
-from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, dispersion, spectra, wave_number_spectra
+from ocean_tweak.core import (
+    Ocean,
+    OceanParameters,
+    Water,
+    WaveLayer,
+    dispersion,
+    spectra,
+    wave_number_spectra,
+)
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.spreading import (
     Spreading,
@@ -25,7 +33,9 @@ RATIOS = np.append(np.geomspace(0.1, 30.0, 25), [0.95, 1.0, 1.05, 1.6])
 
 def moment(spectrum, order: int, peak: float) -> float:
     """∫ωⁿS dω."""
-    return integrate.quad(lambda w: w**order * float(spectrum(w)), 1e-3, 80 * peak, points=[peak], limit=800)[0]
+    return integrate.quad(lambda w: w**order * float(spectrum(w)), 1e-3, 80 * peak, points=[peak], limit=800)[
+        0
+    ]
 
 
 # Pierson-Moskowitz, Phillips, generalised A,B
@@ -76,7 +86,8 @@ def test_jonswap_peak_is_gamma_times_the_base() -> None:
 
 def test_thompson_vincent() -> None:
     np.testing.assert_allclose(
-        spectra.thompson_vincent([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 100.0]), [0.0, 0.125, 0.5, 0.875, 1.0, 1.0, 1.0]
+        spectra.thompson_vincent([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 100.0]),
+        [0.0, 0.125, 0.5, 0.875, 1.0, 1.0, 1.0],
     )
 
 
@@ -153,7 +164,9 @@ def test_chens_spectral_constant() -> None:
         ("fftrefraction", 128.0, 128.0, 0.1, 0.8e-3, 0.52),  # the table prints 10⁻⁴, with which it is 5.24
     ],
 )
-def test_chens_table_1(code: str, L: float, geometry: float, height_factor: float, A: float, ratio: float) -> None:
+def test_chens_table_1(
+    code: str, L: float, geometry: float, height_factor: float, A: float, ratio: float
+) -> None:
     """Variance of Chen's sea over that of three programs, from eq. 25-27 and our constant."""
     scale = L / geometry
     equivalent = wave_number_spectra.tessendorf_constant(L)
@@ -211,10 +224,14 @@ def test_directional_models_at_tabulated_angles() -> None:
         directional_spreading(1.0, theta, Spreading("COSINE_SQUARED")),
         2 / np.pi * np.array([1.0, 0.75, 0.5, 0.25, 0.0, 0.0]), atol=1e-7,
     )  # fmt: skip
-    np.testing.assert_allclose(directional_spreading(1.0, theta, Spreading("FLAT")), 1 / (2 * np.pi), rtol=1e-7)
+    np.testing.assert_allclose(
+        directional_spreading(1.0, theta, Spreading("FLAT")), 1 / (2 * np.pi), rtol=1e-7
+    )
     # Longuet-Higgins: Γ(s+1) / (2√π Γ(s+½)) |cos θ/2|^2s (eq. 33 and 34)
     s = hasselmann_s(1.0, 1.17)
-    expected = special.gamma(s + 1) / (2 * np.sqrt(np.pi) * special.gamma(s + 0.5)) * np.cos(theta / 2) ** (2 * s)
+    expected = (
+        special.gamma(s + 1) / (2 * np.sqrt(np.pi) * special.gamma(s + 0.5)) * np.cos(theta / 2) ** (2 * s)
+    )
     model = Spreading("HASSELMANN", wind_frequency=1.17)
     np.testing.assert_allclose(directional_spreading(1.0, theta, model), expected, rtol=1e-6, atol=1e-20)
 
@@ -245,7 +262,9 @@ def test_swell_adds_to_the_shape_of_longuet_higgins(model: str) -> None:
         s = float(shape(ratio, 1.2) + swell_s(ratio, 0.7))
         closed = np.exp(special.gammaln(s + 1) - special.gammaln(s + 0.5)) / (2 * np.sqrt(np.pi))
         density = directional_spreading(ratio, theta, Spreading(model, 0.7, wind_frequency=1.2))
-        np.testing.assert_allclose(density, closed * np.abs(np.cos(theta / 2)) ** (2 * s), rtol=1e-5, atol=1e-20)
+        np.testing.assert_allclose(
+            density, closed * np.abs(np.cos(theta / 2)) ** (2 * s), rtol=1e-5, atol=1e-20
+        )
 
 
 @pytest.mark.parametrize("swell", [0.0, 0.3, 1.0, 2.0])
@@ -254,8 +273,11 @@ def test_swell_adds_to_the_shape_of_longuet_higgins(model: str) -> None:
 )
 def test_every_model_sums_to_one(model: str, swell: float) -> None:
     for mix in (0.0, 0.4):
-        spreading = Spreading(model, swell, second="COSINE_SQUARED", mix=mix, exponent=3.0, wind_frequency=1.5)
+        spreading = Spreading(
+            model, swell, second="COSINE_SQUARED", mix=mix, exponent=3.0, wind_frequency=1.5
+        )
         for ratio in RATIOS[:: 1 if mix == 0.0 else 6]:
+
             def density(theta: float, ratio: float = ratio, spreading: Spreading = spreading) -> float:
                 return float(directional_spreading(ratio, theta, spreading))  # fmt: skip
 

@@ -29,7 +29,11 @@ def test_energy_of_jonswap(gamma: float, factor: float) -> None:
     # m0 = factor · α g² ω_p⁻⁴
     alpha, omega_p, g = 0.0123, 0.61, 9.81
     m0, _ = integrate.quad(
-        lambda w: float(spectra.jonswap(w, alpha, omega_p, gamma)), 0.0, 60.0 * omega_p, points=[omega_p], limit=500
+        lambda w: float(spectra.jonswap(w, alpha, omega_p, gamma)),
+        0.0,
+        60.0 * omega_p,
+        points=[omega_p],
+        limit=500,
     )
     assert m0 == pytest.approx(factor * alpha * g**2 / omega_p**4, rel=6e-4)
 
@@ -65,7 +69,9 @@ def test_reference_seas(row: dict[str, str]) -> None:
         water=Water(depth=float(row["depth"])),
         layers=(
             WaveLayer(
-                wind_speed=float(row["wind_speed"]), fetch=1e3 * float(row["fetch_km"]), swell=float(row["swell"])
+                wind_speed=float(row["wind_speed"]),
+                fetch=1e3 * float(row["fetch_km"]),
+                swell=float(row["swell"]),
             ),
         ),
     )
@@ -101,6 +107,7 @@ def test_donelan_banner_beta() -> None:
 @pytest.mark.parametrize("swell", [0.0, 0.3, 1.0, 2.0])
 def test_spreading_sums_to_one(swell: float) -> None:
     for ratio in np.append(np.geomspace(0.1, 30.0, 40), [0.95, 1.0, 1.6]):
+
         def density(theta: float, ratio: float = ratio) -> float:
             return float(directional_spreading(ratio, theta, Spreading("DONELAN_BANNER", swell)))
 
@@ -115,11 +122,16 @@ def test_spreading_without_swell_is_the_published_one() -> None:
     for ratio in (0.5, 1.0, 3.0):
         beta = float(donelan_banner_beta(ratio))
         expected = beta / (2 * np.tanh(beta * np.pi)) / np.cosh(beta * theta) ** 2
-        np.testing.assert_allclose(directional_spreading(ratio, theta, Spreading("DONELAN_BANNER")), expected, rtol=2e-6)
+        np.testing.assert_allclose(
+            directional_spreading(ratio, theta, Spreading("DONELAN_BANNER")), expected, rtol=2e-6
+        )
 
 
 def test_swell_draws_long_waves_together() -> None:
-    straight = [float(directional_spreading(1.0, 0.0, Spreading("DONELAN_BANNER", swell))) for swell in (0.0, 0.5, 1.0, 2.0)]
+    straight = [
+        float(directional_spreading(1.0, 0.0, Spreading("DONELAN_BANNER", swell)))
+        for swell in (0.0, 0.5, 1.0, 2.0)
+    ]
     assert straight == sorted(straight)
     assert straight[2] > 1.2 * straight[0]
     # the angle is wrapped: sech² is not periodic

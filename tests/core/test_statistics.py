@@ -89,7 +89,8 @@ def test_warnings_name_the_remedy() -> None:
 
 @pytest.mark.parametrize(
     ("wind", "number"),
-    [(0.0, 0), (0.29, 0), (0.3, 1), (3.3, 2), (5.5, 4), (12.0, 6), (17.2, 8), (24.4, 9), (32.6, 11), (32.7, 12), (90, 12)],
+    [(0.0, 0), (0.29, 0), (0.3, 1), (3.3, 2), (5.5, 4), (12.0, 6), (17.2, 8), (24.4, 9), (32.6, 11),
+     (32.7, 12), (90, 12)],
 )  # fmt: skip
 def test_beaufort(wind: float, number: int) -> None:
     assert sea_scales.beaufort_number(wind) == number
@@ -100,7 +101,8 @@ def test_beaufort(wind: float, number: int) -> None:
 @pytest.mark.parametrize(
     ("height", "code", "name"),
     [(0.0, 0, "Calm (glassy)"), (0.05, 1, "Calm (rippled)"), (0.5, 2, "Smooth"), (1.25, 3, "Slight"),
-     (2.0, 4, "Moderate"), (4.0, 5, "Rough"), (4.01, 6, "Very rough"), (9.0, 7, "High"), (14.0, 8, "Very high"),
+     (2.0, 4, "Moderate"), (4.0, 5, "Rough"), (4.01, 6, "Very rough"), (9.0, 7, "High"),
+     (14.0, 8, "Very high"),
      (14.5, 9, "Phenomenal")],
 )  # fmt: skip
 def test_sea_states(height: float, code: int, name: str) -> None:

@@ -56,7 +56,9 @@ def test_sequence_names_frames_and_keeps_parameters(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-def test_a_failed_write_leaves_the_old_file(tmp_path: Path, image: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_write_leaves_the_old_file(
+    tmp_path: Path, image: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "a.exr"
     write_image(path, image, {}, FPS)
     before = path.read_bytes()
