@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 import sys
 from collections.abc import Callable
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from . import __version__
-from .core import Ocean, OceanParameters, ParameterError
+from .core import Ocean, OceanParameters, ParameterError, sea_scales
 from .core.bake import bake, parse_frames
 from .core.parameters import parse_json
 from .core.statistics import SeaState, Statistics
@@ -206,21 +207,33 @@ def _info(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
 
 
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
-    def row(title: str, state: SeaState, note: str = "") -> str:
-        height, period = state.significant_wave_height, state.peak_period
-        return f"  {title:<18}{height:>8.2f} m {period:>8.2f} s  {note}".rstrip()
-
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
-    return [
+    height = statistics.significant_wave_height
+    lines = [
         f"{name}: {parameters.resolution}² samples, {statistics.sample_spacing:.3g} m apart",
-        f"  {'':<18}{'Hs':>8}   {'Tp':>8}",
-        row("spectrum", statistics.spectrum),
-        row("resolved by grid", statistics.resolved, share),
-        row(f"seed {parameters.seed}", statistics.seed),
+        f"  {'':<18}{'Hs':>10}{'Tp':>10}{'Tz':>10}{'slope':>8}{'towards':>9}{'spread':>8}",
+        _state_row("spectrum", statistics.spectrum),
+        f"{_state_row('resolved by grid', statistics.resolved)}  {share}",
+        _state_row(f"seed {parameters.seed}", statistics.seed),
         f"  peak wavelength {statistics.peak_wavelength:.4g} m, "
-        f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m",
-        *(f"  warning: {warning}" for warning in statistics.warnings),
+        f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m; "
+        f"steepness {statistics.spectrum.steepness:.3f}; "
+        f"sea state {sea_scales.sea_state(height)}, {sea_scales.SEA_STATE_NAMES[sea_scales.sea_state(height)].lower()}",
     ]
+    if statistics.loop_speed_change is not None:
+        change = 100.0 * statistics.loop_speed_change
+        duration = float(parameters.loop_duration or 0)
+        lines.append(f"  loop of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
+    return lines + [f"  warning: {warning}" for warning in statistics.warnings]
+
+
+def _state_row(title: str, state: SeaState) -> str:
+    slope = math.sqrt(state.mean_square_slope)
+    direction, spread = math.degrees(state.mean_direction), math.degrees(state.directional_spread)
+    return (
+        f"  {title:<18}{state.significant_wave_height:>8.2f} m{state.peak_period:>8.2f} s"
+        f"{state.zero_crossing_period:>8.2f} s{slope:>8.3f}{direction:>8.0f}°{spread:>7.0f}°"
+    )
 
 
 def _bake(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> int:
