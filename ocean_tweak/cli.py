@@ -208,7 +208,7 @@ def _info(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
 
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
-    height = statistics.significant_wave_height
+    state = sea_scales.sea_state(statistics.significant_wave_height)
     lines = [
         f"{name}: {parameters.resolution}² samples, {statistics.sample_spacing:.3g} m apart",
         f"  {'':<18}{'Hs':>10}{'Tp':>10}{'Tz':>10}{'slope':>8}{'towards':>9}{'spread':>8}",
@@ -218,7 +218,7 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         f"  peak wavelength {statistics.peak_wavelength:.4g} m, "
         f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m; "
         f"steepness {statistics.spectrum.steepness:.3f}; "
-        f"sea state {sea_scales.sea_state(height)}, {sea_scales.SEA_STATE_NAMES[sea_scales.sea_state(height)].lower()}",
+        f"sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
