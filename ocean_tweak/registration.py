@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import atexit
+
 import bpy
 
 from . import cli
@@ -35,8 +37,12 @@ def run_command(argv: list[str]) -> int:
 def register(package: str | None = None) -> None:
     """Enable the extension.
 
-    package : the name that Blender knows the extension by
+    package : the name that Blender knows the extension by; a script that uses a checkout gives another
     """
+    if not str(package).startswith("bl_ext."):
+        # Blender disables its extensions when it quits. Nobody does so for a script, and bpy 4.5 hangs or
+        # crashes at the end of a process in which Python classes are still registered
+        atexit.register(unregister)
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(type=properties.OCEAN_PG_ocean)
@@ -47,6 +53,7 @@ def register(package: str | None = None) -> None:
 
 def unregister() -> None:
     """Disable the extension; oceans in the file keep their settings."""
+    atexit.unregister(unregister)
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
     handlers.unregister()
