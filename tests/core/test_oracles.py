@@ -95,7 +95,7 @@ def test_sea_read_by_wavespectra(name: str) -> None:
     assert float(sea.hs()) == pytest.approx(ours.significant_wave_height, rel=1e-4)
     assert float(sea.tp()) == pytest.approx(ours.peak_period, rel=1e-3)
     assert float(sea.tm02()) == pytest.approx(ours.zero_crossing_period, rel=1e-4)
-    assert float(sea.dspr()) == pytest.approx(np.degrees(ours.directional_spread), rel=1e-4)
+    assert float(sea.dspr()) == pytest.approx(np.degrees(ours.directional_spread), rel=5e-4)
     difference = 270.0 - np.degrees(ours.mean_direction) - float(sea.dm())
     assert (difference + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.1)
 
