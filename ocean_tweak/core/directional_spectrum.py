@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,13 +14,14 @@ from . import dispersion
 from .grid import WaveVectorGrid
 from .layer_scales import LayerScales, layer_scales, scaled_spectrum
 from .parameters import Water, WaveLayer
-from .spreading import WIND_MODELS, Spreading, directional_spreading
+from .radial_table import RadialTable
+from .spreading import WIND_MODELS, Shape, Spreading, directional_spreading, spreading_shape, wrap_angle
 
 Array = NDArray[np.float64]
 
 #: cells nearer to the origin than this many cells are averaged over sub-cells: at radius r over
 #: n x n with n the power of two that is at least _FINEST_RADIUS / r
-_FINEST_RADIUS = 64.0
+_FINEST_RADIUS = 32.0
 
 #: sub-cells along a side where the end of a band cuts a cell
 _BAND_SUBCELLS = 8
@@ -68,12 +70,10 @@ class DirectionalSpectrum:
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:
         """S(ω) in m²·s/rad, any shape, with the layer's gain, band and short-wave cut-off."""
-        k = dispersion.wave_number(omega, self.dispersion, self.water)
-        return self._filtered_spectrum(np.asarray(omega, np.float64), k)
-
-    def _filtered_spectrum(self, omega: Array, k: Array) -> Array:
-        spectrum = scaled_spectrum(omega, self.layer, self.scales, self.water)
-        return self.layer.gain**2 * self.energy_weight(k) * spectrum
+        spectrum = self.layer.gain**2 * scaled_spectrum(omega, self.layer, self.scales, self.water)
+        if not (self.has_band or self.layer.short_wave_cutoff > 0.0):
+            return spectrum
+        return self.energy_weight(dispersion.wave_number(omega, self.dispersion, self.water)) * spectrum
 
     def energy_weight(self, k: Array) -> Array:
         """Share of the energy that the band and the short-wave cut-off leave, 0…1, over k in rad/m.
@@ -81,18 +81,18 @@ class DirectionalSpectrum:
         The cut-off is Tessendorf's exp(-k²l²) (Horvath 2015, § 5.1.3). A band and its inverse add to 1.
         """
         layer = self.layer
-        weight = self._band_weight(k) if self._has_band else np.ones_like(k)
+        weight = self._band_weight(k) if self.has_band else np.ones_like(k)
         if layer.short_wave_cutoff > 0.0:
             weight = weight * np.exp(-((k * layer.short_wave_cutoff) ** 2))
         return weight
 
     @property
-    def _has_band(self) -> bool:
-        layer = self.layer
-        return layer.band_inverted or bool(len(self._band_ends))
+    def has_band(self) -> bool:
+        """Whether the layer leaves wavelengths out."""
+        return self.layer.band_inverted or bool(len(self.band_ends))
 
     @cached_property
-    def _band_ends(self) -> Array:
+    def band_ends(self) -> Array:
         """Wave numbers in rad/m at which a band of the layer ends."""
         layer = self.layer
         ends = [layer.shortest_wavelength if layer.shortest_wavelength > 0.0 else None]
@@ -117,14 +117,15 @@ class DirectionalSpectrum:
     def density(self, kx: ArrayLike, ky: ArrayLike) -> Array:
         """Ψ(kx, ky) = S·D·(dω/dk)/k in m⁴, sampled at wave vectors other than 0. Horvath (2015), eq. 61."""
         k = np.hypot(kx, ky)
-        return self._radial_part(k) * self.directional_spreading(self._omega(k), np.arctan2(ky, kx))
+        omega = dispersion.angular_frequency(k, self.dispersion, self.water)
+        spreading = self.directional_spreading(omega, np.arctan2(ky, kx))
+        return self.energy_weight(k) * self._radial_energy(k, omega) * spreading
 
-    def _omega(self, k: Array) -> Array:
-        return dispersion.angular_frequency(k, self.dispersion, self.water)
-
-    def _radial_part(self, k: Array) -> Array:
+    def _radial_energy(self, k: Array, omega: Array) -> Array:
+        """S·(dω/dk)/k in m⁴·rad, before band and cut-off."""
         rate = dispersion.group_velocity(k, self.dispersion, self.water)
-        return self._filtered_spectrum(self._omega(k), k) * rate / k
+        spectrum = scaled_spectrum(omega, self.layer, self.scales, self.water)
+        return self.layer.gain**2 * spectrum * rate / k
 
     def cell_means(self, grid: WaveVectorGrid) -> tuple[Array, Array]:
         """Ψ averaged over each wave-vector cell, in m⁴, for k and for -k.
@@ -132,37 +133,90 @@ class DirectionalSpectrum:
         Returns two (N, N//2+1) arrays; modes that are no waves hold 0. Sampling at the cell's centre
         instead (Horvath 2015, eq. 46; Chen 2014, eq. 17) loses or doubles the energy of a narrow peak.
         """
-        k = np.where(grid.usable, grid.k, grid.spacing)
-        radial = self._radial_part(k)
-        omega, theta = self._omega(k), np.arctan2(grid.ky, grid.kx)
-        forward = radial * self.directional_spreading(omega, theta)
-        backward = radial * self.directional_spreading(omega, theta + np.pi)
-        self._refine(grid, forward, backward)
-        forward[~grid.usable] = 0.0
-        backward[~grid.usable] = 0.0
-        return forward, backward
+        return CellMeans(self, grid).both()
 
-    def _refine(self, grid: WaveVectorGrid, forward: Array, backward: Array) -> None:
+
+class CellMeans:
+    """Means of a spectrum over the cells of a grid.
+
+    Arrays inside are [kx, ky], as the transforms want them in memory.
+    """
+
+    def __init__(self, spectrum: DirectionalSpectrum, grid: WaveVectorGrid) -> None:
+        self._spectrum = spectrum
+        self._grid = grid
+        # sub-cells reach half a cell inside of the first mode and beyond the last
+        self._table = RadialTable(0.25 * grid.spacing, 0.75 * grid.resolution * grid.spacing)
+        k = self._table.k
+        omega = dispersion.angular_frequency(k, spectrum.dispersion, spectrum.water)
+        shape = spreading_shape(omega / spectrum.peak_frequency, spectrum.spreading)
+        self._table.fill(spectrum._radial_energy(k, omega), shape)
+
+    def both(self) -> tuple[Array, Array]:
+        """Means for k and for -k, two (N, N//2+1) arrays in m⁴."""
+        grid = self._grid
+        forward, backward = (np.empty(grid.shape[::-1]) for _ in range(2))
+        for columns in grid.column_blocks():
+            forward[columns], backward[columns] = self._samples(columns)
+        self._refine(forward, backward)
+        for means in (forward, backward):
+            means[~grid.usable.T] = 0.0
+        return forward.T, backward.T
+
+    def _samples(self, columns: slice) -> tuple[Array, Array]:
+        """Ψ at the centres of some columns' cells, (columns, N) each. The radial part is even in ky."""
+        grid = self._grid
+        kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
+        half = np.maximum(np.hypot(kx, ky[: grid.resolution // 2 + 1]), 0.5 * grid.spacing)
+        shape = self._weighted_shape(half)
+        mirrored = Shape(*(None if values is None else grid.mirror(values) for values in shape))
+        return self._both_ways(mirrored, kx, ky)
+
+    def _weighted_shape(self, k: Array) -> Shape:
+        shape = self._table.shape(self._table.nodes(k))
+        weight = self._spectrum.energy_weight(k)
+        second = None if shape.second_weight is None else weight * shape.second_weight
+        return shape._replace(first_weight=weight * shape.first_weight, second_weight=second)
+
+    def _both_ways(self, shape: Shape, kx: Array, ky: Array) -> tuple[Array, Array]:
+        """Ψ at k and at -k. All spreadings are even in θ, and -k lies at π - |θ|."""
+        layer, spreading = self._spectrum.layer, self._spectrum.spreading
+        theta = np.abs(wrap_angle(np.arctan2(ky, kx) - layer.wind_direction))
+        return shape.density(theta, spreading), shape.density(np.pi - theta, spreading)
+
+    def _refine(self, forward: Array, backward: Array) -> None:
         """Replace samples by means over sub-cells where Ψ varies within a cell."""
-        subdivisions = self._subdivisions(grid)
-        for n in np.unique(subdivisions[subdivisions > 1]):
-            row, column = np.nonzero(subdivisions == n)
+        grid = self._grid
+        for n, column, row in self._cells_to_divide():
             offset = ((np.arange(n) + 0.5) / n - 0.5) * grid.spacing
-            kx = grid.kx[0, column][:, np.newaxis, np.newaxis] + offset[np.newaxis, np.newaxis, :]
-            ky = grid.ky[row, 0][:, np.newaxis, np.newaxis] + offset[np.newaxis, :, np.newaxis]
-            forward[row, column] = self.density(kx, ky).mean(axis=(1, 2))
-            backward[row, column] = self.density(-kx, -ky).mean(axis=(1, 2))
+            kx = grid.kx[0, column][:, np.newaxis, np.newaxis] + offset[np.newaxis, :, np.newaxis]
+            ky = grid.ky[row, 0][:, np.newaxis, np.newaxis] + offset[np.newaxis, np.newaxis, :]
+            along, against = self._both_ways(self._weighted_shape(np.hypot(kx, ky)), kx, ky)
+            forward[column, row] = along.mean(axis=(1, 2))
+            backward[column, row] = against.mean(axis=(1, 2))
 
-    def _subdivisions(self, grid: WaveVectorGrid) -> NDArray[np.int64]:
-        """(N, N//2+1) sub-cells along a side: more towards the origin, where cells are wide against their
+    def _cells_to_divide(self) -> Iterator[tuple[int, NDArray[np.intp], NDArray[np.intp]]]:
+        """Numbers n of sub-cells along a side, with the columns and rows of the cells that want n x n."""
+        subdivisions = self._subdivisions()
+        for n in np.unique(subdivisions[subdivisions > 1]):
+            column, row = np.nonzero(subdivisions == n)
+            yield int(n), column, row
+
+    def _subdivisions(self) -> NDArray[np.int8]:
+        """(N//2+1, N) sub-cells along a side: more towards the origin, where cells are wide against their
         wave number, and where the sharp end of a band cuts a cell."""
-        wanted = _FINEST_RADIUS / np.clip(grid.k / grid.spacing, 1.0, _FINEST_RADIUS)
-        result = 2 ** np.ceil(np.log2(wanted)).astype(np.int64)
-        if self.layer.band_softness == 0.0:
-            for end in self._band_ends:
-                cut = np.abs(grid.k - end) < np.sqrt(0.5) * grid.spacing
+        grid, layer = self._grid, self._spectrum.layer
+        result = np.zeros(grid.shape[::-1], np.int8)
+        near = int(min(_FINEST_RADIUS, grid.resolution // 2))
+        for rows in (slice(0, near), slice(-near, None)):
+            radius = np.hypot(np.arange(near)[:, np.newaxis], grid.ky[rows, 0] / grid.spacing)
+            wanted = _FINEST_RADIUS / np.clip(radius, 1.0, _FINEST_RADIUS)
+            result[:near, rows] = 2 ** np.ceil(np.log2(wanted))
+        if layer.band_softness == 0.0:
+            for end in self._spectrum.band_ends:
+                cut = np.abs(grid.k.T - end) < np.sqrt(0.5) * grid.spacing
                 result[cut] = np.maximum(result[cut], _BAND_SUBCELLS)
-        result[~grid.usable] = 0
+        result[~grid.usable.T] = 0
         return result
 
 

@@ -4,93 +4,130 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .synthesis import Synthesis, X, Y, Z
+from .synthesis import Rows, X, Y, Z
 
 RealArray = NDArray[np.floating]
 
 
-def displacement(synthesis: Synthesis) -> RealArray:
+def displacement(rows: Rows, out: RealArray) -> None:
     """(N, N, 3) m: what is added to the rest position (x, y, 0), choppiness applied."""
-    return np.stack([synthesis.position(component) for component in (X, Y, Z)], axis=-1)
+    for component in (X, Y, Z):
+        rows.position(component, out=out[..., component])
 
 
-def slope(synthesis: Synthesis) -> RealArray:
+def slope(rows: Rows, out: RealArray) -> None:
     """(N, N, 2) m/m: derivatives of the elevation by the rest position's x and y."""
-    return np.stack([synthesis.position(Z, along) for along in "xy"], axis=-1)
+    for index, along in enumerate("xy"):
+        rows.position(Z, along, out=out[..., index])
 
 
-def velocity(synthesis: Synthesis) -> RealArray:
+def velocity(rows: Rows, out: RealArray) -> None:
     """(N, N, 3) m/s: derivative of the displacement in ocean time."""
-    return np.stack([synthesis.position(component, "t") for component in (X, Y, Z)], axis=-1)
+    for component in (X, Y, Z):
+        rows.position(component, "t", out=out[..., component])
 
 
-def _gradient(synthesis: Synthesis) -> tuple[RealArray, RealArray, RealArray, RealArray]:
+def _gradient(rows: Rows) -> tuple[RealArray, RealArray, RealArray, RealArray]:
     """Jxx, Jxy, Jyx, Jyy of the map from the rest position to the displaced one, seen from above."""
     return (
-        1.0 + synthesis.position(X, "x"),
-        synthesis.position(X, "y"),
-        synthesis.position(Y, "x"),
-        1.0 + synthesis.position(Y, "y"),
+        1.0 + rows.position(X, "x"),
+        rows.position(X, "y"),
+        rows.position(Y, "x"),
+        1.0 + rows.position(Y, "y"),
     )
 
 
-def jacobian(synthesis: Synthesis) -> RealArray:
-    """(N, N): determinant of the gradient of x ↦ x + λD; 1 - λkA at the crest of one wave, < 0 in a fold."""
-    xx, xy, yx, yy = _gradient(synthesis)
-    return xx * yy - xy * yx
+def jacobian(rows: Rows, out: RealArray) -> None:
+    """(N, N): determinant of the gradient of x ↦ x + λD; 1 - λkA at a single wave's crest, < 0 in a fold."""
+    xx, xy, yx, yy = _gradient(rows)
+    np.subtract(xx * yy, xy * yx, out=out)
 
 
-def min_eigenvalue(synthesis: Synthesis) -> RealArray:
+def min_eigenvalue(rows: Rows, out: RealArray) -> None:
     """(N, N): smaller eigenvalue of the gradient of x ↦ x + λD, < 0 where the surface folds.
 
     The crest field of Horvath (2015), § 8. The gradient is symmetric but where troughs are damped; there
     its symmetric part counts.
     """
-    half_sum, half_difference, shear = _symmetric_part(synthesis)
-    return half_sum - np.hypot(half_difference, shear)
+    half_sum, half_difference, shear = _symmetric_part(rows)
+    # a square root of squares: strains are near 1, and hypot's care for overflow would cost as much as a field
+    np.multiply(half_difference, half_difference, out=half_difference)
+    half_difference += shear * shear
+    np.subtract(half_sum, np.sqrt(half_difference, out=half_difference), out=out)
 
 
-def min_eigenvector(synthesis: Synthesis) -> RealArray:
+def min_eigenvector(rows: Rows, out: RealArray) -> None:
     """(N, N, 2): unit vector along which the surface is squeezed most, its x ≥ 0."""
-    _, half_difference, shear = _symmetric_part(synthesis)
+    _, half_difference, shear = _symmetric_part(rows)
     angle = 0.5 * np.arctan2(-shear, -half_difference)
-    return np.stack((np.cos(angle), np.sin(angle)), axis=-1)
+    np.cos(angle, out=out[..., 0])
+    np.sin(angle, out=out[..., 1])
 
 
-def _symmetric_part(synthesis: Synthesis) -> tuple[RealArray, RealArray, RealArray]:
-    xx, xy, yx, yy = _gradient(synthesis)
-    return 0.5 * (xx + yy), 0.5 * (xx - yy), 0.5 * (xy + yx)
+def _symmetric_part(rows: Rows) -> tuple[RealArray, RealArray, RealArray]:
+    """Half the sum and half the difference of the diagonal, and the mean of the others."""
+    along_x, along_y = rows.position(X, "x"), rows.position(Y, "y")
+    across, also_across = rows.position(X, "y"), rows.position(Y, "x")
+    shear = across if across is also_across else 0.5 * (across + also_across)
+    half_sum = along_x + along_y
+    half_sum *= 0.5
+    half_sum += 1.0
+    half_difference = along_x - along_y
+    half_difference *= 0.5
+    return half_sum, half_difference, shear
 
 
-def normal(synthesis: Synthesis) -> RealArray:
+def normal(rows: Rows, out: RealArray) -> None:
     """(N, N, 3): unit normal of the displaced surface, the cross product of its tangents."""
-    xx, xy, yx, yy = _gradient(synthesis)
-    zx, zy = synthesis.position(Z, "x"), synthesis.position(Z, "y")
-    result = np.stack((yx * zy - zx * yy, zx * xy - xx * zy, xx * yy - xy * yx), axis=-1)
-    result /= np.sqrt(np.sum(result * result, axis=-1, keepdims=True))
-    return result
+    xx, xy, yx, yy = _gradient(rows)
+    zx, zy = rows.position(Z, "x"), rows.position(Z, "y")
+    np.subtract(yx * zy, zx * yy, out=out[..., X])
+    np.subtract(zx * xy, xx * zy, out=out[..., Y])
+    np.subtract(xx * yy, xy * yx, out=out[..., Z])
+    out /= np.sqrt(np.sum(out * out, axis=-1, keepdims=True))
 
 
-#: name of an output → its function; each name is an attribute of `SurfaceFields`
-OUTPUTS: dict[str, Callable[[Synthesis], RealArray]] = {
-    "displacement": displacement,
-    "slope": slope,
-    "velocity": velocity,
-    "jacobian": jacobian,
-    "min_eigenvalue": min_eigenvalue,
-    "min_eigenvector": min_eigenvector,
-    "normal": normal,
+class Output(NamedTuple):
+    """How a field is made.
+
+    write : fills its rows
+    needs : components of the position and their derivatives that it is made of
+    channels : numbers a sample; 0 for a plain (N, N) array
+    """
+
+    write: Callable[[Rows, RealArray], None]
+    needs: frozenset[tuple[int, str]]
+    channels: int
+
+    def shape(self, resolution: int) -> tuple[int, ...]:
+        """Shape of the whole field."""
+        return (resolution, resolution, self.channels) if self.channels else (resolution, resolution)
+
+
+_GRADIENT = frozenset({(X, "x"), (X, "y"), (Y, "x"), (Y, "y")})
+_SLOPES = frozenset({(Z, "x"), (Z, "y")})
+
+#: name of an output → how it is made; each name is an attribute of `SurfaceFields`
+OUTPUTS: dict[str, Output] = {
+    "displacement": Output(displacement, frozenset({(X, ""), (Y, ""), (Z, "")}), 3),
+    "slope": Output(slope, _SLOPES, 2),
+    "velocity": Output(velocity, frozenset({(X, "t"), (Y, "t"), (Z, "t")}), 3),
+    "jacobian": Output(jacobian, _GRADIENT, 0),
+    "min_eigenvalue": Output(min_eigenvalue, _GRADIENT, 0),
+    "min_eigenvector": Output(min_eigenvector, _GRADIENT, 2),
+    "normal": Output(normal, _GRADIENT | _SLOPES, 3),
 }
 
 
 class SurfaceFields:
     """Fields of one instant on the (N, N) samples [y, x]; only those asked for exist.
 
-    The names, shapes and units are those of the functions in `OUTPUTS`.
+    The names are those in `OUTPUTS`, the shapes and units those of the functions named there.
     """
 
     def __init__(self, time: float, fields: dict[str, RealArray]) -> None:
@@ -116,3 +153,13 @@ def checked_outputs(outputs: Iterable[str]) -> frozenset[str]:
     if unknown:
         raise ValueError(f"outputs = {unknown[0]!r}: must be among {', '.join(OUTPUTS)}")
     return wanted
+
+
+def memory_groups(wanted: Iterable[str]) -> list[list[str]]:
+    """The outputs in groups that are made one after the other, so that the arrays between the two passes
+    serve them in turn: at most five of those, 20 bytes a sample. Velocity shares none with the others."""
+    moving = sorted(
+        name for name in wanted if any(derivative == "t" for _, derivative in OUTPUTS[name].needs)
+    )
+    still = sorted(set(wanted) - set(moving))
+    return [group for group in (still, moving) if group]

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+#: modes in a block of columns: with a few arrays of it, the second-level cache is full
+_BLOCK_MODES = 2**17
 
 
 @dataclass(frozen=True)
@@ -70,3 +75,17 @@ class WaveVectorGrid:
         weight = np.full(self.resolution // 2 + 1, 2.0)
         weight[0] = weight[-1] = 1.0
         return weight[np.newaxis, :]
+
+    def column_blocks(self) -> Iterator[slice]:
+        """The columns in blocks that stay in a processor's cache while they are worked on."""
+        width = max(1, _BLOCK_MODES // self.resolution)
+        for first in range(0, self.resolution // 2 + 1, width):
+            yield slice(first, min(first + width, self.resolution // 2 + 1))
+
+    def mirror(self, half: NDArray[Any]) -> NDArray[Any]:
+        """(…, N) values of all ky in FFT order, from those of 0 … N/2, (…, N//2+1), of an even function."""
+        n = self.resolution
+        full = np.empty((*half.shape[:-1], n), half.dtype)
+        full[..., : n // 2 + 1] = half
+        full[..., n // 2 + 1 :] = half[..., n // 2 - 1 : 0 : -1]
+        return full

@@ -16,7 +16,8 @@ from .grid import WaveVectorGrid
 from .parameters import OceanParameters, WaveLayer
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
 
 _NORMAL, _PHASE = 0, 2  # streams of a wave vector's random numbers; a normal number takes two
 
@@ -25,10 +26,13 @@ _NORMAL, _PHASE = 0, 2  # streams of a wave vector's random numbers; a normal nu
 class InitialState:
     """Coefficients of the waves that travel along +k and along -k, for the half plane kx ≥ 0.
 
-    h_plus, h_minus : (N, N//2+1) complex128, m. The elevation's coefficient at time t is
+    All arrays are (N, N//2+1), indexed [ky, kx]. Those of `initial_state` are transposed in memory (their
+    `.T` is contiguous), which is how the transforms read them.
+
+    h_plus, h_minus : complex, m. The elevation's coefficient at time t is
         h_plus·exp(-iωt) + h_minus·exp(+iωt); h_minus(k) is the conjugate of h_plus(-k).
-    omega : (N, N//2+1) float64, rad/s; in a loop a multiple of 2π/T
-    expected_plus, expected_minus : (N, N//2+1) float64, m²: means over all seeds of |h_plus|², |h_minus|²
+    omega : float64, rad/s; in a loop a multiple of 2π/T
+    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²
     loop_duration : T in s, or None
     """
 
@@ -36,21 +40,30 @@ class InitialState:
     h_plus: ComplexArray
     h_minus: ComplexArray
     omega: Array
-    expected_plus: Array
-    expected_minus: Array
+    expected_plus: RealArray
+    expected_minus: RealArray
     loop_duration: Fraction | None = None
 
 
 @lru_cache(maxsize=4)
-def random_phasors(grid: WaveVectorGrid, seed: int, amplitudes: str) -> tuple[ComplexArray, ComplexArray]:
+def random_phasors(
+    grid: WaveVectorGrid, seed: int, amplitudes: str, dtype: type = np.complex128
+) -> tuple[ComplexArray, ComplexArray]:
     """ν·exp(iε) for k and for -k, (N, N//2+1) each: ε uniform in [0, 2π); ν standard normal
     (Horvath 2015, eq. 47 and § 7.1.2) or, for FIXED amplitudes, 1 (Chen 2014, eq. 19)."""
-    return _phasors(grid.kx, grid.ky, seed, amplitudes), _phasors(-grid.kx, -grid.ky, seed, amplitudes)
+    along, against = (np.empty(grid.shape[::-1], dtype) for _ in range(2))
+    for columns in grid.column_blocks():
+        kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
+        along[columns] = _phasors(kx, ky, seed, amplitudes)
+        against[columns] = _phasors(-kx, -ky, seed, amplitudes)
+    return along.T, against.T
 
 
 def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
     key = random.hash_wave_vectors(kx, ky, seed)
-    phasors: ComplexArray = np.exp(2j * np.pi * random.uniform(key, _PHASE))
+    angle = 2.0 * np.pi * random.uniform(key, _PHASE)
+    phasors = np.empty(key.shape, np.complex128)
+    phasors.real, phasors.imag = np.cos(angle), np.sin(angle)
     if amplitudes == "GAUSSIAN":
         phasors *= random.normal(key, _NORMAL)
     return phasors
@@ -61,42 +74,50 @@ def layer_seed(parameters: OceanParameters, layer: WaveLayer) -> int:
     return layer.seed if layer.seed >= 0 else random.combine(parameters.seed, layer.id)
 
 
-def initial_state(parameters: OceanParameters) -> InitialState:
+def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> InitialState:
     """Coefficients of all layers together: layers add in the spectrum.
 
     The amplitude of a cosine is ν√(2ΨΔkxΔky), so its coefficient is half of that (Horvath 2015, eq. 47,
     corrected by this half; Chen 2014, eq. 10 and 18), and the elevation's variance is ΣΨΔkxΔky = m0.
     """
     grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
-    h_plus, h_minus = (np.zeros(grid.shape, np.complex128) for _ in range(2))
-    expected_plus, expected_minus = (np.zeros(grid.shape) for _ in range(2))
+    transposed = grid.shape[::-1]
+    h_plus, h_minus = (np.zeros(transposed, dtype).T for _ in range(2))
+    expected_plus, expected_minus = (np.zeros(transposed, h_plus.real.dtype).T for _ in range(2))
     for layer in parameters.active_layers:
         spectrum = DirectionalSpectrum(layer, parameters.water, parameters.dispersion)
-        forward, backward = (0.5 * grid.cell_area * mean for mean in spectrum.cell_means(grid))
-        along, against = random_phasors(grid, layer_seed(parameters, layer), parameters.amplitudes)
-        h_plus += along * np.sqrt(forward)
-        h_minus += np.conj(against) * np.sqrt(backward)
-        expected_plus += forward
-        expected_minus += backward
+        forward, backward = spectrum.cell_means(grid)
+        along, against = random_phasors(grid, layer_seed(parameters, layer), parameters.amplitudes, dtype)
+        for mean, phasors, h, expected in (
+            (forward, along, h_plus, expected_plus),
+            (backward, np.conj(against), h_minus, expected_minus),
+        ):
+            mean *= 0.5 * grid.cell_area
+            expected += mean
+            h += phasors * np.sqrt(mean).astype(expected.dtype, copy=False)
     if parameters.match_height:
         _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
     omega = _angular_frequency(grid, parameters)
     return InitialState(grid, h_plus, h_minus, omega, expected_plus, expected_minus, parameters.loop_duration)
 
 
-def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, expected: Array) -> None:
+def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:
     """Scale a seed's coefficients so that its energy is the expected one."""
     energy = np.sum((np.abs(h_plus) ** 2 + np.abs(h_minus) ** 2) * grid.multiplicity)
     if energy > 0.0:
-        factor = np.sqrt(np.sum(expected * grid.multiplicity) / energy)
+        factor = h_plus.real.dtype.type(np.sqrt(np.sum(mean * grid.multiplicity) / energy))
         h_plus *= factor
         h_minus *= factor
 
 
 def _angular_frequency(grid: WaveVectorGrid, parameters: OceanParameters) -> Array:
-    """ω(k); in a loop of duration T the nearest multiple of 2π/T, at least one."""
-    omega = dispersion.angular_frequency(grid.k, parameters.dispersion, parameters.water)
-    if parameters.loop_duration is None:
-        return omega
-    fundamental = 2.0 * np.pi / float(parameters.loop_duration)
-    return fundamental * np.maximum(1.0, np.rint(omega / fundamental))
+    """ω(k), (N, N//2+1); in a loop of duration T the nearest multiple of 2π/T, at least one."""
+    result = np.empty(grid.shape[::-1])
+    for columns in grid.column_blocks():
+        k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
+        omega = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
+        if parameters.loop_duration is not None:
+            fundamental = 2.0 * np.pi / float(parameters.loop_duration)
+            omega = fundamental * np.maximum(1.0, np.rint(omega / fundamental))
+        result[columns] = grid.mirror(omega)
+    return result.T

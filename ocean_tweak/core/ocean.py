@@ -3,27 +3,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+import threading
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .fields import OUTPUTS, SurfaceFields, checked_outputs
+from .fields import OUTPUTS, SurfaceFields, checked_outputs, memory_groups
 from .initial_state import InitialState, initial_state
 from .parameters import OceanParameters, Timing
-from .propagation import propagate
 from .sea_spectrum import SeaSpectrum
 from .statistics import Statistics, sea_statistics
-from .synthesis import Synthesis
-from .trough_damping import TroughDamping, trough_damping
+from .synthesis import Rows, Synthesis
+from .trough_damping import trough_damping
 
 PRECISIONS = {"single": np.complex64, "double": np.complex128}
 
+RealArray = NDArray[np.floating]
+
 
 @lru_cache(maxsize=4)
-def _cached_initial_state(parameters: OceanParameters) -> InitialState:
-    return initial_state(parameters)
+def _cached_initial_state(parameters: OceanParameters, dtype: type) -> InitialState:
+    return initial_state(parameters, dtype)
 
 
 class Ocean:
@@ -31,46 +35,85 @@ class Ocean:
 
     parameters : OceanParameters
     precision : "single" for float32 fields, "double" for reference work in float64
+    workers : threads that make a surface, by default one a core; the result does not depend on it
 
-    Raises ValueError for an unknown precision.
+    Raises ValueError for an unknown precision or a number of workers below 1.
     """
 
-    def __init__(self, parameters: OceanParameters, precision: str = "single") -> None:
+    def __init__(
+        self, parameters: OceanParameters, precision: str = "single", workers: int | None = None
+    ) -> None:
         if not isinstance(parameters, OceanParameters):
             raise TypeError(f"Ocean wants OceanParameters, not {type(parameters).__name__}")
         if precision not in PRECISIONS:
             raise ValueError(f"precision = {precision!r}: must be one of {', '.join(PRECISIONS)}")
+        if workers is not None and workers < 1:
+            raise ValueError(f"workers = {workers!r}: must be 1 or more")
         self.parameters = parameters
         self.precision = precision
+        self.workers = workers or default_workers(parameters.resolution)
+        self._workspace: list[NDArray[np.complexfloating]] = []
+        self._busy = threading.Lock()
 
     @cached_property
     def initial_state(self) -> InitialState:
         """Shared by all oceans whose parameters differ only in what acts after it."""
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
-        return _cached_initial_state(
-            self.parameters.replace(choppiness=0.0, trough_damping=0.0, orbits="DEEP", timing=timing)
-        )
+        shared = self.parameters.replace(choppiness=0.0, trough_damping=0.0, orbits="DEEP", timing=timing)
+        return _cached_initial_state(shared, PRECISIONS[self.precision])
 
     @cached_property
-    def _trough_damping(self) -> TroughDamping | None:
-        if self.parameters.trough_damping == 0.0:
-            return None
-        peak = SeaSpectrum(self.parameters).peak_wave_number
-        return trough_damping(self.parameters.trough_damping, self.initial_state, peak)
+    def _synthesis(self) -> Synthesis:
+        damping = None
+        if self.parameters.trough_damping > 0.0:
+            peak = SeaSpectrum(self.parameters).peak_wave_number
+            damping = trough_damping(self.parameters.trough_damping, self.initial_state, peak)
+        return Synthesis(
+            self.initial_state, self.parameters, damping, PRECISIONS[self.precision], self.workers
+        )
 
-    def surface(self, time: float | Fraction, outputs: Iterable[str] = ("displacement",)) -> SurfaceFields:
+    def surface(
+        self,
+        time: float | Fraction,
+        outputs: Iterable[str] = ("displacement",),
+        out: Mapping[str, RealArray] | None = None,
+    ) -> SurfaceFields:
         """Fields at a time in s; only the outputs asked for are computed.
 
-        Raises ValueError for an unknown output or a time that is not finite.
+        out : arrays to fill, by output; their shape and dtype must be those of the field, and their last
+            axis contiguous. Other outputs get new arrays.
+
+        Raises ValueError for an unknown output, a time that is not finite or an array that does not fit.
         """
         wanted = checked_outputs(outputs)
         if not np.isfinite(float(time)):
             raise ValueError(f"time = {time!r}: must be a finite number of seconds")
-        state = self.initial_state
-        moved = propagate(state, time, PRECISIONS[self.precision], with_rate="velocity" in wanted)
-        synthesis = Synthesis(moved, state.grid, self.parameters, self._trough_damping)
-        return SurfaceFields(float(time), {name: OUTPUTS[name](synthesis) for name in sorted(wanted)})
+        fields = self._arrays(wanted, out or {})
+        with self._busy:  # the workspace serves one surface at a time
+            for group in memory_groups(wanted):
+                needs = frozenset().union(*(OUTPUTS[name].needs for name in group))
+
+                def write(block: slice, rows: Rows, group: Sequence[str] = group) -> None:
+                    for name in group:
+                        OUTPUTS[name].write(rows, fields[name][block])
+
+                self._synthesis.fill(time, needs, write, self._workspace)
+        return SurfaceFields(float(time), fields)
+
+    def _arrays(self, wanted: frozenset[str], out: Mapping[str, RealArray]) -> dict[str, RealArray]:
+        dtype = np.float32 if self.precision == "single" else np.float64
+        fields: dict[str, RealArray] = {}
+        for name in sorted(wanted):
+            shape = OUTPUTS[name].shape(self.parameters.resolution)
+            array = out[name] if name in out else np.empty(shape, dtype)
+            if array.shape != shape or array.dtype != dtype:
+                raise ValueError(
+                    f"out[{name!r}]: must be an array {shape} of {np.dtype(dtype)}, "
+                    f"not {array.shape} of {array.dtype}"
+                )
+            fields[name] = array
+        return fields
 
     def frame(self, frame: float | Fraction, outputs: Iterable[str] = ("displacement",)) -> SurfaceFields:
         """Fields at a frame of the shot, which may hold a sub-frame."""
@@ -79,3 +122,8 @@ class Ocean:
     def statistics(self) -> Statistics:
         """Wave height, period and wavelength: of the spectrum, as resolved, and of this seed."""
         return sea_statistics(self.parameters, self.initial_state)
+
+
+def default_workers(resolution: int) -> int:
+    """Threads that help: one a core, but only one where a surface is too small to share."""
+    return (os.cpu_count() or 1) if resolution >= 512 else 1

@@ -14,12 +14,14 @@ from .initial_state import InitialState
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
 
+ALL = slice(None)
+
 
 @dataclass(frozen=True)
 class PropagatedState:
-    """Coefficients at one time.
+    """Coefficients at one time, of all columns or of a block of them, indexed [ky, kx].
 
-    elevation : (N, N//2+1) complex64 or complex128, m
+    elevation : complex64 or complex128, m
     rate : its derivative in time, m/s, or None where it was not asked for
     """
 
@@ -27,17 +29,19 @@ class PropagatedState:
     rate: ComplexArray | None
 
 
-def phase(state: InitialState, time: float | Fraction) -> Array:
-    """ωt reduced to [-π, π] in float64, so that single precision loses nothing afterwards.
+def phase(state: InitialState, time: float | Fraction, columns: slice = ALL) -> Array:
+    """ωt for ky from 0 to N/2, (columns, N//2+1), reduced to [-π, π] in float64, so that single precision
+    loses nothing afterwards.
 
     In a loop, ω is a whole number of turns a loop and the time is reduced exactly: the end of the loop
     has the phases of its start to the bit.
     """
+    omega = state.omega.T[columns, : state.grid.resolution // 2 + 1]
     if state.loop_duration is None:
-        turns = state.omega * (float(time) / (2.0 * np.pi))
+        turns = omega * (float(time) / (2.0 * np.pi))
     else:
         period = state.loop_duration
-        turns_a_loop = np.rint(state.omega * (float(period) / (2.0 * np.pi)))
+        turns_a_loop = np.rint(omega * (float(period) / (2.0 * np.pi)))
         turns = turns_a_loop * float(Fraction(time) % period / period)
     turns -= np.rint(turns)
     turns *= 2.0 * np.pi
@@ -45,17 +49,28 @@ def phase(state: InitialState, time: float | Fraction) -> Array:
 
 
 def propagate(
-    state: InitialState, time: float | Fraction, dtype: type = np.complex64, with_rate: bool = False
+    state: InitialState,
+    time: float | Fraction,
+    dtype: type = np.complex64,
+    with_rate: bool = False,
+    columns: slice = ALL,
 ) -> PropagatedState:
-    """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its derivative in time.
+    """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its derivative in time, for some columns kx.
 
     Horvath (2015), § 7.1.2: waves along +k and along -k are separate; Chen (2014), eq. 9.
     """
     real = np.float32 if dtype is np.complex64 else np.float64
-    angle = phase(state, time).astype(real, copy=False)
-    turn: ComplexArray = np.empty(angle.shape, dtype)
-    turn.real, turn.imag = np.cos(angle), np.sin(angle)
-    along = state.h_plus.astype(dtype, copy=False) * turn.conj()
-    against = state.h_minus.astype(dtype, copy=False) * turn
-    rate = dtype(-1j) * state.omega.astype(real) * (along - against) if with_rate else None
-    return PropagatedState(along + against, rate)
+    angle = phase(state, time, columns).astype(real, copy=False)
+    half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is even in ky
+    np.cos(angle, out=half.real)
+    np.sin(angle, out=half.imag)
+    turn = state.grid.mirror(half)
+    against = state.h_minus.T[columns].astype(dtype, copy=False) * turn
+    along = np.conjugate(turn, out=turn)
+    along *= state.h_plus.T[columns].astype(dtype, copy=False)
+    if not with_rate:
+        along += against
+        return PropagatedState(along.T, None)
+    rate = (dtype(-1j) * state.omega.T[columns].astype(real)) * (along - against)
+    along += against
+    return PropagatedState(along.T, rate.T)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,7 +35,7 @@ _BREAKS = (
 class Spreading:
     """A spreading model with its parameters.
 
-    model, second : names in `SHAPES`; `mix` is the share of the second
+    model, second : names in `MODELS`; `mix` is the share of the second
     swell : ξ of Horvath (2015), eq. 45
     exponent : s of COSINE_2S
     wind_frequency : U ω_p / g, which Mitsuyasu's and Hasselmann's models know
@@ -97,42 +98,65 @@ def swell_s(ratio: ArrayLike, swell: float) -> Array:
     return constants.SWELL_SHAPE * np.tanh(1.0 / x) * swell**2
 
 
-def _donelan_banner(theta: Array, ratio: Array, spreading: Spreading) -> Array:
-    """sech²(β_s θ). Horvath (2015), eq. 38."""
-    e = np.exp(-2.0 * donelan_banner_beta(ratio) * np.abs(theta))
+@dataclass(frozen=True)
+class Model:
+    """A family of shapes over θ, one for each value of a parameter that depends on the frequency.
+
+    parameter : of (ω/ω_p, spreading)
+    shape : of (|θ| in 0…π, parameter), 1 at θ = 0
+    """
+
+    parameter: Callable[[Array, Spreading], Array]
+    shape: Callable[[Array, Array], Array]
+
+
+def squared_sech(theta: Array, beta: Array) -> Array:
+    """sech²(βθ) for θ ≥ 0. Horvath (2015), eq. 38."""
+    e = np.exp(-2.0 * beta * theta)
     return 4.0 * e / (1.0 + e) ** 2
 
 
-def _hasselmann(theta: Array, ratio: Array, spreading: Spreading) -> Array:
-    return cosine_power(theta, hasselmann_s(ratio, spreading.wind_frequency))
-
-
-def _mitsuyasu(theta: Array, ratio: Array, spreading: Spreading) -> Array:
-    return cosine_power(theta, mitsuyasu_s(ratio, spreading.wind_frequency))
-
-
-def _cosine_squared(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+def _half_cosine_squared(theta: Array, unused: Array) -> Array:
     """cos²θ along the wind, 0 against it. Horvath (2015), eq. 32."""
-    return np.maximum(np.cos(theta), 0.0) ** 2 * np.ones_like(ratio)
+    return np.maximum(np.cos(theta), 0.0) ** 2
 
 
-def _cosine_2s(theta: Array, ratio: Array, spreading: Spreading) -> Array:
-    return cosine_power(theta, spreading.exponent) * np.ones_like(ratio)
-
-
-def _flat(theta: Array, ratio: Array, spreading: Spreading) -> Array:
+def _flat(theta: Array, unused: Array) -> Array:
     """The same for all directions. Horvath (2015), eq. 39."""
-    return np.ones(np.broadcast_shapes(theta.shape, ratio.shape))
+    return np.ones_like(theta)
 
 
-SHAPES: dict[str, Callable[[Array, Array, Spreading], Array]] = {
-    "DONELAN_BANNER": _donelan_banner,
-    "HASSELMANN": _hasselmann,
-    "MITSUYASU": _mitsuyasu,
-    "COSINE_SQUARED": _cosine_squared,
-    "COSINE_2S": _cosine_2s,
-    "FLAT": _flat,
+MODELS: dict[str, Model] = {
+    "DONELAN_BANNER": Model(lambda ratio, spreading: donelan_banner_beta(ratio), squared_sech),
+    "HASSELMANN": Model(lambda ratio, spreading: hasselmann_s(ratio, spreading.wind_frequency), cosine_power),
+    "MITSUYASU": Model(lambda ratio, spreading: mitsuyasu_s(ratio, spreading.wind_frequency), cosine_power),
+    "COSINE_SQUARED": Model(lambda ratio, spreading: np.zeros_like(ratio), _half_cosine_squared),
+    "COSINE_2S": Model(lambda ratio, spreading: np.full_like(ratio, spreading.exponent), cosine_power),
+    "FLAT": Model(lambda ratio, spreading: np.zeros_like(ratio), _flat),
 }
+
+
+class Shape(NamedTuple):
+    """All that D needs to know of a frequency: D = (w₁·shape₁ + w₂·shape₂) · |cos(θ/2)|^2s.
+
+    All arrays have the shape of the frequencies; `second_weight` is None without a mixture, `swell` without
+    swell. Horvath (2015), eq. 40, 42 and 44.
+    """
+
+    first_weight: Array
+    first: Array
+    second_weight: Array | None
+    second: Array | None
+    swell: Array | None
+
+    def density(self, theta: Array, spreading: Spreading) -> Array:
+        """D in 1/rad at angles |θ| in 0…π, broadcast against the frequencies."""
+        result = self.first_weight * MODELS[spreading.model].shape(theta, self.first)
+        if self.second_weight is not None and self.second is not None:
+            result += self.second_weight * MODELS[spreading.second].shape(theta, self.second)
+        if self.swell is not None:
+            result *= cosine_power(theta, self.swell)
+        return result
 
 
 @lru_cache(maxsize=1)
@@ -154,41 +178,43 @@ def _table_ratios() -> Array:
 
 
 @lru_cache(maxsize=32)
-def _base_table(spreading: Spreading) -> tuple[Array, Array]:
-    """ω/ω_p and ln Q of the first model alone, Q = 1/∫shape dθ; eq. 34 for the cosine powers."""
-    theta, weight = direction_rule()
-    ratio = _table_ratios()
-    shape = SHAPES[spreading.model](theta, ratio[:, np.newaxis], spreading)
-    return ratio, -np.log(2.0 * shape @ weight)
-
-
-@lru_cache(maxsize=32)
 def _final_table(spreading: Spreading) -> tuple[Array, Array]:
     """ω/ω_p and ln Q_final(ω), Q_final = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
     theta, weight = direction_rule()
     ratio = _table_ratios()
-    density = _not_normalised(ratio[:, np.newaxis], theta, spreading)
+    density = _not_normalised(ratio[:, np.newaxis], spreading).density(theta, spreading)
     return ratio, -np.log(2.0 * density @ weight)
 
 
 def _alone(spreading: Spreading, model: str) -> Spreading:
     """One of the models without swell, as the key of its table."""
-    return Spreading(model, exponent=spreading.exponent, wind_frequency=spreading.wind_frequency)
+    wind_frequency = spreading.wind_frequency if model in WIND_MODELS else constants.PM_PEAK
+    return Spreading(model, exponent=spreading.exponent, wind_frequency=wind_frequency)
 
 
-def _not_normalised(ratio: Array, theta: Array, spreading: Spreading) -> Array:
-    """D_base·D_ξ up to a factor of ω. Horvath (2015), eq. 40, 42 and 44."""
-    result = SHAPES[spreading.model](theta, ratio, spreading)
+def _normalisation(ratio: Array, spreading: Spreading) -> Array:
+    return np.exp(np.interp(ratio, *_final_table(spreading)))
+
+
+def _not_normalised(ratio: Array, spreading: Spreading) -> Shape:
+    """The shape with the weights of D_base, each of its models normalised; eq. 34 for cosine powers."""
+    first = MODELS[spreading.model].parameter(ratio, spreading)
+    first_weight, second_weight, second = np.ones_like(ratio), None, None
     if spreading.mix > 0.0:
-        first, second = (
-            np.exp(np.interp(ratio, *_base_table(_alone(spreading, model))))
-            for model in (spreading.model, spreading.second)
-        )
-        other = SHAPES[spreading.second](theta, ratio, spreading)
-        result = (1.0 - spreading.mix) * first * result + spreading.mix * second * other
-    if spreading.swell > 0.0:
-        result = result * cosine_power(theta, swell_s(ratio, spreading.swell))
-    return result
+        second = MODELS[spreading.second].parameter(ratio, spreading)
+        first_weight = (1.0 - spreading.mix) * _normalisation(ratio, _alone(spreading, spreading.model))
+        second_weight = spreading.mix * _normalisation(ratio, _alone(spreading, spreading.second))
+    swell = swell_s(ratio, spreading.swell) if spreading.swell > 0.0 else None
+    return Shape(first_weight, first, second_weight, second, swell)
+
+
+def spreading_shape(omega_ratio: ArrayLike, spreading: Spreading) -> Shape:
+    """The normalised shape at ω/ω_p > 0, any array shape."""
+    ratio = np.clip(np.asarray(omega_ratio, np.float64), _TABLE_FROM, _TABLE_TO)
+    shape = _not_normalised(ratio, spreading)
+    q = _normalisation(ratio, spreading)
+    second_weight = None if shape.second_weight is None else q * shape.second_weight
+    return shape._replace(first_weight=q * shape.first_weight, second_weight=second_weight)
 
 
 def directional_spreading(omega_ratio: ArrayLike, theta: ArrayLike, spreading: Spreading) -> Array:
@@ -197,9 +223,7 @@ def directional_spreading(omega_ratio: ArrayLike, theta: ArrayLike, spreading: S
     omega_ratio : ω/ω_p, > 0, broadcast against theta
     theta : angle to the wind in rad, any value (it is wrapped: sech² is not periodic)
     """
-    ratio = np.clip(np.asarray(omega_ratio, np.float64), _TABLE_FROM, _TABLE_TO)
-    q = np.exp(np.interp(ratio, *_final_table(spreading)))
-    return q * _not_normalised(ratio, wrap_angle(theta), spreading)
+    return spreading_shape(omega_ratio, spreading).density(np.abs(wrap_angle(theta)), spreading)
 
 
 def mean_cosine(omega_ratio: ArrayLike, spreading: Spreading) -> Array:

@@ -1,19 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From Fourier coefficients at one time to positions and their derivatives over the patch.
+"""From Fourier coefficients to fields over the patch, by inverse transforms in two passes.
 
-The position of the sample that rests at (x, y, 0) is (x, y, 0) + P with P = (λDx, λDy, h) and
-D(k) = +i (k/|k|) ĥ: the transform of Chen (2014), eq. 11, with which points move towards the crests and
-sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
+The position of the sample that rests at (x, y, 0) is (x, y, 0) + P with P = (λDx, λDy, h). Two scalar fields
+and their derivatives give everything: the elevation h, and the potential Φ with Φ(k) = λ ĥ/|k|, whose
+gradient is the horizontal displacement. So D(k) = +i (k/|k|) ĥ, the transform of Chen (2014), eq. 11, with
+which points move towards the crests and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
+
+The first pass goes over blocks of columns kx: it moves the coefficients to their time, multiplies by
+(i ky)ⁿ and transforms along y. The second goes over blocks of rows y: it multiplies by (i kx)ᵐ, which
+commutes with the first transform, and transforms along x. Fields that differ only in m share a first pass.
 """
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
 
-from .grid import WaveVectorGrid
+import numpy as np
+from numpy.typing import NDArray
+
+from .initial_state import InitialState
 from .parameters import OceanParameters
-from .propagation import PropagatedState
+from .propagation import PropagatedState, propagate
 from .trough_damping import TroughDamping
 
 RealArray = NDArray[np.floating]
@@ -21,78 +33,226 @@ ComplexArray = NDArray[np.complexfloating]
 
 X, Y, Z = 0, 1, 2
 
+#: complex numbers in a block of either pass: about half of a second-level cache
+_BLOCK = 2**16
 
-def inverse_transform(coefficients: ComplexArray) -> RealArray:
-    """(N, N) real field Σ ĥ(k) exp(ik·x) of a half plane of coefficients, in their precision.
-
-    NumPy before 2.0 transforms in double precision only; the result is rounded back.
-    """
-    n = coefficients.shape[0]
-    field: RealArray = np.fft.irfft2(coefficients, s=(n, n))
-    field = field.astype(np.float32 if coefficients.dtype == np.complex64 else np.float64, copy=False)
-    field *= n * n
-    return field
+_NUMPY_TRANSFORMS_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 
 
+class Column(NamedTuple):
+    """What a first pass transforms: h or Φ, or its rate, all or only the long waves, times (i ky)ⁿ."""
+
+    potential: bool
+    rate: bool
+    long: bool
+    y_order: int
+
+
+class Term(NamedTuple):
+    """A real field: a column times (i kx)ᵐ."""
+
+    column: Column
+    x_order: int
+
+
+def term(component: int, derivative: str = "", long: bool = False) -> Term:
+    """The field of P[component] or of its derivative by "x", "y" or "t"."""
+    x_order = (derivative == "x") + (component == X)
+    y_order = (derivative == "y") + (component == Y)
+    return Term(Column(component != Z, derivative == "t", long, y_order), x_order)
+
+
+@dataclass(frozen=True)
 class Synthesis:
-    """Fields of one time, each transformed once, when it is first needed."""
+    """How a sea's fields are made.
 
-    def __init__(
+    state, parameters, damping : the sea
+    dtype : complex64 or complex128
+    workers : threads; the result does not depend on their number
+    """
+
+    state: InitialState
+    parameters: OceanParameters
+    damping: TroughDamping | None = None
+    dtype: type = np.complex64
+    workers: int = 1
+
+    def fill(
         self,
-        state: PropagatedState,
-        grid: WaveVectorGrid,
-        parameters: OceanParameters,
-        damping: TroughDamping | None = None,
+        time: float | Fraction,
+        wanted: Iterable[tuple[int, str]],
+        write: Callable[[slice, Rows], None],
+        workspace: list[ComplexArray] | None = None,
     ) -> None:
-        self._state = state
-        self._grid = grid
-        self._damping = damping
-        self._dtype = state.elevation.dtype.type
-        self._horizontal = _horizontal_factors(grid, parameters)
-        self._transformed: dict[tuple[int, str, bool], RealArray] = {}
+        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block.
 
-    def position(self, component: int, derivative: str = "") -> RealArray:
-        """(N, N) P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s)."""
-        everything = self._transform(component, derivative)
-        if self._damping is None:
-            return everything
-        long_waves = self._transform(component, derivative, long=True)
-        weight, slope = self._damping.weight(self._transform(Z, "", long=True))
-        result = long_waves + weight * (everything - long_waves)
-        if derivative:
-            short = self._transform(component, "") - self._transform(component, "", long=True)
-            result += slope * self._transform(Z, derivative, long=True) * short
-        return result
+        workspace : arrays of earlier calls, to be used again and added to
+        """
+        arrays = [] if workspace is None else workspace
+        needed = sorted({term(*key).column for key in self._with_long_waves(wanted)})
+        while len(arrays) < len(needed):
+            arrays.append(np.empty(self.state.grid.shape, self.dtype))
+        first_pass = dict(zip(needed, arrays, strict=False))
 
-    def _transform(self, component: int, derivative: str, long: bool = False) -> RealArray:
-        key = (component, derivative, long)
-        if key not in self._transformed:
-            self._transformed[key] = inverse_transform(self._coefficients(*key))
-        return self._transformed[key]
+        def transform_along_y(block: slice) -> None:
+            self._transform_columns(time, block, first_pass)
 
-    def _coefficients(self, component: int, derivative: str, long: bool) -> ComplexArray:
-        source = self._state.rate if derivative == "t" else self._state.elevation
-        if source is None:
-            raise ValueError("the state was propagated without its rate, so there is no velocity")
-        factor: ArrayLike = self._horizontal[component] if component != Z else 1.0
-        if derivative == "x":
-            factor = np.multiply(factor, 1j * self._grid.kx)
-        elif derivative == "y":
-            factor = np.multiply(factor, 1j * self._grid.ky)
-        if long and self._damping is not None:
-            factor = np.multiply(factor, self._damping.long_waves)
-        return source * np.asarray(factor, dtype=self._dtype)
+        def transform_along_x(block: slice) -> None:
+            write(block, Rows(self, first_pass, block))
+
+        n = self.state.grid.resolution
+        run_blocks(transform_along_y, self._blocks(n // 2 + 1), self.workers)
+        run_blocks(transform_along_x, self._blocks(n), self.workers)
+
+    def _with_long_waves(self, wanted: Iterable[tuple[int, str]]) -> set[tuple[int, str, bool]]:
+        wanted = set(wanted)
+        if self.damping is None:
+            return {(*key, False) for key in wanted}
+        # a damped derivative needs the components themselves and the derivative of the long elevation
+        wanted |= {(component, "") for component, _ in wanted} | {(Z, "")}
+        wanted |= {(Z, derivative) for _, derivative in wanted}
+        return {(*key, long) for key in wanted for long in (False, True)}
+
+    def _blocks(self, count: int) -> Iterator[slice]:
+        size = max(1, _BLOCK // self.state.grid.resolution)
+        return (slice(first, min(first + size, count)) for first in range(0, count, size))
+
+    def _transform_columns(
+        self, time: float | Fraction, block: slice, first_pass: Mapping[Column, ComplexArray]
+    ) -> None:
+        """The first pass for some columns: to y, into the arrays (N, N//2+1) of the first pass."""
+        with_rate = any(column.rate for column in first_pass)
+        moved = propagate(self.state, time, self.dtype, with_rate, block)
+        sources = _Sources(self, moved, block)
+        for column, target in first_pass.items():
+            coefficients = sources.coefficients(column)
+            target[:, block] = _inverse(coefficients).T
 
 
-def _horizontal_factors(
-    grid: WaveVectorGrid, parameters: OceanParameters
-) -> tuple[ComplexArray, ComplexArray]:
-    """iλ kx/k and iλ ky/k, (N, N//2+1): elevation to horizontal displacement.
+class _Sources:
+    """Coefficients of a block of columns, (columns, N), each made once."""
+
+    def __init__(self, synthesis: Synthesis, moved: PropagatedState, block: slice) -> None:
+        self._synthesis = synthesis
+        self._block = block
+        # the inverse transforms divide by N each: what they are given is larger by N²
+        scale = float(synthesis.state.grid.resolution) ** 2
+        self._elevations = {False: moved.elevation.T * synthesis.dtype(scale)}
+        if moved.rate is not None:
+            self._elevations[True] = moved.rate.T * synthesis.dtype(scale)
+        self._bases: dict[Column, ComplexArray] = {}
+
+    def coefficients(self, column: Column) -> ComplexArray:
+        """h or Φ, or a rate, times (i ky)ⁿ."""
+        base = self._base(column._replace(y_order=0))
+        if column.y_order == 0:
+            return base
+        ky = self._synthesis.state.grid.ky[:, 0]
+        return base * ((1j * ky) ** column.y_order).astype(base.dtype)
+
+    def _base(self, column: Column) -> ComplexArray:
+        if column not in self._bases:
+            base = self._elevations[column.rate]
+            if column.potential:
+                base = base * _potential_factor(self._synthesis, self._block)
+            damping = self._synthesis.damping
+            if column.long and damping is not None:
+                base = base * damping.long_waves.T[self._block].astype(base.dtype)
+            self._bases[column] = base
+        return self._bases[column]
+
+
+def _potential_factor(synthesis: Synthesis, block: slice) -> ComplexArray:
+    """λ/k, (columns, N): from elevation to the potential of the horizontal displacement.
 
     In finite depth the water's orbits are wider by coth kh (linear theory, Airy) where `orbits` asks for it.
     """
-    k = np.where(grid.k > 0.0, grid.k, 1.0)
-    factor = 1j * parameters.choppiness / k
+    grid, parameters = synthesis.state.grid, synthesis.parameters
+    k = np.hypot(grid.kx[0, block, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
+    k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
+    factor = parameters.choppiness / k
     if parameters.orbits == "FINITE_DEPTH":
-        factor = factor / np.tanh(k * parameters.water.depth)
-    return factor * grid.kx, factor * grid.ky
+        factor /= np.tanh(k * parameters.water.depth)
+    return grid.mirror(factor.astype(synthesis.dtype))
+
+
+class Rows:
+    """Real fields on a block of rows, each transformed once, when it is first needed."""
+
+    def __init__(self, synthesis: Synthesis, first_pass: Mapping[Column, ComplexArray], block: slice) -> None:
+        self._synthesis = synthesis
+        self._first_pass = first_pass
+        self._block = block
+        self._made: dict[Term, RealArray] = {}
+
+    def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
+        """(rows, N) P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
+        damping = self._synthesis.damping
+        if damping is None:
+            return self._transform(term(component, derivative), out)
+        everything = self._transform(term(component, derivative))
+        long_waves = self._transform(term(component, derivative, long=True))
+        weight, slope = damping.weight(self._transform(term(Z, "", long=True)))
+        result = long_waves + weight * (everything - long_waves)
+        if derivative:
+            short = self._transform(term(component)) - self._transform(term(component, long=True))
+            result += slope * self._transform(term(Z, derivative, long=True)) * short
+        if out is not None:
+            out[...] = result
+        return result
+
+    def _transform(self, wanted: Term, out: RealArray | None = None) -> RealArray:
+        if wanted in self._made:
+            if out is None:
+                return self._made[wanted]
+            out[...] = self._made[wanted]
+            return out
+        coefficients = self._first_pass[wanted.column][self._block]
+        if wanted.x_order:
+            kx = self._synthesis.state.grid.kx[0]
+            coefficients = coefficients * ((1j * kx) ** wanted.x_order).astype(coefficients.dtype)
+        self._made[wanted] = _inverse_real(coefficients, out)
+        return self._made[wanted]
+
+
+def _inverse(coefficients: ComplexArray) -> ComplexArray:
+    """Inverse transform along the last axis, divided by N, in the precision of the coefficients.
+
+    NumPy before 2.0 transforms in double precision only; the result is rounded back where it is stored.
+    """
+    if _NUMPY_TRANSFORMS_IN_PLACE:
+        return np.fft.ifft(coefficients, axis=-1, out=np.empty_like(coefficients))
+    return np.fft.ifft(coefficients, axis=-1)
+
+
+def _inverse_real(coefficients: ComplexArray, out: RealArray | None) -> RealArray:
+    """Inverse real transform along the last axis, divided by N, in the precision of the coefficients."""
+    if out is None:
+        rows, columns = coefficients.shape
+        out = np.empty((rows, 2 * (columns - 1)), coefficients.real.dtype)
+    if _NUMPY_TRANSFORMS_IN_PLACE:
+        np.fft.irfft(coefficients, axis=-1, out=out)
+    else:
+        out[...] = np.fft.irfft(coefficients, axis=-1)
+    return out
+
+
+def run_blocks(work: Callable[[slice], None], blocks: Iterable[slice], workers: int) -> None:
+    """Do the work for each block, on as many threads as asked for; an error in any stops all."""
+    if workers == 1:
+        for block in blocks:
+            work(block)
+        return
+    queue, lock = iter(blocks), threading.Lock()
+
+    def pull() -> None:
+        while True:
+            with lock:
+                block = next(queue, None)
+            if block is None:
+                return
+            work(block)
+
+    with ThreadPoolExecutor(workers) as pool:
+        for done in [pool.submit(pull) for _ in range(workers)]:
+            done.result()

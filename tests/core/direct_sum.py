@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sea summed cosine by cosine: slow, plain, and independent of every transform."""
+"""A sea summed cosine by cosine: slow, plain, and independent of every transform; and the other way."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ocean_tweak.core import OceanParameters
+from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.initial_state import InitialState
+from ocean_tweak.core.synthesis import Rows, Synthesis
 
 Wave = tuple[float, float, float, float, float]
 
@@ -59,3 +62,16 @@ def fields(
             for name, rate in (("_x", kx), ("_y", ky), ("_t", -omega)):
                 result[component + name] -= factor * rate * cosine
     return result
+
+
+def surface_of(state: InitialState, time: float = 0.0, dtype: type = np.complex128) -> dict:
+    """All fields of a state at a time by the transforms under test, with choppiness 1."""
+    fields = {name: np.empty(output.shape(state.grid.resolution)) for name, output in OUTPUTS.items()}
+
+    def write(block: slice, rows: Rows) -> None:
+        for name, output in OUTPUTS.items():
+            output.write(rows, fields[name][block])
+
+    needs = {need for output in OUTPUTS.values() for need in output.needs}
+    Synthesis(state, OceanParameters(), dtype=dtype).fill(time, needs, write)
+    return fields
