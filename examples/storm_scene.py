@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds storm.blend: one sea in three scenes, each moved in another way.
 
-blender --background --python examples/storm_scene.py -- --params examples/storm.json --sequence DIR --frames 1-24 --out storm.blend
+blender --background --python examples/storm_scene.py --
+        --params examples/storm.json --sequence DIR --frames 1-24 --out storm.blend
 
 "Displace" and "Geometry nodes" read the EXR sequence and need no extension, "Live" computes each frame.
 """
@@ -33,8 +34,8 @@ LIGHT = math.radians(222.0)
 LENS = 40.0  # mm
 TILT = math.radians(1.0)
 RINGS = 3
-HAZE = (0.56, 0.60, 0.63)
-VISIBILITY = 25e3  # m
+HAZE = (0.60, 0.635, 0.66)
+VISIBILITY = 16e3  # m
 
 
 def main() -> None:
@@ -74,7 +75,7 @@ def make_scenes(extension, first, last, fps):
     """The three scenes, with the shot's frames."""
     scenes = [bpy.context.scene]
     scenes += [bpy.data.scenes.new(name) for name in list(SCENES)[1:]]
-    for scene, name in zip(scenes, SCENES):
+    for scene, name in zip(scenes, SCENES, strict=True):
         scene.name = name
         scene.frame_start, scene.frame_end = first, last
         scene.frame_set(first)

@@ -29,7 +29,7 @@ class Shading:
         return node.outputs[0]
 
     def vector(self, operation, *values, output="Vector"):
-        """Vector arithmetic; `output="Value"` for DOT_PRODUCT and LENGTH, the input `3` of SCALE is its factor."""
+        """Vector arithmetic; DOT_PRODUCT and LENGTH want `output="Value"`."""
         node = self.node("VectorMath", dict(enumerate(values)), operation=operation)
         return node.outputs[output]
 
@@ -53,7 +53,8 @@ class Shading:
     def noise(self, position, scale, detail=4.0, roughness=0.5, distortion=0.0):
         """Fractal noise around 0.5."""
         inputs = {
-            "Vector": position, "Scale": scale, "Detail": detail, "Roughness": roughness, "Distortion": distortion,
+            "Vector": position, "Scale": scale, "Detail": detail,
+            "Roughness": roughness, "Distortion": distortion,
         }  # fmt: skip
         return self.node("TexNoise", inputs, noise_dimensions="3D").outputs[0]
 
@@ -64,7 +65,7 @@ class Shading:
         elements = node.color_ramp.elements
         while len(elements) < len(stops):
             elements.new(1.0)
-        for element, (position, colour) in zip(elements, stops):
+        for element, (position, colour) in zip(elements, stops, strict=True):
             element.position = position
             element.color = (*colour, 1.0)
         return node.outputs[0]

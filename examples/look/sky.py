@@ -45,10 +45,7 @@ def storm_sky(name: str, glow_azimuth: float) -> bpy.types.World:
     mixed = shading.node("MixShader", {0: is_seen, 1: backgrounds[0], 2: backgrounds[1]}).outputs[0]
     output = shading.node("OutputWorld")
     shading.tree.links.new(mixed, output.inputs["Surface"])
-    world.cycles.sampling_method = (
-        "MANUAL"  # the finest detail is cloud: a small map serves, and is made at once
-    )
-    world.cycles.sample_map_resolution = 512
+    world.cycles.sampling_method = "NONE"  # broad and soft: shadow rays would cost more than they give
     return world
 
 

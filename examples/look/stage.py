@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 
 import bpy
@@ -40,7 +41,7 @@ def _tile_nodes(ocean):
 
 
 def camera(name, position, azimuth, tilt, lens):
-    """A camera at `position` m that looks along `azimuth`, radians from +x, `tilt` radians above the horizon."""
+    """A camera at `position` m, looking along `azimuth` (from +x) and `tilt` (from the horizon), radians."""
     data = bpy.data.cameras.new(name)
     data.lens = lens
     data.clip_start, data.clip_end = 1.0, 1e5
@@ -66,7 +67,7 @@ def before_the_highest_crest(elevation, patch_size, azimuth, distance, height):
     return x, y, max(height, float(below) + 0.7 * height)
 
 
-def render_settings(scene, width=960, height=540, samples=24):
+def render_settings(scene, width=960, height=540, samples=16):
     """Cycles on the processor: few samples, a denoiser where this Blender has one."""
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = width, height
@@ -82,7 +83,9 @@ def render_settings(scene, width=960, height=540, samples=24):
     if scene.cycles.use_denoising:
         scene.cycles.denoiser = "OPENIMAGEDENOISE"
         scene.cycles.denoising_prefilter = "FAST"
-    scene.view_settings.view_transform = "AgX"
+    with contextlib.suppress(TypeError):  # a studio's OCIO configuration may lack these
+        scene.view_settings.view_transform = "AgX"
+        scene.view_settings.look = "AgX - Medium High Contrast"
 
 
 def has_denoiser():

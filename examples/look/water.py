@@ -54,7 +54,7 @@ def storm_water(name, ripples, patch_size, haze_colour, visibility):
 
 
 def _haze(shading, distance, visibility):
-    """Share of the light that is scattered by the air: 1 - exp(-3.9 d / visibility), for camera rays (Koschmieder)."""
+    """Share of the air in what the camera sees, 1 - exp(-3.9 d / visibility) (Koschmieder 1924)."""
     thickness = shading.math("MULTIPLY", distance, -math.log(50.0) / visibility)
     haze = shading.math("SUBTRACT", 1.0, shading.math("EXPONENT", thickness))
     return shading.math("MULTIPLY", haze, shading.node("LightPath").outputs["Is Camera Ray"])
@@ -66,7 +66,7 @@ def _roughness(shading, distance):
 
 
 def _ripple_normal(shading, ripples, patch_size, distance):
-    """Shading normal: the ripple map laid twice over the patch, turned and of two sizes, so that no tile shows."""
+    """Shading normal: the ripple map laid twice over the patch, turned and stretched to hide its tiles."""
     rest = _rest_position(shading, patch_size)
     heights = [_layer(shading, ripples, rest, stretch, turn) for stretch, turn in ((1.0, 0.0), (1.618, 0.35))]
     nearness = shading.smooth(distance, 40.0, 400.0, 1.0, 0.0)
@@ -93,7 +93,7 @@ def _layer(shading, ripples, rest, stretch, turn):
 
 
 def _rest_position(shading, patch_size):
-    """Where the water was before it was displaced, m: ripples ride on the waves, and go on from tile to tile."""
+    """Where the water was before it was displaced, m: ripples ride on waves, and go on from tile to tile."""
     uv = shading.node("UVMap").outputs[0]
     tile = shading.node("ObjectInfo").outputs["Location"]
     return shading.vector("ADD", shading.scale(uv, patch_size), tile)
