@@ -169,8 +169,7 @@ class CellMeans:
         kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
         half = np.maximum(np.hypot(kx, ky[: grid.resolution // 2 + 1]), 0.5 * grid.spacing)
         shape = self._weighted_shape(half)
-        mirrored = Shape(*(None if values is None else grid.mirror(values) for values in shape))
-        return self._both_ways(mirrored, kx, ky)
+        return self._both_ways(shape.map(grid.mirror), kx, ky)
 
     def _weighted_shape(self, k: Array) -> Shape:
         shape = self._table.shape(self._table.nodes(k))

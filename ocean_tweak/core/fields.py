@@ -43,7 +43,7 @@ def _gradient(rows: Rows) -> tuple[RealArray, RealArray, RealArray, RealArray]:
 
 
 def jacobian(rows: Rows, out: RealArray) -> None:
-    """(N, N): determinant of the gradient of x ↦ x + λD; 1 - λkA at a single wave's crest, < 0 in a fold."""
+    """(N, N): determinant of the gradient of x ↦ x + λD; 1 - λkA at one wave's crest, < 0 in a fold."""
     xx, xy, yx, yy = _gradient(rows)
     np.subtract(xx * yy, xy * yx, out=out)
 
@@ -55,7 +55,7 @@ def min_eigenvalue(rows: Rows, out: RealArray) -> None:
     its symmetric part counts.
     """
     half_sum, half_difference, shear = _symmetric_part(rows)
-    # a square root of squares: strains are near 1, and hypot's care for overflow would cost as much as a field
+    # a square root of squares: strains are near 1, and hypot's care for overflow costs as much as a field
     np.multiply(half_difference, half_difference, out=half_difference)
     half_difference += shear * shear
     np.subtract(half_sum, np.sqrt(half_difference, out=half_difference), out=out)

@@ -54,8 +54,9 @@ def propagate(
     dtype: type = np.complex64,
     with_rate: bool = False,
     columns: slice = ALL,
+    scale: float = 1.0,
 ) -> PropagatedState:
-    """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its derivative in time, for some columns kx.
+    """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its derivative in time, times `scale`, for some columns kx.
 
     Horvath (2015), § 7.1.2: waves along +k and along -k are separate; Chen (2014), eq. 9.
     """
@@ -64,6 +65,8 @@ def propagate(
     half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is even in ky
     np.cos(angle, out=half.real)
     np.sin(angle, out=half.imag)
+    if scale != 1.0:
+        half *= real(scale)
     turn = state.grid.mirror(half)
     against = state.h_minus.T[columns].astype(dtype, copy=False) * turn
     along = np.conjugate(turn, out=turn)

@@ -25,7 +25,7 @@ _LEAST_ENERGY = 1e-300
 class Nodes(NamedTuple):
     """Where wave numbers lie between the nodes of a table."""
 
-    index: NDArray[np.int64]
+    below: NDArray[np.int64]
     fraction: Array
 
 
@@ -43,9 +43,10 @@ class RadialTable:
     def fill(self, energy: Array, shape: Shape) -> None:
         """Keep the values at the nodes `k`: energy in m⁴ per unit of D, and the shape of D."""
         first, second = shape.first_weight, shape.second_weight
-        self._log_first = np.log(np.maximum(energy * first, _LEAST_ENERGY))
-        self._log_second = None if second is None else np.log(np.maximum(energy * second, _LEAST_ENERGY))
-        self._shape = shape
+        self._values = shape._replace(
+            first_weight=np.log(np.maximum(energy * first, _LEAST_ENERGY)),
+            second_weight=None if second is None else np.log(np.maximum(energy * second, _LEAST_ENERGY)),
+        )
 
     def nodes(self, k: Array) -> Nodes:
         """Where wave numbers lie; k in rad/m within the table's range."""
@@ -58,15 +59,14 @@ class RadialTable:
 
     def shape(self, at: Nodes) -> Shape:
         """The shape of D at some nodes, its weights multiplied by the energy."""
-        return Shape(
-            np.exp(_interpolated(self._log_first, at)),
-            _interpolated(self._shape.first, at),
-            None if self._log_second is None else np.exp(_interpolated(self._log_second, at)),
-            None if self._shape.second is None else _interpolated(self._shape.second, at),
-            None if self._shape.swell is None else _interpolated(self._shape.swell, at),
+        values = self._values.map(lambda table: _interpolated(table, at))
+        second = values.second_weight
+        return values._replace(
+            first_weight=np.exp(values.first_weight),
+            second_weight=None if second is None else np.exp(second),
         )
 
 
 def _interpolated(values: Array, at: Nodes) -> Array:
-    low = values[at.index]
-    return low + at.fraction * (values[at.index + 1] - low)
+    low = values[at.below]
+    return low + at.fraction * (values[at.below + 1] - low)

@@ -23,6 +23,7 @@ from .sea_spectrum import SeaSpectrum
 from .spreading import mean_cosine
 
 Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
 
 #: width in ln k of the kernel that turns the energies of single modes into a frequency spectrum
 _KERNEL_WIDTH = 0.1
@@ -245,7 +246,9 @@ def spectrum_state(sea: SeaSpectrum) -> SeaState:
     return _sea_state(m0, m2, slope, vector, sea.peak_frequency, parameters)
 
 
-def mode_state(along: Array, against: Array, grid: WaveVectorGrid, parameters: OceanParameters) -> SeaState:
+def mode_state(
+    along: RealArray, against: RealArray, grid: WaveVectorGrid, parameters: OceanParameters
+) -> SeaState:
     """State of single modes.
 
     along, against : (N, N//2+1) m², |h_plus|² and |h_minus|²: energies of the waves along +k and -k

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -77,6 +78,33 @@ class Synthesis:
     dtype: type = np.complex64
     workers: int = 1
 
+    @cached_property
+    def potential_factor(self) -> RealArray:
+        """λ/k for ky from 0 to N/2, (N//2+1, N//2+1) [kx, ky]: from the elevation to the potential.
+
+        In finite depth orbits are wider by coth kh (linear theory, Airy) where `orbits` asks for it.
+        """
+        grid, parameters = self.state.grid, self.parameters
+        half = grid.resolution // 2 + 1
+        result = np.empty((half, half), np.float32 if self.dtype is np.complex64 else np.float64)
+        for block in grid.column_blocks():
+            k = np.hypot(grid.kx[0, block, np.newaxis], grid.ky[:half, 0])
+            k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
+            result[block] = parameters.choppiness / k
+            if parameters.orbits == "FINITE_DEPTH":
+                result[block] /= np.tanh(k * parameters.water.depth)
+        return result
+
+    @cached_property
+    def kx_powers(self) -> list[ComplexArray]:
+        """(i kx)ᵐ for m = 0, 1, 2, each (N//2+1,)."""
+        return [((1j * self.state.grid.kx[0]) ** order).astype(self.dtype) for order in range(3)]
+
+    @cached_property
+    def ky_powers(self) -> list[ComplexArray]:
+        """(i ky)ⁿ for n = 0, 1, 2, each (N,)."""
+        return [((1j * self.state.grid.ky[:, 0]) ** order).astype(self.dtype) for order in range(3)]
+
     def fill(
         self,
         time: float | Fraction,
@@ -122,7 +150,9 @@ class Synthesis:
     ) -> None:
         """The first pass for some columns: to y, into the arrays (N, N//2+1) of the first pass."""
         with_rate = any(column.rate for column in first_pass)
-        moved = propagate(self.state, time, self.dtype, with_rate, block)
+        # the inverse transforms divide by N each: what they are given is larger by N²
+        scale = float(self.state.grid.resolution) ** 2
+        moved = propagate(self.state, time, self.dtype, with_rate, block, scale)
         sources = _Sources(self, moved, block)
         for column, target in first_pass.items():
             coefficients = sources.coefficients(column)
@@ -135,11 +165,9 @@ class _Sources:
     def __init__(self, synthesis: Synthesis, moved: PropagatedState, block: slice) -> None:
         self._synthesis = synthesis
         self._block = block
-        # the inverse transforms divide by N each: what they are given is larger by N²
-        scale = float(synthesis.state.grid.resolution) ** 2
-        self._elevations = {False: moved.elevation.T * synthesis.dtype(scale)}
+        self._elevations = {False: moved.elevation.T}
         if moved.rate is not None:
-            self._elevations[True] = moved.rate.T * synthesis.dtype(scale)
+            self._elevations[True] = moved.rate.T
         self._bases: dict[Column, ComplexArray] = {}
 
     def coefficients(self, column: Column) -> ComplexArray:
@@ -147,33 +175,19 @@ class _Sources:
         base = self._base(column._replace(y_order=0))
         if column.y_order == 0:
             return base
-        ky = self._synthesis.state.grid.ky[:, 0]
-        return base * ((1j * ky) ** column.y_order).astype(base.dtype)
+        return base * self._synthesis.ky_powers[column.y_order]
 
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
             base = self._elevations[column.rate]
             if column.potential:
-                base = base * _potential_factor(self._synthesis, self._block)
+                factor = self._synthesis.potential_factor[self._block]
+                base = base * self._synthesis.state.grid.mirror(factor.astype(base.dtype))
             damping = self._synthesis.damping
             if column.long and damping is not None:
                 base = base * damping.long_waves.T[self._block].astype(base.dtype)
             self._bases[column] = base
         return self._bases[column]
-
-
-def _potential_factor(synthesis: Synthesis, block: slice) -> ComplexArray:
-    """λ/k, (columns, N): from elevation to the potential of the horizontal displacement.
-
-    In finite depth the water's orbits are wider by coth kh (linear theory, Airy) where `orbits` asks for it.
-    """
-    grid, parameters = synthesis.state.grid, synthesis.parameters
-    k = np.hypot(grid.kx[0, block, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
-    k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
-    factor = parameters.choppiness / k
-    if parameters.orbits == "FINITE_DEPTH":
-        factor /= np.tanh(k * parameters.water.depth)
-    return grid.mirror(factor.astype(synthesis.dtype))
 
 
 class Rows:
@@ -209,8 +223,7 @@ class Rows:
             return out
         coefficients = self._first_pass[wanted.column][self._block]
         if wanted.x_order:
-            kx = self._synthesis.state.grid.kx[0]
-            coefficients = coefficients * ((1j * kx) ** wanted.x_order).astype(coefficients.dtype)
+            coefficients = coefficients * self._synthesis.kx_powers[wanted.x_order]
         self._made[wanted] = _inverse_real(coefficients, out)
         return self._made[wanted]
 
