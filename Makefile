@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core lint build clean
+.PHONY: help setup demo test test-core mutate lint build docs clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
@@ -21,6 +21,10 @@ test-core:  ## the tests of the core alone
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m pytest -q tests/core
 
+mutate:     ## change each physical constant by 2 % and see which test notices (minutes; not part of `test`)
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m tools.mutate
+
 lint:       ## formatting, lint, types of the core, import layers; FIX=1 formats first
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.lint
@@ -28,6 +32,10 @@ lint:       ## formatting, lint, types of the core, import layers; FIX=1 formats
 build:      ## the extension's zip, into build/
 	@$(PYTHON) -m tools.setup python-5.2 blender
 	@$(VENV) -m tools.build
+
+docs:       ## write the documentation that is made from the code
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m tools.parameters_doc
 
 clean:      ## remove what was made, except .tools/
 	rm -rf build wheels .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -14,12 +14,6 @@ from ocean_tweak.core.spreading import donelan_banner_beta, hasselmann_s
 from ocean_tweak.core.trough_damping import trough_damping
 
 
-def test_water_of_the_paper() -> None:
-    # Horvath (2015), table 1
-    water = Water()
-    assert (water.gravity, water.density, water.surface_tension) == (9.81, 1000.0, 0.074)
-
-
 def test_slowest_ripples() -> None:
     # in deep water (9) has its least phase speed (4gσ/ρ)^¼ at k = √(ρg/σ): 0.232135 m/s at 364.10 rad/m
     assert dispersion.capillary(364.10, Water()) / 364.10 == pytest.approx(0.232135, rel=3e-6)
@@ -61,3 +55,9 @@ def test_long_waves_of_trough_damping() -> None:
     assert damping is not None
     assert damping.long_waves[0, 6] == pytest.approx(math.exp(-1.0), rel=1e-9)
     assert damping.long_waves[2, 0] == pytest.approx(math.exp(-1.0 / 81.0), rel=1e-9)
+
+
+def test_water_of_the_paper() -> None:
+    # Horvath (2015), table 1
+    water = Water()
+    assert (water.gravity, water.density, water.surface_tension) == (9.81, 1000.0, 0.074)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the tables of docs/parameters.md from the parameters themselves: `make docs`."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import sys
+from fractions import Fraction
+from typing import Any
+
+from ocean_tweak.core.parameters import OceanParameters, Timing, Water, WaveLayer
+
+from .project import ROOT
+
+DOCUMENT = ROOT / "docs" / "parameters.md"
+BEGIN = "<!-- tables: written by `make docs` from ocean_tweak/core/parameters.py, not by hand -->"
+END = "<!-- end of tables -->"
+
+#: class → where its fields stand in JSON
+CLASSES = {
+    OceanParameters: "at the top",
+    Water: "in `water`",
+    WaveLayer: "in each entry of the list `layers`",
+    Timing: "in `timing`",
+}
+
+HEAD = "| name | unit | default | allowed | why this range | what it is |\n|---|---|---|---|---|---|"
+
+
+def main() -> int:
+    """Write the tables into the document."""
+    DOCUMENT.write_text(updated(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
+    print(f"written: {DOCUMENT.relative_to(ROOT)}")
+    return 0
+
+
+def updated(document: str) -> str:
+    """Return the document with today's tables between the marks. Raises ValueError without the marks."""
+    before, _, rest = document.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        raise ValueError(f"{DOCUMENT.name} must hold the marks {BEGIN} and {END}")
+    return f"{before}{BEGIN}\n\n{tables()}\n{END}{after}"
+
+
+def tables() -> str:
+    """Return one headed Markdown table for each parameter class."""
+    parts = []
+    for kind, place in CLASSES.items():
+        rows = [_row(field) for field in dataclasses.fields(kind) if "nested" not in field.metadata]
+        parts.append("\n".join([f"### {kind.__name__}, {place}\n", HEAD, *rows, ""]))
+    return "\n".join(parts)
+
+
+def _row(field: dataclasses.Field[Any]) -> str:
+    meta = field.metadata
+    cells = [
+        f"`{field.name}`",
+        meta.get("unit", ""),
+        _shown(field.default),
+        _allowed(meta),
+        meta.get("why", ""),
+        meta["description"],
+    ]
+    return "| " + " | ".join(cells) + " |"
+
+
+def _allowed(meta: Any) -> str:
+    if "choices" in meta:
+        return ", ".join(f"`{choice}`" for choice in meta["choices"])
+    if meta["kind"] is bool:
+        return "`true`, `false`"
+    span = f"{_shown(meta['minimum'])} … {_shown(meta['maximum'])}"
+    return f"{span}, or `null`" if meta.get("optional") else span
+
+
+def _shown(value: object) -> str:
+    """Return a value as it would stand in JSON, without a needless fraction."""
+    if value is None:
+        return "`null`"
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    if isinstance(value, str):
+        return f"`{value}`"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, (float, Fraction)) and value == int(value) and abs(value) < 1e6:
+        return str(int(value))
+    return re.sub(r"e([+-])0*", lambda match: "e" + match[1].strip("+"), f"{float(value):g}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
