@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import math
+import os
 import re
 import sys
 from collections.abc import Callable
@@ -15,6 +17,7 @@ from typing import Any
 from . import __version__
 from .core import Ocean, OceanParameters, ParameterError, sea_scales
 from .core.bake import bake, parse_frames
+from .core.memory import memory_need
 from .core.parameters import parse_json
 from .core.statistics import SeaState, Statistics
 from .export.exr import COMPRESSION_ERROR, ExrError, ExrSequence
@@ -51,8 +54,8 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
     except ExrError as error:
         _complain(error)
         return FAILED
-    except MemoryError:
-        _complain("not enough memory for this resolution")
+    except MemoryError as error:
+        _complain(error if str(error) else "there is not enough memory: lower the resolution")
         return FAILED
     except KeyboardInterrupt:
         _complain("interrupted; the frames written so far are whole")
@@ -83,6 +86,10 @@ def _parser(in_blender: bool) -> argparse.ArgumentParser:
         _add_sea_arguments(command, in_blender)
     baking.add_argument("--frames", required=True, metavar="RANGE", help="1-48, 1-100x2 or 1001,1005-1010")
     baking.add_argument("--out", required=True, type=Path, metavar="DIR", help="folder, made if missing")
+    baking.add_argument(
+        "--workers", type=_workers, metavar="N", default=os.cpu_count() or 1,
+        help="frames made at the same time, by default one a core",
+    )  # fmt: skip
     baking.add_argument("--name", help="start of the file names; by default that of the sea")
     baking.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
@@ -105,6 +112,12 @@ def _add_sea_arguments(command: argparse.ArgumentParser, in_blender: bool) -> No
     command.add_argument("--json", action="store_true", help="print JSON for machines")
     if in_blender:
         command.add_argument("--object", metavar="NAME", help="only the ocean of this object")
+
+
+def _workers(text: str) -> int:
+    if not (text.isdecimal() and 1 <= int(text) <= 256):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 to 256")
+    return int(text)
 
 
 def _seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> dict[str, OceanParameters]:
@@ -196,7 +209,11 @@ def _info(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
     results = {name: Ocean(parameters).statistics() for name, parameters in seas.items()}
     if arguments.json:
         report = {
-            name: {"parameters": seas[name].to_dict(), "statistics": statistics.to_dict()}
+            name: {
+                "parameters": seas[name].to_dict(),
+                "statistics": statistics.to_dict(),
+                "memory": dataclasses.asdict(memory_need(seas[name])),
+            }
             for name, statistics in results.items()
         }
         print(json.dumps(report, indent=2))
@@ -209,8 +226,10 @@ def _info(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     state = sea_scales.sea_state(statistics.significant_wave_height)
+    need = memory_need(parameters)
     lines = [
-        f"{name}: {parameters.resolution}² samples, {statistics.sample_spacing:.3g} m apart",
+        f"{name}: {parameters.resolution}² samples, {statistics.sample_spacing:.3g} m apart; "
+        f"{need.peak() / 2**20:.0f} MB of memory, {need.surface / 2**20:.0f} MB more for each further worker",
         f"  {'':<18}{'Hs':>10}{'Tp':>10}{'Tz':>10}{'slope':>8}{'towards':>9}{'spread':>8}",
         _state_row("spectrum", statistics.spectrum),
         f"{_state_row('resolved by grid', statistics.resolved)}  {share}",
@@ -244,7 +263,7 @@ def _bake(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
     for sea_name, parameters in seas.items():
         name = _file_name(arguments.name or sea_name)
         sink = ExrSequence(folder, name, parameters, arguments.compression)
-        for done, baked in enumerate(bake(Ocean(parameters), frames, sink), start=1):
+        for done, baked in enumerate(bake(parameters, frames, sink, arguments.workers), start=1):
             if arguments.json:
                 line = json.dumps(
                     {"frame": baked.frame, "path": str(baked.path), "seconds": round(baked.seconds, 4)}

@@ -4,21 +4,25 @@
 from __future__ import annotations
 
 import re
+import threading
 import time
+from collections import deque
 from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from .fields import SurfaceFields
+from .memory import check_memory, memory_need
 from .ocean import Ocean
-from .parameters import ParameterError
+from .parameters import OceanParameters, ParameterError
 
 _RANGE = re.compile(r"(-?\d+)(?:-(-?\d+)(?:x(\d+))?)?")
 _MOST_FRAMES = 1_000_000
 
 
 class FrameSink(Protocol):
-    """Whatever keeps frames."""
+    """Whatever keeps frames; called from several threads at once."""
 
     def write(self, frame: int, fields: SurfaceFields) -> Path:
         """Keep a frame's fields; returns where."""
@@ -32,12 +36,40 @@ class BakedFrame(NamedTuple):
     seconds: float
 
 
-def bake(ocean: Ocean, frames: Iterable[int], sink: FrameSink) -> Iterator[BakedFrame]:
-    """Make and keep each frame; yields after each one, so that the caller can report or stop."""
-    for frame in frames:
+def bake(
+    parameters: OceanParameters, frames: Iterable[int], sink: FrameSink, workers: int = 1
+) -> Iterator[BakedFrame]:
+    """Make and keep each frame, several at once; yields each in order when it is kept.
+
+    A worker makes a whole frame on one thread: while one encodes, another computes. What a frame holds does
+    not depend on their number. When the caller stops, frames under way are finished and no more begun.
+
+    Raises MemoryError before the first frame where the machine is too small.
+    """
+    need = memory_need(parameters).peak(workers)
+    check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")
+    Ocean(parameters).initial_state  # noqa: B018  made once, before the workers ask for it
+    own = threading.local()
+
+    def make(frame: int) -> BakedFrame:
         started = time.perf_counter()
-        path = sink.write(frame, ocean.frame(frame))
-        yield BakedFrame(frame, path, time.perf_counter() - started)
+        if not hasattr(own, "ocean"):
+            own.ocean = Ocean(parameters, workers=1)
+        path = sink.write(frame, own.ocean.frame(frame))
+        return BakedFrame(frame, path, time.perf_counter() - started)
+
+    under_way: deque[Future[BakedFrame]] = deque()
+    with ThreadPoolExecutor(workers) as pool:
+        try:
+            for frame in frames:
+                under_way.append(pool.submit(make, frame))
+                if len(under_way) > workers:
+                    yield under_way.popleft().result()
+            while under_way:
+                yield under_way.popleft().result()
+        finally:
+            for future in under_way:
+                future.cancel()
 
 
 def parse_frames(text: str) -> tuple[int, ...]:

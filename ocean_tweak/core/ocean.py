@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .fields import OUTPUTS, SurfaceFields, checked_outputs, memory_groups
 from .initial_state import InitialState, initial_state
+from .memory import check_memory, memory_need
 from .parameters import OceanParameters, Timing
 from .sea_spectrum import SeaSpectrum
 from .statistics import Statistics, sea_statistics
@@ -57,7 +58,12 @@ class Ocean:
 
     @cached_property
     def initial_state(self) -> InitialState:
-        """Shared by all oceans whose parameters differ only in what acts after it."""
+        """Shared by all oceans whose parameters differ only in what acts after it.
+
+        Raises MemoryError, before anything is made, where the machine is too small.
+        """
+        need = memory_need(self.parameters, precision=self.precision).peak()
+        check_memory(need, f"A sea of {self.parameters.resolution}² samples")
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
         shared = self.parameters.replace(choppiness=0.0, trough_damping=0.0, orbits="DEEP", timing=timing)

@@ -34,8 +34,9 @@ ComplexArray = NDArray[np.complexfloating]
 
 X, Y, Z = 0, 1, 2
 
-#: complex numbers in a block of either pass: about half of a second-level cache
+#: complex numbers in a block of either pass, of which several live at once: they share a second-level cache
 _BLOCK = 2**16
+_SMALL_BLOCK = 2**15
 
 _NUMPY_TRANSFORMS_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 
@@ -142,7 +143,8 @@ class Synthesis:
         return {(*key, long) for key in wanted for long in (False, True)}
 
     def _blocks(self, count: int) -> Iterator[slice]:
-        size = max(1, _BLOCK // self.state.grid.resolution)
+        n = self.state.grid.resolution
+        size = max(1, (_BLOCK if n >= 1024 else _SMALL_BLOCK) // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
     def _transform_columns(

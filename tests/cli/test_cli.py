@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import Ocean, OceanParameters, ParameterError, WaveLayer
+from ocean_tweak.core import Ocean, OceanParameters, ParameterError, WaveLayer, memory
 from ocean_tweak.core.bake import parse_frames
+from ocean_tweak.export import exr
 from ocean_tweak.export.exr import read_image
 
 ROOT = Path(__file__).parents[2]
@@ -42,6 +43,43 @@ def test_bake_gives_the_array_of_python(
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 2
     assert "(1/2)" in lines[0]
+
+
+def test_workers_do_not_change_a_byte(params: Path, tmp_path: Path) -> None:
+    arguments = ["bake", "--params", str(params), "--frames", "1001-1009", "--out"]
+    for workers in ("1", "4"):
+        assert main([*arguments, str(tmp_path / workers), "--workers", workers]) == 0
+    for path in (tmp_path / "1").iterdir():
+        assert path.read_bytes() == (tmp_path / "4" / path.name).read_bytes()
+    assert len(list((tmp_path / "4").iterdir())) == 9
+
+
+def test_a_failing_worker_stops_the_bake(
+    params: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = []
+
+    def write(path: Path, *rest: object) -> None:
+        if "1003" in path.name:
+            raise OSError(28, "No space left on device", str(path))
+        written.append(path)
+
+    monkeypatch.setattr(exr, "write_image", write)
+    arguments = ["bake", "--params", str(params), "--frames", "1001-1400", "--out", str(tmp_path)]
+    assert main([*arguments, "--workers", "2"]) == 1
+    assert 2 <= len(written) < 20
+
+
+def test_memory_is_told_and_guarded(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["info", "--json"]) == 0
+    need = json.loads(capsys.readouterr().out)["ocean"]["memory"]
+    assert need["surface"] > 12 * 512**2
+    monkeypatch.setattr(memory, "physical_memory", lambda: need["state"])
+    assert main(["bake", "--frames", "1", "--out", str(tmp_path / "out")]) == 1
+    assert "lower the resolution" in capsys.readouterr().err
+    assert not list((tmp_path / "out").glob("*.exr"))
 
 
 def test_the_range_never_moves_time(params: Path, tmp_path: Path) -> None:
@@ -88,6 +126,7 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
         (["info", "--fps", "0"], 2, "timing.fps = 0"),
         (["bake", "--frames", "3-1", "--out", "x"], 2, "frames = '3-1'"),
         (["bake", "--frames", "1"], 2, "--out"),
+        (["bake", "--frames", "1", "--out", "x", "--workers", "0"], 2, "'0' must be a whole number from 1"),
         (["bake", "--frames", "1", "--out", "/proc/nowhere/x"], 1, "/proc/nowhere"),
         (["sail"], 2, "sail"),
         ([], 2, "COMMAND"),

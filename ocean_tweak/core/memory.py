@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a sea needs of the machine's memory, told before it is made."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .fields import OUTPUTS, memory_groups
+from .parameters import OceanParameters
+from .synthesis import term
+
+#: float64 arrays of half the plane that live while the initial state is made, beyond what stays
+_TEMPORARY_ARRAYS = 5
+
+#: bytes of the tables from which it is made, whatever the resolution
+_TABLES = 48 * 2**20
+
+
+@dataclass(frozen=True)
+class MemoryNeed:
+    """Bytes that a sea takes.
+
+    state : kept as long as the sea: coefficients, frequencies, random numbers
+    building : on top of it, while the state is made
+    surface : of each surface that is made at the same time: its fields and the arrays between the passes
+    """
+
+    state: int
+    building: int
+    surface: int
+
+    def peak(self, surfaces: int = 1) -> int:
+        """The most that is taken at once, with a number of surfaces at the same time."""
+        return self.state + max(self.building, surfaces * self.surface)
+
+
+def memory_need(
+    parameters: OceanParameters, outputs: Iterable[str] = ("displacement",), precision: str = "single"
+) -> MemoryNeed:
+    """Bytes that a sea needs for the outputs asked for."""
+    n = parameters.resolution
+    half_plane = n * (n // 2 + 1)
+    real = 4 if precision == "single" else 8
+    phasors = min(len(parameters.active_layers), 4) * 2 * 2 * real
+    state = half_plane * (2 * 2 * real + 2 * real + 8 + phasors)
+    building = half_plane * 8 * _TEMPORARY_ARRAYS + _TABLES
+    wanted = frozenset(outputs)
+    fields = sum(int(np.prod(OUTPUTS[name].shape(n))) * real for name in wanted)
+    columns = max((_columns(group) for group in memory_groups(wanted)), default=0)
+    if parameters.trough_damping > 0.0:
+        columns *= 2
+    return MemoryNeed(state, building, fields + columns * half_plane * 2 * real)
+
+
+def _columns(group: Iterable[str]) -> int:
+    return len({term(*need).column for name in group for need in OUTPUTS[name].needs})
+
+
+def check_memory(need: int, what: str) -> None:
+    """Raise MemoryError, with a remedy, where the machine has fewer bytes than needed."""
+    available = physical_memory()
+    if available is not None and need > available:
+        raise MemoryError(
+            f"{what} needs {need / 2**30:.1f} GB of memory and this machine has {available / 2**30:.1f} GB: "
+            "lower the resolution or the number of workers"
+        )
+
+
+def physical_memory() -> int | None:
+    """The machine's memory in bytes; None where the system does not tell."""
+    if sys.platform == "win32":
+        return _windows_memory()
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (ValueError, OSError):
+        return None
+
+
+def _windows_memory() -> int | None:
+    import ctypes
+
+    kilobytes = ctypes.c_ulonglong()
+    kernel = ctypes.WinDLL("kernel32")  # type: ignore[attr-defined]
+    if not kernel.GetPhysicallyInstalledSystemMemory(ctypes.byref(kilobytes)):
+        return None
+    return kilobytes.value * 1024

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Threads, arrays of the caller and memory: none of them changes what a surface is."""
+
+from __future__ import annotations
+
+import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, memory
+from ocean_tweak.core.fields import OUTPUTS, memory_groups
+from ocean_tweak.core.memory import memory_need
+
+SEA = OceanParameters(resolution=258, domain_size=300.0, trough_damping=0.3)
+
+
+@pytest.mark.parametrize("workers", [2, 3, 7])
+def test_workers_do_not_change_a_bit(workers: int) -> None:
+    alone = Ocean(SEA, workers=1).surface(3.0, OUTPUTS)
+    together = Ocean(SEA, workers=workers).surface(3.0, OUTPUTS)
+    for name in OUTPUTS:
+        assert getattr(alone, name).tobytes() == getattr(together, name).tobytes(), name
+
+
+def test_outputs_do_not_change_each_other() -> None:
+    ocean = Ocean(SEA)
+    everything = ocean.surface(3.0, OUTPUTS)
+    for name in OUTPUTS:
+        assert getattr(ocean.surface(3.0, {name}), name).tobytes() == getattr(everything, name).tobytes(), (
+            name
+        )
+
+
+def test_one_ocean_serves_several_threads() -> None:
+    ocean = Ocean(SEA.replace(resolution=64))
+    times = [0.1 * step for step in range(40)]
+    in_turn = [ocean.surface(time).displacement.tobytes() for time in times]
+    with ThreadPoolExecutor(4) as pool:
+        at_once = list(pool.map(lambda time: ocean.surface(time).displacement.tobytes(), times))
+    assert at_once == in_turn
+
+
+def test_arrays_of_the_caller_are_filled() -> None:
+    ocean = Ocean(SEA)
+    wide = np.full((258, 258, 4), np.float32(7.0))
+    fields = ocean.surface(1.0, out={"displacement": wide[..., :3]})
+    assert fields.displacement.base is wide
+    assert wide[..., :3].tobytes() == ocean.surface(1.0).displacement.tobytes()
+    assert np.all(wide[..., 3] == 7.0)
+    for wrong in (np.empty((258, 258, 3)), np.empty((257, 258, 3), np.float32)):
+        with pytest.raises(ValueError, match="must be an array"):
+            ocean.surface(1.0, out={"displacement": wrong})
+    with pytest.raises(ValueError, match="workers = 0"):
+        Ocean(SEA, workers=0)
+    with pytest.raises(ValueError, match="precision = 'half'"):
+        Ocean(SEA, precision="half")
+
+
+@pytest.mark.parametrize("outputs", [{"displacement"}, {"displacement", "min_eigenvalue"}, set(OUTPUTS)])
+def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
+    """At most 24 bytes a sample, and never more than was told before."""
+    parameters = OceanParameters(resolution=1024)
+    ocean = Ocean(parameters, workers=1)
+    assert np.any(ocean.initial_state.h_plus)
+    tracemalloc.start()
+    fields = ocean.surface(1.0, outputs)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    kept = sum(getattr(fields, name).nbytes for name in outputs)
+    assert (peak - kept) / 1024**2 <= 24.0
+    assert peak < 1.4 * memory_need(parameters, outputs).surface
+
+
+def test_a_sea_too_large_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "physical_memory", lambda: 2**20)
+    with pytest.raises(MemoryError, match=r"A sea of 514² samples needs 0\.1 GB .* lower the resolution"):
+        Ocean(OceanParameters(resolution=514)).surface(0.0)
+    monkeypatch.undo()
+    assert memory.physical_memory() > 2**28
+
+
+def test_groups_hold_every_output_once() -> None:
+    groups = memory_groups(OUTPUTS)
+    assert sorted(name for group in groups for name in group) == sorted(OUTPUTS)
+    assert groups[1] == ["velocity"]
+    assert memory_groups([]) == []
