@@ -45,7 +45,9 @@ def register(package: str | None = None) -> None:
         atexit.register(unregister)
     for cls in CLASSES:
         bpy.utils.register_class(cls)
-    bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(type=properties.OCEAN_PG_ocean)
+    bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(
+        type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
+    )
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     handlers.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))

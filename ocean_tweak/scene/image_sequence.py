@@ -38,12 +38,12 @@ class ImageSequence:
     def check(self) -> None:
         """Raise SequenceError unless every frame has its file."""
         if self.first > self.last:
-            raise SequenceError(f"the first frame {self.first} lies after the last frame {self.last}")
+            raise SequenceError(f"The first frame {self.first} lies after the last frame {self.last}")
         available = _frames_by_name(_absolute(self.directory))
         frames = available.get(self.name, [])
         if not frames:
             hint = f"; it holds {', '.join(sorted(available))}" if available else ""
-            raise SequenceError(f"no files {self.name}_disp.####.exr in {_absolute(self.directory)}{hint}")
+            raise SequenceError(f"No files {self.name}_disp.####.exr in {_absolute(self.directory)}{hint}")
         missing = sorted(set(range(self.first, self.last + 1)).difference(frames))
         if missing:
             raise SequenceError(
@@ -72,7 +72,7 @@ def find_sequence(path: str | Path) -> ImageSequence:
         name = next(iter(available))
     frames = available.get(name)
     if not frames:
-        raise SequenceError(f"no files {name}_disp.####.exr in {directory}")
+        raise SequenceError(f"No files {name}_disp.####.exr in {directory}")
     sequence = ImageSequence(directory, name, min(frames), max(frames))
     sequence.check()
     return sequence
@@ -118,7 +118,7 @@ def _absolute(path: str | Path) -> Path:
 
 def _frames_by_name(directory: Path) -> dict[str, list[int]]:
     if not directory.is_dir():
-        raise SequenceError(f"the folder {directory} does not exist")
+        raise SequenceError(f"The folder {directory} does not exist")
     frames: dict[str, list[int]] = {}
     for path in directory.iterdir():
         match = _FILE.fullmatch(path.name)

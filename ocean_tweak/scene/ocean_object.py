@@ -47,7 +47,7 @@ def add(
     _check(method, METHODS, "method")
     _check(source, SOURCES, "source")
     if source == "SEQUENCE" and sequence is None:
-        raise SequenceError('an ocean with the source "SEQUENCE" needs an image sequence')
+        raise SequenceError('An ocean with the source "SEQUENCE" needs an image sequence')
     baked = load_image(sequence) if sequence is not None else None
     item = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     (collection or scene.collection).objects.link(item)
@@ -91,7 +91,7 @@ def refresh_and_tell(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     try:
         refresh(item, scene)
     except EXPECTED_ERRORS as error:
-        text = str(error) or "not enough memory for this resolution"
+        text = str(error) or "Not enough memory for this resolution"
         _set(settings_of(item), error=text, statistics="")
 
 
@@ -134,7 +134,7 @@ def _refreshed_live_image(
 def _sequence_image(settings: OceanSettings) -> bpy.types.Image:
     image = settings.sequence_image
     if image is None:
-        raise SequenceError("no image sequence is chosen: choose a baked one, or go back to live")
+        raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
     return image
 
 
@@ -142,7 +142,7 @@ def _refresh_mesh(item: bpy.types.Object, grid: Grid) -> None:
     if grid_mesh.is_current(item.data, grid):
         return
     if item.data.is_editmode:
-        raise OceanObjectError("the mesh is in Edit Mode: leave it to rebuild the grid")
+        raise OceanObjectError("The mesh is in Edit Mode: leave it to rebuild the grid")
     if item.data.users > 1:  # a linked duplicate has its own size from now on
         item.data = item.data.copy()
     grid_mesh.fill(item.data, grid)

@@ -11,7 +11,7 @@ from ..core import OceanParameters, ParameterError, Timing
 from ..export.exr import ExrError, read_image
 from ..scene import ocean_object
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
-from ..scene.settings import METHODS, is_ocean, settings_of
+from ..scene.settings import METHODS, OceanObjectError, is_ocean, settings_of
 from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
 
 # far beyond any sea; keeps a file chosen by mistake from filling the memory
@@ -101,9 +101,9 @@ class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelpe
         """Read the file and apply it as a whole, or not at all."""
         try:
             parameters = OceanParameters.from_json(_read_text(Path(self.filepath)))
-        except (ParameterError, OSError, UnicodeDecodeError) as error:
+            _apply(context, parameters, self.use_frame_rate)
+        except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
             return _refuse(self, error)
-        _apply(context, parameters, self.use_frame_rate)
         return {"FINISHED"}
 
 
@@ -150,12 +150,11 @@ class OCEAN_OT_use_sequence(_OfActiveOcean, bpy.types.Operator, ImportHelper):
         item, scene = context.active_object, context.scene
         try:
             sequence = find_sequence(self.filepath)
-            parameters = _baked_parameters(sequence) if self.use_parameters else None
+            if self.use_parameters:
+                _apply(context, _baked_parameters(sequence), use_frame_rate=True)
             ocean_object.use_sequence(item, scene, sequence)
         except (ExrError, *ocean_object.EXPECTED_ERRORS) as error:
             return _refuse(self, error)
-        if parameters is not None:
-            _apply(context, parameters, use_frame_rate=True)
         self.report({"INFO"}, f"{sequence.name}: frames {sequence.first} to {sequence.last}")
         return {"FINISHED"}
 
@@ -175,9 +174,15 @@ class OCEAN_OT_use_live(_OfActiveOcean, bpy.types.Operator):
 
 
 def _apply(context: bpy.types.Context, parameters: OceanParameters, use_frame_rate: bool) -> None:
+    scene = context.scene
+    before = frame_rate(scene)
     if use_frame_rate:
-        set_frame_rate(context.scene, parameters.timing.fps)
-    settings_of(context.active_object).from_parameters(parameters, context.scene)
+        set_frame_rate(scene, parameters.timing.fps)
+    try:
+        settings_of(context.active_object).from_parameters(parameters, scene)
+    except OceanObjectError:
+        set_frame_rate(scene, before)
+        raise
 
 
 def _baked_parameters(sequence: ImageSequence) -> OceanParameters:

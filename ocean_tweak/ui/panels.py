@@ -72,7 +72,6 @@ class OCEAN_PT_sea(_OceanPanel, bpy.types.Panel):
         patch = layout.column(align=True)
         patch.prop(settings, "domain_size")
         patch.prop(settings, "resolution")
-        patch.prop(settings, "mesh_resolution", text="Mesh")
 
 
 class OCEAN_PT_statistics(_OceanPanel, bpy.types.Panel):
@@ -115,10 +114,12 @@ class OCEAN_PT_motion(_OceanPanel, bpy.types.Panel):
                 _row(layout, "Frames", f"{settings.sequence_first} to {settings.sequence_last}")
             choose = "Choose Another" if image else "Choose Sequence"
             layout.operator(operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
-            layout.operator(operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
+            if settings.error:
+                layout.operator(operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
         else:
             layout.operator(operators.OCEAN_OT_use_sequence.bl_idname, icon="FILE_FOLDER")
         layout.prop(settings, "method")
+        layout.prop(settings, "mesh_resolution", text="Mesh Quads")
         layout.prop(settings.timing, "start_frame")
 
 

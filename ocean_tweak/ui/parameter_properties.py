@@ -42,7 +42,10 @@ def annotations(
     without : fields that come from elsewhere
     """
     properties = {field.name: _property(field, update) for field in _plain_fields(kind, without)}
-    return {**properties, "exact": bpy.props.StringProperty(options={"HIDDEN"})}
+    return {
+        **properties,
+        "exact": bpy.props.StringProperty(options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}),
+    }
 
 
 def write(

@@ -16,7 +16,7 @@ from bpy.props import (
 
 from ..core import OceanParameters, Timing, Water, WaveLayer
 from ..scene.ocean_object import refresh_and_tell
-from ..scene.settings import METHODS, SOURCES
+from ..scene.settings import METHODS, SOURCES, OceanObjectError
 from ..scene.units import frame_rate, metres_per_unit
 from . import parameter_properties
 
@@ -38,8 +38,18 @@ def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
     return [(key, label, description) for key, (label, description) in table.items()]
 
 
-def _hidden(kind: type) -> PointerProperty:
-    return PointerProperty(type=kind, options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"})
+# every setting of a linked ocean can be overridden
+_OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
+_SHOWN = {"options": set(), "update": _changed, **_OVERRIDE}
+_HIDDEN = {"options": {"HIDDEN"}, **_OVERRIDE}
+
+
+def _set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
+    # layers that stay are kept: Blender neither adds to nor removes from a library override
+    while len(layers) > count:
+        layers.remove(len(layers) - 1)
+    while len(layers) < count:
+        layers.add()
 
 
 class OCEAN_PG_water(bpy.types.PropertyGroup):
@@ -65,31 +75,31 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     __annotations__ = {
         **parameter_properties.annotations(OceanParameters, _changed),
-        "water": PointerProperty(type=OCEAN_PG_water),
-        "layers": CollectionProperty(type=OCEAN_PG_layer),
-        "timing": PointerProperty(type=OCEAN_PG_timing),
-        "is_ocean": BoolProperty(options={"HIDDEN"}),
+        "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
+        "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
+        "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
+        "is_ocean": BoolProperty(**_HIDDEN),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
         "method": EnumProperty(
-            name="Method", items=_choices(METHODS), default="NODES", options=set(), update=_changed,
+            name="Method", items=_choices(METHODS), default="NODES", **_SHOWN,
             description="What moves the mesh",
         ),
         "source": EnumProperty(
-            name="Source", items=_choices(SOURCES), default="LIVE", options=set(), update=_changed,
+            name="Source", items=_choices(SOURCES), default="LIVE", **_SHOWN,
             description="Where the displacement comes from",
         ),
         "mesh_resolution": IntProperty(
-            name="Mesh Resolution", min=0, max=8192, options=set(), update=_changed,
+            name="Mesh Resolution", min=0, max=8192, **_SHOWN,
             description="Quads along each side of the mesh; 0 for one per sample",
         ),
-        "live_image": _hidden(bpy.types.Image),
-        "sequence_image": _hidden(bpy.types.Image),
-        "texture": _hidden(bpy.types.Texture),
-        "sequence_first": IntProperty(options={"HIDDEN"}),
-        "sequence_last": IntProperty(options={"HIDDEN"}),
-        "sequence_samples": IntProperty(options={"HIDDEN"}),
-        "error": StringProperty(options={"HIDDEN"}),
-        "statistics": StringProperty(options={"HIDDEN"}),
+        "live_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
+        "sequence_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
+        "texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),
+        "sequence_first": IntProperty(**_HIDDEN),
+        "sequence_last": IntProperty(**_HIDDEN),
+        "sequence_samples": IntProperty(**_HIDDEN),
+        "error": StringProperty(**_HIDDEN),
+        "statistics": StringProperty(**_HIDDEN),
     }  # fmt: skip
 
     @contextmanager
@@ -115,15 +125,24 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         return OceanParameters.from_dict(data)
 
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
-        """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are."""
+        """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
+
+        Raises OceanObjectError for another number of layers on a library override.
+        """
+        count = len(self.layers)
+        if self.id_data.override_library and len(parameters.layers) != count:
+            raise OceanObjectError(
+                f"A library override keeps its {count} wave layers, this sea has {len(parameters.layers)}: "
+                "make the ocean local first"
+            )
         metres, data = metres_per_unit(scene), parameters.to_dict()
         with self.quiet():
             parameter_properties.write(self, OceanParameters, data, metres)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
-            self.layers.clear()
-            for layer in data["layers"]:
-                parameter_properties.write(self.layers.add(), WaveLayer, layer, metres)
+            _set_count(self.layers, len(data["layers"]))
+            for layer, values in zip(self.layers, data["layers"], strict=True):
+                parameter_properties.write(layer, WaveLayer, values, metres)
         _changed(self, bpy.context)
 
 

@@ -31,9 +31,9 @@ def test_refused(sequences, bake, make_parameters, tmp_path):
     baked.path(3).unlink()
     for sequence, said in (
         (baked, "1 of the frames 1 to 4 have no file, the first of them .*sea_disp.0003.exr"),
-        (dataclasses.replace(baked, first=9), "first frame 9 lies after the last frame 4"),
-        (dataclasses.replace(baked, name="lake"), "no files lake_disp.####.exr .*it holds sea"),
-        (dataclasses.replace(baked, directory=tmp_path / "nowhere"), "folder .*nowhere does not exist"),
+        (dataclasses.replace(baked, first=9), "The first frame 9 lies after the last frame 4"),
+        (dataclasses.replace(baked, name="lake"), "No files lake_disp.####.exr .*it holds sea"),
+        (dataclasses.replace(baked, directory=tmp_path / "nowhere"), "The folder .*nowhere does not exist"),
     ):
         with pytest.raises(sequences.SequenceError, match=said):
             sequence.check()
@@ -61,7 +61,7 @@ def test_nothing_is_added_for_a_sequence_that_cannot_be_used(
 def test_source_without_files_is_shown(ocean_object, make_parameters, empty_scene):
     settings = ocean_object.add(empty_scene, make_parameters()).ocean_tweak
     settings.source = "SEQUENCE"
-    assert "no image sequence is chosen" in settings.error
+    assert "No image sequence is chosen" in settings.error
     settings.source = "LIVE"
     assert settings.error == ""
 
