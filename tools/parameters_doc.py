@@ -75,7 +75,7 @@ def _allowed(meta: Any) -> str:
     return f"{span}, or `null`" if meta.get("optional") else span
 
 
-def _shown(value: object) -> str:
+def _shown(value: Any) -> str:
     """Return a value as it would stand in JSON, without a needless fraction."""
     if value is None:
         return "`null`"
