@@ -64,8 +64,8 @@ def test_pierson_moskowitz_agrees_with_wavespectra() -> None:
 
 @pytest.mark.parametrize("depth", [4.0, 10.0, 20.0])
 def test_tma_agrees_with_wavespectra(depth: float) -> None:
-    """Its depth factor is the exact one at an approximate wave number, up to 0.1 % beside the true one: that makes
-    up to 0.12 % of the spectrum."""
+    """Its depth factor is the exact one at an approximate wave number, up to 0.1 % beside the true one: that
+    makes up to 0.12 % of the spectrum."""
     alpha, peak = 0.0113, 0.11
     theirs = frequency.tma(HERTZ, fp=peak, dep=depth, alpha=alpha, gamma=3.3).values
     ours = 2.0 * np.pi * spectra.tma(OMEGA, alpha, 2.0 * np.pi * peak, Water(depth=depth, gravity=si.g))
