@@ -312,11 +312,13 @@ def _mode_peak(energy: Array, grid: WaveVectorGrid, parameters: OceanParameters)
     The spectrum is the mean energy of the modes around a frequency (Gaussian kernel in ln k) times the
     density of modes there, 2πk (dk/dω) / Δk²: a plain sum would show the lattice.
     """
-    log_k = np.log(grid.k[grid.usable])
-    centres = np.arange(log_k.min() - 0.5, log_k.max() + 0.5, 1.0 / _BINS_PER_LOG)
-    edges = np.append(centres, centres[-1] + 1.0 / _BINS_PER_LOG) - 0.5 / _BINS_PER_LOG
+    position = np.log(grid.k[grid.usable]) * _BINS_PER_LOG
+    first = int(np.floor(position.min())) - _BINS_PER_LOG // 2
+    bins = (position - first + 0.5).astype(np.int64)
+    size = int(bins.max()) + _BINS_PER_LOG // 2
     count = np.broadcast_to(grid.multiplicity, grid.shape)[grid.usable]
-    sums = [np.histogram(log_k, bins=edges, weights=w)[0] for w in (energy[grid.usable], count)]
+    sums = [np.bincount(bins, weights, minlength=size) for weights in (energy[grid.usable], count)]
+    centres = (first + np.arange(size)) / _BINS_PER_LOG
     reach = int(4.0 * _KERNEL_WIDTH * _BINS_PER_LOG)
     offset = np.arange(-reach, reach + 1) / _BINS_PER_LOG
     kernel = np.exp(-0.5 * (offset / _KERNEL_WIDTH) ** 2)
