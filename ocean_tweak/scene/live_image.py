@@ -24,8 +24,15 @@ def mark_as_data(image: bpy.types.Image) -> None:
     image.alpha_mode = "NONE"
 
 
-def resize(image: bpy.types.Image, samples: int) -> None:
-    """Give the image samples x samples texels; it stays the same image for materials that use it."""
+def prepare(image: bpy.types.Image, samples: int) -> None:
+    """Make the image ready for samples x samples texels; materials that use it keep it."""
+    if image.source != "GENERATED":
+        # quitting Blender with "save modified images" has packed it
+        if image.packed_file is not None:
+            image.unpack(method="REMOVE")
+        image.source = "GENERATED"
+        image.use_generated_float = True
+        mark_as_data(image)
     if tuple(image.size) != (samples, samples):
         image.generated_width = image.generated_height = samples
 

@@ -126,7 +126,7 @@ def _refreshed_live_image(
     displacement = ocean.frame(frame_with_subframe(scene)).displacement
     if settings.live_image is None or _is_borrowed(item, "live_image"):
         settings.live_image = live_image.new_image(f"{item.name} live", samples)
-    live_image.resize(settings.live_image, samples)
+    live_image.prepare(settings.live_image, samples)
     live_image.write(settings.live_image, displacement)
     return settings.live_image
 

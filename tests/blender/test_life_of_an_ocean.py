@@ -213,3 +213,18 @@ def test_materials_can_hold_on_to_the_live_image(add, make_parameters):
     assert item.ocean_tweak.live_image == image
     assert tuple(image.size) == (64, 64)
     assert item.data.materials[0].name == "Water"
+
+
+def test_a_live_image_that_was_packed_lives_on(add, make_parameters, expected, evaluated, empty_scene):
+    item = add(make_parameters())
+    image = item.ocean_tweak.live_image
+    image.pack()  # as Blender does when it saves modified images
+    assert image.source == "FILE"
+    empty_scene.frame_set(3)
+    np.testing.assert_allclose(evaluated(item), expected(make_parameters(), 3), atol=TOLERANCE)
+    image.pack()
+    larger = make_parameters(resolution=64)
+    item.ocean_tweak.from_parameters(larger, empty_scene)
+    np.testing.assert_allclose(evaluated(item), expected(larger, 3), atol=TOLERANCE)
+    assert image.packed_file is None
+    assert image.colorspace_settings.is_data

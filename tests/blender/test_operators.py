@@ -135,3 +135,16 @@ def test_operators_want_an_ocean(empty_scene):
         assert not operator.poll()
         with pytest.raises(RuntimeError, match="Select an ocean first"):
             operator()
+
+
+def test_the_command_line_sees_the_oceans_of_the_file(
+    active, extension, ocean_object, make_parameters, empty_scene, capsys
+):
+    registration = extension("registration")
+    other = make_parameters(seed=5, domain_size=80.0)
+    ocean_object.add(empty_scene, other, name="Lake")
+    assert registration.scene_oceans() == {"Ocean": make_parameters(), "Lake": other}
+    assert registration.run_command(["info", "--object", "Lake", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["Lake"]["parameters"] == json.loads(other.to_json())
+    assert registration.run_command(["info", "--object", "Pond"]) == 2
