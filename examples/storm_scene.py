@@ -126,9 +126,10 @@ def save(path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     if bpy.context.window:
         bpy.context.window.scene = bpy.data.scenes[OPENED]
-    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
-    bpy.ops.file.make_paths_relative()
-    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True, relative_remap=True)
+    fixed = [image.filepath for image in bpy.data.images if image.filepath and image.filepath[:2] != "//"]
+    if fixed:
+        raise RuntimeError(f"paths that do not move with {path.name}: {', '.join(fixed)}")
 
 
 if __name__ == "__main__":
