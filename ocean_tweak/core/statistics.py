@@ -313,9 +313,9 @@ def _mode_peak(energy: Array, grid: WaveVectorGrid, parameters: OceanParameters)
     density of modes there, 2πk (dk/dω) / Δk²: a plain sum would show the lattice.
     """
     position = np.log(grid.k[grid.usable]) * _BINS_PER_LOG
-    first = int(np.floor(position.min())) - _BINS_PER_LOG // 2
+    first = int(np.floor(np.min(position))) - _BINS_PER_LOG // 2
     bins = (position - first + 0.5).astype(np.int64)
-    size = int(bins.max()) + _BINS_PER_LOG // 2
+    size = int(np.max(bins)) + _BINS_PER_LOG // 2
     count = np.broadcast_to(grid.multiplicity, grid.shape)[grid.usable]
     sums = [np.bincount(bins, weights, minlength=size) for weights in (energy[grid.usable], count)]
     centres = (first + np.arange(size)) / _BINS_PER_LOG

@@ -117,7 +117,8 @@ def _checked_fraction(name: str, value: object, meta: Any) -> Fraction:
         result = Fraction(str(value).strip())  # 23.976 is what its digits say, not the nearest binary number
     except (TypeError, ValueError, ZeroDivisionError):
         raise ParameterError(name, value, allowed) from None
-    if not meta["minimum"] <= result <= meta["maximum"] or result.denominator > 10**9:
+    low, high = (Fraction(str(meta[end])) for end in ("minimum", "maximum"))
+    if not low <= result <= high or result.denominator > 10**9:
         raise ParameterError(name, value, allowed)
     return result
 

@@ -103,4 +103,5 @@ def test_frames_become_seconds_exactly() -> None:
     assert timing.time(1001 + 24000) == 1001.0
     assert timing.time(1001.5) == Fraction(1001, 48000)
     assert Timing(fps=24).time(25) == 1.0  # type: ignore[arg-type]
+    assert Timing(fps=Fraction(1, 100)).time(2) == 100
     assert Timing(fps=23.976).fps == Fraction(23976, 1000)  # type: ignore[arg-type]
