@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core mutate lint build docs clean
+.PHONY: help setup demo test test-core mutate lint bench bench-smoke build docs clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
@@ -28,6 +28,14 @@ mutate:     ## change each physical constant by 2 % and see which test notices (
 lint:       ## formatting, lint, types of the core, import layers; FIX=1 formats first
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.lint
+
+bench:      ## measure against the targets on a quiet machine; renews docs/performance.md
+	@$(PYTHON) -m tools.setup python-5.2 blender
+	@$(VENV) -m benchmarks
+
+bench-smoke: ## see that every measurement runs (under a minute; judges no time)
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m benchmarks --smoke
 
 build:      ## the extension's zip, into build/
 	@$(PYTHON) -m tools.setup python-5.2 blender

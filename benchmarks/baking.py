@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Baking displacement to EXR: how well computing and encoding share the cores, and what memory it takes."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from ocean_tweak.core import Ocean
+from ocean_tweak.core.bake import bake
+from ocean_tweak.export.exr import ExrSequence
+
+from .measure import Timings, interleaved
+from .plan import ROOT, SCRATCH, Plan, sea
+from .rows import Row, ratio_row
+from .transforms import free_cores, numpy_transforms, two_transforms_at_once
+
+GROUP = "bake"
+CODECS = ("PXR24", "ZIP", "NONE")
+DEFAULT = CODECS[0]
+
+
+def rows(plan: Plan) -> Iterator[Row]:
+    """Throughput by codec and workers, then the peak memory of the process."""
+    SCRATCH.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=SCRATCH) as folder:
+        for codec in CODECS:
+            yield from _throughput(plan, codec, Path(folder))
+        for workers in (1, 2):
+            yield _memory(plan, workers, Path(folder))
+
+
+def _throughput(plan: Plan, codec: str, folder: Path) -> Iterator[Row]:
+    timings = interleaved(_sides(plan, codec, folder), plan.rounds)
+    name = f"disp {plan.bake}², {codec}"
+    probe = free_cores(timings)
+    per_frame = {
+        side: timings.median(side) / plan.bake_frames for side in ("compute", "encode", "two workers")
+    }
+    yield Row(
+        GROUP, f"{name}: encode against compute", timings.ratio("encode", "compute"), "×", timings.rounds,
+        timings.quartiles("encode", "compute"), per_frame["encode"], per_frame["compute"],
+        remark="seconds a frame, one thread each",
+    )  # fmt: skip
+    shares = _shares(timings)
+    yield Row(
+        GROUP, f"{name}: two workers against (compute + encode)/2", statistics.median(shares), "×",
+        timings.rounds, (min(shares), max(shares)), per_frame["two workers"],
+        (per_frame["compute"] + per_frame["encode"]) / 2.0, probe,
+        target="bake" if codec == DEFAULT else None, remark="seconds a frame; range of all rounds",
+    )  # fmt: skip
+    yield ratio_row(
+        GROUP, f"{name}: two workers against one", timings, "two workers", "one worker", faster=True,
+        free_cores=probe, remark=f"seconds for {plan.bake_frames} frames",
+    )  # fmt: skip
+
+
+def _shares(timings: Timings) -> list[float]:
+    """Each round's time of two workers in units of what two ideal cores would take."""
+    pairs = zip(
+        timings.ratios("compute", "two workers"), timings.ratios("encode", "two workers"), strict=True
+    )
+    return [2.0 / (compute + encode) for compute, encode in pairs]
+
+
+def _sides(plan: Plan, codec: str, folder: Path) -> dict[str, Callable[[], object]]:
+    parameters = sea(plan.bake)
+    sink = ExrSequence(folder, "sea", parameters, codec)
+    ocean = Ocean(parameters, workers=1)
+    fields = ocean.frame(1)
+    count, starts = plan.bake_frames, itertools.count(1, plan.bake_frames)
+
+    def frames() -> range:
+        start = next(starts)
+        return range(start, start + count)
+
+    def compute() -> None:
+        for frame in frames():
+            ocean.frame(frame)
+
+    def encode() -> None:
+        for frame in range(1, count + 1):
+            sink.write(frame, fields)
+
+    def baked(workers: int) -> Callable[[], None]:
+        def run() -> None:
+            for done in bake(parameters, frames(), sink, workers):
+                done.path.unlink()  # or the disk fills
+
+        return run
+
+    return {
+        "compute": compute, "encode": encode, "one worker": baked(1), "two workers": baked(2),
+        "numpy": numpy_transforms(1, plan.bake), "probe": two_transforms_at_once(plan.bake),
+    }  # fmt: skip
+
+
+def _memory(plan: Plan, workers: int, folder: Path) -> Row:
+    """The largest resident size of a process of the command line that bakes."""
+    peak = peak_megabytes(
+        ["bake", "--params", str(ROOT / "examples" / "storm.json"), "--set", f"resolution={plan.bake}",
+         "--frames", f"1-{2 * plan.bake_frames}", "--workers", str(workers), "--out", str(folder / "process")]
+    )  # fmt: skip
+    return Row(
+        GROUP, f"disp {plan.bake}², {DEFAULT}: memory of the process, {workers} worker{'s'[: workers - 1]}",
+        peak / workers, "MB a worker", target="bake memory",
+    )  # fmt: skip
+
+
+def peak_megabytes(arguments: list[str]) -> float:
+    """Run the command line in a process of its own; raises RuntimeError if it fails."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "ocean_tweak", *arguments], cwd=ROOT, stdout=subprocess.DEVNULL
+    )
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise RuntimeError(f"ocean_tweak {' '.join(arguments)} failed with exit code {process.returncode}")
+    unit = 1 if sys.platform == "darwin" else 1024
+    return usage.ru_maxrss * unit / 1e6

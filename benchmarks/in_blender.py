@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Script for Blender: the built-in Ocean modifier against our live oceans, from frame to evaluated mesh.
+
+blender --background --factory-startup --python benchmarks/in_blender.py --
+        --sizes 256 512 1024 --latency 512 --rounds 9 --place LABEL --out FILE.json
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from benchmarks.measure import Timings, interleaved
+from benchmarks.plan import sea
+from benchmarks.rows import Row, ratio_row
+from ocean_tweak import registration
+from ocean_tweak.core import Ocean
+from ocean_tweak.scene import ocean_object
+from ocean_tweak.scene.grid_mesh import Grid, fill
+from ocean_tweak.scene.settings import METHODS
+
+CREST = "crest"
+
+Contender = tuple[bpy.types.Scene, bpy.types.Object]
+
+
+def main() -> None:
+    """Measure, and write the rows as JSON."""
+    arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
+    registration.register()
+    bpy.ops.wm.read_homefile(use_empty=True)
+    rows = [row for size in arguments.sizes for row in frame_rows(size, arguments)]
+    rows += latency_rows(arguments.latency, arguments)
+    report = {
+        "blender": bpy.app.version_string,
+        "python": sys.version.split()[0],
+        "numpy": np.__version__,
+        "rows": [row.to_dict() for row in rows],
+    }
+    arguments.out.write_text(json.dumps(report), encoding="utf-8")
+
+
+def parse(argv: list[str]) -> argparse.Namespace:
+    """The arguments after "--"."""
+    parser = argparse.ArgumentParser(prog="in_blender.py")
+    parser.add_argument("--sizes", type=int, nargs="+", required=True, help="samples along each side")
+    parser.add_argument("--latency", type=int, required=True, help="samples where a parameter is changed")
+    parser.add_argument("--rounds", type=int, required=True)
+    parser.add_argument("--place", required=True, help="which Blender this is")
+    parser.add_argument("--judge", type=int, default=1024, help="the size that the targets speak of")
+    parser.add_argument("--out", type=Path, required=True)
+    return parser.parse_args(argv)
+
+
+def modifier_resolution(samples: int) -> int:
+    """The Ocean modifier's setting r makes r² samples a side: the largest that makes no more than ours."""
+    return int(samples**0.5)
+
+
+def frame_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
+    """Frame change → evaluated mesh."""
+    modifiers = {
+        "Generate": built_in(samples, "GENERATE"),
+        "Generate with foam": built_in(samples, "GENERATE", foam=True),
+        "Displace": built_in(samples, "DISPLACE"),
+        "Displace with foam": built_in(samples, "DISPLACE", foam=True),
+    }
+    ours = {f"live, {method.lower()}": live(samples, method) for method in METHODS}
+    crested = with_crest(live(samples, "NODES"))
+    frames = itertools.count(1)
+    sides = {
+        name: to_mesh(contender, frames)
+        for name, contender in {**modifiers, **ours, "crest": crested}.items()
+    }
+    timings = interleaved(sides, arguments.rounds)
+    remove_scenes()
+    side = modifier_resolution(samples) ** 2
+    remark = "" if side == samples else f"the modifier makes {side}²"
+    for mine, theirs in itertools.product(ours, ("Generate", "Displace")):
+        judged = samples == arguments.judge and mine == "live, nodes" and theirs == "Generate"
+        yield compare(arguments, samples, timings, mine, theirs, remark, "Blender" if judged else None)
+    for theirs in ("Generate with foam", "Displace with foam"):
+        target = "Blender, foam" if samples == arguments.judge and theirs.startswith("Generate") else None
+        yield compare(arguments, samples, timings, "crest", theirs, remark, target)
+
+
+def compare(
+    arguments: argparse.Namespace,
+    samples: int,
+    timings: Timings,
+    mine: str,
+    theirs: str,
+    remark: str,
+    target: str | None,
+) -> Row:
+    """One way of ours against one of the modifier's."""
+    ours = "live, nodes, with a crest attribute" if mine == "crest" else mine
+    name = f"frame → mesh, {samples}², {ours} against Ocean modifier {theirs}"
+    return ratio_row(
+        f"Blender, {arguments.place}", name, timings, mine, theirs, faster=True, target=target, remark=remark
+    )
+
+
+def latency_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
+    """Wind speed set → evaluated mesh."""
+    ours = {f"live, {method.lower()}": live(samples, method) for method in METHODS}
+    scene, item = built_in(samples, "GENERATE")
+    modifier = item.modifiers["Ocean"]
+    winds = (10.0 + 1e-2 * step for step in itertools.count())
+
+    def change_modifier() -> None:
+        modifier.wind_velocity = next(winds)
+        mesh_of(scene, item)
+
+    sides = {"Generate": change_modifier}
+    sides |= {name: to_mesh_in_wind(contender, winds) for name, contender in ours.items()}
+    timings = interleaved(sides, arguments.rounds)
+    remove_scenes()
+    for name in ours:
+        row = f"wind → mesh, {samples}², {name} against Ocean modifier Generate"
+        yield ratio_row(f"Blender, {arguments.place}", row, timings, name, "Generate", faster=True)
+
+
+def to_mesh(contender: Contender, frames: Iterator[int]) -> Callable[[], None]:
+    """Goes to the next frame and asks for the mesh; raises RuntimeError when it does not move."""
+    scene, item = contender
+    seen: list[tuple[float, ...]] = [()]
+
+    def run() -> None:
+        scene.frame_set(next(frames))
+        place = tuple(mesh_of(scene, item).vertices[1].co)
+        if place == seen[0]:
+            raise RuntimeError(f"{scene.name}: the sea stands still")
+        seen[0] = place
+
+    return run
+
+
+def to_mesh_in_wind(contender: Contender, winds: Iterator[float]) -> Callable[[], None]:
+    """Changes the wind and asks for the mesh."""
+    scene, item = contender
+
+    def run() -> None:
+        item.ocean_tweak.layers[0].wind_speed = next(winds)
+        mesh_of(scene, item)
+        if item.ocean_tweak.error:
+            raise RuntimeError(item.ocean_tweak.error)
+
+    return run
+
+
+def mesh_of(scene: bpy.types.Scene, item: bpy.types.Object) -> bpy.types.Mesh:
+    """The evaluated mesh."""
+    layer = scene.view_layers[0]
+    layer.update()
+    return item.evaluated_get(layer.depsgraph).data
+
+
+def new_scene(name: str) -> bpy.types.Scene:
+    """A scene of its own for each contender, so that no frame change moves another."""
+    scene = bpy.data.scenes.new(name)
+    scene.render.fps = 24
+    return scene
+
+
+def remove_scenes() -> None:
+    """Take the contenders away, and their oceans with them."""
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    for scene in list(bpy.data.scenes)[1:]:
+        bpy.data.scenes.remove(scene)
+    bpy.app.handlers.frame_change_pre[:] = [
+        handler for handler in bpy.app.handlers.frame_change_pre if not hasattr(handler, CREST)
+    ]
+    bpy.data.orphans_purge()
+
+
+def built_in(samples: int, geometry: str, foam: bool = False) -> Contender:
+    """Blender's own ocean, its time driven by the frame; to displace, a grid as fine as ours."""
+    scene = new_scene(f"Ocean modifier {geometry} {foam}")
+    mesh = bpy.data.meshes.new("grid")
+    if geometry == "DISPLACE":
+        fill(mesh, Grid(2000.0, samples, samples))
+    else:
+        mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+    item = bpy.data.objects.new("modifier", mesh)
+    scene.collection.objects.link(item)
+    modifier = item.modifiers.new("Ocean", "OCEAN")
+    modifier.geometry_mode = geometry
+    modifier.viewport_resolution = modifier.resolution = modifier_resolution(samples)
+    modifier.spatial_size = 2000
+    modifier.wind_velocity = 25.0
+    modifier.use_foam = foam
+    modifier.foam_layer_name = "foam" if foam else ""
+    driver = item.driver_add('modifiers["Ocean"].time').driver
+    driver.expression = "frame / 24"
+    made, wanted = len(mesh_of(scene, item).vertices), samples + 1
+    if geometry == "GENERATE":
+        wanted = modifier_resolution(samples) ** 2 + 1
+    if made != wanted**2:
+        raise RuntimeError(f"the Ocean modifier has {made} vertices and not {wanted}²")
+    return scene, item
+
+
+def live(samples: int, method: str) -> Contender:
+    """Our ocean as Add > Mesh > Ocean Tweak makes it."""
+    scene = new_scene(f"live {method}")
+    item = ocean_object.add(scene, sea(samples), method, "LIVE")
+    made = len(mesh_of(scene, item).vertices)
+    if made != (samples + 1) ** 2:
+        raise RuntimeError(f"our ocean has {made} vertices and not {samples + 1}²")
+    return scene, item
+
+
+def with_crest(contender: Contender) -> Contender:
+    """Also makes the crest field of every frame, and puts it on the mesh: what foam starts from."""
+    scene, item = contender
+    samples = item.ocean_tweak.resolution
+    ocean = Ocean(item.ocean_tweak.to_parameters(scene))
+    attribute = item.data.attributes.new(CREST, "FLOAT", "POINT")
+    closed = np.empty((samples + 1, samples + 1), np.float32)
+
+    def make_crest(changed: bpy.types.Scene, _depsgraph: object = None) -> None:
+        if changed != scene:
+            return
+        crest = ocean.frame(changed.frame_current, ("min_eigenvalue",)).min_eigenvalue
+        closed[:-1, :-1] = crest
+        closed[-1], closed[:, -1] = closed[0], closed[:, 0]  # the far edges are the near ones again
+        item.data.attributes[CREST].data.foreach_set("value", closed.reshape(-1))
+        item.data.update_tag()
+
+    setattr(make_crest, CREST, attribute.name)
+    bpy.app.handlers.frame_change_pre.append(make_crest)
+    return scene, item
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the product promises. A row of measurements names the target that it is judged by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Target:
+    """A limit, and what it is a limit of.
+
+    at_least : whether the value must reach the limit rather than stay below it
+    needs_two_cores : judged only where a probe in the same run found two free cores
+    """
+
+    work: str
+    limit: float
+    unit: str
+    at_least: bool = False
+    needs_two_cores: bool = False
+
+    def met(self, value: float) -> bool:
+        """Whether a value is good enough."""
+        return value >= self.limit if self.at_least else value <= self.limit
+
+    def worst(self, values: list[float]) -> float:
+        """The value that is furthest from what is wanted."""
+        return min(values) if self.at_least else max(values)
+
+    def __str__(self) -> str:
+        return f"{'≥' if self.at_least else '≤'} {self.limit:g} {self.unit}".rstrip()
+
+
+#: cores that a probe must find free before two workers are judged
+TWO_CORES = 1.7
+
+TARGETS = {
+    "3 fields": Target("3 fields (elevation, Dx, Dy), one thread, N ≥ 512", 1.2, "× three irfft2"),
+    "6 fields": Target("6 fields + minimum eigenvalue, one thread, 1024²", 1.45, "× six irfft2"),
+    "6 fields, large": Target("6 fields + minimum eigenvalue, one thread, ≥ 2048²", 1.0, "× six irfft2"),
+    "two workers": Target(
+        "two threads against one, N ≥ 1024", 1.5, "×", at_least=True, needs_two_cores=True
+    ),
+    "initial state": Target(
+        "initial state at 512² after one spectral parameter changed", 8.0, "× one six-field frame"
+    ),
+    "Blender": Target(
+        "frame change → evaluated mesh at 1024², live, nodes", 6.0, "× faster than Generate", at_least=True
+    ),
+    "Blender, foam": Target(
+        "the same with foam", 12.0, "× faster than Generate with foam", at_least=True
+    ),
+    "bake": Target(
+        "bake of `disp` at 1024², two workers", 1.15, "× (compute + encode)/2", needs_two_cores=True
+    ),
+    "bake memory": Target("memory of that bake", 400.0, "MB a worker"),
+    "growth": Target("time per sample, 4096² against 512²", 1.6, "×"),
+    "memory": Target("memory of `surface()` beyond its outputs", 24.0, "bytes a sample"),
+    "precision": Target("rms relative error against float64 at t = 10⁴ s, every field", 5e-7, ""),
+}  # fmt: skip
