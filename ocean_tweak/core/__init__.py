@@ -2,10 +2,11 @@
 """The sea itself: NumPy and the standard library, nothing else."""
 
 from .ocean import Ocean
-from .parameters import OceanParameters, ParameterError, Timing, Water, WaveLayer
+from .parameters import Foam, OceanParameters, ParameterError, Timing, Water, WaveLayer
 from .sea_state_match import layer_for_sea_state
 
 __all__ = [
+    "Foam",
     "Ocean",
     "OceanParameters",
     "ParameterError",

@@ -56,3 +56,7 @@ SWELL_SHAPE = 16.0
 
 # Trough damping: the long waves are those below this multiple of the peak wave number
 TROUGH_FILTER = 3.0
+
+# Whitecaps, Monahan & O'Muircheartaigh (1980): share of the sea, wind at 10 m in m/s
+WHITECAP_FACTOR = 3.84e-6
+WHITECAP_EXPONENT = 3.41

@@ -61,6 +61,13 @@ def min_eigenvalue(rows: Rows, out: RealArray) -> None:
     np.subtract(half_sum, np.sqrt(half_difference, out=half_difference), out=out)
 
 
+def cusp(rows: Rows, out: RealArray) -> None:
+    """(N, N): how far the surface is squeezed, 1 - min_eigenvalue; 0 where it is stretched, 1 in a fold."""
+    min_eigenvalue(rows, out)
+    np.subtract(1.0, out, out=out)
+    np.maximum(out, 0.0, out=out)
+
+
 def min_eigenvector(rows: Rows, out: RealArray) -> None:
     """(N, N, 2): unit vector along which the surface is squeezed most, its x ≥ 0."""
     _, half_difference, shear = _symmetric_part(rows)
@@ -119,15 +126,23 @@ OUTPUTS: dict[str, Output] = {
     "velocity": Output(velocity, frozenset({(X, "t"), (Y, "t"), (Z, "t")}), 3),
     "jacobian": Output(jacobian, _GRADIENT, 0),
     "min_eigenvalue": Output(min_eigenvalue, _GRADIENT, 0),
+    "cusp": Output(cusp, _GRADIENT, 0),
     "min_eigenvector": Output(min_eigenvector, _GRADIENT, 2),
     "normal": Output(normal, _GRADIENT | _SLOPES, 3),
 }
 
 
+#: the one output with a memory, made from others: (N, N), 0…1
+FOAM = "foam"
+
+KNOWN = (*OUTPUTS, FOAM)
+
+
 class SurfaceFields:
     """Fields of one instant on the (N, N) samples [y, x]; only those asked for exist.
 
-    The names are those in `OUTPUTS`, the shapes and units those of the functions named there.
+    The names are those in `OUTPUTS`, the shapes and units those of the functions named there; and `foam`,
+    (N, N) in 0…1.
     """
 
     def __init__(self, time: float, fields: dict[str, RealArray]) -> None:
@@ -135,7 +150,7 @@ class SurfaceFields:
         self._fields = fields
 
     def __getattr__(self, name: str) -> RealArray:
-        if name in OUTPUTS:
+        if name in KNOWN:
             fields: dict[str, RealArray] = self.__dict__.get("_fields", {})
             if name in fields:
                 return fields[name]
@@ -143,15 +158,15 @@ class SurfaceFields:
             raise AttributeError(
                 f"{name} was not computed (only {made}): ask for it with surface(time, outputs={{'{name}'}})"
             )
-        raise AttributeError(f"surface fields have no {name!r}: known are {', '.join(OUTPUTS)}")
+        raise AttributeError(f"surface fields have no {name!r}: known are {', '.join(KNOWN)}")
 
 
 def checked_outputs(outputs: Iterable[str]) -> frozenset[str]:
     """The wanted outputs as a set. Raises ValueError for a name that is not known."""
     wanted = frozenset((outputs,) if isinstance(outputs, str) else outputs)
-    unknown = sorted(wanted - set(OUTPUTS))
+    unknown = sorted(wanted - set(KNOWN))
     if unknown:
-        raise ValueError(f"outputs = {unknown[0]!r}: must be among {', '.join(OUTPUTS)}")
+        raise ValueError(f"outputs = {unknown[0]!r}: must be among {', '.join(KNOWN)}")
     return wanted
 
 

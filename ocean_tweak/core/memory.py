@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fields import OUTPUTS, memory_groups
+from .fields import FOAM, OUTPUTS, memory_groups
 from .parameters import OceanParameters
 from .synthesis import term
 
@@ -49,12 +49,20 @@ def memory_need(
     phasors = min(len(parameters.active_layers), 4) * 2 * 2 * real
     state = half_plane * (2 * 2 * real + 2 * real + 8 + phasors)
     building = half_plane * 8 * _TEMPORARY_ARRAYS + _TABLES
-    wanted = frozenset(outputs)
-    fields = sum(int(np.prod(OUTPUTS[name].shape(n))) * real for name in wanted)
+    everything = frozenset(outputs)
+    wanted = everything - {FOAM}
+    fields = _foam_bytes(parameters) if FOAM in everything else 0
+    fields += sum(int(np.prod(OUTPUTS[name].shape(n))) * real for name in wanted)
     columns = max((_columns(group) for group in memory_groups(wanted)), default=0)
     if parameters.trough_damping > 0.0:
         columns *= 2
     return MemoryNeed(state, building, fields + columns * half_plane * 2 * real)
+
+
+def _foam_bytes(parameters: OceanParameters) -> int:
+    """The field itself; births, a squeeze and temporaries at the foam's own resolution."""
+    own = parameters.foam.resolution or parameters.resolution
+    return 4 * parameters.resolution**2 + 48 * own**2
 
 
 def _columns(group: Iterable[str]) -> int:

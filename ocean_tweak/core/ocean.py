@@ -12,10 +12,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .fields import OUTPUTS, SurfaceFields, checked_outputs, memory_groups
+from .fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs, memory_groups
+from .foam_field import FoamField
 from .initial_state import InitialState, initial_state
 from .memory import check_memory, memory_need
-from .parameters import OceanParameters, Timing
+from .parameters import Foam, OceanParameters, Timing
 from .sea_spectrum import SeaSpectrum
 from .statistics import Statistics, sea_statistics
 from .synthesis import Rows, Synthesis
@@ -66,7 +67,9 @@ class Ocean:
         check_memory(need, f"A sea of {self.parameters.resolution}² samples")
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
-        shared = self.parameters.replace(choppiness=0.0, trough_damping=0.0, orbits="DEEP", timing=timing)
+        shared = self.parameters.replace(
+            choppiness=0.0, trough_damping=0.0, orbits="DEEP", foam=Foam(), timing=timing
+        )
         return _cached_initial_state(shared, PRECISIONS[self.precision])
 
     @cached_property
@@ -96,22 +99,43 @@ class Ocean:
         if not np.isfinite(float(time)):
             raise ValueError(f"time = {time!r}: must be a finite number of seconds")
         fields = self._arrays(wanted, out or {})
-        with self._busy:  # the workspace serves one surface at a time
-            for group in memory_groups(wanted):
-                needs = frozenset().union(*(OUTPUTS[name].needs for name in group))
-
-                def write(block: slice, rows: Rows, group: Sequence[str] = group) -> None:
-                    for name in group:
-                        OUTPUTS[name].write(rows, fields[name][block])
-
-                self._synthesis.fill(time, needs, write, self._workspace)
+        with self._busy:  # the workspace and the foam's history serve one surface at a time
+            self._fill(time, wanted - {FOAM}, fields)
+            if FOAM in wanted:
+                fields[FOAM][...] = self.foam.at(time)
         return SurfaceFields(float(time), fields)
+
+    def _fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
+        for group in memory_groups(wanted):
+            needs = frozenset().union(*(OUTPUTS[name].needs for name in group))
+
+            def write(block: slice, rows: Rows, group: Sequence[str] = group) -> None:
+                for name in group:
+                    OUTPUTS[name].write(rows, fields[name][block])
+
+            self._synthesis.fill(time, needs, write, self._workspace)
+
+    @cached_property
+    def foam(self) -> FoamField:
+        """The sea's foam. Its history serves ascending times; any other time is made from the sea alone."""
+        resolution = self.parameters.foam.resolution or self.parameters.resolution
+        sea = self
+        if resolution != self.parameters.resolution:
+            sea = Ocean(self.parameters.replace(resolution=resolution), self.precision, self.workers)
+
+        def cusp_at(time: Fraction) -> RealArray:
+            fields = sea._arrays(frozenset({"cusp"}), {})
+            sea._fill(time, frozenset(fields), fields)
+            return fields["cusp"]
+
+        return FoamField(self.parameters, sea.initial_state, cusp_at)
 
     def _arrays(self, wanted: frozenset[str], out: Mapping[str, RealArray]) -> dict[str, RealArray]:
         dtype = np.float32 if self.precision == "single" else np.float64
         fields: dict[str, RealArray] = {}
         for name in sorted(wanted):
-            shape = OUTPUTS[name].shape(self.parameters.resolution)
+            n = self.parameters.resolution
+            shape = (n, n) if name == FOAM else OUTPUTS[name].shape(n)
             array = out[name] if name in out else np.empty(shape, dtype)
             if array.shape != shape or array.dtype != dtype:
                 raise ValueError(

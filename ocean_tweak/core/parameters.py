@@ -17,7 +17,7 @@ from . import constants
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import ParameterError, Validated, choice, integer, nested, number, rational, switch
 
-__all__ = ["OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer", "parse_json"]
+__all__ = ["Foam", "OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer", "parse_json"]
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
@@ -63,8 +63,9 @@ class WaveLayer(Validated):
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
     wind_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which the waves run, counter-clockwise from +x"
-    )
+        0.0, -1e6, 1e6, "rad", "Direction towards which the waves run, counter-clockwise from +x",
+        "any number of turns that a float tells apart",
+    )  # fmt: skip
     fetch: float = number(
         150e3, 1.0, 20e6, "m", "Distance of open water over which the wind has blown",
         "from a pond to half the Earth's circumference",
@@ -102,13 +103,9 @@ class WaveLayer(Validated):
         "longer than any wave's cut-off",
     )  # fmt: skip
     wind_height: float = number(
-        10.0,
-        1.0,
-        100.0,
-        "m",
-        "Height above the water at which the wind was measured",
-        "the range of the log law",
-    )
+        10.0, 2.0, 100.0, "m", "Height above the water at which the wind was measured",
+        "lower, the log law has no wind for every speed",
+    )  # fmt: skip
     definition: str = choice(
         "WIND", DEFINITIONS, "What gives the layer's energy: wind and fetch, or wave height and period"
     )
@@ -160,14 +157,13 @@ class WaveLayer(Validated):
     band_inverted: bool = switch(False, "Keep what lies outside the band instead")
     muted: bool = switch(False, "Leave the layer out; no other layer changes")
     id: int = integer(
-        -1,
-        -1,
-        2**31 - 1,
-        "Identity of the layer, from which its seed follows; -1 takes the first free number",
-    )
+        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free one",
+        "Blender's whole numbers",
+    )  # fmt: skip
     seed: int = integer(
-        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id"
-    )
+        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
+        "Blender's whole numbers",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -179,14 +175,50 @@ class WaveLayer(Validated):
 
 
 @dataclass(frozen=True)
+class Foam(Validated):
+    """How whitecaps cover the sea and how long they last."""
+
+    coverage: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the share of the sea under foam; 1 is what the wind leaves at sea",
+        "from none to all of a light breeze's sea",
+    )  # fmt: skip
+    half_life: float = number(
+        2.5, 0.0, 60.0, "s", "Time in which foam fades to a half; 0 keeps it where it is born",
+        "whitecaps fade in seconds, patches in a minute",
+    )  # fmt: skip
+    drift: float = number(
+        0.02, 0.0, 0.2, "", "Speed of the foam along the wind, as a share of the wind's",
+        "the surface drifts with 2 to 3 % of the wind",
+    )  # fmt: skip
+    resolution: int = integer(
+        0, 0, 8192, "Samples along each side at which foam is made, even; 0 for those of the sea",
+        "as the resolution of the sea",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.resolution % 2 or 0 < self.resolution < 16:
+            raise ParameterError("resolution", self.resolution, "must be 0 or an even number from 16 to 8192")
+
+
+@dataclass(frozen=True)
 class Timing(Validated):
     """How frames of the shot become seconds: ocean time 0 is at ``start_frame``.
 
     ``fps`` is kept as an exact fraction, so that 24000/1001 is what it says.
     """
 
-    fps: Fraction = rational(Fraction(24), 0.01, 1000.0, "frames per second", "Frames per second of the shot")
-    start_frame: int = integer(1, -1_000_000, 10_000_000, "Frame at which the ocean's time is zero")
+    fps: Fraction = rational(
+        Fraction(24), 0.01, 1000.0, "frames per second", "Frames per second of the shot",
+        "from time-lapse to high speed",
+    )  # fmt: skip
+    start_frame: int = integer(
+        1,
+        -1_000_000,
+        10_000_000,
+        "Frame at which the ocean's time is zero",
+        "more than Blender's frame range",
+    )
 
     def time(self, frame: float | Fraction) -> Fraction:
         """Ocean time in seconds at a frame, which may hold a sub-frame; exact."""
@@ -208,20 +240,22 @@ class OceanParameters(Validated):
         400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
         "a wave vector is told apart from its neighbours up to 100 km",
     )  # fmt: skip
-    seed: int = integer(0, 0, 2**31 - 1, "Number of this particular sea among all with these parameters")
+    seed: int = integer(
+        0,
+        0,
+        2**31 - 1,
+        "Number of this particular sea among all with these parameters",
+        "Blender's whole numbers",
+    )
     choppiness: float = number(
         1.0, 0.0, 4.0, "", "Horizontal displacement that sharpens crests; 1 is linear wave theory",
         "far beyond 1 the surface folds",
     )  # fmt: skip
     dispersion: str = choice("CAPILLARY", DISPERSIONS, "How fast a wave of a given length travels")
     loop_duration: Fraction | None = rational(
-        None,
-        0.01,
-        1e6,
-        "s",
-        "Time after which the sea repeats itself exactly; none if it never does",
-        optional=True,
-    )
+        None, 0.01, 1e6, "s", "Time after which the sea repeats itself exactly; none if it never does",
+        "from a frame to days", optional=True,
+    )  # fmt: skip
     amplitudes: str = choice(
         "GAUSSIAN", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
     )
@@ -234,6 +268,7 @@ class OceanParameters(Validated):
     )
     water: Water = nested(Water)
     layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
+    foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
     def __post_init__(self) -> None:

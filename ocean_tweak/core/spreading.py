@@ -31,6 +31,10 @@ _BREAKS = (
 )
 
 
+#: s of waves within half a degree of the wind: no wind of a known sea comes near it
+_LARGEST_S = 1e4
+
+
 @dataclass(frozen=True)
 class Spreading:
     """A spreading model with its parameters.
@@ -79,7 +83,7 @@ def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     s_p = constants.MITSUYASU_PEAK * wind_frequency**constants.MITSUYASU_WIND_EXPONENT
     below, above = constants.MITSUYASU_BELOW_EXPONENT, constants.MITSUYASU_ABOVE_EXPONENT
-    return s_p * np.where(x <= 1.0, x**below, x**above)
+    return np.minimum(s_p * np.where(x <= 1.0, x**below, x**above), _LARGEST_S)
 
 
 def hasselmann_s(ratio: ArrayLike, wind_frequency: float) -> Array:
@@ -88,8 +92,10 @@ def hasselmann_s(ratio: ArrayLike, wind_frequency: float) -> Array:
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     growth = wind_frequency - constants.HASSELMANN_WIND_OFFSET
     exponent = constants.HASSELMANN_ABOVE_EXPONENT + constants.HASSELMANN_WIND_FACTOR * growth
-    below = constants.HASSELMANN_BELOW * x**constants.HASSELMANN_BELOW_EXPONENT
-    return np.where(x < constants.HASSELMANN_ABOVE_FROM, below, constants.HASSELMANN_ABOVE * x**exponent)
+    is_below = x < constants.HASSELMANN_ABOVE_FROM
+    below = constants.HASSELMANN_BELOW * np.where(is_below, x, 1.0) ** constants.HASSELMANN_BELOW_EXPONENT
+    above = constants.HASSELMANN_ABOVE * np.where(is_below, 1.0, x) ** exponent
+    return np.where(is_below, below, above)
 
 
 def swell_s(ratio: ArrayLike, swell: float) -> Array:

@@ -19,6 +19,10 @@ from .initial_state import InitialState
 Array = NDArray[np.floating]
 
 
+#: m; below it the sea is flat, and single precision could not hold the inverse
+_FLAT = 1e-30
+
+
 @dataclass(frozen=True)
 class TroughDamping:
     """A filter for the long waves and the weight of the short ones.
@@ -50,4 +54,4 @@ def trough_damping(strength: float, state: InitialState, peak_wave_number: float
     long_waves = np.exp(-((grid.k / (constants.TROUGH_FILTER * peak_wave_number)) ** 4))
     energy = (state.expected_plus + state.expected_minus) * grid.multiplicity
     deviation = float(np.sqrt(np.sum(long_waves**2 * energy)))
-    return TroughDamping(strength, long_waves, deviation) if deviation > 0.0 else None
+    return TroughDamping(strength, long_waves, deviation) if deviation > _FLAT else None

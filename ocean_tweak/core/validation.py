@@ -68,6 +68,7 @@ def rational(
     maximum: float,
     unit: str,
     description: str,
+    why: str = "",
     optional: bool = False,
 ) -> Any:
     """A dataclass field that is kept as an exact fraction; None is allowed where it is optional."""
@@ -75,7 +76,7 @@ def rational(
         default=default,
         metadata={
             "kind": Fraction, "minimum": minimum, "maximum": maximum,
-            "unit": unit, "description": description, "optional": optional,
+            "unit": unit, "description": description, "why": why, "optional": optional,
         },
     )  # fmt: skip
 

@@ -66,6 +66,7 @@ def outputs_from(sums: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         "velocity": np.stack([sums[c + "_t"] for c in "xyz"], -1),
         "jacobian": np.linalg.det(gradient),
         "min_eigenvalue": values[..., 0],
+        "cusp": np.maximum(0.0, 1.0 - values[..., 0]),
         "min_eigenvector": vectors[..., :, 0],
         "normal": normal / np.linalg.norm(normal, axis=-1, keepdims=True),
     }

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing, Water, WaveLayer
+from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Timing, Water, WaveLayer
 from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.propagation import propagate
 
@@ -57,6 +57,7 @@ SEAS = instances(
     resolution=st.sampled_from([16, 18, 20, 32]),
     loop_duration=st.one_of(st.none(), st.integers(1, 500).map(lambda n: Fraction(n, 24))),
     water=instances(Water),
+    foam=instances(Foam, resolution=st.sampled_from([0, 16, 24])),
     layers=st.lists(LAYERS, min_size=1, max_size=3).map(tuple),
     timing=st.just(Timing()),
 )
@@ -109,7 +110,7 @@ def outside(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
 
 REFUSED = [
     (cls, field)
-    for cls in (OceanParameters, WaveLayer, Water, Timing)
+    for cls in (OceanParameters, WaveLayer, Water, Foam, Timing)
     for field in dataclasses.fields(cls)
     if "kind" in field.metadata
 ]

@@ -69,7 +69,8 @@ def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     kept = sum(getattr(fields, name).nbytes for name in outputs)
-    assert (peak - kept) / 1024**2 <= 24.0
+    # NumPy before 2.0 transforms in double precision, and its blocks are twice as large
+    assert (peak - kept) / 1024**2 <= (24.0 if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else 34.0)
     assert peak < 1.4 * memory_need(parameters, outputs).surface
 
 

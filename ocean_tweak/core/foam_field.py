@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The foam of a sea: its threshold, its history and its field at the sea's resolution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .foam import FoamHistory, FoamModel, strength_levels
+from .foam_threshold import foam_wind, strains, whitecap_coverage
+from .initial_state import InitialState
+from .parameters import OceanParameters
+
+RealArray = NDArray[np.floating]
+
+
+def foam_model(parameters: OceanParameters, state: InitialState) -> FoamModel:
+    """How the foam of a sea is born and lives.
+
+    state : of the sea at the resolution at which foam is made: the threshold follows from the strains that
+        this grid holds, so that foam made coarser covers as much
+    """
+    foam, wind = parameters.foam, foam_wind(parameters)
+    drift, threshold = (0.0, 0.0), math.inf
+    if wind is not None:
+        speed = foam.drift * wind.speed
+        drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
+        coverage = min(1.0, foam.coverage * whitecap_coverage(wind.speed))
+        if coverage > 0.0:
+            of_sea = strains(state, parameters, drift)
+            threshold = of_sea.threshold(coverage, foam.half_life, strength_levels())
+    return FoamModel(
+        threshold=threshold,
+        half_life=foam.half_life,
+        drift=drift,
+        spacing=parameters.domain_size / state.grid.resolution,
+        loop_duration=parameters.loop_duration,
+    )
+
+
+class FoamField:
+    """Foam at any time, at the sea's resolution; quickest when times ascend."""
+
+    def __init__(
+        self, parameters: OceanParameters, state: InitialState, cusp_at: Callable[[Fraction], RealArray]
+    ) -> None:
+        """`state` and `cusp_at`, the squeeze at a time, are those of the resolution at which foam is made."""
+        self.model = foam_model(parameters, state)
+        self._resolution = parameters.resolution
+        self._history = FoamHistory(self.model, cusp_at)
+
+    def at(self, time: float | Fraction) -> RealArray:
+        """(N, N) float32, 0…1."""
+        return resampled(self._history.foam(time), self._resolution)
+
+
+def resampled(field: RealArray, resolution: int) -> RealArray:
+    """A periodic (M, M) field on (N, N) samples, bilinear; the first sample is the same."""
+    size = field.shape[0]
+    if size == resolution:
+        return field
+    position = np.arange(resolution) * (size / resolution)
+    low = position.astype(np.intp)
+    fraction = (position - low).astype(field.dtype)
+    high = (low + 1) % size
+    rows = field[low] + fraction[:, np.newaxis] * (field[high] - field[low])
+    return rows[:, low] + fraction * (rows[:, high] - rows[:, low])

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where whitecaps begin: the squeeze of the surface beyond which it is foam.
+
+With true wave heights hardly anything folds, so foam cannot wait for folding. Instead the threshold follows
+from the sea's own strains, so that the share of the surface under foam is the one that winds leave at sea.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import constants, random
+from .initial_state import InitialState
+from .parameters import OceanParameters, WaveLayer
+from .wind_profile import wind_at_10_m
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 2**18
+
+
+class Wind(NamedTuple):
+    """The strongest wind among the layers that are given by a wind."""
+
+    speed: float
+    direction: float
+
+
+def foam_wind(parameters: OceanParameters) -> Wind | None:
+    """The wind at 10 m that makes whitecaps, m/s and rad; None without one: swell does not break."""
+
+    def speed(layer: WaveLayer) -> float:
+        return wind_at_10_m(layer.wind_speed, layer.wind_height)
+
+    layers = [layer for layer in parameters.active_layers if layer.definition == "WIND" and layer.gain > 0.0]
+    if not layers:
+        return None
+    strongest = max(layers, key=speed)
+    return Wind(speed(strongest), strongest.wind_direction)
+
+
+def whitecap_coverage(wind_speed: float) -> float:
+    """Share of the sea under whitecaps for a wind in m/s at 10 m: 3.84·10⁻⁶ U^3.41, at most 1.
+
+    Monahan & O'Muircheartaigh (1980).
+    """
+    return min(1.0, constants.WHITECAP_FACTOR * wind_speed**constants.WHITECAP_EXPONENT)
+
+
+@dataclass(frozen=True)
+class Strains:
+    """Random strains of a sea: squeezes (1 - minimum eigenvalue) and their rates in 1/s at some points."""
+
+    squeeze: Array
+    rate: Array
+
+    def threshold(self, coverage: float, duration: float, rises: Array) -> float:
+        """The squeeze from which foam is to be born, so that it covers a share of the sea.
+
+        A point counts as covered while its foam is at least half as dense as it can be. Foam is born with
+        a strength that rises with the squeeze; it covers for `duration` s when it was born at full
+        strength, shorter otherwise. By Rice (1944) a level is crossed upwards at the mean of the positive
+        rates there times the squeeze's density; rare crossings are independent.
+
+        coverage : 0…1
+        rises : squeezes over the threshold at which the strength is 2^-1 … 2^0, evenly spaced in the exponent
+        """
+        order = np.argsort(self.squeeze)
+        squeeze, rising = self.squeeze[order], np.maximum(self.rate[order], 0.0)
+        rank = np.arange(_SAMPLES)
+        above = 1.0 - (rank + 0.5) / _SAMPLES
+        # crossings at each point: the mean over its neighbours, fewer of them towards the rare end
+        half = np.maximum(8, (0.2 * _SAMPLES * above).astype(np.int64))
+        low, high = (np.clip(rank + sign * half, 0, _SAMPLES - 1) for sign in (-1, 1))
+        sums = np.concatenate(([0.0], np.cumsum(rising)))
+        crossings = (sums[high + 1] - sums[low]) / _SAMPLES / np.maximum(squeeze[high] - squeeze[low], 1e-12)
+        candidates = np.linspace(squeeze[_SAMPLES // 2], squeeze[-1], 2000)
+        levels = candidates[:, np.newaxis] * rises
+        now = np.interp(levels[:, 0], squeeze, above)
+        later = np.interp(levels, squeeze, crossings).mean(axis=1) * duration
+        covered = 1.0 - (1.0 - now) * np.exp(-later / np.maximum(1.0 - now, 1e-3))
+        enough = np.nonzero(covered >= coverage)[0]
+        return float(candidates[enough[-1]] if len(enough) else candidates[0])
+
+
+def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float, float]) -> Strains:
+    """Strains of the waves that the grid resolves, as seen by a point that drifts with (x, y) m/s.
+
+    The gradient of the horizontal displacement is Gaussian with the covariance of its spectrum; so is its
+    rate, independent of it, with ω² (ω as the drifting point meets the waves) in the integral.
+    """
+    grid = state.grid
+    k = np.maximum(grid.k, 0.5 * grid.spacing)
+    factor = parameters.choppiness / k
+    if parameters.orbits == "FINITE_DEPTH":
+        factor /= np.tanh(k * parameters.water.depth)
+    along = grid.kx * drift[0] + grid.ky * drift[1]
+    components = np.stack(
+        [np.broadcast_to(c, grid.shape) for c in (grid.kx**2, grid.ky**2, grid.kx * grid.ky)]
+    )
+    components *= factor
+    present = state.expected_plus * grid.multiplicity, state.expected_minus * grid.multiplicity
+    frequency = state.omega - along, state.omega + along
+    energy = present[0] + present[1]
+    rates = present[0] * frequency[0] ** 2 + present[1] * frequency[1] ** 2
+    gradient, change = (
+        _correlated(components, weight, stream) for weight, stream in ((energy, 0), (rates, 8))
+    )
+    half_difference, shear = 0.5 * (gradient[0] - gradient[1]), gradient[2]
+    root = np.hypot(half_difference, shear)
+    squeeze = root - 0.5 * (gradient[0] + gradient[1])
+    across = half_difference * 0.5 * (change[0] - change[1]) + shear * change[2]
+    rate = across / np.maximum(root, 1e-30) - 0.5 * (change[0] + change[1])
+    return Strains(squeeze, rate)
+
+
+def _correlated(components: Array, weight: Array, stream: int) -> Array:
+    """(3, samples) Gaussian numbers with the covariance of components (3, …) of waves of some energies."""
+    flat = components.reshape(3, -1)
+    covariance = (flat * weight.ravel()) @ flat.T
+    values, vectors = np.linalg.eigh(covariance)
+    key = np.arange(_SAMPLES, dtype=np.uint64)
+    independent = np.stack([random.normal(key, stream + 2 * i) for i in range(3)])
+    return vectors @ (np.sqrt(np.maximum(values, 0.0))[:, np.newaxis] * independent)

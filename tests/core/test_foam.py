@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Foam: as much as the wind leaves at sea, from any frame alone, fading and drifting as asked for."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Foam, Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core.foam import FoamHistory, FoamModel, strength_levels
+from ocean_tweak.core.foam_field import resampled
+from ocean_tweak.core.foam_threshold import foam_wind, strains, whitecap_coverage
+
+SEA = OceanParameters(
+    resolution=64, domain_size=200.0, seed=2, layers=(WaveLayer(wind_speed=15.0, wind_direction=0.7),)
+)
+
+
+def foam(ocean: Ocean, frame: float) -> np.ndarray:
+    return ocean.frame(frame, {"foam"}).foam
+
+
+@pytest.mark.parametrize("changes", [{}, {"loop_duration": Fraction(3)}, {"foam": Foam(resolution=32)}])
+def test_any_frame_has_the_bytes_of_the_sequence(changes: dict) -> None:
+    """24 frames in order, in reverse, alone, and in two chunks; sub-frames too."""
+    parameters = SEA.replace(**changes)
+    frames = [frame / 2 for frame in range(2, 50)]
+    ocean = Ocean(parameters)
+    in_order = [foam(ocean, frame).tobytes() for frame in frames]
+    backwards = [foam(ocean, frame).tobytes() for frame in reversed(frames)]
+    assert backwards[::-1] == in_order
+    alone = [foam(Ocean(parameters), frame).tobytes() for frame in frames[::9]]
+    assert alone == in_order[::9]
+    chunk = Ocean(parameters)
+    assert [foam(chunk, frame).tobytes() for frame in frames[20:]] == in_order[20:]
+    assert len(set(in_order)) == len(frames)
+
+
+def test_a_loop_of_foam_ends_where_it_began() -> None:
+    ocean = Ocean(SEA.replace(loop_duration=Fraction(5)))
+    assert foam(ocean, 7).tobytes() == foam(ocean, 7 + 120).tobytes()
+    assert foam(ocean, 7).tobytes() != foam(ocean, 7 + 60).tobytes()
+
+
+@pytest.mark.parametrize("wind", [10.0, 15.0, 20.0])
+def test_covered_share_follows_the_wind(wind: float) -> None:
+    """Monahan & O'Muircheartaigh (1980): W = 3.84·10⁻⁶ U^3.41."""
+    W = {10.0: 0.00987, 15.0: 0.0393, 20.0: 0.1049}[wind]
+    assert whitecap_coverage(wind) == pytest.approx(W, rel=2e-3)
+    covered = []
+    for seed in range(6):
+        layer = WaveLayer(wind_speed=wind, fetch=200e3)
+        parameters = OceanParameters(resolution=256, domain_size=50.0 * wind, seed=seed, layers=(layer,))
+        ocean = Ocean(parameters)
+        covered += [np.mean(ocean.surface(time, {"foam"}).foam >= 0.5) for time in (30.0, 37.0, 44.0)]
+    assert np.mean(covered) == pytest.approx(W, rel=0.2)
+
+
+def test_coverage_can_be_multiplied_and_made_coarser() -> None:
+    shares = {}
+    for name, choice in (
+        ("as it is", Foam()), ("twice", Foam(coverage=2.0)), ("none", Foam(coverage=0.0)),
+        ("coarse", Foam(resolution=128)),
+    ):  # fmt: skip
+        ocean = Ocean(SEA.replace(resolution=256, domain_size=600.0, foam=choice))
+        shares[name] = np.mean([np.mean(ocean.surface(t, {"foam"}).foam >= 0.5) for t in (20.0, 26.0, 32.0)])
+    assert shares["twice"] / shares["as it is"] == pytest.approx(2.0, rel=0.25)
+    assert shares["coarse"] / shares["as it is"] == pytest.approx(1.0, rel=0.35)
+    assert shares["none"] == 0.0
+
+
+def test_swell_without_wind_has_no_foam() -> None:
+    swell = WaveLayer(definition="SEA_STATE", significant_wave_height=5.0, peak_period=9.0)
+    ocean = Ocean(SEA.replace(layers=(swell,)))
+    assert foam_wind(ocean.parameters) is None
+    assert not np.any(foam(ocean, 20))
+
+
+# The life of a single patch: a squeeze that is there for one lattice time
+
+
+def one_birth(model: FoamModel, size: int = 32) -> FoamHistory:
+    """Full foam at the sample (5, 7) at time 0 and never else."""
+
+    def squeeze_at(time: Fraction) -> np.ndarray:
+        squeeze = np.zeros((size, size))
+        if time == 0:
+            squeeze[5, 7] = 10.0
+        return squeeze
+
+    return FoamHistory(model, squeeze_at)
+
+
+def test_foam_fades_by_half_in_its_half_life() -> None:
+    history = one_birth(FoamModel(threshold=1.0, half_life=2.0, drift=(0.0, 0.0), spacing=1.0))
+    assert history.foam(-0.5).max() == 0.0
+    for age in (0.0, 0.03, 1.0, 2.0, 4.5):
+        assert history.foam(age)[5, 7] == pytest.approx(2.0 ** (-age / 2.0), rel=1e-6)
+        assert np.count_nonzero(history.foam(age)) == 1
+    assert history.foam(17.9)[5, 7] > 0.0
+    assert history.foam(18.1).max() == 0.0  # below 1/512
+
+
+def test_foam_drifts() -> None:
+    history = one_birth(FoamModel(threshold=1.0, half_life=20.0, drift=(0.5, -0.25), spacing=0.5))
+    field = history.foam(2.0)
+    assert np.unravel_index(np.argmax(field), field.shape) == (5 - 1, 7 + 2)
+    assert field.max() == pytest.approx(2.0**-0.1, rel=1e-6)
+    halfway = history.foam(0.5)  # half a sample in x, a quarter in y
+    np.testing.assert_allclose(halfway[4:6, 7:9] / 2.0**-0.025, [[0.125, 0.125], [0.375, 0.375]], rtol=1e-6)
+
+
+def test_foam_without_a_half_life_stays_where_it_is_born() -> None:
+    history = one_birth(FoamModel(threshold=1.0, half_life=0.0, drift=(1.0, 0.0), spacing=1.0))
+    assert history.foam(0.0)[5, 7] == 1.0
+    assert history.foam(0.1).max() == 0.0
+    ocean = Ocean(SEA.replace(foam=Foam(half_life=0.0)))
+    fields = ocean.surface(3.0, {"foam", "cusp"})
+    born = fields.foam > 0.0
+    assert np.min(fields.cusp[born]) >= np.max(fields.cusp[~born])
+
+
+def test_strength_of_foam_at_its_levels() -> None:
+    model = FoamModel(threshold=0.3, half_life=1.0, drift=(0.0, 0.0), spacing=1.0)
+    strength = model.strength(0.3 * strength_levels(4))
+    np.testing.assert_allclose(np.log2(strength), [-0.875, -0.625, -0.375, -0.125], atol=1e-9)
+    assert model.strength(np.array([0.0, 0.3, 0.375, 2.0])).tolist() == [0.0, 0.0, 1.0, 1.0]
+
+
+def test_a_lattice_of_at_most_eight_a_second() -> None:
+    model = FoamModel(threshold=1.0, half_life=2.0, drift=(0.0, 0.0), spacing=1.0)
+    assert model.step == Fraction(1, 8)
+    assert model.memory == math.floor(9 * 2.0 * 8) + 1
+    looped = dataclasses.replace(model, loop_duration=Fraction(7, 3))
+    assert looped.step >= Fraction(1, 8)
+    assert (looped.loop_duration / looped.step).denominator == 1
+
+
+def test_strains_are_those_of_the_fields() -> None:
+    """Mean, spread and tail of the squeeze, and of its rate, against the sea itself."""
+    ocean = Ocean(OceanParameters(resolution=256, domain_size=800.0, layers=SEA.layers, seed=1))
+    expected = strains(ocean.initial_state, ocean.parameters, (0.0, 0.0))
+    squeezes, rates = [], []
+    for time in np.arange(0.0, 60.0, 5.0):
+        before, after = (
+            1.0 - ocean.surface(time + s, {"min_eigenvalue"}).min_eigenvalue for s in (-0.02, 0.02)
+        )
+        squeezes.append(0.5 * (before + after))
+        rates.append((after - before) / 0.04)
+    for fields, numbers in ((np.array(squeezes), expected.squeeze), (np.array(rates), expected.rate)):
+        assert np.mean(fields) == pytest.approx(np.mean(numbers), abs=0.03 * np.std(numbers))
+        assert np.std(fields) == pytest.approx(np.std(numbers), rel=0.03)
+    level = np.quantile(expected.squeeze, 0.99)
+    assert np.mean(np.array(squeezes) > level) == pytest.approx(0.01, rel=0.2)
+
+
+def test_resampling_is_bilinear_and_periodic() -> None:
+    field = np.array([[0.0, 1.0], [2.0, 3.0]], np.float32)
+    np.testing.assert_allclose(
+        resampled(field, 4),
+        [[0, 0.5, 1, 0.5], [1, 1.5, 2, 1.5], [2, 2.5, 3, 2.5], [1, 1.5, 2, 1.5]],
+    )
+    np.testing.assert_array_equal(resampled(resampled(field, 8), 2), field)
