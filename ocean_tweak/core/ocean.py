@@ -6,12 +6,14 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from .exact_field import exact
 from .fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs, memory_groups
 from .foam_field import FoamField
 from .initial_state import InitialState, initial_state
@@ -19,8 +21,12 @@ from .memory import check_memory, memory_need
 from .parameters import Foam, OceanParameters, Timing
 from .sea_spectrum import SeaSpectrum
 from .statistics import Statistics, sea_statistics
+from .surface_query import SurfacePoints, find_points, refine_points
 from .synthesis import Rows, Synthesis
 from .trough_damping import trough_damping
+
+#: minimum eigenvalue below which several sheets of the surface are looked for
+_NEARLY_FOLDED = 0.1
 
 PRECISIONS = {"single": np.complex64, "double": np.complex128}
 
@@ -144,6 +150,44 @@ class Ocean:
                 )
             fields[name] = array
         return fields
+
+    def points_at(
+        self,
+        x: ArrayLike,
+        y: ArrayLike,
+        time: float | Fraction,
+        surface: str = "mesh",
+        velocity: bool = False,
+    ) -> SurfacePoints:
+        """The surface above places x and y in m, of any one shape, at a time in s.
+
+        surface : "mesh" for the bilinear surface between the samples, which a mesh with a vertex a sample
+            shows; "exact" for the band-limited one, whose cost grows with points times wave vectors
+        velocity : whether it is wanted too
+
+        Raises ValueError for an unknown surface, or an exact one with trough damping: no sum of waves.
+        """
+        if surface not in ("mesh", "exact"):
+            raise ValueError(f"surface = {surface!r}: must be mesh or exact")
+        damped = self.parameters.trough_damping > 0.0
+        if surface == "exact" and damped:
+            raise ValueError("surface = 'exact': there is none with trough damping; use mesh")
+        outputs = {"displacement", "min_eigenvalue"} | ({"velocity"} if velocity else set())
+        fields = self.surface(time, outputs)
+        spacing = self.parameters.domain_size / self.parameters.resolution
+        folded = fields.min_eigenvalue < _NEARLY_FOLDED
+        moving = fields.velocity if velocity else None
+        points = find_points(x, y, fields.displacement, moving, spacing, folded)
+        if surface == "mesh":
+            return points
+        waves = exact(replace(self._synthesis, dtype=np.complex128), time)
+        return refine_points(x, y, waves, points, spacing, velocity)
+
+    def height_at(
+        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, surface: str = "mesh"
+    ) -> NDArray[np.float64]:
+        """Height of the surface in m above places x and y in m, at a time in s; see `points_at`."""
+        return self.points_at(x, y, time, surface).height
 
     def frame(self, frame: float | Fraction, outputs: Iterable[str] = ("displacement",)) -> SurfaceFields:
         """Fields at a frame of the shot, which may hold a sub-frame."""

@@ -14,7 +14,7 @@ commutes with the first transform, and transforms along x. Fields that differ on
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
@@ -132,6 +132,12 @@ class Synthesis:
         n = self.state.grid.resolution
         run_blocks(transform_along_y, self._blocks(n // 2 + 1), self.workers)
         run_blocks(transform_along_x, self._blocks(n), self.workers)
+
+    def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
+        """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
+        with_rate = any(column.rate for column in columns)
+        sources = _Sources(self, propagate(self.state, time, self.dtype, with_rate), slice(None))
+        return {column: sources.coefficients(column).T for column in columns}
 
     def _with_long_waves(self, wanted: Iterable[tuple[int, str]]) -> set[tuple[int, str, bool]]:
         wanted = set(wanted)

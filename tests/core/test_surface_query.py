@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surface above a place, against forward evaluation, brute force and a single wave."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+
+SEA = OceanParameters(resolution=128, domain_size=200.0, seed=3)
+GENERATOR = np.random.default_rng(5)
+
+
+def test_samples_are_found_where_they_went() -> None:
+    """Forward: sample (i, j) is at (x + Dx, y + Dy) with height h; asking there gives h back."""
+    ocean = Ocean(SEA)
+    fields = ocean.surface(4.0, {"displacement", "min_eigenvalue", "velocity"})
+    i, j = GENERATOR.integers(0, 128, (2, 500))
+    spacing = 200.0 / 128
+    moved = fields.displacement[i, j].astype(float)
+    points = ocean.points_at(j * spacing + moved[:, 0], i * spacing + moved[:, 1], 4.0, velocity=True)
+    assert np.min(fields.min_eigenvalue) > 0.2
+    assert np.all(points.found)
+    np.testing.assert_allclose(points.height, moved[:, 2], atol=1e-3)
+    np.testing.assert_allclose(points.velocity, fields.velocity[i, j], atol=1e-3)
+    np.testing.assert_allclose(points.rest, np.stack([j, i], -1) * spacing, atol=1e-3)
+
+
+def test_mesh_surface_against_brute_force() -> None:
+    """Each quad of the mesh sampled finely: the nearest of those points has the height that is asked for."""
+    ocean = Ocean(SEA.replace(resolution=32))
+    spacing = 200.0 / 32
+    d = ocean.surface(1.0).displacement.astype(float)
+    d = np.concatenate([d, d[:1]], 0)
+    d = np.concatenate([d, d[:, :1]], 1)
+    fine = np.linspace(0.0, 32.0, 32 * 24, endpoint=False)
+    cell = fine.astype(int)
+    u = (fine - cell)[:, np.newaxis]
+    along_y = d[cell] * (1 - u[..., np.newaxis]) + d[cell + 1] * u[..., np.newaxis]
+    surface = along_y[:, cell] * (1 - u) + along_y[:, cell + 1] * u
+    X, Y = np.meshgrid(fine * spacing, fine * spacing)
+    x, y = GENERATOR.uniform(40.0, 160.0, (2, 60))
+    heights = ocean.height_at(x, y, 1.0)
+    for place_x, place_y, height in zip(x, y, heights, strict=True):
+        distance = np.hypot(X + surface[..., 0] - place_x, Y + surface[..., 1] - place_y)
+        nearest = np.argmin(distance)
+        assert height == pytest.approx(
+            surface[..., 2].ravel()[nearest], abs=1.5 * distance.ravel()[nearest] + 1e-3
+        )
+
+
+def test_places_repeat_with_the_domain() -> None:
+    ocean = Ocean(SEA)
+    x, y = GENERATOR.uniform(0.0, 200.0, (2, 50))
+    np.testing.assert_allclose(
+        ocean.height_at(x + 400.0, y - 200.0, 2.0), ocean.height_at(x, y, 2.0), atol=1e-4
+    )
+    assert ocean.height_at(3.0, 4.0, 2.0).shape == ()
+    assert ocean.height_at(x.reshape(5, 10), y.reshape(5, 10), 2.0).shape == (5, 10)
+
+
+def test_normal_is_that_of_the_surface_seen_from_above() -> None:
+    ocean = Ocean(SEA)
+    x, y = GENERATOR.uniform(0.0, 200.0, (2, 200))
+    points = ocean.points_at(x, y, 2.0, surface="exact")
+    step = 1e-3
+    slope_x, slope_y = (
+        (ocean.height_at(x + dx, y + dy, 2.0, "exact") - ocean.height_at(x - dx, y - dy, 2.0, "exact"))
+        / (2 * step)
+        for dx, dy in ((step, 0.0), (0.0, step))
+    )
+    np.testing.assert_allclose(-points.normal[:, 0] / points.normal[:, 2], slope_x, atol=2e-4)
+    np.testing.assert_allclose(-points.normal[:, 1] / points.normal[:, 2], slope_y, atol=2e-4)
+    np.testing.assert_allclose(np.linalg.norm(points.normal, axis=-1), 1.0)
+
+
+def test_exact_surface_is_what_finer_meshes_tend_to() -> None:
+    """The band-limited surface between samples: a sea of the same waves with eight times the samples."""
+    band = WaveLayer(shortest_wavelength=14.0)
+    coarse = Ocean(SEA.replace(resolution=64, layers=(band,)))
+    fine = Ocean(SEA.replace(resolution=1024, layers=(band,)))
+    x, y = GENERATOR.uniform(0.0, 200.0, (2, 100))
+    exact = coarse.points_at(x, y, 3.0, "exact", velocity=True)
+    reference = fine.points_at(x, y, 3.0, velocity=True)
+    np.testing.assert_allclose(exact.height, reference.height, atol=2e-3)
+    np.testing.assert_allclose(exact.velocity, reference.velocity, atol=5e-3)
+    assert np.max(np.abs(coarse.height_at(x, y, 3.0) - exact.height)) > 5e-3
+
+
+def test_the_highest_sheet_of_a_fold() -> None:
+    ocean = Ocean(SEA.replace(choppiness=4.0))
+    fields = ocean.surface(1.0, {"displacement", "min_eigenvalue"})
+    assert np.min(fields.min_eigenvalue) < -0.2
+    i, j = np.nonzero(fields.min_eigenvalue < 0.0)
+    spacing = 200.0 / 128
+    moved = fields.displacement[i, j].astype(float)
+    heights = ocean.height_at(j * spacing + moved[:, 0], i * spacing + moved[:, 1], 1.0)
+    assert np.mean(heights >= moved[:, 2] - 1e-3) > 0.99
+    assert np.any(heights > moved[:, 2] + 1e-3)
+
+
+def test_what_cannot_be_asked_is_said() -> None:
+    with pytest.raises(ValueError, match="surface = 'nurbs'"):
+        Ocean(SEA).height_at(0.0, 0.0, 1.0, "nurbs")
+    with pytest.raises(ValueError, match="trough damping"):
+        Ocean(SEA.replace(trough_damping=0.5)).height_at(0.0, 0.0, 1.0, "exact")
+    assert np.all(np.isfinite(Ocean(SEA.replace(trough_damping=0.5)).height_at([0.0, 5.0], 1.0, 1.0)))
