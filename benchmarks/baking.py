@@ -91,7 +91,8 @@ def _sides(plan: Plan, codec: str, folder: Path) -> dict[str, Callable[[], objec
     def baked(workers: int) -> Callable[[], None]:
         def run() -> None:
             for done in bake(parameters, frames(), sink, workers):
-                done.path.unlink()  # or the disk fills
+                for path in done.paths:
+                    path.unlink()  # or the disk fills
 
         return run
 

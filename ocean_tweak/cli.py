@@ -17,10 +17,11 @@ from typing import Any
 from . import __version__
 from .core import Ocean, OceanParameters, ParameterError, sea_scales
 from .core.bake import bake, parse_frames
+from .core.foam_field import foam_outlook
 from .core.memory import memory_need
 from .core.parameters import parse_json
 from .core.statistics import SeaState, Statistics
-from .export.exr import COMPRESSION_ERROR, ExrError, ExrSequence
+from .export.exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence
 from .export.files import writable_folder
 
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
@@ -90,6 +91,10 @@ def _parser(in_blender: bool) -> argparse.ArgumentParser:
         "--workers", type=_workers, metavar="N", default=os.cpu_count() or 1,
         help="frames made at the same time, by default one a core",
     )  # fmt: skip
+    baking.add_argument(
+        "--maps", type=_maps, metavar="LIST", default=("disp",),
+        help=f"what to write, of {','.join(MAPS)}; disp by default",
+    )  # fmt: skip
     baking.add_argument("--name", help="start of the file names; by default that of the sea")
     baking.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
@@ -112,6 +117,14 @@ def _add_sea_arguments(command: argparse.ArgumentParser, in_blender: bool) -> No
     command.add_argument("--json", action="store_true", help="print JSON for machines")
     if in_blender:
         command.add_argument("--object", metavar="NAME", help="only the ocean of this object")
+
+
+def _maps(text: str) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
+    unknown = [name for name in names if name not in MAPS]
+    if unknown:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
+    return names
 
 
 def _workers(text: str) -> int:
@@ -239,6 +252,10 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         f"steepness {statistics.spectrum.steepness:.3f}; "
         f"sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
+    coverage, earlier = foam_outlook(parameters)
+    if coverage > 0.0:
+        share = f"{100.0 * coverage:.2g} %"
+        lines.append(f"  foam on {share} of the sea; a frame by itself looks back at {earlier} moments")
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.loop_duration or 0)
@@ -262,17 +279,14 @@ def _bake(arguments: argparse.Namespace, seas: dict[str, OceanParameters]) -> in
     folder = writable_folder(arguments.out)
     for sea_name, parameters in seas.items():
         name = _file_name(arguments.name or sea_name)
-        sink = ExrSequence(folder, name, parameters, arguments.compression)
+        sink = ExrSequence(folder, name, parameters, arguments.compression, arguments.maps)
         for done, baked in enumerate(bake(parameters, frames, sink, arguments.workers), start=1):
+            paths, seconds = [str(path) for path in baked.paths], round(baked.seconds, 4)
             if arguments.json:
-                line = json.dumps(
-                    {"frame": baked.frame, "path": str(baked.path), "seconds": round(baked.seconds, 4)}
-                )
+                print(json.dumps({"frame": baked.frame, "paths": paths, "seconds": seconds}), flush=True)
             else:
-                line = (
-                    f"{name}: frame {baked.frame} ({done}/{len(frames)}) {baked.seconds:.2f} s  {baked.path}"
-                )
-            print(line, flush=True)
+                progress = f"frame {baked.frame} ({done}/{len(frames)})"
+                print(f"{name}: {progress} {seconds:.2f} s  {', '.join(paths)}", flush=True)
     return DONE
 
 

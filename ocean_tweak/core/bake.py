@@ -12,7 +12,10 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from .fields import SurfaceFields
+import numpy as np
+from numpy.typing import NDArray
+
+from .fields import FOAM, SurfaceFields
 from .memory import check_memory, memory_need
 from .ocean import Ocean
 from .parameters import OceanParameters, ParameterError
@@ -24,7 +27,11 @@ _MOST_FRAMES = 1_000_000
 class FrameSink(Protocol):
     """Whatever keeps frames; called from several threads at once."""
 
-    def write(self, frame: int, fields: SurfaceFields) -> Path:
+    @property
+    def outputs(self) -> frozenset[str]:
+        """The fields that a frame must have."""
+
+    def write(self, frame: int, fields: SurfaceFields) -> tuple[Path, ...]:
         """Keep a frame's fields; returns where."""
 
 
@@ -32,7 +39,7 @@ class BakedFrame(NamedTuple):
     """A frame that has been kept."""
 
     frame: int
-    path: Path
+    paths: tuple[Path, ...]
     seconds: float
 
 
@@ -41,28 +48,33 @@ def bake(
 ) -> Iterator[BakedFrame]:
     """Make and keep each frame, several at once; yields each in order when it is kept.
 
-    A worker makes a whole frame on one thread: while one encodes, another computes. What a frame holds does
-    not depend on their number. When the caller stops, frames under way are finished and no more begun.
+    A worker makes a whole frame on one thread: while one encodes, another computes. Only foam, which has a
+    memory, is made here, in the order of the frames. What a frame holds does not depend on the number of
+    workers. When the caller stops, frames under way are finished and no more begun.
 
     Raises MemoryError before the first frame where the machine is too small.
     """
-    need = memory_need(parameters).peak(workers)
+    need = memory_need(parameters, sink.outputs).peak(workers)
     check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")
-    Ocean(parameters).initial_state  # noqa: B018  made once, before the workers ask for it
+    with_memory = Ocean(parameters, workers=1)
+    with_memory.initial_state  # noqa: B018  made once, before the workers ask for it
     own = threading.local()
 
-    def make(frame: int) -> BakedFrame:
+    def make(frame: int, foam: NDArray[np.floating] | None) -> BakedFrame:
         started = time.perf_counter()
         if not hasattr(own, "ocean"):
             own.ocean = Ocean(parameters, workers=1)
-        path = sink.write(frame, own.ocean.frame(frame))
-        return BakedFrame(frame, path, time.perf_counter() - started)
+        fields = own.ocean.frame(frame, sink.outputs - {FOAM})
+        if foam is not None:
+            fields = fields.including(FOAM, foam)
+        return BakedFrame(frame, sink.write(frame, fields), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
     with ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
-                under_way.append(pool.submit(make, frame))
+                foam = with_memory.frame(frame, {FOAM}).foam if FOAM in sink.outputs else None
+                under_way.append(pool.submit(make, frame, foam))
                 if len(under_way) > workers:
                     yield under_way.popleft().result()
             while under_way:

@@ -149,6 +149,10 @@ class SurfaceFields:
         self.time = time
         self._fields = fields
 
+    def including(self, name: str, field: RealArray) -> SurfaceFields:
+        """The same fields and one more."""
+        return SurfaceFields(self.time, {**self._fields, name: field})
+
     def __getattr__(self, name: str) -> RealArray:
         if name in KNOWN:
             fields: dict[str, RealArray] = self.__dict__.get("_fields", {})

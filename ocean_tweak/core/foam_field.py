@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,29 @@ from .initial_state import InitialState
 from .parameters import OceanParameters
 
 RealArray = NDArray[np.floating]
+
+
+class FoamOutlook(NamedTuple):
+    """What foam a sea will have, and what it costs.
+
+    coverage : share of the sea under foam, 0…1
+    memory : earlier surfaces that a frame alone must look at
+    """
+
+    coverage: float
+    memory: int
+
+
+def foam_outlook(parameters: OceanParameters) -> FoamOutlook:
+    """Coverage and cost of the foam, without making any."""
+    coverage = _coverage(parameters)
+    model = FoamModel(1.0 if coverage > 0.0 else math.inf, parameters.foam.half_life, (0.0, 0.0), 1.0)
+    return FoamOutlook(coverage, model.memory)
+
+
+def _coverage(parameters: OceanParameters) -> float:
+    wind = foam_wind(parameters)
+    return min(1.0, parameters.foam.coverage * whitecap_coverage(wind.speed)) if wind is not None else 0.0
 
 
 def foam_model(parameters: OceanParameters, state: InitialState) -> FoamModel:
@@ -29,10 +53,10 @@ def foam_model(parameters: OceanParameters, state: InitialState) -> FoamModel:
     if wind is not None:
         speed = foam.drift * wind.speed
         drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
-        coverage = min(1.0, foam.coverage * whitecap_coverage(wind.speed))
-        if coverage > 0.0:
-            of_sea = strains(state, parameters, drift)
-            threshold = of_sea.threshold(coverage, foam.half_life, strength_levels())
+    coverage = _coverage(parameters)
+    if coverage > 0.0:
+        of_sea = strains(state, parameters, drift)
+        threshold = of_sea.threshold(coverage, foam.half_life, strength_levels())
     return FoamModel(
         threshold=threshold,
         half_life=foam.half_life,

@@ -7,10 +7,11 @@ Row 0 of an EXR image is its top row, so arrays [y, x] are written with their ro
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,36 +42,72 @@ def _openexr() -> Any:
     return OpenEXR
 
 
+class Map(NamedTuple):
+    """What a file NAME_map.####.exr holds.
+
+    outputs : the fields that it is made of
+    unit : of its numbers
+    image : from those fields to (N, N, 3)
+    """
+
+    outputs: frozenset[str]
+    unit: str
+    image: Callable[[SurfaceFields], NDArray[np.floating]]
+
+
+def _foam_image(fields: SurfaceFields) -> NDArray[np.floating]:
+    """R foam, G cusp, B nothing."""
+    return np.stack((fields.foam, fields.cusp, np.zeros_like(fields.foam)), axis=-1)
+
+
+MAPS: dict[str, Map] = {
+    "disp": Map(frozenset({"displacement"}), "m", lambda fields: fields.displacement),
+    "foam": Map(frozenset({"foam", "cusp"}), "1", _foam_image),
+    "normal": Map(frozenset({"normal"}), "1", lambda fields: fields.normal),
+    "vel": Map(frozenset({"velocity"}), "m/s", lambda fields: fields.velocity),
+}
+
+
 @dataclass(frozen=True)
 class ExrSequence:
-    """A sink for frames: NAME_disp.####.exr in a folder.
+    """A sink for frames: NAME_map.####.exr in a folder, one file a map.
 
     parameters : what made the frames; stands in every header
     compression : a key of COMPRESSION_ERROR
+    maps : keys of MAPS
     """
 
     directory: Path
     name: str
     parameters: OceanParameters
     compression: str = "PXR24"
+    maps: tuple[str, ...] = ("disp",)
+
+    @property
+    def outputs(self) -> frozenset[str]:
+        """The fields that a frame must have."""
+        return frozenset().union(*(MAPS[name].outputs for name in self.maps))
 
     def path(self, frame: int, map_name: str = "disp") -> Path:
         """Where a frame's map goes."""
         return self.directory / f"{self.name}_{map_name}.{frame:04d}.exr"
 
-    def write(self, frame: int, fields: SurfaceFields) -> Path:
-        """Write the frame's displacement, metres in R, G, B = (dx, dy, dz). Returns the file's path."""
-        path = self.path(frame)
+    def write(self, frame: int, fields: SurfaceFields) -> tuple[Path, ...]:
+        """Write the frame's maps, in object space. Returns the files' paths."""
+        return tuple(self._write_map(frame, fields, name) for name in self.maps)
+
+    def _write_map(self, frame: int, fields: SurfaceFields, name: str) -> Path:
+        path = self.path(frame, name)
         metadata = {
             "format": FORMAT_VERSION,
-            "map": "disp",
-            "unit": "m",
+            "map": name,
+            "unit": MAPS[name].unit,
             "frame": frame,
             "time": fields.time,
             "domain_size": self.parameters.domain_size,
             "parameters": self.parameters.to_dict(),
         }
-        write_image(path, fields.displacement, metadata, self.parameters.timing.fps, self.compression)
+        write_image(path, MAPS[name].image(fields), metadata, self.parameters.timing.fps, self.compression)
         return path
 
 

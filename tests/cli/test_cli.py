@@ -46,12 +46,12 @@ def test_bake_gives_the_array_of_python(
 
 
 def test_workers_do_not_change_a_byte(params: Path, tmp_path: Path) -> None:
-    arguments = ["bake", "--params", str(params), "--frames", "1001-1009", "--out"]
+    arguments = ["bake", "--params", str(params), "--frames", "1001-1009", "--maps", "disp,foam,vel", "--out"]
     for workers in ("1", "4"):
         assert main([*arguments, str(tmp_path / workers), "--workers", workers]) == 0
     for path in (tmp_path / "1").iterdir():
         assert path.read_bytes() == (tmp_path / "4" / path.name).read_bytes()
-    assert len(list((tmp_path / "4").iterdir())) == 9
+    assert len(list((tmp_path / "4").iterdir())) == 27
 
 
 def test_a_failing_worker_stops_the_bake(
@@ -128,6 +128,7 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
         (["bake", "--frames", "1"], 2, "--out"),
         (["bake", "--frames", "1", "--out", "x", "--workers", "0"], 2, "'0' must be a whole number from 1"),
         (["bake", "--frames", "1", "--out", "/proc/nowhere/x"], 1, "/proc/nowhere"),
+        (["bake", "--frames", "1", "--out", "x", "--maps", "disp,heat"], 2, "'heat' is no map"),
         (["sail"], 2, "sail"),
         ([], 2, "COMMAND"),
     ],

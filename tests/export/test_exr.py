@@ -12,7 +12,7 @@ import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing
 from ocean_tweak.export import files
-from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, write_image
+from ocean_tweak.export.exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_image, write_image
 
 FPS = Fraction(24000, 1001)
 
@@ -47,7 +47,7 @@ def test_rows_are_top_down_in_the_file(tmp_path: Path, image: np.ndarray) -> Non
 def test_sequence_names_frames_and_keeps_parameters(tmp_path: Path) -> None:
     parameters = OceanParameters(resolution=16, timing=Timing(start_frame=1001))
     sink = ExrSequence(tmp_path, "sea", parameters)
-    path = sink.write(1013, Ocean(parameters).frame(1013))
+    (path,) = sink.write(1013, Ocean(parameters).frame(1013))
     assert path == tmp_path / "sea_disp.1013.exr"
     pixels, metadata = read_image(path)
     assert OceanParameters.from_dict(metadata["parameters"]) == parameters
@@ -90,3 +90,24 @@ def test_damaged_and_foreign_files_are_named(tmp_path: Path, image: np.ndarray) 
     for path in (truncated, foreign, tmp_path / "absent.exr"):
         with pytest.raises(ExrError, match=path.name):
             read_image(path)
+
+
+def test_maps_hold_what_they_say(tmp_path: Path) -> None:
+    parameters = OceanParameters(resolution=32, domain_size=100.0)
+    sink = ExrSequence(tmp_path, "sea", parameters, "ZIP", tuple(MAPS))
+    fields = Ocean(parameters).frame(30, sink.outputs)
+    paths = sink.write(30, fields)
+    assert [path.name for path in paths] == [
+        f"sea_{name}.0030.exr" for name in ("disp", "foam", "normal", "vel")
+    ]
+    images = {name: read_image(sink.path(30, name)) for name in MAPS}
+    np.testing.assert_array_equal(images["disp"][0], fields.displacement)
+    np.testing.assert_array_equal(images["normal"][0], fields.normal)
+    np.testing.assert_array_equal(images["vel"][0], fields.velocity)
+    np.testing.assert_array_equal(images["foam"][0][..., 0], fields.foam)
+    np.testing.assert_array_equal(images["foam"][0][..., 1], fields.cusp)
+    assert not np.any(images["foam"][0][..., 2])
+    assert {name: metadata["unit"] for name, (_, metadata) in images.items()} == {
+        "disp": "m", "foam": "1", "normal": "1", "vel": "m/s"
+    }  # fmt: skip
+    assert images["vel"][1]["map"] == "vel"
