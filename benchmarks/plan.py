@@ -28,14 +28,14 @@ class Plan:
     plan_transforms : let FFTW measure for the best plan
     """
 
-    rounds: int = 9
+    rounds: int = 7
     sizes: tuple[int, ...] = (256, 512, 1024, 2048, 4096)
     growth: tuple[int, int] = (512, 4096)
     state: tuple[int, ...] = (512, 1024, 2048)
     memory: tuple[int, ...] = (512, 1024, 2048)
     precision: tuple[int, ...] = (1024,)
     bake: int = 1024
-    bake_frames: int = 8
+    bake_frames: int = 6
     scene: tuple[int, ...] = (256, 512, 1024)
     latency: int = 512
     plan_transforms: bool = True
