@@ -29,23 +29,22 @@ class PropagatedState:
     rate: ComplexArray | None
 
 
-def phase(state: InitialState, time: float | Fraction, columns: slice = ALL) -> Array:
-    """ωt for ky from 0 to N/2, (columns, N//2+1), reduced to [-π, π] in float64, so that single precision
-    loses nothing afterwards.
+def turns(state: InitialState, time: float | Fraction, columns: slice = ALL) -> Array:
+    """ωt/2π for ky from 0 to N/2, (columns, N//2+1), reduced to [-½, ½] in float64, so that single
+    precision loses nothing afterwards.
 
     In a loop, ω is a whole number of turns a loop and the time is reduced exactly: the end of the loop
     has the phases of its start to the bit.
     """
     omega = state.omega.T[columns, : state.grid.resolution // 2 + 1]
     if state.loop_duration is None:
-        turns = omega * (float(time) / (2.0 * np.pi))
+        result = omega * (float(time) / (2.0 * np.pi))
     else:
         period = state.loop_duration
         turns_a_loop = np.rint(omega * (float(period) / (2.0 * np.pi)))
-        turns = turns_a_loop * float(Fraction(time) % period / period)
-    turns -= np.rint(turns)
-    turns *= 2.0 * np.pi
-    return turns
+        result = turns_a_loop * float(Fraction(time) % period / period)
+    result -= np.rint(result)
+    return result
 
 
 def propagate(
@@ -61,7 +60,7 @@ def propagate(
     Horvath (2015), § 7.1.2: waves along +k and along -k are separate; Chen (2014), eq. 9.
     """
     real = np.float32 if dtype is np.complex64 else np.float64
-    angle = phase(state, time, columns).astype(real, copy=False)
+    angle = turns(state, time, columns).astype(real, copy=False) * real(2.0 * np.pi)
     half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is even in ky
     np.cos(angle, out=half.real)
     np.sin(angle, out=half.imag)

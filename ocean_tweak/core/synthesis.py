@@ -87,13 +87,14 @@ class Synthesis:
         """
         grid, parameters = self.state.grid, self.parameters
         half = grid.resolution // 2 + 1
-        result = np.empty((half, half), np.float32 if self.dtype is np.complex64 else np.float64)
+        result: RealArray = np.empty((half, half), np.float32 if self.dtype is np.complex64 else np.float64)
         for block in grid.column_blocks():
             k = np.hypot(grid.kx[0, block, np.newaxis], grid.ky[:half, 0])
             k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
-            result[block] = parameters.choppiness / k
+            factor = parameters.choppiness / k
             if parameters.orbits == "FINITE_DEPTH":
-                result[block] /= np.tanh(k * parameters.water.depth)
+                factor /= np.tanh(k * parameters.water.depth)
+            result[block] = factor
         return result
 
     @cached_property
@@ -189,8 +190,8 @@ class _Sources:
         if column not in self._bases:
             base = self._elevations[column.rate]
             if column.potential:
-                factor = self._synthesis.potential_factor[self._block]
-                base = base * self._synthesis.state.grid.mirror(factor.astype(base.dtype))
+                factor = self._synthesis.potential_factor[self._block].astype(base.dtype)
+                base = base * self._synthesis.state.grid.mirror(factor)
             damping = self._synthesis.damping
             if column.long and damping is not None:
                 base = base * damping.long_waves.T[self._block].astype(base.dtype)
