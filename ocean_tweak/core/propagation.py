@@ -60,7 +60,7 @@ def propagate(
     Horvath (2015), § 7.1.2: waves along +k and along -k are separate; Chen (2014), eq. 9.
     """
     real = np.float32 if dtype is np.complex64 else np.float64
-    angle = turns(state, time, columns).astype(real, copy=False) * real(2.0 * np.pi)
+    angle = np.asarray(2.0 * np.pi * turns(state, time, columns), real)
     half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is even in ky
     np.cos(angle, out=half.real)
     np.sin(angle, out=half.imag)
