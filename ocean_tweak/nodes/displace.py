@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that move a grid by a displacement image.
+"""Geometry nodes that move a grid by an attribute or by a displacement image.
 
-The image holds metres; `Scale` makes Blender units of them. It is read at the attribute `st`, which has
-the half texel in it already, or, on a mesh without one, at the position.
+The attribute is what a live sea in the viewport uses: reading it costs a third of what sampling an image does.
+The image is for baked files, for a mesh that has not one vertex a sample, and for renders finer than the
+viewport, which get a grid of their own. It holds metres, `Scale` makes Blender units of them. It is read at
+the attribute `st`, which has the half texel in it already, or, on a mesh without one, at the position.
 """
 
 from __future__ import annotations
@@ -11,95 +13,106 @@ from typing import Any
 
 import bpy
 
-from .versioned import GroupKind
+from .building import Builder, Socket, output
+from .grid import GRID, UV_MAP
+from .versioned import GroupKind, node_group
 
-UV_MAP = "st"
+#: displacement of each vertex in Blender units; any way to move the mesh leaves it on the result
+ATTRIBUTE = "displacement"
 
 #: the inputs besides the geometry: name, socket type, default, description
 INPUTS: tuple[tuple[str, str, Any, str], ...] = (
+    ("Use Attribute", "NodeSocketBool", False, f"Read the attribute {ATTRIBUTE} instead of the image"),
     ("Image", "NodeSocketImage", None, "Displacement in metres: red x, green y, blue z"),
     ("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch that repeats, in Blender units"),
     ("Resolution", "NodeSocketInt", 512, "Samples along each side of the image"),
     ("Scale", "NodeSocketFloat", 1.0, "Blender units in a metre"),
     ("First Frame", "NodeSocketInt", 1, "First file of the image sequence; held before it"),
     ("Last Frame", "NodeSocketInt", 1_048_574, "Last file of the image sequence; held after it"),
+    ("Render Quads", "NodeSocketInt", 0, "Side of the grid made for renders; 0 renders as in the viewport"),
+    ("Render Image", "NodeSocketImage", None, "The image that moves the grid made for renders"),
+    ("Render Resolution", "NodeSocketInt", 512, "Samples along each side of the render image"),
 )
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
-    tree.is_modifier = True
-    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
-    for name, socket_type, default, description in INPUTS:
-        socket = tree.interface.new_socket(
-            name, in_out="INPUT", socket_type=socket_type, description=description
-        )
-        if default is not None:
-            socket.default_value = default
-    source = _node(tree, "NodeGroupInput", -900, 0)
-    texture = _node(tree, "GeometryNodeImageTexture", 150, -100, interpolation="Linear", extension="REPEAT")
-    _link(tree, source, "Image", texture, "Image")
-    tree.links.new(_sample_position(tree, source), texture.inputs["Vector"])
-    tree.links.new(_file_number(tree, source), texture.inputs["Frame"])
-    scaled = _node(tree, "ShaderNodeVectorMath", 400, -100, operation="SCALE")
-    _link(tree, texture, "Color", scaled, "Vector")
-    _link(tree, source, "Scale", scaled, "Scale")
-    moved = _node(tree, "GeometryNodeSetPosition", 600, 0)
-    _link(tree, source, "Geometry", moved, "Geometry")
-    _link(tree, scaled, "Vector", moved, "Offset")
-    _link(tree, moved, "Geometry", _node(tree, "NodeGroupOutput", 800, 0), "Geometry")
+    build = Builder(tree, INPUTS)
+    own_grid = _is_own_grid(build)
+    geometry = output(build.input, "Geometry")
+    grid = build.change(
+        "GeometryNodeGroup",
+        geometry,
+        {
+            "Size": output(build.input, "Domain Size"),
+            "Quads": output(build.input, "Render Quads"),
+            "Samples": output(build.input, "Render Resolution"),
+        },
+        node_tree=node_group(GRID),
+    )
+    stored = build.change(
+        "GeometryNodeStoreNamedAttribute",
+        build.switch("GEOMETRY", own_grid, geometry, grid),
+        {"Name": ATTRIBUTE, "Value": _sampled(build, own_grid)},
+        data_type="FLOAT_VECTOR",
+        domain="POINT",
+    )
+    written = output(build.input, "Use Attribute")
+    ready = build.math("NIMPLY", written, own_grid, "FunctionNodeBooleanMath")
+    known = build.switch("GEOMETRY", ready, stored, geometry)
+    offset = build.add("GeometryNodeInputNamedAttribute", {"Name": ATTRIBUTE}, data_type="FLOAT_VECTOR")
+    build.finish(build.change("GeometryNodeSetPosition", known, {"Offset": output(offset, "Attribute")}))
 
 
-def _sample_position(tree: bpy.types.NodeTree, source: bpy.types.Node) -> bpy.types.NodeSocket:
+def _is_own_grid(build: Builder) -> Socket:
+    """Whether this is a render that wants another grid than the viewport."""
+    is_viewport = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
+    wanted = build.add(
+        "FunctionNodeCompare", {"A": output(build.input, "Render Quads"), "B": 0},
+        data_type="INT", operation="GREATER_THAN",
+    )  # fmt: skip
+    return build.math("NIMPLY", output(wanted, "Result"), is_viewport, "FunctionNodeBooleanMath")
+
+
+def _sampled(build: Builder, own_grid: Socket) -> Socket:
+    """What the image says, in Blender units."""
+
+    def chosen(kind: str, name: str) -> Socket:
+        return build.switch(kind, own_grid, output(build.input, name), output(build.input, f"Render {name}"))
+
+    texture = build.add(
+        "GeometryNodeImageTexture",
+        {
+            "Image": chosen("IMAGE", "Image"),
+            "Vector": _texture_coordinates(build, chosen("INT", "Resolution")),
+            "Frame": _file_number(build),
+        },
+        interpolation="Linear",
+        extension="REPEAT",
+    )
+    scale = output(build.input, "Scale")
+    scaled = build.add(
+        "ShaderNodeVectorMath", operation="SCALE", inputs={"Vector": output(texture, "Color"), "Scale": scale}
+    )
+    return output(scaled, "Vector")
+
+
+def _texture_coordinates(build: Builder, resolution: Socket) -> Socket:
     """The attribute `st` where the mesh has it, otherwise position / domain size + ½ / resolution."""
-    attribute = _node(tree, "GeometryNodeInputNamedAttribute", -350, -100, data_type="FLOAT_VECTOR")
-    attribute.inputs["Name"].default_value = UV_MAP
-    position = _node(tree, "GeometryNodeInputPosition", -900, -400)
-    fraction = _node(tree, "ShaderNodeVectorMath", -650, -400, operation="DIVIDE")
-    tree.links.new(position.outputs["Position"], fraction.inputs[0])
-    tree.links.new(source.outputs["Domain Size"], fraction.inputs[1])
-    half = _node(tree, "ShaderNodeMath", -650, -600, operation="DIVIDE")
-    half.inputs[0].default_value = 0.5
-    tree.links.new(source.outputs["Resolution"], half.inputs[1])
-    centred = _node(tree, "ShaderNodeVectorMath", -350, -400, operation="ADD")
-    tree.links.new(fraction.outputs["Vector"], centred.inputs[0])
-    tree.links.new(half.outputs["Value"], centred.inputs[1])
-    switch = _node(tree, "GeometryNodeSwitch", -100, -200, input_type="VECTOR")
-    _link(tree, attribute, "Exists", switch, "Switch")
-    _link(tree, attribute, "Attribute", switch, "True")
-    _link(tree, centred, "Vector", switch, "False")
-    return switch.outputs["Output"]
+    attribute = build.add("GeometryNodeInputNamedAttribute", {"Name": UV_MAP}, data_type="FLOAT_VECTOR")
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    fraction = build.math("DIVIDE", position, output(build.input, "Domain Size"), "ShaderNodeVectorMath")
+    half = build.math("DIVIDE", 0.5, resolution)
+    centred = build.math("ADD", fraction, half, "ShaderNodeVectorMath")
+    return build.switch("VECTOR", output(attribute, "Exists"), centred, output(attribute, "Attribute"))
 
 
-def _file_number(tree: bpy.types.NodeTree, source: bpy.types.Node) -> bpy.types.NodeSocket:
+def _file_number(build: Builder) -> Socket:
     """The scene's whole frame, held at both ends: beyond them the image node gives zero without a word."""
-    time = _node(tree, "GeometryNodeInputSceneTime", -650, 350)
-    whole = _node(tree, "FunctionNodeFloatToInt", -450, 350, rounding_mode="FLOOR")
-    _link(tree, time, "Frame", whole, "Float")
-    frame = whole.outputs["Integer"]
-    for column, (operation, bound) in enumerate((("MAXIMUM", "First Frame"), ("MINIMUM", "Last Frame"))):
-        held = _node(tree, "FunctionNodeIntegerMath", -250 + 200 * column, 350, operation=operation)
-        tree.links.new(frame, held.inputs[0])
-        tree.links.new(source.outputs[bound], held.inputs[1])
-        frame = held.outputs["Value"]
-    return frame
+    time = build.add("GeometryNodeInputSceneTime")
+    whole = build.add("FunctionNodeFloatToInt", {"Float": output(time, "Frame")}, rounding_mode="FLOOR")
+    first, last = output(build.input, "First Frame"), output(build.input, "Last Frame")
+    held = build.math("MAXIMUM", output(whole, "Integer"), first, "FunctionNodeIntegerMath")
+    return build.math("MINIMUM", held, last, "FunctionNodeIntegerMath")
 
 
-def _node(tree: bpy.types.NodeTree, kind: str, x: float, y: float, **settings: Any) -> bpy.types.Node:
-    node = tree.nodes.new(kind)
-    node.location = (x, y)
-    for name, value in settings.items():
-        setattr(node, name, value)
-    return node
-
-
-def _link(
-    tree: bpy.types.NodeTree, source: bpy.types.Node, output: str, target: bpy.types.Node, socket: str
-) -> None:
-    # several sockets of a node can have the same name: only the enabled one is visible
-    start = next(s for s in source.outputs if s.name == output and s.enabled)
-    end = next(s for s in target.inputs if s.name == socket and s.enabled)
-    tree.links.new(start, end)
-
-
-DISPLACE = GroupKind("Ocean Tweak Displace", 1, _build)
+DISPLACE = GroupKind("Ocean Tweak Displace", 2, _build)

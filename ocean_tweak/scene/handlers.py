@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What keeps live oceans moving: frame changes, opened files, undo, changed units and frame rates."""
+"""What keeps live oceans moving: frame changes, renders, opened files, undo, changed units and rates."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from .evaluation import forget_all
-from .ocean_object import refresh_and_tell
+from . import evaluation, live_image, refinement
+from .refinement import show
+from .refresh import refresh_and_tell, refresh_render
 from .settings import all_oceans, oceans_in, settings_of
 
 # scene settings that change an ocean and have no update callback of ours
@@ -23,13 +24,28 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
     """Show the frame that the scene is about to evaluate, sub-frame included."""
     for item in oceans_in(scene):
         if settings_of(item).source == "LIVE":
-            refresh_and_tell(item, scene)
+            show(item, scene)
+
+
+@persistent
+def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Give a render, or an export of what would be rendered, the samples of the render.
+
+    After the evaluation, because only then Blender tells what it was for. What is changed here is evaluated
+    once more before anybody reads it.
+    """
+    if depsgraph is None or depsgraph.mode != "RENDER":
+        return
+    for item in oceans_in(scene):
+        if refinement.is_coarse(item):
+            refresh_and_tell(item, scene, statistics=False)
+        refresh_render(item, scene)
 
 
 @persistent
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels."""
-    forget_all()
+    _forget_all()
     _subscribe()
     refresh_live_oceans()
 
@@ -37,6 +53,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
 @persistent
 def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     """Undo restores settings, but neither the texels nor what was made anew since."""
+    live_image.forget_all()
     refresh_live_oceans()
 
 
@@ -44,18 +61,20 @@ def refresh_live_oceans() -> None:
     """Refresh every live ocean of the file in its own scene."""
     for item in list(all_oceans()):
         if settings_of(item).source == "LIVE" and item.users_scene:
-            refresh_and_tell(item, item.users_scene[0])
+            show(item, item.users_scene[0])
 
 
 def refresh_all_oceans() -> None:
     """Refresh every ocean of the file in its own scene."""
     for item in list(all_oceans()):
         if item.users_scene:
-            refresh_and_tell(item, item.users_scene[0])
+            show(item, item.users_scene[0])
 
 
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_pre", refresh_on_frame_change),
+    ("frame_change_post", refresh_for_render),
+    ("depsgraph_update_post", refresh_for_render),
     ("load_post", refresh_after_load),
     ("undo_post", refresh_after_undo),
     ("redo_post", refresh_after_undo),
@@ -76,7 +95,13 @@ def unregister() -> None:
         handlers = getattr(bpy.app.handlers, name)
         if handler in handlers:
             handlers.remove(handler)
-    forget_all()
+    _forget_all()
+
+
+def _forget_all() -> None:
+    refinement.forget_all()
+    evaluation.forget_all()
+    live_image.forget_all()
 
 
 def _subscribe() -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 import bpy
 import numpy as np
 from numpy.typing import NDArray
@@ -37,10 +39,29 @@ def prepare(image: bpy.types.Image, samples: int) -> None:
         image.generated_width = image.generated_height = samples
 
 
-def write(image: bpy.types.Image, displacement: NDArray[np.floating]) -> None:
-    """Put an (N, N, 3) field [y, x] into the image; row 0 is the bottom row in both."""
-    texels = np.ones((*displacement.shape[:2], 4), np.float32)
+# What images show, by their session uid; forgotten whenever Blender may have dropped the texels
+_shown: dict[int, Hashable] = {}
+
+
+def shows(image: bpy.types.Image, content: Hashable) -> bool:
+    """Whether this was written into the image last."""
+    return _shown.get(image.session_uid) == content and image.source == "GENERATED"
+
+
+def forget_all() -> None:
+    """Take no image's texels for granted: a file was opened, or a step undone."""
+    _shown.clear()
+
+
+def write(image: bpy.types.Image, displacement: NDArray[np.floating], content: Hashable = None) -> None:
+    """Put an (N, N, 3) field [y, x] into the image; row 0 is the bottom row in both.
+
+    content : what `shows` will tell from then on
+    """
+    _shown[image.session_uid] = content
+    texels = np.empty((*displacement.shape[:2], 4), np.float32)
     texels[..., :3] = displacement
+    texels[..., 3] = 1.0
     image.pixels.foreach_set(texels.reshape(-1))
     # without the tag the dependency graph does not see the new texels
     image.update_tag()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The modifier that moves the grid by an image: Displace or geometry nodes.
+"""The modifiers that move the grid: geometry nodes, or Displace with a finer grid and image for renders.
 
-Both read the same image and give the same vertices.
+All give the same vertices.
 """
 
 from __future__ import annotations
@@ -10,48 +10,121 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..nodes.displace import DISPLACE, UV_MAP
+from ..nodes.displace import DISPLACE
+from ..nodes.grid import GRID, UV_MAP
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import is_of_kind, node_group
+from .grid_mesh import Grid
 
-_NAME = "Ocean Tweak"
+_NAMES = {"NODES": "Ocean Tweak", "VIEW": "Ocean Tweak", "GRID": "Ocean Tweak Render Grid"}
+_NAMES["RENDER"] = "Ocean Tweak Render"
+_TYPES = {"NODES": "NODES", "VIEW": "DISPLACE", "GRID": "NODES", "RENDER": "DISPLACE"}
 
 
 @dataclass(frozen=True)
 class Displacement:
-    """What a modifier has to show.
+    """What the modifiers have to show.
 
-    image : metres
+    image : metres; None where the mesh's attribute has the displacement
     frames : first and last file number of a sequence, None for a live image
-    size : side of the patch in Blender units
-    samples : along each side of the image
+    grid : the mesh and the samples of the image
+    render_image, render_grid : what a render reads instead; None where it shows what the viewport shows
     scale : Blender units in a metre
     """
 
-    image: bpy.types.Image
+    image: bpy.types.Image | None
     frames: tuple[int, int] | None
-    size: float
-    samples: int
+    grid: Grid
+    render_image: bpy.types.Image | None
+    render_grid: Grid | None
     scale: float
 
 
-def own_modifiers(item: bpy.types.Object, texture: bpy.types.Texture | None) -> list[bpy.types.Modifier]:
-    """The object's modifiers that this module made, whatever they are called now."""
-    return [
-        modifier
-        for modifier in item.modifiers
-        if (modifier.type == "NODES" and is_of_kind(modifier.node_group, DISPLACE))
-        or (modifier.type == "DISPLACE" and texture is not None and modifier.texture == texture)
-    ]
+@dataclass(frozen=True)
+class Textures:
+    """Those of an ocean's Displace modifiers, by which they are recognised."""
+
+    view: bpy.types.Texture | None
+    render: bpy.types.Texture | None
 
 
-def apply_displace(item: bpy.types.Object, texture: bpy.types.Texture, shown: Displacement) -> None:
-    """Let a Displace modifier with this texture move the object; geometry nodes of ours go."""
-    modifier = _only_modifier(item, texture, "DISPLACE")
-    if texture.image != shown.image:
+def own_modifiers(item: bpy.types.Object, textures: Textures) -> list[tuple[str, bpy.types.Modifier]]:
+    """The object's modifiers that this module made and what each is for, whatever they are called now."""
+    purposes = [(_purpose(modifier, textures), modifier) for modifier in item.modifiers]
+    return [(purpose, modifier) for purpose, modifier in purposes if purpose is not None]
+
+
+def _purpose(modifier: bpy.types.Modifier, textures: Textures) -> str | None:
+    if modifier.type == "NODES":
+        kinds = {"NODES": DISPLACE, "GRID": GRID}
+        return next((key for key, kind in kinds.items() if is_of_kind(modifier.node_group, kind)), None)
+    if modifier.type == "DISPLACE" and modifier.texture is not None:
+        if modifier.texture == textures.view:
+            return "VIEW"
+        if modifier.texture == textures.render:
+            return "RENDER"
+    return None
+
+
+def apply_nodes(item: bpy.types.Object, textures: Textures, shown: Displacement) -> None:
+    """Let geometry nodes move the object; Displace modifiers of ours go."""
+    modifier = _only_modifiers(item, textures, ["NODES"])["NODES"]
+    _assign(modifier, node_group=node_group(DISPLACE))
+    first, last = shown.frames or (1, 1)
+    render = shown.render_grid
+    for name, value in (
+        ("Use Attribute", shown.image is None),
+        ("Image", shown.image),
+        ("Domain Size", shown.grid.size),
+        ("Resolution", shown.grid.samples),
+        ("Scale", shown.scale),
+        ("First Frame", first),
+        ("Last Frame", last),
+        ("Render Quads", render.quads if render else 0),
+        ("Render Image", shown.render_image),
+        ("Render Resolution", render.samples if render else shown.grid.samples),
+    ):
+        set_input(modifier, name, value)
+    item.update_tag()
+
+
+def apply_displace(item: bpy.types.Object, textures: Textures, shown: Displacement) -> None:
+    """Let Displace modifiers with these textures move the object; geometry nodes of ours go."""
+    purposes = ["VIEW"]
+    if shown.render_grid is not None:
+        # a baked sequence moves either grid, so the grid comes before
+        purposes = ["GRID", "VIEW"] if shown.render_image == shown.image else ["GRID", "VIEW", "RENDER"]
+    had = {purpose for purpose, _ in own_modifiers(item, textures)}
+    made = _only_modifiers(item, textures, purposes)
+    if ("RENDER" in made) != ("RENDER" in had):  # otherwise it is the user's to switch
+        made["VIEW"].show_render = "RENDER" not in made
+    if "GRID" in made:
+        _apply_grid(made["GRID"], shown.render_grid, is_new="GRID" not in had)
+    _apply_texture(made["VIEW"], textures.view, shown.image, shown)
+    if "RENDER" in made:
+        if "RENDER" not in had:
+            made["RENDER"].show_viewport = False
+        _apply_texture(made["RENDER"], textures.render, shown.render_image, shown)
+
+
+def _apply_grid(modifier: bpy.types.NodesModifier, grid: Grid, is_new: bool) -> None:
+    if is_new:
+        modifier.show_viewport = False
+    _assign(modifier, node_group=node_group(GRID))
+    for name, value in (("Size", grid.size), ("Quads", grid.quads), ("Samples", grid.samples)):
+        set_input(modifier, name, value)
+
+
+def _apply_texture(
+    modifier: bpy.types.DisplaceModifier,
+    texture: bpy.types.Texture,
+    image: bpy.types.Image,
+    shown: Displacement,
+) -> None:
+    if texture.image != image:
         # whether the modifier depends on time is found out only when its texture is assigned
         modifier.texture = None
-    _set_texture(texture, shown)
+    _set_texture(texture, image, shown.frames)
     _assign(
         modifier,
         texture=texture, direction="RGB_TO_XYZ", space="LOCAL", mid_level=0.0, strength=shown.scale,
@@ -59,38 +132,35 @@ def apply_displace(item: bpy.types.Object, texture: bpy.types.Texture, shown: Di
     )  # fmt: skip
 
 
-def apply_nodes(item: bpy.types.Object, texture: bpy.types.Texture | None, shown: Displacement) -> None:
-    """Let geometry nodes move the object; a Displace modifier of ours goes."""
-    modifier = _only_modifier(item, texture, "NODES")
-    _assign(modifier, node_group=node_group(DISPLACE))
-    first, last = shown.frames or (1, 1)
-    for name, value in (
-        ("Image", shown.image),
-        ("Domain Size", shown.size),
-        ("Resolution", shown.samples),
-        ("Scale", shown.scale),
-        ("First Frame", first),
-        ("Last Frame", last),
-    ):
-        set_input(modifier, name, value)
-    item.update_tag()
-
-
-def _only_modifier(
-    item: bpy.types.Object, texture: bpy.types.Texture | None, kind: str
-) -> bpy.types.Modifier:
-    """The object's one modifier of ours, of this kind, at the place in the stack where ours was."""
-    own = own_modifiers(item, texture)
-    kept = next((modifier for modifier in own if modifier.type == kind), None)
-    place = min((list(item.modifiers).index(modifier) for modifier in own), default=0)
-    for name in [modifier.name for modifier in own if modifier != kept]:
+def _only_modifiers(
+    item: bpy.types.Object, textures: Textures, purposes: list[str]
+) -> dict[str, bpy.types.Modifier]:
+    """The object's modifiers of ours for these purposes, at the place in the stack where ours were."""
+    own = own_modifiers(item, textures)
+    place = min((list(item.modifiers).index(modifier) for _, modifier in own), default=0)
+    names: dict[str, str] = {}
+    for purpose, modifier in own:
+        if purpose in purposes and purpose not in names:
+            names[purpose] = modifier.name
+    for name in [modifier.name for _, modifier in own if modifier.name not in names.values()]:
         item.modifiers.remove(item.modifiers[name])
-    if kept is not None:
-        return kept
-    item.modifiers.new(_NAME, kind)
+    for purpose in purposes:
+        if purpose in names:
+            place = item.modifiers.find(names[purpose]) + 1
+            continue
+        names[purpose] = _new_modifier(item, purpose, place)
+        place += 1
+    # by name: adding and moving modifiers makes references to them stale
+    return {purpose: item.modifiers[name] for purpose, name in names.items()}
+
+
+def _new_modifier(item: bpy.types.Object, purpose: str, place: int) -> str:
+    modifier = item.modifiers.new(_NAMES[purpose], _TYPES[purpose])
+    if purpose == "GRID":  # recognised by its group from now on
+        modifier.node_group = node_group(GRID)
+    name = modifier.name
     item.modifiers.move(len(item.modifiers) - 1, place)
-    # moving a modifier makes the reference to it stale
-    return item.modifiers[place]
+    return name
 
 
 def new_texture(name: str) -> bpy.types.Texture:
@@ -107,15 +177,17 @@ def new_texture(name: str) -> bpy.types.Texture:
     return texture
 
 
-def _set_texture(texture: bpy.types.Texture, shown: Displacement) -> None:
-    _assign(texture, image=shown.image)
-    if shown.frames is None:
+def _set_texture(texture: bpy.types.Texture, image: bpy.types.Image, frames: tuple[int, int] | None) -> None:
+    _assign(texture, image=image)
+    if frames is None:
         return
-    first, last = shown.frames
-    # file number = frame - frame_start + 1 + frame_offset: with both set it is the frame itself
+    first, last = frames
+    # File number = frame_offset + frame - frame_start + 1, and what is added to the offset is held between
+    # 0 and the duration. To begin at 0 rather than 1 holds the first frame too; a single file has no 0.
+    begin = 0 if last > first else 1
     _assign(
         texture.image_user,
-        frame_start=first, frame_offset=first - 1, frame_duration=last - first + 1,
+        frame_start=first + 1 - begin, frame_offset=first - begin, frame_duration=last - first + begin,
         use_auto_refresh=True, use_cyclic=False,
     )  # fmt: skip
     texture.update_tag()

@@ -16,13 +16,16 @@ import bpy
 from ..core import OceanParameters
 
 METHODS = {
-    "DISPLACE": ("Displace Modifier", "The Displace modifier moves the mesh by the image"),
-    "NODES": ("Geometry Nodes", "A geometry nodes modifier moves the mesh by the image"),
+    "DISPLACE": ("Displace Modifier", "Displace modifiers move the mesh by images"),
+    "NODES": ("Geometry Nodes", "A geometry nodes modifier moves the mesh. The fastest"),
 }
 SOURCES = {
     "LIVE": ("Live", "Compute the sea on every frame change. Needs no files, but this extension"),
     "SEQUENCE": ("Sequence", "Read a baked EXR sequence. Also works where this extension is not installed"),
 }
+
+#: samples along each side that play smoothly
+VIEWPORT_RESOLUTION = 256
 
 
 class OceanObjectError(ValueError):
@@ -35,19 +38,24 @@ class OceanSettings(Protocol):
     error : why the ocean cannot be shown, "" when all is well
     statistics : JSON of the sea's statistics, "" when there are none
     sequence_first, sequence_last, sequence_samples : file numbers, and texels along each side
-    mesh_resolution : quads along each side; 0 for as many as the image has samples
+    viewport_resolution : the most samples along each side in the viewport
+    mesh_resolution : quads along each side; 0 for as many as there are samples
+    live_image, texture, render_image, render_texture : what moves the mesh where its attribute does not
     """
 
     is_ocean: bool
     method: str
     source: str
+    viewport_resolution: int
     mesh_resolution: int
     live_image: bpy.types.Image | None
+    render_image: bpy.types.Image | None
     sequence_image: bpy.types.Image | None
     sequence_first: int
     sequence_last: int
     sequence_samples: int
     texture: bpy.types.Texture | None
+    render_texture: bpy.types.Texture | None
     error: str
     statistics: str
     id_data: bpy.types.Object

@@ -11,7 +11,7 @@ from ..core import OceanParameters, ParameterError, Timing
 from ..export.exr import ExrError, read_image
 from ..scene import ocean_object
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
-from ..scene.settings import METHODS, OceanObjectError, is_ocean, settings_of
+from ..scene.settings import METHODS, VIEWPORT_RESOLUTION, OceanObjectError, is_ocean, settings_of
 from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
 
 # far beyond any sea; keeps a file chosen by mistake from filling the memory
@@ -49,7 +49,10 @@ class MESH_OT_ocean_tweak_add(bpy.types.Operator):
         scene = context.scene
         parameters = default_sea(scene)
         try:
-            item = ocean_object.add(scene, parameters, method=self.method, collection=context.collection)
+            item = ocean_object.add(
+                scene, parameters, method=self.method, collection=context.collection,
+                viewport_resolution=VIEWPORT_RESOLUTION,
+            )  # fmt: skip
         except ocean_object.EXPECTED_ERRORS as error:
             return _refuse(self, error)
         half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))

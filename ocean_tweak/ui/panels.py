@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 
+from ..scene import refinement
 from ..scene.settings import is_ocean, settings_of
 from . import operators
 
@@ -71,7 +72,9 @@ class OCEAN_PT_sea(_OceanPanel, bpy.types.Panel):
         layout.prop(settings, "seed")
         patch = layout.column(align=True)
         patch.prop(settings, "domain_size")
-        patch.prop(settings, "resolution")
+        samples = layout.column(align=True)
+        samples.prop(settings, "viewport_resolution")
+        samples.prop(settings, "resolution", text="Render")
 
 
 class OCEAN_PT_statistics(_OceanPanel, bpy.types.Panel):
@@ -83,6 +86,8 @@ class OCEAN_PT_statistics(_OceanPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the statistics that the last change left, and warnings with their remedy."""
         settings = settings_of(context.active_object)
+        if refinement.is_outstanding(context.active_object):
+            self.layout.label(text="Refining…", icon="SORTTIME")
         if not settings.statistics:
             self.layout.label(text="Not known with these settings")
             return
@@ -173,7 +178,7 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
         )
     first, last = settings.sequence_first, settings.sequence_last
     if settings.source == "SEQUENCE" and not first <= frame <= last:
-        flat = frame < first and settings.method == "DISPLACE"
+        flat = frame < first == last and settings.method == "DISPLACE"
         shown = "the sea is flat" if flat else "the nearest one is held"
         warnings.append(f"Frame {frame} has no file: {shown}")
     return warnings

@@ -15,8 +15,8 @@ from bpy.props import (
 )
 
 from ..core import OceanParameters, Timing, Water, WaveLayer
-from ..scene.ocean_object import refresh_and_tell
-from ..scene.settings import METHODS, SOURCES, OceanObjectError
+from ..scene.refinement import show
+from ..scene.settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
 from ..scene.units import frame_rate, metres_per_unit
 from . import parameter_properties
 
@@ -31,7 +31,7 @@ def _changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None
         return
     scenes = item.users_scene
     if scenes:
-        refresh_and_tell(item, context.scene if context.scene in scenes else scenes[0])
+        show(item, context.scene if context.scene in scenes else scenes[0], dragged=True)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -88,10 +88,18 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             name="Source", items=_choices(SOURCES), default="LIVE", **_SHOWN,
             description="Where the displacement comes from",
         ),
+        "viewport_resolution": IntProperty(
+            name="Resolution Viewport", default=VIEWPORT_RESOLUTION, min=16, max=8192, **_SHOWN,
+            description="Samples along each side in the viewport: the same sea without its shortest waves. "
+            "Never more than in the render",
+        ),
         "mesh_resolution": IntProperty(
             name="Mesh Resolution", min=0, max=8192, **_SHOWN,
-            description="Quads along each side of the mesh; 0 for one per sample",
+            description="Quads along each side of the mesh, in the viewport and in the render; "
+            "0 for one per sample",
         ),
+        "render_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
+        "render_texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),
         "live_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
         "sequence_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
         "texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),

@@ -163,6 +163,7 @@ def test_too_little_memory_is_shown(add, make_parameters, core, empty_scene, mon
 
 def test_a_bug_is_not_hidden(add, make_parameters, core, extension, empty_scene, monkeypatch):
     add(make_parameters())
+    extension("scene.evaluation").forget_all()
     monkeypatch.setattr(core.Ocean, "surface", lambda *a, **k: {}["missing"])
     with pytest.raises(KeyError):
         extension("scene.handlers").refresh_on_frame_change(empty_scene)
@@ -205,18 +206,32 @@ def test_stale_node_group_is_not_used(add, make_parameters, expected, evaluated,
     np.testing.assert_allclose(evaluated(item), expected(make_parameters(), 1), atol=TOLERANCE)
 
 
-def test_materials_can_hold_on_to_the_live_image(add, make_parameters):
-    item = add(make_parameters())
+def texels(image):
+    flat = np.empty(4 * image.size[0] * image.size[1], np.float32)
+    image.pixels.foreach_get(flat)
+    return flat.reshape(image.size[1], image.size[0], 4)[..., :3]
+
+
+def test_materials_can_hold_on_to_the_live_image(add, make_parameters, core, empty_scene):
+    item = add(make_parameters(), "DISPLACE")
     image = item.ocean_tweak.live_image
     item.data.materials.append(bpy.data.materials.new("Water"))
+    if bpy.app.version < (5, 0):
+        item.data.materials[0].use_nodes = True
+    item.data.materials[0].node_tree.nodes.new("ShaderNodeTexImage").image = image
     item.ocean_tweak.resolution = 64
     assert item.ocean_tweak.live_image == image
+    # geometry nodes do without the image, the material does not
+    item.ocean_tweak.method = "NODES"
+    empty_scene.frame_set(5)
+    surface = core.Ocean(make_parameters(resolution=64)).frame(5).displacement
+    np.testing.assert_allclose(texels(image), surface, atol=TOLERANCE)
     assert tuple(image.size) == (64, 64)
     assert item.data.materials[0].name == "Water"
 
 
 def test_a_live_image_that_was_packed_lives_on(add, make_parameters, expected, evaluated, empty_scene):
-    item = add(make_parameters())
+    item = add(make_parameters(), "DISPLACE")
     image = item.ocean_tweak.live_image
     image.pack()  # as Blender does when it saves modified images
     assert image.source == "FILE"

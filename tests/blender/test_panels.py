@@ -61,7 +61,7 @@ def test_without_an_ocean_there_is_a_way_to_one(draw):
 def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     drawn = draw(item)
     for name in ("wind_speed", "wind_direction", "fetch", "swell", "choppiness", "depth", "seed",
-                 "domain_size", "resolution", "source", "method"):  # fmt: skip
+                 "domain_size", "viewport_resolution", "resolution", "source", "method"):  # fmt: skip
         assert drawn.count(name) == 1
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn
@@ -91,6 +91,8 @@ def test_frames_without_a_file_are_told(draw, item, bake, ocean_object, make_par
     empty_scene.frame_set(5)
     assert "Frame 5 has no file: the nearest one is held" in " ".join(draw(item))
     item.ocean_tweak.method = "DISPLACE"
+    assert "the nearest one is held" in " ".join(draw(item))
+    ocean_object.use_sequence(item, empty_scene, bake(make_parameters(), 7, 7, name="still"))
     assert "Frame 5 has no file: the sea is flat" in " ".join(draw(item))
 
 

@@ -56,7 +56,9 @@ def test_motion_blur_reads_between_frames(
     monkeypatch.setattr(
         core.Ocean,
         "surface",
-        lambda self, time, *rest: seconds.add(float(time) * 24) or original(self, time, *rest),
+        lambda self, time, *rest, **named: (
+            seconds.add(float(time) * 24) or original(self, time, *rest, **named)
+        ),
     )
     render(3)
     assert min(seconds) < 2.0 < max(seconds)

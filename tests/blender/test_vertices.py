@@ -92,9 +92,10 @@ def test_seconds_come_from_the_scene(add, make_parameters, expected, evaluated, 
     np.testing.assert_allclose(evaluated(item), expected(at_30, 100), atol=TOLERANCE)
 
 
-def test_nodes_hold_the_sequence_at_both_ends(add, make_parameters, expected, evaluated, empty_scene):
+@pytest.mark.parametrize("method", METHODS)
+def test_the_sequence_is_held_at_both_ends(add, make_parameters, expected, evaluated, empty_scene, method):
     parameters = make_parameters(start_frame=101)
-    item = add(parameters, "NODES", "SEQUENCE")
+    item = add(parameters, method, "SEQUENCE")
     for frame, shown in ((5, 101), (100, 101), (125, 124), (3000, 124)):
         empty_scene.frame_set(frame)
         np.testing.assert_allclose(evaluated(item), expected(parameters, shown), atol=TOLERANCE)
@@ -109,7 +110,7 @@ def test_rendered_mesh_is_smooth_and_square(add, make_parameters):
 
 
 def test_images_are_data(add, make_parameters):
-    settings = [add(make_parameters(), "NODES", source).ocean_tweak for source in SOURCES]
+    settings = [add(make_parameters(), "DISPLACE", source).ocean_tweak for source in SOURCES]
     for image in (settings[0].live_image, settings[1].sequence_image):
         assert image.colorspace_settings.is_data
 
