@@ -25,7 +25,7 @@ from .rows import Row
 
 GROUPS: dict[str, Callable[[Plan], Iterator[Row]]] = {
     module.GROUP: module.rows
-    for module in (transforms, initial_states, growth, memory_use, precision, baking, blender_rows)
+    for module in (blender_rows, baking, initial_states, transforms, growth, memory_use, precision)
 }
 
 #: above this load, others are at work and the numbers are noise

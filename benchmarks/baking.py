@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import itertools
-import os
 import statistics
 import subprocess
 import sys
@@ -116,12 +115,8 @@ def _memory(plan: Plan, workers: int, folder: Path) -> Row:
 
 def peak_megabytes(arguments: list[str]) -> float:
     """Run the command line in a process of its own; raises RuntimeError if it fails."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "ocean_tweak", *arguments], cwd=ROOT, stdout=subprocess.DEVNULL
-    )
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise RuntimeError(f"ocean_tweak {' '.join(arguments)} failed with exit code {process.returncode}")
-    unit = 1 if sys.platform == "darwin" else 1024
-    return usage.ru_maxrss * unit / 1e6
+    command = [sys.executable, "-m", "benchmarks.peak_memory", *arguments]
+    answer = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    if answer.returncode:
+        raise RuntimeError(f"ocean_tweak {' '.join(arguments)} failed with exit code {answer.returncode}")
+    return int(answer.stdout.split()[-1]) / 1e6

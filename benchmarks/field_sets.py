@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean
 from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.synthesis import term
 
 from .plan import sea
 
@@ -29,8 +30,9 @@ class FieldSet:
 
 THREE = FieldSet("3 fields", ("displacement",), 3)
 SIX = FieldSet("6 fields + eigenvalue", ("displacement", "min_eigenvalue"), 6)
-# elevation, Dx, Dy, their rates, two slopes and Jxx, Jxy, Jyy
-ALL = FieldSet("all outputs", tuple(sorted(OUTPUTS)), 11)
+# elevation, Dx, Dy, their rates, two slopes and Jxx, Jxy, Jyy, each counted once
+_TERMS = {term(*need) for output in OUTPUTS.values() for need in output.needs}
+ALL = FieldSet("all outputs", tuple(sorted(OUTPUTS)), len(_TERMS))
 
 
 def arrays(fields: FieldSet, resolution: int) -> dict[str, NDArray[np.float32]]:

@@ -47,6 +47,7 @@ def main() -> None:
         "rows": [row.to_dict() for row in rows],
     }
     arguments.out.write_text(json.dumps(report), encoding="utf-8")
+    registration.unregister()  # while Blender is still whole
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
