@@ -14,7 +14,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import OceanParameters, Timing, Water, WaveLayer
+from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..scene.refinement import show
 from ..scene.settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
 from ..scene.units import frame_rate, metres_per_unit
@@ -64,6 +64,12 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(WaveLayer, _changed)
 
 
+class OCEAN_PG_foam(bpy.types.PropertyGroup):
+    """How whitecaps cover the sea and how long they last."""
+
+    __annotations__ = parameter_properties.annotations(Foam, _changed)
+
+
 class OCEAN_PG_timing(bpy.types.PropertyGroup):
     """How frames become seconds."""
 
@@ -77,6 +83,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         **parameter_properties.annotations(OceanParameters, _changed),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
+        "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
@@ -127,6 +134,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         metres = metres_per_unit(scene)
         data = parameter_properties.read(self, OceanParameters, metres)
         data["water"] = parameter_properties.read(self.water, Water, metres)
+        data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data["layers"] = [parameter_properties.read(layer, WaveLayer, metres) for layer in self.layers]
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
@@ -147,6 +155,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         with self.quiet():
             parameter_properties.write(self, OceanParameters, data, metres)
             parameter_properties.write(self.water, Water, data["water"], metres)
+            parameter_properties.write(self.foam, Foam, data["foam"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
             _set_count(self.layers, len(data["layers"]))
             for layer, values in zip(self.layers, data["layers"], strict=True):
@@ -154,4 +163,4 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         _changed(self, bpy.context)
 
 
-CLASSES = (OCEAN_PG_water, OCEAN_PG_layer, OCEAN_PG_timing, OCEAN_PG_ocean)
+CLASSES = (OCEAN_PG_water, OCEAN_PG_layer, OCEAN_PG_foam, OCEAN_PG_timing, OCEAN_PG_ocean)

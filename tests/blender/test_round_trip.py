@@ -45,7 +45,8 @@ def awkward_sea(core, seed):
     timing = core.Timing(fps=fps, start_frame=9)
     return awkward(
         core.OceanParameters, chance, resolution=SAMPLES, layers=tuple(layers), timing=timing,
-        water=awkward(core.Water, chance), loop_duration=Fraction(720) / fps,
+        water=awkward(core.Water, chance), foam=awkward(core.Foam, chance, resolution=20 + 2 * seed),
+        loop_duration=Fraction(720) / fps,
     )  # fmt: skip
 
 
