@@ -47,7 +47,7 @@ class Builder:
     def change(
         self, kind: str, geometry: Socket, inputs: dict[str, Input] | None = None, **settings: Any
     ) -> Socket:
-        """The geometry behind a node that changes one; its socket is called differently by node and version."""
+        """The geometry behind a node that changes one; nodes and versions call its socket differently."""
         node = self.add(kind, inputs, **settings)
         self.tree.links.new(geometry, node.inputs[0])
         return node.outputs[0]

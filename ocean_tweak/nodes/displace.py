@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Geometry nodes that move a grid by an attribute or by a displacement image.
 
-The attribute is what a live sea in the viewport uses: reading it costs a third of what sampling an image does.
+The attribute is what a live sea in the viewport uses: that costs a third of sampling an image.
 The image is for baked files, for a mesh that has not one vertex a sample, and for renders finer than the
 viewport, which get a grid of their own. It holds metres, `Scale` makes Blender units of them. It is read at
 the attribute `st`, which has the half texel in it already, or, on a mesh without one, at the position.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -41,6 +41,20 @@ class _Outstanding:
     counting: dict[int, tuple[OceanParameters, Future[str]]] = field(default_factory=dict)
     counter: ThreadPoolExecutor | None = None
 
+    def keep_only(self, uids: Iterable[int]) -> None:
+        """Forget objects that are gone."""
+        for uid in {*self.coarse, *self.uncounted, *self.counting}.difference(uids):
+            self.coarse.pop(uid, None)
+            self.uncounted.discard(uid)
+            self.counting.pop(uid, None)
+
+    def clear(self) -> None:
+        """Forget all objects, and end the thread."""
+        self.keep_only(())
+        if self.counter is not None:
+            self.counter.shutdown(wait=False, cancel_futures=True)
+            self.counter = None
+
 
 _outstanding = _Outstanding()
 
@@ -61,8 +75,8 @@ def show(item: bpy.types.Object, scene: bpy.types.Scene, dragged: bool = False) 
         _outstanding.coarse[uid] = time.monotonic() + PAUSE
     if dragged or not has_statistics(item, scene):
         _outstanding.uncounted.add(uid)
-        if not bpy.app.timers.is_registered(_go_on):
-            bpy.app.timers.register(_go_on, first_interval=_INTERVAL)
+        if not bpy.app.timers.is_registered(go_on):
+            bpy.app.timers.register(go_on, first_interval=_INTERVAL)
 
 
 def has_window() -> bool:
@@ -83,21 +97,17 @@ def is_outstanding(item: bpy.types.Object) -> bool:
 
 def forget_all() -> None:
     """Do nothing more: another file is opened, or the extension is disabled."""
-    if bpy.app.timers.is_registered(_go_on):
-        bpy.app.timers.unregister(_go_on)
-    if _outstanding.counter is not None:
-        _outstanding.counter.shutdown(wait=False, cancel_futures=True)
-    _outstanding.__init__()  # type: ignore[misc]
+    if bpy.app.timers.is_registered(go_on):
+        bpy.app.timers.unregister(go_on)
+    _outstanding.clear()
 
 
-def _go_on() -> float | None:
-    """The timer: one step for each ocean; ends itself when nothing is left."""
+def go_on() -> float | None:
+    """The timer: one step for each ocean. Returns the seconds to the next one, None when nothing is left."""
     if bpy.app.is_job_running("RENDER"):
         return 10 * _INTERVAL
     oceans = {item.session_uid: item for item in all_oceans() if item.users_scene}
-    for waiting in (_outstanding.coarse, _outstanding.uncounted, _outstanding.counting):
-        for uid in [uid for uid in waiting if uid not in oceans]:
-            waiting.pop(uid) if isinstance(waiting, dict) else waiting.discard(uid)
+    _outstanding.keep_only(oceans)
     done = [*_show_all_samples(oceans), *_take_statistics(oceans)]
     _start_statistics(oceans)
     if done:

@@ -11,12 +11,17 @@ RealArray = NDArray[np.float32]
 
 def resampled(closed: RealArray, samples: int) -> RealArray:
     """Bilinear values of an (n+1, n+1, c) field, its far edges included, as (samples+1, samples+1, c)."""
-    rows = _along_first_axis(closed, samples)
-    return np.ascontiguousarray(_along_first_axis(rows.swapaxes(0, 1), samples).swapaxes(0, 1))
+    # columns while there are few rows: what is left are whole rows, added in place
+    return _along(0, _along(1, closed, samples), samples)
 
 
-def _along_first_axis(field: RealArray, samples: int) -> RealArray:
-    place = np.arange(samples + 1) * ((len(field) - 1) / samples)
-    before = np.minimum(place.astype(np.intp), len(field) - 2)
-    share = (place - before).astype(np.float32)[:, np.newaxis, np.newaxis]
-    return field[before] * (1.0 - share) + field[before + 1] * share
+def _along(axis: int, field: RealArray, samples: int) -> RealArray:
+    last = field.shape[axis] - 1
+    place = np.arange(samples + 1) * (last / samples)
+    before = np.minimum(place.astype(np.intp), last - 1)
+    share = (place - before).astype(np.float32)
+    result, step = np.take(field, before, axis), np.take(field, before + 1, axis)
+    step -= result
+    step *= share.reshape((-1, 1) if axis else (-1, 1, 1))
+    result += step
+    return result

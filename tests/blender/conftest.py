@@ -82,7 +82,11 @@ def bake(extension, core, tmp_path):
 
 def vertices(item):
     """(M+1, M+1, 3) float64: the object's evaluated vertices [y, x], Blender units."""
-    mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    return positions_of(item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data)
+
+
+def positions_of(mesh):
+    """(M+1, M+1, 3) float64: a square mesh's vertices [y, x], Blender units."""
     flat = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("co", flat)
     side = round(len(mesh.vertices) ** 0.5)
