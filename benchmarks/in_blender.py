@@ -26,6 +26,7 @@ from ocean_tweak import registration
 from ocean_tweak.core import Ocean
 from ocean_tweak.scene import ocean_object
 from ocean_tweak.scene.grid_mesh import Grid, fill
+from ocean_tweak.scene.refresh import refresh_and_tell
 from ocean_tweak.scene.settings import METHODS
 
 CREST = "crest"
@@ -113,22 +114,52 @@ def compare(
 
 def latency_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
     """Wind speed set → evaluated mesh."""
-    ours = {f"live, {method.lower()}": live(samples, method) for method in METHODS}
+    winds = (10.0 + 1e-2 * step for step in itertools.count())
     scene, item = built_in(samples, "GENERATE")
     modifier = item.modifiers["Ocean"]
-    winds = (10.0 + 1e-2 * step for step in itertools.count())
 
     def change_modifier() -> None:
         modifier.wind_velocity = next(winds)
         mesh_of(scene, item)
 
-    sides = {"Generate": change_modifier}
-    sides |= {name: to_mesh_in_wind(contender, winds) for name, contender in ours.items()}
+    nodes, displace = live(samples, "NODES"), live(samples, "DISPLACE")
+    sides = {
+        "Generate": change_modifier,
+        "live, nodes, all at once": wind_changer(nodes, winds),
+        "live, displace, all at once": wind_changer(displace, winds),
+        "live, nodes, what a window shows first": wind_changer(nodes, winds, coarse=True),
+        "live, nodes, what a window shows next": wind_changer(nodes, winds, coarse=False),
+    }
     timings = interleaved(sides, arguments.rounds)
     remove_scenes()
-    for name in ours:
+    for name in list(sides)[1:]:
         row = f"wind → mesh, {samples}², {name} against Ocean modifier Generate"
         yield ratio_row(f"Blender, {arguments.place}", row, timings, name, "Generate", faster=True)
+
+
+def wind_changer(
+    contender: Contender, winds: Iterator[float], coarse: bool | None = None
+) -> Callable[[], None]:
+    """Changes the wind and asks for the mesh.
+
+    coarse : as in a window, which shows few samples first, then all of them, and leaves the statistics for
+        later; None does everything at once, as without a window
+    """
+    scene, item = contender
+    settings = item.ocean_tweak
+
+    def run() -> None:
+        if coarse is None:
+            settings.layers[0].wind_speed = next(winds)
+        else:
+            with settings.quiet():
+                settings.layers[0].wind_speed = next(winds)
+            refresh_and_tell(item, scene, coarse=coarse, statistics=False)
+        mesh_of(scene, item)
+        if settings.error:
+            raise RuntimeError(settings.error)
+
+    return run
 
 
 def to_mesh(contender: Contender, frames: Iterator[int]) -> Callable[[], None]:
@@ -142,19 +173,6 @@ def to_mesh(contender: Contender, frames: Iterator[int]) -> Callable[[], None]:
         if place == seen[0]:
             raise RuntimeError(f"{scene.name}: the sea stands still")
         seen[0] = place
-
-    return run
-
-
-def to_mesh_in_wind(contender: Contender, winds: Iterator[float]) -> Callable[[], None]:
-    """Changes the wind and asks for the mesh."""
-    scene, item = contender
-
-    def run() -> None:
-        item.ocean_tweak.layers[0].wind_speed = next(winds)
-        mesh_of(scene, item)
-        if item.ocean_tweak.error:
-            raise RuntimeError(item.ocean_tweak.error)
 
     return run
 
