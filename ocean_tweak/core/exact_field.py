@@ -53,7 +53,7 @@ class _Columns:
 
     def _sum(self, component: int, by: str, along_x: ComplexArray, along_y: ComplexArray) -> Array:
         wanted = term(component, by)
-        coefficients = self._coefficients(wanted.column) * self._synthesis.kx_powers[wanted.x_order]
+        coefficients = self._coefficients(wanted.column) * self._synthesis.x_factor(wanted)
         return np.einsum("pk,pk->p", along_y @ coefficients, along_x).real
 
     def _coefficients(self, column: Column) -> ComplexArray:

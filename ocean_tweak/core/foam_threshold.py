@@ -94,10 +94,7 @@ def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float
     rate, independent of it, with ω² (ω as the drifting point meets the waves) in the integral.
     """
     grid = state.grid
-    k = np.maximum(grid.k, 0.5 * grid.spacing)
-    factor = parameters.choppiness / k
-    if parameters.orbits == "FINITE_DEPTH":
-        factor /= np.tanh(k * parameters.water.depth)
+    factor = parameters.choppiness * state.potential_factor.real.astype(np.float64)
     along = grid.kx * drift[0] + grid.ky * drift[1]
     components = np.stack(
         [np.broadcast_to(c, grid.shape) for c in (grid.kx**2, grid.ky**2, grid.kx * grid.ky)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ class InitialState:
     omega : float64, rad/s; in a loop a multiple of 2π/T
     expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²
     loop_duration : T in s, or None
+    orbit_depth : depth in m that widens the water's orbits; infinite for those of deep water
     """
 
     grid: WaveVectorGrid
@@ -43,6 +44,21 @@ class InitialState:
     expected_plus: RealArray
     expected_minus: RealArray
     loop_duration: Fraction | None = None
+    orbit_depth: float = float("inf")
+
+    @cached_property
+    def potential_factor(self) -> ComplexArray:
+        """1/k, (N, N//2+1) m, complex: from the elevation to the potential of the horizontal displacement.
+
+        In finite depth orbits are wider by coth kh (linear theory, Airy).
+        """
+        grid = self.grid
+        result = np.empty(grid.shape[::-1], self.h_plus.dtype)  # complex, or each product would convert it
+        for columns in grid.column_blocks():
+            k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
+            k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
+            result[columns] = grid.mirror(1.0 / (k * np.tanh(k * self.orbit_depth)))
+        return result.T
 
 
 @lru_cache(maxsize=4)
@@ -98,7 +114,18 @@ def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> I
     if parameters.match_height:
         _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
     omega = _angular_frequency(grid, parameters)
-    return InitialState(grid, h_plus, h_minus, omega, expected_plus, expected_minus, parameters.loop_duration)
+    state = InitialState(
+        grid,
+        h_plus,
+        h_minus,
+        omega,
+        expected_plus,
+        expected_minus,
+        loop_duration=parameters.loop_duration,
+        orbit_depth=parameters.water.depth if parameters.orbits == "FINITE_DEPTH" else float("inf"),
+    )
+    state.potential_factor  # noqa: B018  made with the state, not by its first surface
+    return state
 
 
 def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:

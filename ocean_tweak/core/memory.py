@@ -47,7 +47,7 @@ def memory_need(
     half_plane = n * (n // 2 + 1)
     real = 4 if precision == "single" else 8
     phasors = min(len(parameters.active_layers), 4) * 2 * 2 * real
-    state = half_plane * (2 * 2 * real + 2 * real + 8 + phasors)
+    state = half_plane * (3 * 2 * real + 2 * real + 8 + phasors)
     building = half_plane * 8 * _TEMPORARY_ARRAYS + _TABLES
     everything = frozenset(outputs)
     wanted = everything - {FOAM}

@@ -73,9 +73,7 @@ class Ocean:
         check_memory(need, f"A sea of {self.parameters.resolution}² samples")
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
-        shared = self.parameters.replace(
-            choppiness=0.0, trough_damping=0.0, orbits="DEEP", foam=Foam(), timing=timing
-        )
+        shared = self.parameters.replace(choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing)
         return _cached_initial_state(shared, PRECISIONS[self.precision])
 
     @cached_property
@@ -200,4 +198,4 @@ class Ocean:
 
 def default_workers(resolution: int) -> int:
     """Threads that help: one a core, but only one where a surface is too small to share."""
-    return (os.cpu_count() or 1) if resolution >= 512 else 1
+    return (os.cpu_count() or 1) if resolution >= 1024 else 1

@@ -67,12 +67,12 @@ def propagate(
     if scale != 1.0:
         half *= real(scale)
     turn = state.grid.mirror(half)
-    against = state.h_minus.T[columns].astype(dtype, copy=False) * turn
+    against = np.multiply(state.h_minus.T[columns].astype(dtype, copy=False), turn, out=np.empty_like(turn))
     along = np.conjugate(turn, out=turn)
     along *= state.h_plus.T[columns].astype(dtype, copy=False)
-    if not with_rate:
-        along += against
-        return PropagatedState(along.T, None)
-    rate = (dtype(-1j) * state.omega.T[columns].astype(real)) * (along - against)
-    along += against
-    return PropagatedState(along.T, rate.T)
+    rate = None
+    if with_rate:
+        rate = ((dtype(-1j) * state.omega.T[columns].astype(real)) * (along - against)).T
+    # adding complex numbers as pairs of real ones takes half the time
+    np.add(along.view(real), against.view(real), out=along.view(real))
+    return PropagatedState(along.T, rate)

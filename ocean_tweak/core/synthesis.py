@@ -2,9 +2,9 @@
 """From Fourier coefficients to fields over the patch, by inverse transforms in two passes.
 
 The position of the sample that rests at (x, y, 0) is (x, y, 0) + P with P = (λDx, λDy, h). Two scalar fields
-and their derivatives give everything: the elevation h, and the potential Φ with Φ(k) = λ ĥ/|k|, whose
-gradient is the horizontal displacement. So D(k) = +i (k/|k|) ĥ, the transform of Chen (2014), eq. 11, with
-which points move towards the crests and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
+and their derivatives give everything: the elevation h, and the potential Φ with Φ(k) = ĥ/|k|, whose gradient
+is D. So D(k) = +i (k/|k|) ĥ, the transform of Chen (2014), eq. 11, with which points move towards the crests
+and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
 
 The first pass goes over blocks of columns kx: it moves the coefficients to their time, multiplies by
 (i ky)ⁿ and transforms along y. The second goes over blocks of rows y: it multiplies by (i kx)ᵐ, which
@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -34,9 +33,17 @@ ComplexArray = NDArray[np.complexfloating]
 
 X, Y, Z = 0, 1, 2
 
-#: complex numbers in a block of either pass, of which several live at once: they share a second-level cache
-_BLOCK = 2**16
-_SMALL_BLOCK = 2**15
+#: complex numbers in the blocks of either pass that are worked on at once, by all workers together: wide
+#: blocks are quicker, and each takes several temporaries of its size
+_BLOCK = 2**17
+_SMALL_SEA, _SMALL_BLOCK = 1024, 2**15
+
+#: columns beyond which blocks are a quarter of that, so that memory stays within 24 bytes a sample
+_MANY_COLUMNS = 4
+
+#: rows of a block lie this much further apart than they are long, or the columns that are to become rows
+#: would all fall into the same few lines of the caches
+_PADDING = 8
 
 _NUMPY_TRANSFORMS_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 
@@ -79,33 +86,19 @@ class Synthesis:
     dtype: type = np.complex64
     workers: int = 1
 
-    @cached_property
-    def potential_factor(self) -> RealArray:
-        """λ/k for ky from 0 to N/2, (N//2+1, N//2+1) [kx, ky]: from the elevation to the potential.
+    def x_factor(self, wanted: Term) -> ComplexArray:
+        """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none."""
+        factor = (1j * self.state.grid.kx[0]) ** wanted.x_order
+        if wanted.column.potential and wanted.column.y_order == 0:
+            factor *= self.parameters.choppiness
+        return factor.astype(self.dtype)
 
-        In finite depth orbits are wider by coth kh (linear theory, Airy) where `orbits` asks for it.
-        """
-        grid, parameters = self.state.grid, self.parameters
-        half = grid.resolution // 2 + 1
-        result: RealArray = np.empty((half, half), np.float32 if self.dtype is np.complex64 else np.float64)
-        for block in grid.column_blocks():
-            k = np.hypot(grid.kx[0, block, np.newaxis], grid.ky[:half, 0])
-            k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
-            factor = parameters.choppiness / k
-            if parameters.orbits == "FINITE_DEPTH":
-                factor /= np.tanh(k * parameters.water.depth)
-            result[block] = factor
-        return result
-
-    @cached_property
-    def kx_powers(self) -> list[ComplexArray]:
-        """(i kx)ᵐ for m = 0, 1, 2, each (N//2+1,)."""
-        return [((1j * self.state.grid.kx[0]) ** order).astype(self.dtype) for order in range(3)]
-
-    @cached_property
-    def ky_powers(self) -> list[ComplexArray]:
-        """(i ky)ⁿ for n = 0, 1, 2, each (N,)."""
-        return [((1j * self.state.grid.ky[:, 0]) ** order).astype(self.dtype) for order in range(3)]
+    def y_factor(self, column: Column) -> ComplexArray:
+        """(i ky)ⁿ of a column, (N,), and the choppiness λ if it is one of the potential's derivatives."""
+        factor = (1j * self.state.grid.ky[:, 0]) ** column.y_order
+        if column.potential:
+            factor *= self.parameters.choppiness
+        return factor.astype(self.dtype)
 
     def fill(
         self,
@@ -131,8 +124,8 @@ class Synthesis:
             write(block, Rows(self, first_pass, block))
 
         n = self.state.grid.resolution
-        run_blocks(transform_along_y, self._blocks(n // 2 + 1), self.workers)
-        run_blocks(transform_along_x, self._blocks(n), self.workers)
+        run_blocks(transform_along_y, self._blocks(n // 2 + 1, len(needed)), self.workers)
+        run_blocks(transform_along_x, self._blocks(n, len(needed)), self.workers)
 
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
         """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
@@ -149,9 +142,12 @@ class Synthesis:
         wanted |= {(Z, derivative) for _, derivative in wanted}
         return {(*key, long) for key in wanted for long in (False, True)}
 
-    def _blocks(self, count: int) -> Iterator[slice]:
+    def _blocks(self, count: int, columns: int) -> Iterator[slice]:
+        """Blocks of `count` rows or columns, when there are so many columns to transform."""
         n = self.state.grid.resolution
-        size = max(1, (_BLOCK if n >= 1024 else _SMALL_BLOCK) // n)
+        numbers = _BLOCK if n >= _SMALL_SEA else _SMALL_BLOCK
+        numbers //= 4 if columns > _MANY_COLUMNS else 1
+        size = max(1, numbers // self.workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
     def _transform_columns(
@@ -184,14 +180,14 @@ class _Sources:
         base = self._base(column._replace(y_order=0))
         if column.y_order == 0:
             return base
-        return base * self._synthesis.ky_powers[column.y_order]
+        return base * self._synthesis.y_factor(column)
 
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
             base = self._elevations[column.rate]
             if column.potential:
-                factor = self._synthesis.potential_factor[self._block].astype(base.dtype)
-                base = base * self._synthesis.state.grid.mirror(factor)
+                factor = self._synthesis.state.potential_factor.T[self._block]
+                base = base * factor.astype(base.dtype, copy=False)
             damping = self._synthesis.damping
             if column.long and damping is not None:
                 base = base * damping.long_waves.T[self._block].astype(base.dtype)
@@ -232,7 +228,7 @@ class Rows:
             return out
         coefficients = self._first_pass[wanted.column][self._block]
         if wanted.x_order:
-            coefficients = coefficients * self._synthesis.kx_powers[wanted.x_order]
+            coefficients = coefficients * self._synthesis.x_factor(wanted)
         self._made[wanted] = _inverse_real(coefficients, out)
         return self._made[wanted]
 
@@ -242,9 +238,11 @@ def _inverse(coefficients: ComplexArray) -> ComplexArray:
 
     NumPy before 2.0 transforms in double precision only; the result is rounded back where it is stored.
     """
-    if _NUMPY_TRANSFORMS_IN_PLACE:
-        return np.fft.ifft(coefficients, axis=-1, out=np.empty_like(coefficients))
-    return np.fft.ifft(coefficients, axis=-1)
+    if not _NUMPY_TRANSFORMS_IN_PLACE:
+        return np.fft.ifft(coefficients, axis=-1)
+    rows, n = coefficients.shape
+    padded = np.empty((rows, n + _PADDING), coefficients.dtype)
+    return np.fft.ifft(coefficients, axis=-1, out=padded[:, :n])
 
 
 def _inverse_real(coefficients: ComplexArray, out: RealArray | None) -> RealArray:
