@@ -36,10 +36,11 @@ X, Y, Z = 0, 1, 2
 #: complex numbers in the blocks of either pass that are worked on at once, by all workers together: wide
 #: blocks are quicker, and each takes several temporaries of its size
 _BLOCK = 2**17
-_SMALL_SEA, _SMALL_BLOCK = 1024, 2**15
+_SMALL_SEA, _SMALL_BLOCK = 1024, 2**16
 
-#: columns beyond which blocks are a quarter of that, so that memory stays within 24 bytes a sample
-_MANY_COLUMNS = 4
+#: columns in the workspace up to which blocks are that wide; with one more they are half, with more a
+#: quarter, so that all arrays together stay within 24 bytes a sample
+_FEW_COLUMNS = 3
 
 #: rows of a block lie this much further apart than they are long, or the columns that are to become rows
 #: would all fall into the same few lines of the caches
@@ -124,8 +125,8 @@ class Synthesis:
             write(block, Rows(self, first_pass, block))
 
         n = self.state.grid.resolution
-        run_blocks(transform_along_y, self._blocks(n // 2 + 1, len(needed)), self.workers)
-        run_blocks(transform_along_x, self._blocks(n, len(needed)), self.workers)
+        run_blocks(transform_along_y, self._blocks(n // 2 + 1, len(arrays)), self.workers)
+        run_blocks(transform_along_x, self._blocks(n, len(arrays)), self.workers)
 
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
         """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
@@ -143,10 +144,10 @@ class Synthesis:
         return {(*key, long) for key in wanted for long in (False, True)}
 
     def _blocks(self, count: int, columns: int) -> Iterator[slice]:
-        """Blocks of `count` rows or columns, when there are so many columns to transform."""
+        """Blocks of `count` rows or columns, beside a workspace of so many columns."""
         n = self.state.grid.resolution
         numbers = _BLOCK if n >= _SMALL_SEA else _SMALL_BLOCK
-        numbers //= 4 if columns > _MANY_COLUMNS else 1
+        numbers >>= min(2, max(0, columns - _FEW_COLUMNS))
         size = max(1, numbers // self.workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
