@@ -98,7 +98,7 @@ def _parser(in_blender: bool) -> argparse.ArgumentParser:
     baking.add_argument("--name", help="start of the file names; by default that of the sea")
     baking.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
-        help="PXR24 (default) keeps 2⁻¹⁶ of a value, the others are exact",
+help="PXR24 (default) keeps 2⁻¹⁶ of a value, the others are exact; HTJ2K needs Blender 5.2 to read",
     )  # fmt: skip
     return parser
 

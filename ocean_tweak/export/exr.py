@@ -24,7 +24,10 @@ FORMAT_VERSION = 1
 METADATA_ATTRIBUTE = "oceanTweak"
 
 #: largest relative error of a stored value, by compression
-COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0}
+COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0, "HTJ2K": 0.0}
+
+#: OpenEXR's names where they differ
+_OPENEXR_NAMES = {"NONE": "NO", "HTJ2K": "HTJ2K256"}
 
 
 class ExrError(RuntimeError):
@@ -126,7 +129,7 @@ def write_image(
     if not np.all(np.isfinite(image)):
         raise ExrError(f"{path}: the image holds values that are not finite")
     header = {
-        "compression": getattr(openexr, f"{'NO' if compression == 'NONE' else compression}_COMPRESSION"),
+        "compression": getattr(openexr, f"{_OPENEXR_NAMES.get(compression, compression)}_COMPRESSION"),
         "type": openexr.scanlineimage,
         "colorInteropID": "data",
         "framesPerSecond": fps,
