@@ -33,14 +33,13 @@ ComplexArray = NDArray[np.complexfloating]
 
 X, Y, Z = 0, 1, 2
 
-#: complex numbers in the blocks of either pass that are worked on at once, by all workers together: wide
-#: blocks are quicker, and each takes several temporaries of its size
+#: complex numbers in the blocks of either pass that are worked on at once, by all workers together: the
+#: wider, the quicker, up to the size of a cache
 _BLOCK = 2**17
-_SMALL_SEA, _SMALL_BLOCK = 1024, 2**16
 
-#: columns in the workspace up to which blocks are that wide; with one more they are half, with more a
-#: quarter, so that all arrays together stay within 24 bytes a sample
-_FEW_COLUMNS = 3
+#: bytes a sample that a surface may take beyond its outputs, those of a column, and those of the
+#: temporaries that live for each number of a block
+_MEMORY, _COLUMN, _TEMPORARIES = 24, 4, 48
 
 #: rows of a block lie this much further apart than they are long, or the columns that are to become rows
 #: would all fall into the same few lines of the caches
@@ -146,8 +145,8 @@ class Synthesis:
     def _blocks(self, count: int, columns: int) -> Iterator[slice]:
         """Blocks of `count` rows or columns, beside a workspace of so many columns."""
         n = self.state.grid.resolution
-        numbers = _BLOCK if n >= _SMALL_SEA else _SMALL_BLOCK
-        numbers >>= min(2, max(0, columns - _FEW_COLUMNS))
+        spare = max(1, _MEMORY - _COLUMN * columns)
+        numbers = min(_BLOCK, n * n * spare // _TEMPORARIES)
         size = max(1, numbers // self.workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
