@@ -58,6 +58,8 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, str, str, str, str]]:
         verdicts = {row.met for row in judged}
         met = next(verdict for verdict in (False, None, True) if verdict in verdicts)
         shown = _VERDICTS[met] or "not judged: fewer than two free cores"
+        if met is False and target.what_limits:
+            shown += f"; the limit: {target.what_limits}"
         result.append((target.work, str(target), _number(worst), str(len(judged)), shown))
     return result
 
