@@ -43,7 +43,8 @@ class Ocean:
 
     parameters : OceanParameters
     precision : "single" for float32 fields, "double" for reference work in float64
-    workers : threads that make a surface, by default one a core; the result does not depend on it
+    workers : threads that make a surface, by default one a core for 1024² samples or more, else one; the
+        result does not depend on it
 
     Raises ValueError for an unknown precision or a number of workers below 1.
     """

@@ -73,8 +73,8 @@ class OCEAN_PT_sea(_OceanPanel, bpy.types.Panel):
         patch = layout.column(align=True)
         patch.prop(settings, "domain_size")
         samples = layout.column(align=True)
-        samples.prop(settings, "viewport_resolution")
-        samples.prop(settings, "resolution", text="Render")
+        samples.prop(settings, "viewport_resolution", text="Res. Viewport")
+        samples.prop(settings, "resolution", text="Res. Render")
 
 
 class OCEAN_PT_statistics(_OceanPanel, bpy.types.Panel):
