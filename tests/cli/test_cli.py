@@ -70,6 +70,17 @@ def test_a_failing_worker_stops_the_bake(
     assert 2 <= len(written) < 20
 
 
+def test_a_missing_wheel_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "OpenEXR", None)
+    assert main(["bake", "--frames", "1", "--out", str(tmp_path), "--set", "resolution=16"]) == 1
+    message = capsys.readouterr().err
+    assert "pip install OpenEXR" in message
+    assert message.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
 def test_memory_is_told_and_guarded(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

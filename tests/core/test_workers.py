@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, memory
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, memory, random
 from ocean_tweak.core.fields import OUTPUTS, memory_groups
 from ocean_tweak.core.memory import memory_need
 
@@ -80,6 +80,27 @@ def test_a_sea_too_large_is_refused_before_it_is_made(monkeypatch: pytest.Monkey
         Ocean(OceanParameters(resolution=514)).surface(0.0)
     monkeypatch.undo()
     assert memory.physical_memory() > 2**28
+
+
+def test_changing_the_wind_draws_no_new_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    sea = OceanParameters(resolution=34, domain_size=123.0)
+    drawn = []
+    hash_wave_vectors = random.hash_wave_vectors
+
+    def counted(*arguments: object) -> np.ndarray:
+        drawn.append(arguments)
+        return hash_wave_vectors(*arguments)
+
+    monkeypatch.setattr(random, "hash_wave_vectors", counted)
+    first = Ocean(sea).initial_state.h_plus
+    assert drawn
+    drawn.clear()
+    assert not np.array_equal(
+        Ocean(sea.replace(layers=(WaveLayer(wind_speed=20.0),))).initial_state.h_plus, first
+    )
+    assert not drawn
+    assert Ocean(sea.replace(seed=8)).initial_state is not None
+    assert drawn
 
 
 def test_groups_hold_every_output_once() -> None:
