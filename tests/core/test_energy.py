@@ -11,6 +11,7 @@ from scipy import integrate
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.dispersion import angular_frequency
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.initial_state import initial_state
 from ocean_tweak.core.propagation import propagate
@@ -70,6 +71,25 @@ def test_sampling_alone_would_not_do(windy: OceanParameters) -> None:
         shares.append(np.sum(sampled) / np.sum(averaged))
     assert shares[0] > 1.4
     assert shares[1] < 1.0
+
+
+@pytest.mark.parametrize("mix", [0.0, 0.3])
+def test_far_cells_hold_the_spectrum_itself(mix: float) -> None:
+    """Far from the origin a cell is narrow: its mean, made by tables, is the closed formula at its centre.
+
+    But where Donelan-Banner's branches do not quite meet: there the table goes from one to the other.
+    """
+    layer = WaveLayer(wind_speed=17.0, fetch=300e3, wind_direction=0.4, spreading_mix=mix)
+    spectrum = DirectionalSpectrum(layer, Water(depth=30.0), "CAPILLARY")
+    grid = WaveVectorGrid(256, 6000.0)
+    ratio = angular_frequency(grid.k, "CAPILLARY", Water(depth=30.0)) / spectrum.peak_frequency
+    branches = (np.abs(ratio - 0.95) < 2e-3) | (np.abs(ratio - 1.6) < 2e-3)
+    row, column = np.nonzero(grid.usable & (grid.k > 34.0 * grid.spacing) & ~branches)
+    kx, ky = grid.kx[0, column], grid.ky[row, 0]
+    forward, backward = spectrum.cell_means(grid)
+    for means, sign in ((forward, 1.0), (backward, -1.0)):
+        expected = spectrum.density(sign * kx, sign * ky)
+        np.testing.assert_allclose(means[row, column], expected, rtol=1e-4, atol=1e-9 * np.max(expected))
 
 
 def test_gain_multiplies_wave_height(windy: OceanParameters) -> None:

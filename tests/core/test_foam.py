@@ -83,12 +83,12 @@ def test_swell_without_wind_has_no_foam() -> None:
 # The life of a single patch: a squeeze that is there for one lattice time
 
 
-def one_birth(model: FoamModel, size: int = 32) -> FoamHistory:
-    """Full foam at the sample (5, 7) at time 0 and never else."""
+def one_birth(model: FoamModel, size: int = 32, born: int = 0) -> FoamHistory:
+    """Full foam at the sample (5, 7) at one time in s and never else."""
 
     def squeeze_at(time: Fraction) -> np.ndarray:
         squeeze = np.zeros((size, size))
-        if time == 0:
+        if time == born:
             squeeze[5, 7] = 10.0
         return squeeze
 
@@ -112,6 +112,15 @@ def test_foam_drifts() -> None:
     assert field.max() == pytest.approx(2.0**-0.1, rel=1e-6)
     halfway = history.foam(0.5)  # half a sample in x, a quarter in y
     np.testing.assert_allclose(halfway[4:6, 7:9] / 2.0**-0.025, [[0.125, 0.125], [0.375, 0.375]], rtol=1e-6)
+
+
+def test_foam_drifts_from_where_it_was_born() -> None:
+    """Born at 4 s, its drifting grid has by then moved by (4, -2) samples."""
+    model = FoamModel(threshold=1.0, half_life=20.0, drift=(0.5, -0.25), spacing=0.5)
+    for age, place in ((0.0, (5, 7)), (2.0, (4, 9)), (8.0, (1, 15))):
+        field = one_birth(model, born=4).foam(4.0 + age)
+        assert np.unravel_index(np.argmax(field), field.shape) == place
+        assert field.max() == pytest.approx(2.0 ** (-age / 20.0), rel=1e-6)
 
 
 def test_foam_without_a_half_life_stays_where_it_is_born() -> None:

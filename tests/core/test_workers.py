@@ -74,6 +74,18 @@ def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
     assert peak < 1.4 * memory_need(parameters, outputs).surface
 
 
+def test_memory_with_trough_damping_is_told_too() -> None:
+    parameters = OceanParameters(resolution=1024, trough_damping=0.5)
+    ocean = Ocean(parameters, workers=1)
+    ocean.surface(0.0, ())  # the state and the damping's filter
+    tracemalloc.start()
+    ocean.surface(1.0)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert 0.6 * peak < memory_need(parameters).surface
+    assert peak > 1.4 * memory_need(parameters.replace(trough_damping=0.0)).surface
+
+
 def test_a_sea_too_large_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "physical_memory", lambda: 2**20)
     with pytest.raises(MemoryError, match=r"A sea of 514² samples needs 0\.1 GB .* lower the resolution"):
