@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import bpy
 
@@ -12,26 +13,64 @@ Socket = bpy.types.NodeSocket
 Input = Any
 
 
+class Plug(NamedTuple):
+    """A socket of a group's interface."""
+
+    name: str
+    socket_type: str
+    default: Any
+    description: str
+    hidden: bool = False
+
+
+class Panel(NamedTuple):
+    """Inputs that stand together in the modifier."""
+
+    name: str
+    inputs: tuple[Plug | tuple[str, str, Any, str], ...]
+
+
 class Builder:
     """Fills one node tree.
 
     tree : an empty geometry node tree
-    inputs : besides the geometry: name, socket type, default, description
+    inputs : besides the geometry: name, socket type, default, description, or a panel of such
+    outputs : of a group without geometry; those of one with geometry are the geometry alone
     """
 
-    def __init__(self, tree: bpy.types.NodeTree, inputs: tuple[tuple[str, str, Any, str], ...]) -> None:
+    def __init__(
+        self,
+        tree: bpy.types.NodeTree,
+        inputs: Iterable[Plug | Panel | tuple[str, str, Any, str]],
+        outputs: Iterable[Plug] = (),
+    ) -> None:
         self.tree = tree
         self._column = 0
-        tree.is_modifier = True
-        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-        tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
-        for name, socket_type, default, description in inputs:
-            socket = tree.interface.new_socket(
-                name, in_out="INPUT", socket_type=socket_type, description=description
-            )
-            if default is not None:
-                socket.default_value = default
+        plugs = [*outputs]
+        if not plugs:
+            tree.is_modifier = True
+            plugs.append(Plug("Geometry", "NodeSocketGeometry", None, ""))
+            self._add_plug(plugs[0], "OUTPUT", None)
+            self._add_plug(plugs[0], "INPUT", None)
+        else:
+            for plug in plugs:
+                self._add_plug(plug, "OUTPUT", None)
+        for entry in inputs:
+            panel = None
+            if isinstance(entry, Panel):
+                panel = tree.interface.new_panel(entry.name)
+            for plug in entry.inputs if isinstance(entry, Panel) else (entry,):
+                self._add_plug(Plug(*plug), "INPUT", panel)
         self.input = self.add("NodeGroupInput")
+
+    def _add_plug(self, plug: Plug, direction: str, panel: bpy.types.NodeTreeInterfacePanel | None) -> None:
+        socket = self.tree.interface.new_socket(
+            plug.name, description=plug.description, in_out=direction, socket_type=plug.socket_type,
+            parent=panel,
+        )  # fmt: skip
+        if plug.default is not None:
+            socket.default_value = plug.default
+        socket.hide_in_modifier = plug.hidden
 
     def add(self, kind: str, inputs: dict[str, Input] | None = None, **settings: Any) -> bpy.types.Node:
         """A node with its settings, and with values or links on its inputs by their names."""
@@ -52,6 +91,15 @@ class Builder:
         self.tree.links.new(geometry, node.inputs[0])
         return node.outputs[0]
 
+    def store(
+        self, geometry: Socket, name: str, value: Input, data_type: str, domain: str = "POINT"
+    ) -> Socket:
+        """The geometry with an attribute."""
+        return self.change(
+            "GeometryNodeStoreNamedAttribute", geometry, {"Name": name, "Value": value},
+            data_type=data_type, domain=domain,
+        )  # fmt: skip
+
     def math(self, operation: str, first: Input, second: Input, kind: str = "ShaderNodeMath") -> Socket:
         """The result of a node with two operands: Math, Vector Math, Integer Math or Boolean Math."""
         node = self.add(kind, operation=operation)
@@ -60,14 +108,50 @@ class Builder:
             self._connect(socket, value)
         return next(socket for socket in node.outputs if socket.enabled)
 
+    def integer(self, operation: str, first: Input, second: Input) -> Socket:
+        """Integer Math."""
+        return self.math(operation, first, second, "FunctionNodeIntegerMath")
+
+    def vector(self, operation: str, first: Input, second: Input) -> Socket:
+        """Vector Math with two vectors."""
+        return self.math(operation, first, second, "ShaderNodeVectorMath")
+
+    def scaled(self, vector: Socket, scale: Input) -> Socket:
+        """A vector times a number."""
+        node = self.add("ShaderNodeVectorMath", {"Vector": vector, "Scale": scale}, operation="SCALE")
+        return output(node, "Vector")
+
+    def logic(self, operation: str, first: Input, second: Input) -> Socket:
+        """Boolean Math."""
+        return self.math(operation, first, second, "FunctionNodeBooleanMath")
+
+    def compare(self, operation: str, first: Input, second: Input, data_type: str = "INT") -> Socket:
+        """Whether two numbers compare so."""
+        inputs = {"A": first, "B": second}
+        node = self.add("FunctionNodeCompare", inputs, data_type=data_type, operation=operation)
+        return output(node, "Result")
+
     def switch(self, input_type: str, switch: Input, false: Input, true: Input) -> Socket:
         """One of two values; where the condition is one for all, only that one is computed."""
         inputs = {"Switch": switch, "False": false, "True": true}
         return self.add("GeometryNodeSwitch", inputs, input_type=input_type).outputs["Output"]
 
+    def group(self, tree: bpy.types.NodeTree, inputs: dict[str, Input]) -> bpy.types.Node:
+        """Another group as a node."""
+        # its sockets exist only when it has its tree
+        return self.add("GeometryNodeGroup", inputs, node_tree=tree)
+
+    def given(self, name: str) -> Socket:
+        """An input of this group."""
+        return output(self.input, name)
+
     def finish(self, geometry: Socket) -> None:
         """Make this the group's result."""
-        self.add("NodeGroupOutput", {"Geometry": geometry})
+        self.finish_with({"Geometry": geometry})
+
+    def finish_with(self, values: dict[str, Input]) -> None:
+        """Make these the group's results, by their names."""
+        self.add("NodeGroupOutput", values)
 
     def _connect(self, socket: Socket, value: Input) -> None:
         if isinstance(value, bpy.types.NodeSocket):

@@ -18,11 +18,13 @@ class GroupKind:
     name : shown to the user
     version : raised whenever `build` changes, so that a group from an older file is not taken for this one
     build : fills an empty group with sockets and nodes
+    tree_type : GeometryNodeTree or ShaderNodeTree
     """
 
     name: str
     version: int
     build: Callable[[bpy.types.NodeTree], None]
+    tree_type: str = "GeometryNodeTree"
 
     @property
     def tag(self) -> str:
@@ -35,12 +37,22 @@ def node_group(kind: GroupKind) -> bpy.types.NodeTree:
     for group in bpy.data.node_groups:
         if group.library is None and group.get(_KEY) == kind.tag:
             return group
-    group = bpy.data.node_groups.new(kind.name, "GeometryNodeTree")
+    group = bpy.data.node_groups.new(kind.name, kind.tree_type)
     kind.build(group)
     group[_KEY] = kind.tag
     return group
 
 
+def kind_name(group: bpy.types.NodeTree | None) -> str:
+    """The name of the kind that a group was built as, in any version; "" for a group of somebody else."""
+    return str(group.get(_KEY, "")).rpartition(" ")[0] if group is not None else ""
+
+
 def is_of_kind(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
     """Whether a group was built as this kind, in any version."""
-    return group is not None and str(group.get(_KEY, "")).rpartition(" ")[0] == kind.name
+    return kind_name(group) == kind.name
+
+
+def is_stale(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
+    """Whether a group was built as this kind, but by another version of the extension."""
+    return is_of_kind(group, kind) and group.get(_KEY) != kind.tag
