@@ -13,6 +13,7 @@ from pathlib import Path
 
 from ocean_tweak.core import Ocean
 from ocean_tweak.core.bake import bake
+from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.exr import ExrSequence
 
 from .measure import Timings, interleaved
@@ -89,7 +90,7 @@ def _sides(plan: Plan, codec: str, folder: Path) -> dict[str, Callable[[], objec
 
     def baked(workers: int) -> Callable[[], None]:
         def run() -> None:
-            for done in bake(parameters, frames(), sink, workers):
+            for done in bake(Shot(parameters), frames(), sink, workers):
                 for path in done.paths:
                     path.unlink()  # or the disk fills
 

@@ -8,7 +8,7 @@ import atexit
 import bpy
 
 from . import cli
-from .core import OceanParameters
+from .core.shot import Shot
 from .scene import handlers
 from .scene.settings import all_oceans, settings_of
 from .ui import operators, panels, properties
@@ -20,13 +20,15 @@ _COMMAND = "ocean_tweak"
 _commands: list[object] = []
 
 
-def scene_oceans() -> dict[str, OceanParameters]:
-    """Parameters of the oceans of the open file by object name. Raises ParameterError for what is no sea."""
-    return {
-        item.name: settings_of(item).to_parameters(item.users_scene[0])
-        for item in all_oceans()
-        if item.users_scene
-    }
+def scene_oceans() -> dict[str, cli.Sea]:
+    """The oceans of the open file by object name. Raises ParameterError for what is no sea."""
+    oceans = {}
+    for item in all_oceans():
+        if item.users_scene:
+            scene = item.users_scene[0]
+            frames = tuple(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
+            oceans[item.name] = cli.Sea(Shot(settings_of(item).to_parameters(scene)), frames=frames)
+    return oceans
 
 
 def run_command(argv: list[str]) -> int:

@@ -21,7 +21,7 @@ RENDER_SCRIPT = ROOT / "examples" / "storm_render.py"
 GALLERY = ROOT / "docs" / "gallery"
 
 FOLDER = BUILD / "demo"
-FRAMES_FOLDER = FOLDER / "storm"
+CACHE = FOLDER / "cache"
 PICTURES = FOLDER / "pictures"
 STILL = FOLDER / "still"
 BLEND = FOLDER / "storm.blend"
@@ -115,7 +115,13 @@ def bake() -> None:
     """Write the displacement with the command line that artists use."""
     frames = f"{FIRST}-{LAST}"
     command = [sys.executable, "-m", "ocean_tweak", "bake", "--params", str(PARAMETERS), "--frames", frames]
-    run_logged([*command, "--out", str(FRAMES_FOLDER)], LOG)
+    run_logged([*command, "--out", str(CACHE)], LOG)
+
+
+def frames_folder() -> Path:
+    """Where the bake's only version lies."""
+    (folder,) = CACHE.glob("*/v*")
+    return folder
 
 
 def ready_blender() -> tuple[Callable[[list[str]], None], str]:
@@ -156,7 +162,7 @@ def run_script(
 def build_scene_arguments() -> list[str]:
     """The arguments of the scene script."""
     return [
-        "--params", str(PARAMETERS), "--sequence", str(FRAMES_FOLDER),
+        "--params", str(PARAMETERS), "--sequence", str(frames_folder()),
         "--frames", f"{FIRST}-{LAST}", "--out", str(BLEND),
     ]  # fmt: skip
 
@@ -199,7 +205,7 @@ def measure(parameters: object) -> tuple[float, float]:
 
     variances, periods = [], []
     for frame in range(FIRST, LAST + 1):
-        path = FRAMES_FOLDER / f"{PARAMETERS.stem}_disp.{frame:04d}.exr"
+        path = frames_folder() / f"{PARAMETERS.stem}_disp.{frame:04d}.exr"
         with OpenEXR.File(str(path), separate_channels=True) as file:
             elevation = np.array(file.channels()["B"].pixels)[::-1]  # an EXR begins with its top row
         variances.append(np.var(elevation, dtype=np.float64))

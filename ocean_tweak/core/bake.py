@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 import threading
 import time
 from collections import deque
@@ -16,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .fields import FOAM, SurfaceFields
+from .frames import Frame
 from .memory import check_memory, memory_need
 from .ocean import Ocean
-from .parameters import OceanParameters, ParameterError
-
-_RANGE = re.compile(r"(-?\d+)(?:-(-?\d+)(?:x(\d+))?)?")
-_MOST_FRAMES = 1_000_000
+from .parameters import OceanParameters
+from .shot import Moment, Shot
 
 
 class FrameSink(Protocol):
@@ -31,21 +29,41 @@ class FrameSink(Protocol):
     def outputs(self) -> frozenset[str]:
         """The fields that a frame must have."""
 
-    def write(self, frame: int, fields: SurfaceFields) -> tuple[Path, ...]:
+    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Keep a frame's fields; returns where."""
 
 
 class BakedFrame(NamedTuple):
     """A frame that has been kept."""
 
-    frame: int
+    frame: Frame
     paths: tuple[Path, ...]
     seconds: float
 
 
-def bake(
-    parameters: OceanParameters, frames: Iterable[int], sink: FrameSink, workers: int = 1
-) -> Iterator[BakedFrame]:
+class ShotSurfaces:
+    """Surfaces of a shot's frames, on one thread; quickest where frames follow each other."""
+
+    def __init__(self, shot: Shot) -> None:
+        self.shot = shot
+        self._ocean: Ocean | None = None
+
+    def ocean(self, parameters: OceanParameters) -> Ocean:
+        """The sea of a moment: the last one where its parameters are the same."""
+        if self._ocean is None or self._ocean.parameters != parameters:
+            self._ocean = Ocean(parameters, workers=1)
+        return self._ocean
+
+    def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:
+        """Fields of a frame; velocity is per second of the shot."""
+        moment: Moment = self.shot.at(frame)
+        fields = self.ocean(moment.parameters).surface(moment.time, outputs)
+        if "velocity" in fields and moment.rate != 1.0:
+            fields.velocity[...] *= moment.rate
+        return fields
+
+
+def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1) -> Iterator[BakedFrame]:
     """Make and keep each frame, several at once; yields each in order when it is kept.
 
     A worker makes a whole frame on one thread: while one encodes, another computes. Only foam, which has a
@@ -54,17 +72,17 @@ def bake(
 
     Raises MemoryError before the first frame where the machine is too small.
     """
+    parameters = shot.parameters
     need = memory_need(parameters, sink.outputs).peak(workers)
     check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")
-    with_memory = Ocean(parameters, workers=1)
-    with_memory.initial_state  # noqa: B018  made once, before the workers ask for it
+    with_memory = ShotSurfaces(shot)
     own = threading.local()
 
-    def make(frame: int, foam: NDArray[np.floating] | None) -> BakedFrame:
+    def make(frame: Frame, foam: NDArray[np.floating] | None) -> BakedFrame:
         started = time.perf_counter()
-        if not hasattr(own, "ocean"):
-            own.ocean = Ocean(parameters, workers=1)
-        fields = own.ocean.frame(frame, sink.outputs - {FOAM})
+        if not hasattr(own, "surfaces"):
+            own.surfaces = ShotSurfaces(shot)
+        fields = own.surfaces.frame(frame, sink.outputs - {FOAM})
         if foam is not None:
             fields = fields.including(FOAM, foam)
         return BakedFrame(frame, sink.write(frame, fields), time.perf_counter() - started)
@@ -73,6 +91,8 @@ def bake(
     with ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
+                if not under_way:  # made once, before the workers ask for it
+                    with_memory.ocean(shot.at(frame).parameters).initial_state  # noqa: B018
                 foam = with_memory.frame(frame, {FOAM}).foam if FOAM in sink.outputs else None
                 under_way.append(pool.submit(make, frame, foam))
                 if len(under_way) > workers:
@@ -82,24 +102,3 @@ def bake(
         finally:
             for future in under_way:
                 future.cancel()
-
-
-def parse_frames(text: str) -> tuple[int, ...]:
-    """Frames of `1-48`, `1-100x2`, `1001,1005-1010`, `-5--1`, ascending and each once.
-
-    Raises ParameterError.
-    """
-    frames: set[int] = set()
-    for part in text.split(","):
-        match = _RANGE.fullmatch(part.strip())
-        if not match:
-            raise ParameterError("frames", text, "must look like 1-48, 1-100x2 or 1001,1005-1010")
-        first = int(match[1])
-        last = int(match[2]) if match[2] else first
-        step = int(match[3]) if match[3] else 1
-        if last < first or step < 1:
-            raise ParameterError("frames", text, f"{part.strip()} holds no frames")
-        if (last - first) // step >= _MOST_FRAMES:
-            raise ParameterError("frames", text, f"must hold at most {_MOST_FRAMES} frames")
-        frames.update(range(first, last + 1, step))
-    return tuple(sorted(frames))

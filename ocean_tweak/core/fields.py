@@ -149,6 +149,9 @@ class SurfaceFields:
         self.time = time
         self._fields = fields
 
+    def __contains__(self, name: str) -> bool:
+        return name in self._fields
+
     def including(self, name: str, field: RealArray) -> SurfaceFields:
         """The same fields and one more."""
         return SurfaceFields(self.time, {**self._fields, name: field})

@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.fields import SurfaceFields
+from ..core.frames import Frame, frame_label
 from ..core.parameters import OceanParameters
+from ..core.plain_data import to_plain
 from .files import whole_file
 
 FORMAT_VERSION = 1
@@ -91,23 +93,24 @@ class ExrSequence:
         """The fields that a frame must have."""
         return frozenset().union(*(MAPS[name].outputs for name in self.maps))
 
-    def path(self, frame: int, map_name: str = "disp") -> Path:
+    def path(self, frame: Frame, map_name: str = "disp") -> Path:
         """Where a frame's map goes."""
-        return self.directory / f"{self.name}_{map_name}.{frame:04d}.exr"
+        return self.directory / f"{self.name}_{map_name}.{frame_label(frame)}.exr"
 
-    def write(self, frame: int, fields: SurfaceFields) -> tuple[Path, ...]:
+    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Write the frame's maps, in object space. Returns the files' paths."""
         return tuple(self._write_map(frame, fields, name) for name in self.maps)
 
-    def _write_map(self, frame: int, fields: SurfaceFields, name: str) -> Path:
+    def _write_map(self, frame: Frame, fields: SurfaceFields, name: str) -> Path:
         path = self.path(frame, name)
         metadata = {
             "format": FORMAT_VERSION,
             "map": name,
             "unit": MAPS[name].unit,
-            "frame": frame,
+            "frame": to_plain(frame),
             "time": fields.time,
             "domain_size": self.parameters.domain_size,
+            "compression": self.compression,
             "parameters": self.parameters.to_dict(),
         }
         write_image(path, MAPS[name].image(fields), metadata, self.parameters.timing.fps, self.compression)
@@ -159,3 +162,16 @@ def read_image(path: Path) -> tuple[NDArray[np.float32], dict[str, Any]]:
     except (RuntimeError, KeyError, ValueError) as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
     return np.ascontiguousarray(rows[::-1], np.float32), metadata
+
+
+def read_header(path: Path) -> dict[str, Any]:
+    """The metadata of an image written by `write_image`, without its pixels. Raises ExrError."""
+    openexr = _openexr()
+    try:
+        with openexr.File(str(path), header_only=True) as file:
+            metadata = json.loads(file.header()[METADATA_ATTRIBUTE])
+    except (RuntimeError, KeyError, ValueError) as error:
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
+    if not isinstance(metadata, dict):
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak")
+    return metadata

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line's arguments."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+from .. import __version__
+from ..core.frames import Frame, parse_frames
+from ..core.validation import ParameterError
+from ..export.exr import COMPRESSION_ERROR, MAPS
+from . import baking, checking, info
+from .seas import chosen_seas
+
+CACHE_VARIABLE = baking.CACHE_VARIABLE
+
+
+def make_parser(in_blender: bool) -> argparse.ArgumentParser:
+    """The parser; each command's `run` takes its arguments and what gives the open file's oceans."""
+    program = "blender --command ocean_tweak" if in_blender else "python -m ocean_tweak"
+    parser = argparse.ArgumentParser(
+        prog=program,
+        description="Ocean Tweak: seas with true wave heights, from wind, fetch, depth and swell.",
+    )
+    parser.add_argument("--version", action="version", version=f"Ocean Tweak {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    _add_info(commands, in_blender)
+    _add_bake(commands, in_blender)
+    _add_resume(commands)
+    _add_verify(commands)
+    _add_clean(commands)
+    return parser
+
+
+_Commands = argparse._SubParsersAction  # type: ignore[type-arg]
+
+
+def _command(commands: _Commands, name: str, purpose: str) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name, help=purpose, description=f"{purpose[0].upper()}{purpose[1:]}."
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON for machines, an object a line")
+    return parser
+
+
+def _add_info(commands: _Commands, in_blender: bool) -> None:
+    parser = _command(commands, "info", "print what the sea will be")
+    _add_sea_arguments(parser, in_blender)
+    parser.set_defaults(run=lambda arguments, oceans: info.run(arguments, chosen_seas(arguments, oceans)))
+
+
+def _add_bake(commands: _Commands, in_blender: bool) -> None:
+    parser = _command(commands, "bake", "write frames as EXR images; frames that are there already stay")
+    _add_sea_arguments(parser, in_blender)
+    parser.add_argument(
+        "--frames", type=_frames, metavar="RANGE", required=not in_blender,
+        help="1-48, 1-100x2 or 1001,1005-1010" + ("; by default the scene's" if in_blender else ""),
+    )  # fmt: skip
+    parser.add_argument(
+        "--only", type=_frames, metavar="RANGE",
+        help="bake these of the frames now; the others are baked elsewhere or later",
+    )  # fmt: skip
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR",
+        help="cache folder, in which the sea gets one of its own; by default "
+        + ("the file's, or " if in_blender else "")
+        + f"${CACHE_VARIABLE}",
+    )  # fmt: skip
+    parser.add_argument(
+        "--maps", type=_maps, metavar="LIST", default=("disp",),
+        help=f"what to write, of {','.join(MAPS)}; disp by default",
+    )  # fmt: skip
+    parser.add_argument("--name", help="start of the file names; by default that of the sea")
+    parser.add_argument(
+        "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
+        help="PXR24 (default) keeps 2⁻¹⁶ of a value, the others are exact; HTJ2K needs Blender 5.2 to read",
+    )  # fmt: skip
+    _add_work_arguments(parser)
+    parser.set_defaults(run=lambda arguments, oceans: baking.bake(arguments, chosen_seas(arguments, oceans)))
+
+
+def _add_resume(commands: _Commands) -> None:
+    parser = _command(commands, "resume", "make what is missing, stale or damaged of a bake")
+    _add_folder_arguments(parser)
+    _add_work_arguments(parser)
+    parser.set_defaults(run=lambda arguments, _oceans: baking.resume(arguments))
+
+
+def _add_verify(commands: _Commands) -> None:
+    parser = _command(commands, "verify", "read a bake back: hashes, headers, pixels and wave heights")
+    _add_folder_arguments(parser)
+    _add_openjd(parser)
+    parser.set_defaults(run=lambda arguments, _oceans: checking.verify(arguments))
+
+
+def _add_clean(commands: _Commands) -> None:
+    parser = _command(commands, "clean", "delete the frames of a bake, and nothing else")
+    _add_folder_arguments(parser)
+    parser.set_defaults(run=lambda arguments, _oceans: checking.clean(arguments))
+
+
+def _add_folder_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help="a bake's folder, NAME-UID/vNNN-hash8")
+    parser.add_argument(
+        "--frames", type=_frames, metavar="RANGE", help="by default all that were asked for or made"
+    )
+
+
+def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--workers", type=_workers, metavar="N", default=os.cpu_count() or 1,
+        help="processes that share the frames, by default one a core; one that is killed is started again",
+    )  # fmt: skip
+    parser.add_argument(
+        "--wait", action="store_true", help="wait for others that bake the same frames, instead of refusing"
+    )
+    parser.add_argument(
+        "--take-over", action="store_true", help="remove the locks of others that died baking the same frames"
+    )
+    parser.add_argument(
+        "--estimate", action="store_true", help="only say how many frames, bytes and seconds it will take"
+    )
+    _add_openjd(parser)
+
+
+def _add_openjd(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--openjd",
+        action="store_true",
+        help="print openjd_progress and openjd_status lines for a render farm",
+    )
+
+
+def _add_sea_arguments(parser: argparse.ArgumentParser, in_blender: bool) -> None:
+    default = "the file's oceans" if in_blender else "the default sea"
+    parser.add_argument(
+        "--params", type=Path, metavar="FILE.json", help=f"parameters; without them {default}"
+    )
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", dest="assignments",
+        help="change one parameter, for example layers.0.wind_speed=25 (may be repeated)",
+    )  # fmt: skip
+    parser.add_argument("--fps", metavar="N", help="frames per second, also as a fraction: 24000/1001")
+    parser.add_argument("--start-frame", metavar="N", help="frame at which ocean time is 0")
+    if in_blender:
+        parser.add_argument("--object", metavar="NAME", help="only the ocean of this object")
+
+
+def _frames(text: str) -> tuple[Frame, ...]:
+    try:
+        return parse_frames(text)
+    except ParameterError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} {error.reason}") from None
+
+
+def _maps(text: str) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
+    unknown = [name for name in names if name not in MAPS]
+    if unknown:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
+    return names
+
+
+def _workers(text: str) -> int:
+    if not (text.isdecimal() and 1 <= int(text) <= 256):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 to 256")
+    return int(text)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`info`: what the sea will be."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import math
+from collections.abc import Mapping
+
+from ..core import Ocean, OceanParameters, sea_scales
+from ..core.foam_field import foam_outlook
+from ..core.memory import memory_need
+from ..core.statistics import SeaState, Statistics
+from .outcome import DONE
+from .seas import Sea
+
+
+def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
+    """Print what each sea will be; an animated one at its first frame."""
+    parameters = {name: sea.first_parameters() for name, sea in seas.items()}
+    results = {name: Ocean(of_sea).statistics() for name, of_sea in parameters.items()}
+    if arguments.json:
+        report = {
+            name: {
+                "parameters": seas[name].shot.to_dict(),
+                "statistics": statistics.to_dict(),
+                "memory": dataclasses.asdict(memory_need(parameters[name])),
+            }
+            for name, statistics in results.items()
+        }
+        print(json.dumps(report, indent=2))
+        return DONE
+    for name, statistics in results.items():
+        print("\n".join(_report(name, parameters[name], statistics)))
+    return DONE
+
+
+def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
+    share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
+    state = sea_scales.sea_state(statistics.significant_wave_height)
+    need = memory_need(parameters)
+    lines = [
+        f"{name}: {parameters.resolution}² samples, {statistics.sample_spacing:.3g} m apart; "
+        f"{need.peak() / 2**20:.0f} MB of memory, {need.surface / 2**20:.0f} MB more for each further worker",
+        f"  {'':<18}{'Hs':>10}{'Tp':>10}{'Tz':>10}{'slope':>8}{'towards':>9}{'spread':>8}",
+        _state_row("spectrum", statistics.spectrum),
+        f"{_state_row('resolved by grid', statistics.resolved)}  {share}",
+        _state_row(f"seed {parameters.seed}", statistics.seed),
+        f"  peak wavelength {statistics.peak_wavelength:.4g} m, "
+        f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m; "
+        f"steepness {statistics.spectrum.steepness:.3f}; "
+        f"sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
+    ]
+    coverage, earlier = foam_outlook(parameters)
+    if coverage > 0.0:
+        share = f"{100.0 * coverage:.2g} %"
+        lines.append(f"  foam on {share} of the sea; a frame by itself looks back at {earlier} moments")
+    if statistics.loop_speed_change is not None:
+        change = 100.0 * statistics.loop_speed_change
+        duration = float(parameters.loop_duration or 0)
+        lines.append(f"  loop of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
+    return lines + [f"  warning: {warning}" for warning in statistics.warnings]
+
+
+def _state_row(title: str, state: SeaState) -> str:
+    slope = math.sqrt(state.mean_square_slope)
+    direction, spread = math.degrees(state.mean_direction), math.degrees(state.directional_spread)
+    return (
+        f"  {title:<18}{state.significant_wave_height:>8.2f} m{state.peak_period:>8.2f} s"
+        f"{state.zero_crossing_period:>8.2f} s{slope:>8.3f}{direction:>8.0f}°{spread:>7.0f}°"
+    )

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How progress is told: a bar on a terminal, a line a frame elsewhere, JSON, or a farm's own lines."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from typing import Any, TextIO
+
+from ..core.bake import BakedFrame
+from ..core.frames import frame_label
+from ..core.plain_data import to_plain
+
+_BAR = 30
+
+
+class Progress:
+    """Tells what a command does.
+
+    name : of the sea
+    machine : JSON, an object a line
+    openjd : also the lines that an Open Job Description worker understands
+    """
+
+    def __init__(
+        self, name: str, machine: bool = False, openjd: bool = False, stream: TextIO | None = None
+    ) -> None:
+        self.name = name
+        self.machine = machine
+        self.openjd = openjd
+        self.stream = stream or sys.stdout
+        self._is_terminal = self.stream.isatty() and not machine and not openjd
+        self._total = 0
+        self._done = 0
+        self._started = time.monotonic()
+
+    def say(self, text: str, **data: Any) -> None:
+        """A line of text, or its data for a machine."""
+        self._print(json.dumps({"sea": self.name, **data}) if self.machine else f"{self.name}: {text}")
+
+    def begin(self, total: int) -> None:
+        """Frames are made from now on."""
+        self._total, self._done, self._started = total, 0, time.monotonic()
+
+    def frame(self, baked: BakedFrame) -> None:
+        """A frame has been made."""
+        self._done += 1
+        if self._is_terminal:
+            self._draw_bar()
+            return
+        seconds = round(baked.seconds, 4)
+        self.say(
+            f"frame {frame_label(baked.frame).lstrip('0') or '0'} ({self._done}/{self._total}) "
+            f"{seconds:.2f} s  {', '.join(path.name for path in baked.paths)}",
+            frame=to_plain(baked.frame), paths=[str(path) for path in baked.paths], seconds=seconds,
+        )  # fmt: skip
+        self.share(f"frame {to_plain(baked.frame)}")
+
+    def share(self, status: str) -> None:
+        """What part is done, for a farm."""
+        if self.openjd:
+            self._print(f"openjd_progress: {100.0 * self._done / max(self._total, 1):.1f}")
+            self._print(f"openjd_status: {self.name}: {status} ({self._done}/{self._total})")
+
+    def count(self, status: str) -> None:
+        """One more is done that needs no line of its own."""
+        self._done += 1
+        self.share(status)
+
+    def fail(self, reason: str) -> None:
+        """Tell a farm why."""
+        if self.openjd:
+            self._print(f"openjd_fail: {self.name}: {reason}")
+
+    def end(self) -> None:
+        """No more frames are made."""
+        if self._is_terminal and self._done:
+            self._print("")
+
+    def _draw_bar(self) -> None:
+        filled = _BAR * self._done // self._total
+        passed = time.monotonic() - self._started
+        left = passed / self._done * (self._total - self._done)
+        bar = "#" * filled + "." * (_BAR - filled)
+        self.stream.write(f"\r{self.name}: [{bar}] {self._done}/{self._total}, {duration(left)} left ")
+        self.stream.flush()
+
+    def _print(self, line: str) -> None:
+        print(line, file=self.stream, flush=True)
+
+
+def duration(seconds: float) -> str:
+    """`1:02:03`, or `2:03` below an hour."""
+    whole = round(seconds)
+    hours, minutes = divmod(whole // 60, 60)
+    return f"{hours}:{minutes:02d}:{whole % 60:02d}" if hours else f"{minutes}:{whole % 60:02d}"

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which seas a command is about: those of a file of parameters or of the open .blend file, and changes."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..core import OceanParameters, ParameterError
+from ..core.frames import Frame
+from ..core.parameters import parse_json
+from ..core.shot import Shot
+from .outcome import UsageError
+
+
+class Sea(NamedTuple):
+    """A sea and what its .blend file says of it.
+
+    uid : tells it from other seas of the same name; None for one that has none of its own
+    frames : of the scene
+    cache : where the file keeps its baked frames
+    """
+
+    shot: Shot
+    uid: str | None = None
+    frames: tuple[Frame, ...] = ()
+    cache: Path | None = None
+
+    def first_parameters(self) -> OceanParameters:
+        """Those of the first frame that is animated, or of all."""
+        animation = self.shot.animation
+        return self.shot.parameters if animation is None else self.shot.at(animation.first_frame).parameters
+
+
+SceneOceans = Callable[[], Mapping[str, Sea]]
+
+
+def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> dict[str, Sea]:
+    """The seas that the command is about, by name. Raises ParameterError or UsageError."""
+    if arguments.params is not None or scene_oceans is None:
+        if getattr(arguments, "object", None):
+            raise UsageError("--object and --params exclude each other")
+        seas = {_file_sea_name(arguments.params): Sea(_file_shot(arguments.params))}
+    else:
+        seas = _chosen(scene_oceans(), arguments.object)
+    return {name: sea._replace(shot=_changed(sea.shot, arguments)) for name, sea in seas.items()}
+
+
+def _file_sea_name(path: Path | None) -> str:
+    return path.stem if path else "ocean"
+
+
+def _file_shot(path: Path | None) -> Shot:
+    if path is None:
+        return Shot(OceanParameters())
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ParameterError("params", str(path), f"is not UTF-8 text ({error.reason})") from None
+    except OSError as error:
+        raise UsageError(f"--params {path}: {error.strerror}") from None
+    return Shot.from_json(text)
+
+
+def _chosen(oceans: Mapping[str, Sea], name: str | None) -> dict[str, Sea]:
+    if not oceans:
+        raise UsageError("the file holds no ocean: add one, or give --params FILE.json")
+    if name is None:
+        return dict(oceans)
+    if name not in oceans:
+        raise UsageError(f"--object {name!r}: no such ocean; the file has {', '.join(sorted(oceans))}")
+    return {name: oceans[name]}
+
+
+def _changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
+    """The shot with the command line's changes."""
+    data = shot.to_dict()
+    for assignment in arguments.assignments:
+        path, equals, value = assignment.partition("=")
+        if not equals:
+            raise UsageError(f"--set {assignment}: must look like layers.0.wind_speed=25")
+        if shot.animation is not None and path.strip() in dict(shot.animation.samples):
+            raise UsageError(f"--set {assignment}: the shot animates this; change its samples instead")
+        _assign(data, path.strip(), _value(value))
+    for key in ("fps", "start_frame"):
+        value = getattr(arguments, key)
+        if value is not None:
+            data["timing"][key] = _value(value)
+    return Shot.from_dict(data)
+
+
+def _value(text: str) -> Any:
+    """JSON where it is JSON, else the text itself: names of enumerations need no quotes."""
+    try:
+        return parse_json(text)
+    except ParameterError:
+        return text.strip()
+
+
+def _assign(data: Any, path: str, value: Any) -> None:
+    """Set data[a][0][b] for the path a.0.b; the parameters' own validation judges the result."""
+    *parents, last = path.split(".")
+    for key in parents:
+        data = _entry(data, key, path)
+    if isinstance(data, list):
+        _entry(data, last, path)
+        data[int(last)] = value
+    elif isinstance(data, dict):
+        data[last] = value
+    else:
+        raise UsageError(f"--set {path}: there is nothing inside {parents[-1]}")
+
+
+def _entry(data: Any, key: str, path: str) -> Any:
+    if isinstance(data, list):
+        if not key.isdecimal() or int(key) >= len(data):
+            raise UsageError(f"--set {path}: {key} must be a number from 0 to {len(data) - 1}")
+        return data[int(key)]
+    if not isinstance(data, dict) or key not in data:
+        known = f"; known keys: {', '.join(data)}" if isinstance(data, dict) else ""
+        raise UsageError(f"--set {path}: there is no {key}{known}")
+    return data[key]

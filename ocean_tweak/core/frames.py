@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frame numbers and ranges of them: whole, negative, beyond 9999, and between two frames."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+
+from .validation import ParameterError
+
+#: a whole frame is an int; a frame between two, for motion blur, is a Fraction that a decimal can write
+Frame = int | Fraction
+
+_NUMBER = r"-?\d+(?:\.\d{1,6})?"
+_RANGE = re.compile(rf"({_NUMBER})(?:-({_NUMBER})(?:x(\d+(?:\.\d{{1,6}})?))?)?")
+_MOST_FRAMES = 1_000_000
+_LARGEST = 10**9
+
+
+def parse_frames(text: str) -> tuple[Frame, ...]:
+    """Frames of `1-48`, `1-100x2`, `1001,1005-1010`, `-5--1`, `1-2x0.25`, ascending and each once.
+
+    Raises ParameterError.
+    """
+    frames: set[Frame] = set()
+    for part in text.split(","):
+        match = _RANGE.fullmatch(part.strip())
+        if not match:
+            raise ParameterError("frames", text, "must look like 1-48, 1-100x2 or 1001,1005-1010")
+        first = Fraction(match[1])
+        last = Fraction(match[2]) if match[2] else first
+        step = Fraction(match[3]) if match[3] else Fraction(1)
+        if last < first or step <= 0:
+            raise ParameterError("frames", text, f"{part.strip()} holds no frames")
+        if (last - first) // step >= _MOST_FRAMES:
+            raise ParameterError("frames", text, f"must hold at most {_MOST_FRAMES} frames")
+        if max(abs(first), abs(last)) > _LARGEST:
+            raise ParameterError("frames", text, f"must lie between -{_LARGEST} and {_LARGEST}")
+        frames.update(as_frame(first + index * step) for index in range(int((last - first) // step) + 1))
+    return tuple(sorted(frames))
+
+
+def as_frame(value: float | Fraction) -> Frame:
+    """The frame number as an int where it is whole."""
+    exact = Fraction(value)
+    return int(exact) if exact.denominator == 1 else exact
+
+
+def frame_label(frame: Frame) -> str:
+    """How a frame stands in a file name: `0007`, `-007`, `12345`, `1001.25`.
+
+    Raises ParameterError for a frame that six decimals cannot write.
+    """
+    return _digits(frame, 4)
+
+
+def _digits(frame: Frame, width: int) -> str:
+    exact = Fraction(frame)
+    sign, size = ("-", -exact) if exact < 0 else ("", exact)
+    whole, millionths = int(size), (size - int(size)) * 10**6
+    if millionths.denominator != 1:
+        raise ParameterError("frame", str(frame), "must have at most six decimals")
+    decimals = f".{int(millionths):06d}".rstrip("0") if millionths else ""
+    return f"{sign}{whole:0{max(width - len(sign), 1)}d}{decimals}"
+
+
+def format_frames(frames: Iterable[Frame]) -> str:
+    """Ranges that `parse_frames` reads back: `1-48,60`."""
+    parts: list[str] = []
+    frames = tuple(frames)
+    whole = sorted(frame for frame in frames if isinstance(frame, int))
+    start = 0
+    for index, frame in enumerate(whole):
+        if index + 1 == len(whole) or whole[index + 1] != frame + 1:
+            first = whole[start]
+            parts.append(str(first) if first == frame else f"{first}-{frame}")
+            start = index + 1
+    between = sorted(frame for frame in frames if not isinstance(frame, int))
+    return ",".join([*parts, *(_digits(frame, 1) for frame in between)])

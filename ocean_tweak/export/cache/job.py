@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A bake's job and its folder, `CACHE/NAME-UID/vNNN-hash8/`.
+
+The folder's name holds the job's fingerprint, so frames of another sea are never overwritten, and whoever
+bakes the same job, on whatever machine, finds the same folder. `bake.json` in it is the job, written once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import platform
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
+from ...core.frames import Frame, format_frames, frame_label, parse_frames
+from ...core.shot import Shot
+from ...core.validation import ParameterError
+from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
+from ..files import new_file
+
+JOB_FILE = "bake.json"
+RECORDS, LOCKS = "records", "locks"
+FORMAT = 1
+
+_VERSION = re.compile(r"v(\d{3,})-([0-9a-f]{8})")
+_LARGEST_JSON = 64 * 2**20
+
+
+class CacheError(RuntimeError):
+    """A folder of baked frames that cannot be used, with its path, the reason and the remedy."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is baked.
+
+    name : of the sea, and of its files
+    uid : tells seas of the same name apart
+    maps, compression : keys of `export.exr.MAPS` and COMPRESSION_ERROR
+    frames : those that were asked for first
+    """
+
+    name: str
+    uid: str
+    shot: Shot
+    maps: tuple[str, ...] = ("disp",)
+    compression: str = "PXR24"
+    frames: tuple[Frame, ...] = field(default=(), compare=False)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """SHA-256 of all that the frames' files depend on, whichever frames are made."""
+        return fingerprint(
+            {
+                "synthesis": SYNTHESIS_VERSION,
+                "shot": self.shot.to_dict(),
+                "maps": list(self.maps),
+                "compression": self.compression,
+            }
+        )
+
+    def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
+        """The sink for a frame, whose header tells this frame's parameters."""
+        parameters = self.shot.at(frame).parameters
+        return ExrSequence(folder, self.name, parameters, self.compression, self.maps)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as it stands in `bake.json`."""
+        return {
+            "format": FORMAT,
+            "synthesis": SYNTHESIS_VERSION,
+            "fingerprint": self.fingerprint,
+            "name": self.name,
+            "uid": self.uid,
+            "frames": format_frames(self.frames),
+            "maps": list(self.maps),
+            "compression": self.compression,
+            "shot": self.shot.to_dict(),
+            "made_with": made_with(),
+        }
+
+    @classmethod
+    def from_dict(cls, data: Any) -> Job:
+        """A job from plain data. Raises ValueError naming what is wrong."""
+        if not isinstance(data, dict):
+            raise ValueError("is not a JSON object")
+        if data.get("format") != FORMAT or data.get("synthesis") != SYNTHESIS_VERSION:
+            raise ValueError(
+                f"is of format {data.get('format')!r} and synthesis {data.get('synthesis')!r}; "
+                f"this version bakes format {FORMAT} and synthesis {SYNTHESIS_VERSION}"
+            )
+        name, uid, maps = data.get("name"), data.get("uid"), data.get("maps")
+        if not (isinstance(name, str) and isinstance(uid, str) and safe_name(name) == name):
+            raise ValueError(f"has the name {name!r} and uid {uid!r}")
+        if not (isinstance(maps, list) and maps and all(isinstance(m, str) and m in MAPS for m in maps)):
+            raise ValueError(f"has the maps {maps!r}")
+        compression, frames = data.get("compression"), data.get("frames")
+        if not (isinstance(compression, str) and compression in COMPRESSION_ERROR):
+            raise ValueError(f"has the compression {compression!r}")
+        if not isinstance(frames, str):
+            raise ValueError(f"has the frames {frames!r}")
+        job = cls(
+            name, uid, Shot.from_dict(data.get("shot")), tuple(maps), compression,
+            parse_frames(frames) if frames else (),
+        )  # fmt: skip
+        if job.fingerprint != data.get("fingerprint"):
+            raise ValueError("was changed: its fingerprint is not that of its contents")
+        return job
+
+
+def made_with() -> dict[str, str]:
+    """What may change last bits, and where it was: recorded, never compared."""
+    return {"numpy": np.__version__, "machine": platform.machine(), "host": platform.node()}
+
+
+def safe_name(name: str) -> str:
+    """The name without what file systems or frame patterns cannot hold, at most 100 bytes."""
+    clean = re.sub(r"[^\w\- ]+", "_", name).strip()
+    return clean.encode()[:100].decode(errors="ignore").strip() or "ocean"
+
+
+def uid_of(name: str) -> str:
+    """The uid of a sea that has none of its own: the same on every machine."""
+    return fingerprint(name)[:8]
+
+
+def open_folder(cache: Path, job: Job) -> Path:
+    """The job's folder in a cache, made where it is missing.
+
+    Raises CacheError where another job has its name, OSError for what the disk refuses.
+    """
+    home = cache / f"{job.name}-{job.uid}"
+    hash8 = job.fingerprint[:8]
+    versions = dict(_versions(home))
+    folder = next((path for path, (_, found) in versions.items() if found == hash8), None)
+    if folder is None:
+        number = max((number for number, _ in versions.values()), default=0) + 1
+        folder = home / f"v{number:03d}-{hash8}"
+    for part in (RECORDS, LOCKS):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    write_job(folder, job)
+    return folder
+
+
+def write_job(folder: Path, job: Job) -> None:
+    """Write `bake.json`, or see that it is this job; one that cannot be read is replaced."""
+    path = folder / JOB_FILE
+    text = json.dumps(job.to_dict(), indent=1, ensure_ascii=False) + "\n"
+    if new_file(path, text):
+        return
+    try:
+        present = read_job(folder)
+    except CacheError:
+        aside = path.with_name(f".{JOB_FILE}.{os.getpid()}.damaged")
+        with contextlib.suppress(FileNotFoundError):
+            path.replace(aside)
+            aside.unlink()
+        new_file(path, text)
+        present = read_job(folder)
+    if present.fingerprint != job.fingerprint:
+        raise CacheError(f"{path} is another job, though its folder has this one's name: move it away")
+
+
+def read_job(folder: Path) -> Job:
+    """The job of a folder. Raises CacheError when it is missing, damaged or of another version."""
+    path = folder / JOB_FILE
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LARGEST_JSON + 1)
+    except OSError as error:
+        raise CacheError(f"{path}: {error.strerror}; a bake's folder is named vNNN-hash8") from None
+    if len(content) > _LARGEST_JSON:
+        raise CacheError(f"{path} is too large to be a job")
+    try:
+        return Job.from_dict(json.loads(content))
+    except (ValueError, RecursionError) as error:
+        raise CacheError(f"{path} {error}: run resume to have it written again") from None
+
+
+def recovered_job(folder: Path) -> Job:
+    """The job of a folder whose `bake.json` is missing or damaged, from what its images tell.
+
+    Raises CacheError where they do not tell, or not the job that the folder's name holds.
+    """
+    match = _VERSION.fullmatch(folder.name)
+    name, _, uid = folder.parent.name.rpartition("-")
+    problem = f"{folder / JOB_FILE} cannot be read, and the images do not tell the job: bake it again"
+    if match is None or not name:
+        raise CacheError(problem)
+    images = sorted(folder.glob("*.exr"))
+    found = {path.name[len(name) + 1 :].partition(".")[0] for path in images}
+    maps = tuple(key for key in MAPS if key in found)
+    for path in images[:8]:
+        try:
+            metadata = read_header(path)
+            job = Job(name, uid, Shot.from_dict(metadata["parameters"]), maps, metadata["compression"])
+        except (ExrError, ParameterError, KeyError, TypeError):
+            continue
+        if job.fingerprint[:8] == match[2]:
+            return job
+    raise CacheError(problem)
+
+
+def _versions(home: Path) -> Iterator[tuple[Path, tuple[int, str]]]:
+    if not home.is_dir():
+        return
+    for path in sorted(home.iterdir()):
+        match = _VERSION.fullmatch(path.name)
+        if match is not None and path.is_dir():
+            yield path, (int(match[1]), match[2])
+
+
+def record_path(folder: Path, frame: Frame) -> Path:
+    """Where a frame's record lies."""
+    return folder / RECORDS / f"{frame_label(frame)}.json"

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What was baked: a record a frame, written when all of its files are there.
+
+Nobody has to look at the images to know that a frame is whole; to know that it is still whole, their hashes
+are compared.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ...core.fields import SurfaceFields
+from ...core.fingerprint import frame_fingerprint
+from ...core.frames import Frame, frame_label, parse_frames
+from ...core.validation import ParameterError
+from ..files import sync_folder, whole_file
+from .job import FORMAT, RECORDS, Job, made_with, record_path
+
+_LARGEST_RECORD = 2**20
+_BLOCK = 2**20
+
+
+class FileEntry(NamedTuple):
+    """A file of a frame: which map, its name in the folder, its bytes and their SHA-256."""
+
+    map: str
+    name: str
+    bytes: int
+    sha256: str
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """A frame's own record.
+
+    fingerprint : of the parameters that made it
+    """
+
+    frame: Frame
+    fingerprint: str
+    files: tuple[FileEntry, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as it stands in the file."""
+        return {
+            "format": FORMAT,
+            "frame": frame_label(self.frame),
+            "fingerprint": self.fingerprint,
+            "files": [entry._asdict() for entry in self.files],
+            "made_with": made_with(),
+        }
+
+    @classmethod
+    def from_dict(cls, data: Any) -> FrameRecord:
+        """A record from plain data. Raises ValueError for what is none."""
+        if not isinstance(data, dict) or data.get("format") != FORMAT:
+            raise ValueError("it is of another format")
+        files = data.get("files")
+        if not isinstance(files, list) or not files:
+            raise ValueError("it lists no files")
+        return cls(_frame(data.get("frame")), _text(data.get("fingerprint")), tuple(map(_entry, files)))
+
+
+class State(Enum):
+    """Whether a frame must be made."""
+
+    WHOLE = "whole"
+    MISSING = "missing"
+    STALE = "stale"
+    DAMAGED = "damaged"
+
+
+class Finding(NamedTuple):
+    """What was found of a frame, and why it is not whole."""
+
+    frame: Frame
+    state: State
+    reason: str = ""
+
+
+class CacheSink:
+    """A sink that writes a frame's maps into a job's folder, and its record last."""
+
+    def __init__(self, folder: Path, job: Job) -> None:
+        self.folder = folder
+        self.job = job
+
+    @property
+    def outputs(self) -> frozenset[str]:
+        """The fields that a frame must have."""
+        return self.job.sequence(self.folder, _any_frame(self.job)).outputs
+
+    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
+        """Write the frame, all or nothing. Returns its images' paths."""
+        record = record_path(self.folder, frame)
+        # an old record must not vouch for new files
+        record.unlink(missing_ok=True)
+        paths = self.job.sequence(self.folder, frame).write(frame, fields)
+        sync_folder(self.folder)
+        entries = tuple(
+            FileEntry(name, path.name, path.stat().st_size, file_hash(path))
+            for name, path in zip(self.job.maps, paths, strict=True)
+        )
+        made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries)
+        with whole_file(record) as beside:
+            beside.write_text(json.dumps(made.to_dict(), indent=1) + "\n", encoding="utf-8")
+        sync_folder(record.parent)
+        return paths
+
+
+def _any_frame(job: Job) -> Frame:
+    animation = job.shot.animation
+    return animation.first_frame if animation is not None else 1
+
+
+def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
+    """A frame's record; None when there is none. Raises ValueError for one that cannot be read."""
+    path = record_path(folder, frame)
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LARGEST_RECORD + 1)
+    except FileNotFoundError:
+        return None
+    if len(content) > _LARGEST_RECORD:
+        raise ValueError("it is too large")
+    try:
+        record = FrameRecord.from_dict(json.loads(content))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if record.frame != frame:
+        raise ValueError(f"it is that of frame {frame_label(record.frame)}")
+    return record
+
+
+def recorded_frames(folder: Path) -> tuple[Frame, ...]:
+    """The frames that have a record, ascending, whatever is in it."""
+    frames = []
+    for path in (folder / RECORDS).glob("*.json"):
+        try:
+            (frame,) = parse_frames(path.stem)
+        except (ParameterError, ValueError):
+            continue
+        if frame_label(frame) == path.stem:
+            frames.append(frame)
+    return tuple(sorted(frames))
+
+
+def inspect(folder: Path, job: Job, frame: Frame, hashes: bool = True) -> Finding:
+    """Whether a frame is whole: its record, its fingerprint and its files.
+
+    hashes : read all bytes; otherwise sizes are enough
+
+    Raises OSError for a folder that cannot be read.
+    """
+    try:
+        record = read_record(folder, frame)
+    except ValueError as error:
+        return Finding(frame, State.DAMAGED, f"its record cannot be used: {error}")
+    if record is None:
+        return Finding(frame, State.MISSING, "it has no record")
+    if record.fingerprint != frame_fingerprint(job.shot, frame):
+        return Finding(frame, State.STALE, "it was made from other parameters")
+    sequence = job.sequence(folder, frame)
+    wanted = {name: sequence.path(frame, name).name for name in job.maps}
+    if {entry.map: entry.name for entry in record.files} != wanted:
+        return Finding(frame, State.DAMAGED, "its record lists other files than the job has")
+    for entry in record.files:
+        problem = _problem(folder / entry.name, entry, hashes)
+        if problem:
+            return Finding(frame, State.DAMAGED, f"{entry.name} {problem}")
+    return Finding(frame, State.WHOLE)
+
+
+def _problem(path: Path, entry: FileEntry, hashes: bool) -> str:
+    try:
+        size = path.stat().st_size
+    except FileNotFoundError:
+        return "is gone"
+    if size != entry.bytes:
+        return f"has {size} bytes, not {entry.bytes}"
+    if hashes and file_hash(path) != entry.sha256:
+        return "has other contents than were written"
+    return ""
+
+
+def unfinished(folder: Path, job: Job, frames: Iterable[Frame], hashes: bool = True) -> Iterator[Finding]:
+    """What of the frames must be made, and why."""
+    for frame in frames:
+        finding = inspect(folder, job, frame, hashes)
+        if finding.state is not State.WHOLE:
+            yield finding
+
+
+def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
+    """Remove what a killed process had begun to write of these frames."""
+    names = set()
+    for frame in frames:
+        sequence = job.sequence(folder, frame)
+        names.update(sequence.path(frame, name).name for name in job.maps)
+        names.add(record_path(folder, frame).name)
+    for part in (*folder.glob(".*.part"), *(folder / RECORDS).glob(".*.part")):
+        if part.name[1:].rsplit(".", 3)[0] in names:
+            part.unlink(missing_ok=True)
+
+
+def file_hash(path: Path) -> str:
+    """SHA-256 of a file's bytes, 64 hexadecimal digits."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(_BLOCK):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def _frame(value: object) -> Frame:
+    try:
+        (frame,) = parse_frames(_text(value))
+    except ParameterError:
+        raise ValueError(f"{value!r} is no frame") from None
+    return frame
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{value!r} is no text")
+    return value
+
+
+def _entry(data: Any) -> FileEntry:
+    if not isinstance(data, dict) or set(data) != set(FileEntry._fields):
+        raise ValueError("it lists a file in another way")
+    size = data["bytes"]
+    if isinstance(size, bool) or not isinstance(size, int) or size < 0:
+        raise ValueError(f"{size!r} is no number of bytes")
+    name = _text(data["name"])
+    if name in ("", ".", "..") or Path(name).name != name or "\\" in name:
+        raise ValueError(f"{name!r} is no name of a file in the folder")
+    return FileEntry(_text(data["map"]), name, size, _text(data["sha256"]))

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frame numbers and their ranges."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ocean_tweak.core import ParameterError
+from ocean_tweak.core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
+
+frames = st.one_of(
+    st.integers(-20_000, 20_000),
+    st.integers(-(10**9), 10**9).map(lambda millionths: as_frame(Fraction(millionths, 10**6))),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1-4", (1, 2, 3, 4)),
+        ("7", (7,)),
+        ("1-10x4", (1, 5, 9)),
+        ("1001,1005-1007", (1001, 1005, 1006, 1007)),
+        ("3,1-3", (1, 2, 3)),
+        ("-2-1", (-2, -1, 0, 1)),
+        ("-5--3", (-5, -4, -3)),
+        ("99999-100000", (99999, 100000)),
+        ("1-2x0.25", (1, Fraction(5, 4), Fraction(3, 2), Fraction(7, 4), 2)),
+        ("-0.5", (Fraction(-1, 2),)),
+    ],
+)
+def test_frame_ranges(text: str, expected: tuple[Frame, ...]) -> None:
+    assert parse_frames(text) == expected
+    assert [type(frame) for frame in parse_frames(text)] == [type(frame) for frame in expected]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "a", "1-", "4-1", "1-5x0", "1..5", "1-2000000", "1,,2", "1.1234567", "1e3", "9999999999"]
+)
+def test_frame_ranges_that_are_none(text: str) -> None:
+    with pytest.raises(ParameterError, match="frames"):
+        parse_frames(text)
+
+
+@pytest.mark.parametrize(
+    ("frame", "label"),
+    [
+        (7, "0007"), (-7, "-007"), (12345, "12345"), (-12345, "-12345"), (0, "0000"),
+        (Fraction("1001.25"), "1001.25"), (Fraction("-0.5"), "-000.5"), (Fraction("0.000001"), "0000.000001"),
+    ],
+)  # fmt: skip
+def test_labels(frame: Frame, label: str) -> None:
+    assert frame_label(frame) == label
+
+
+def test_a_frame_without_decimals_is_refused() -> None:
+    with pytest.raises(ParameterError, match="six decimals"):
+        frame_label(Fraction(1, 3))
+
+
+@given(st.sets(frames, max_size=40))
+def test_what_is_formatted_is_parsed(chosen: set[Frame]) -> None:
+    text = format_frames(chosen)
+    assert (parse_frames(text) if text else ()) == tuple(sorted(chosen))
+
+
+@given(frames, frames)
+def test_labels_are_told_apart_and_parsed(one: Frame, other: Frame) -> None:
+    assert (frame_label(one) == frame_label(other)) == (one == other)
+    assert parse_frames(frame_label(one)) == (one,)

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A shot: parameters and time of each frame."""
+
+from __future__ import annotations
+
+import json
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing, WaveLayer
+from ocean_tweak.core.bake import ShotSurfaces
+from ocean_tweak.core.fingerprint import frame_fingerprint, shot_fingerprint
+from ocean_tweak.core.shot import Animation, Shot
+
+SEA = OceanParameters(
+    resolution=32, domain_size=120.0, layers=(WaveLayer(wind_speed=9.0), WaveLayer(wind_speed=4.0)),
+    timing=Timing(fps=Fraction(24), start_frame=11),
+)  # fmt: skip
+GUSTS = {"first_frame": 10, "samples": {"layers.1.wind_speed": [4.0, 6.0, 10.0], "choppiness": [1, 0.5, 0]}}
+
+
+@pytest.fixture
+def shot() -> Shot:
+    return Shot.from_dict({**SEA.to_dict(), "animation": GUSTS})
+
+
+def test_a_frame_has_its_own_parameters(shot: Shot) -> None:
+    for frame, wind, choppiness in (
+        (10, 4.0, 1.0),
+        (11, 6.0, 0.5),
+        (Fraction("11.25"), 7.0, 0.375),
+        (12, 10.0, 0.0),
+    ):
+        parameters = shot.at(frame).parameters
+        assert parameters.layers[1].wind_speed == wind
+        assert parameters.choppiness == choppiness
+        assert parameters.layers[0] == SEA.layers[0]
+        assert shot.at(frame).time == (frame - 11) / Fraction(24)
+        assert shot.at(frame).rate == 1.0
+
+
+def test_frames_beyond_the_samples_are_refused(shot: Shot) -> None:
+    for frame in (9, 13, Fraction("12.5")):
+        with pytest.raises(ParameterError, match="frames 10 to 12"):
+            shot.at(frame)
+    with pytest.raises(ParameterError, match="10 to 12"):
+        shot.check((10, 11, 20))
+    shot.check((10, 12))
+
+
+def test_json_both_ways(shot: Shot) -> None:
+    assert Shot.from_json(shot.to_json()) == shot
+    assert Shot.from_json(SEA.to_json()) == Shot(SEA)
+    with pytest.raises(ParameterError, match="animation"):
+        OceanParameters.from_json(shot.to_json())
+
+
+def test_ocean_time_slows_the_waves_and_their_velocity() -> None:
+    ramp = [0.0, 0.25, 0.5, 0.5, 0.5]
+    shot = Shot(SEA, Animation(1, (("ocean_time", tuple(ramp)),)))
+    assert [shot.at(frame).time for frame in (1, 2, 3, 4)] == [
+        0,
+        Fraction(1, 4),
+        Fraction(1, 2),
+        Fraction(1, 2),
+    ]
+    # a quarter of a second in a frame of a 24th: six times as fast; half of that where it stops
+    assert [shot.at(frame).rate for frame in (1, 2, Fraction("2.5"), 3, 4, 5)] == [
+        6.0,
+        6.0,
+        6.0,
+        3.0,
+        0.0,
+        0.0,
+    ]
+    fields = ShotSurfaces(shot).frame(2, {"displacement", "velocity"})
+    expected = Ocean(SEA).surface(0.25, {"displacement", "velocity"})
+    np.testing.assert_array_equal(fields.displacement, expected.displacement)
+    np.testing.assert_array_equal(fields.velocity, np.float32(6.0) * expected.velocity)
+
+
+def test_velocity_follows_the_clock_between_frames() -> None:
+    """Against differences of the surface in scene time."""
+    times = tuple(0.3 * math.sin(0.5 * frame) for frame in range(8))
+    shot = Shot(SEA, Animation(1, (("ocean_time", times),)))
+    surfaces = ShotSurfaces(shot)
+    step = Fraction(1, 512)
+    middle = Fraction("3.5")
+    before, after = (
+        surfaces.frame(middle + s, {"displacement"}).displacement.astype(float) for s in (-step, step)
+    )
+    moved = (after - before) / float(2 * step / SEA.timing.fps)
+    velocity = surfaces.frame(middle, {"velocity"}).velocity
+    np.testing.assert_allclose(moved, velocity, atol=2e-3 * np.abs(velocity).max())
+
+
+@pytest.mark.parametrize(
+    ("animation", "said"),
+    [
+        ({"first_frame": 1, "samples": {"water.depth": [1, 2]}}, "constant over a shot: depth, gravity"),
+        ({"first_frame": 1, "samples": {"seed": [1, 2]}}, "another seed is another sea"),
+        ({"first_frame": 1, "samples": {"domain_size": [1, 2]}}, "which waves there are"),
+        ({"first_frame": 1, "samples": {"loop_duration": [1, 2]}}, "speed of every wave"),
+        ({"first_frame": 1, "samples": {"dispersion": [1, 2]}}, "speed of every wave"),
+        ({"first_frame": 1, "samples": {"layers.0.spectrum": [1, 2]}}, "only layers"),
+        ({"first_frame": 1, "samples": {"layers.x.gain": [1, 2]}}, "only layers"),
+        ({"first_frame": 1, "samples": {"layers.7.gain": [1, 2]}}, "only 2 layers"),
+        ({"first_frame": 1, "samples": {"layers.0.gain": [1, -2]}}, "layers.0.gain = -2.0: must be from 0"),
+        ({"first_frame": 1, "samples": {"layers.0.gain": [1, "2"]}}, "layers.0.gain.1"),
+        ({"first_frame": 1, "samples": {"layers.0.gain": [1, float("nan")]}}, "finite"),
+        ({"first_frame": 1, "samples": {"layers.0.gain": [1], "choppiness": [1, 1]}}, "as many samples"),
+        ({"first_frame": 1, "samples": {"layers.0.gain": []}}, "from 1 to"),
+        ({"first_frame": 1, "samples": {"choppiness": 3}}, "must be a list"),
+        ({"first_frame": 1, "samples": {}}, "at least one"),
+        ({"first_frame": 1.5, "samples": {"choppiness": [1]}}, "whole number"),
+        ({"samples": {"choppiness": [1]}}, "first_frame and samples"),
+        ([], "first_frame and samples"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_animated_says_why(animation: object, said: str) -> None:
+    with pytest.raises(ParameterError, match=r"animation") as raised:
+        Shot.from_dict({**SEA.to_dict(), "animation": animation})
+    assert said in str(raised.value)
+
+
+def test_fingerprints_are_of_the_sea_alone(shot: Shot) -> None:
+    again = Shot.from_json(json.dumps(json.loads(shot.to_json()), sort_keys=True))
+    assert frame_fingerprint(again, 11) == frame_fingerprint(shot, 11)
+    assert shot_fingerprint(again) == shot_fingerprint(shot)
+    # every input that changes a frame changes it
+    others = [
+        frame_fingerprint(shot, 10),
+        frame_fingerprint(Shot(SEA), 11),
+        frame_fingerprint(Shot(SEA.replace(seed=1)), 11),
+        frame_fingerprint(Shot(SEA.replace(timing=Timing(fps=Fraction(25), start_frame=11))), 11),
+        frame_fingerprint(shot, 11),
+    ]
+    assert len(set(others)) == len(others)
+
+
+def test_a_change_elsewhere_leaves_a_frame_alone(shot: Shot) -> None:
+    """A frame is of its own parameters: where the animation differs later, this frame does not."""
+    later = {"first_frame": 10, "samples": {**GUSTS["samples"], "choppiness": [1, 0.5, 0.2]}}
+    changed = Shot.from_dict({**SEA.to_dict(), "animation": later})
+    assert frame_fingerprint(changed, 11) == frame_fingerprint(shot, 11)
+    assert frame_fingerprint(changed, 12) != frame_fingerprint(shot, 12)
+    assert shot_fingerprint(changed) != shot_fingerprint(shot)
