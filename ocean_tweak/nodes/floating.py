@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Float on Ocean: geometry nodes that let instances, or a geometry as a whole, ride an ocean's surface.
+
+What rides feels the plane of least squares through the surface over its waterline, a disc; waves shorter than
+the disc cancel out. The stencil of points that stands for it is that of `core.waterline`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+
+from ..core.waterline import POINTS
+from .building import Builder, Input, Plug, Socket, output
+from .fields import alone, combined, connect, coordinates, sample_index, whole_number
+from .sample import OCEAN_INPUT, Spaces
+from .surface import SURFACE
+from .versioned import GroupKind, node_group
+
+#: point attribute of a carrier: what takes it from its place to the surface, in its own space
+TRANSFORM = "float_transform"
+
+RIDE_INPUTS = (
+    OCEAN_INPUT,
+    Plug(
+        "Waterline", "NodeSocketFloat", 0.0,
+        "Across what floats: shorter waves do not move it. 0 follows the surface at a point",
+    ),
+    Plug("Draft", "NodeSocketFloat", 0.0, "How deep the origin lies below the surface"),
+    Plug("Tilt", "NodeSocketFloat", 1.0, "How much it tilts with the surface: 0 stays upright"),
+    Plug("Drift", "NodeSocketFloat", 0.0, "How much it goes along with the water: 0 stays above its place"),
+)  # fmt: skip
+AS_ONE = Plug(
+    "As One", "NodeSocketBool", False,
+    "Move all of the geometry as one thing around its origin, not each instance by itself",
+)  # fmt: skip
+
+
+def _build_stencil(tree: bpy.types.NodeTree) -> None:
+    build = Builder(
+        tree,
+        (Plug("Number", "NodeSocketInt", 0, "Of the point, from 0 in the middle"),),
+        (Plug("Offset", "NodeSocketVector", None, "On a disc of radius 1"),),
+    )
+    number = build.given("Number")
+    # ring m holds the numbers from 1 + 3m(m - 1) on; the middle is a ring of radius 0 and would be its own
+    inner = build.math("DIVIDE", build.math("SUBTRACT", number, 1), 3.0)
+    root = alone(build, "SQRT", build.math("ADD", inner, 0.25), "ShaderNodeMath")
+    ring = whole_number(build, build.math("ADD", root, 0.5), "FLOOR")
+    first = build.integer("MULTIPLY", ring, build.integer("SUBTRACT", ring, 1))
+    place = build.math("SUBTRACT", number, build.math("ADD", build.math("MULTIPLY", first, 3), 1))
+    angle = build.math("MULTIPLY", build.math("DIVIDE", place, ring), math.pi / 3)
+    square = build.math("ADD", build.math("MULTIPLY", build.math("MULTIPLY", ring, ring), 3), 1)
+    radius = alone(build, "SQRT", build.math("DIVIDE", square, POINTS), "ShaderNodeMath")
+    cosine, sine = (alone(build, name, angle, "ShaderNodeMath") for name in ("COSINE", "SINE"))
+    direction = combined(build, cosine, sine)
+    outside = build.compare("GREATER_THAN", number, 0)
+    offset = build.switch("VECTOR", outside, (0.0, 0.0, 0.0), build.scaled(direction, radius))
+    build.finish_with({"Offset": offset})
+
+
+def _build_ride(tree: bpy.types.NodeTree) -> None:
+    build = Builder(
+        tree,
+        (Plug("Places", "NodeSocketGeometry", None, "Points"), *RIDE_INPUTS),
+        (
+            Plug(
+                "Stencil", "NodeSocketGeometry", None, "The points around each place, one place after another"
+            ),
+            Plug("Points", "NodeSocketInt", None, "How many each place has"),
+            Plug("Position", "NodeSocketVector", None, "On the stencil: where its place is now"),
+            Plug("Rotation", "NodeSocketRotation", None, "On the stencil: how its place tilts"),
+        ),
+    )
+    spaces = Spaces(build, build.given("Ocean"))
+    size = spaces.size_of_ocean((1.0, 0.0, 0.0))
+    radius = build.math("MULTIPLY", build.math("MULTIPLY", build.given("Waterline"), 0.5), size)
+    is_disc = build.compare("GREATER_THAN", radius, 0.0, "FLOAT")
+    discs = _Discs(build, build.switch("INT", is_disc, 1, POINTS), radius)
+    stencil, point, along_x, along_y = _on_the_surface(build, spaces, discs)
+    # the slopes of the plane: sums of offset · height over sums of offset²
+    moment = discs.mean(build.scaled(discs.offset, coordinates(build, point)[2]))
+    square = discs.mean(build.vector("MULTIPLY", discs.offset, discs.offset))
+    slope_x, slope_y, _ = coordinates(build, build.vector("DIVIDE", moment, square))
+    tangents = (
+        build.switch("VECTOR", is_disc, along_x, combined(build, 1.0, 0.0, slope_x)),
+        build.switch("VECTOR", is_disc, along_y, combined(build, 0.0, 1.0, slope_y)),
+    )
+    draft = combined(build, 0.0, 0.0, build.math("MULTIPLY", build.given("Draft"), size))
+    build.finish_with(
+        {
+            "Stencil": stencil,
+            "Points": discs.points,
+            "Position": spaces.point_of_asker(build.vector("SUBTRACT", discs.mean(point), draft)),
+            "Rotation": _tilt(build, spaces.normal_of_asker(), spaces.normal_of_asker(*tangents)),
+        }
+    )
+
+
+class _Discs:
+    """Fields on the stencil points of all places.
+
+    points : of each place
+    place : number of a point's place
+    offset : from its place, in the ocean's space
+    """
+
+    def __init__(self, build: Builder, points: Socket, radius: Socket) -> None:
+        self._build = build
+        self.points = points
+        index = output(build.add("GeometryNodeInputIndex"), "Index")
+        self.place = build.integer("DIVIDE_FLOOR", index, points)
+        number = build.integer("FLOORED_MODULO", index, points)
+        shape = build.group(node_group(STENCIL), {"Number": number})
+        self.offset = build.scaled(output(shape, "Offset"), radius)
+
+    def mean(self, value: Socket) -> Socket:
+        """Of a vector over the points of a place."""
+        build = self._build
+        total = build.add("GeometryNodeAccumulateField", data_type="FLOAT_VECTOR", domain="POINT")
+        for name, given in (("Value", value), ("Group ID", self.place)):
+            connect(build, next(each for each in total.inputs if each.name == name and each.enabled), given)
+        return build.scaled(output(total, "Total"), build.math("DIVIDE", 1.0, self.points))
+
+
+def _on_the_surface(build: Builder, spaces: Spaces, discs: _Discs) -> tuple[Socket, Socket, Socket, Socket]:
+    """The stencil's points, and on them: where the surface is, and its two tangents."""
+    places = build.given("Places")
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    place = sample_index(build, places, position, discs.place, "FLOAT_VECTOR")
+    around = build.vector("ADD", spaces.point_of_ocean(place), discs.offset)
+
+    def surface(where: Socket, at_rest: bool) -> bpy.types.Node:
+        inputs = {"Geometry": spaces.mesh, "Position": where, "At Rest": at_rest}
+        return build.group(node_group(SURFACE), inputs)
+
+    carried = discs.mean(output(surface(around, True), "Displacement"))
+    level = build.vector("MULTIPLY", build.scaled(carried, build.given("Drift")), (1.0, 1.0, 0.0))
+    drifts = build.compare("NOT_EQUAL", build.given("Drift"), 0.0, "FLOAT")
+    drifted = build.switch("VECTOR", drifts, around, build.vector("ADD", around, level))
+    found = surface(drifted, False)
+    count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": places}, component="POINTCLOUD")
+    all_points = build.integer("MULTIPLY", output(count, "Point Count"), discs.points)
+    # kept on the points: fields are evaluated anew wherever they are used
+    names = ("Point", "Along X", "Along Y")
+    kept = build.add("GeometryNodeCaptureAttribute", domain="POINT")
+    for name in names:
+        kept.capture_items.new("VECTOR", name)
+        connect(build, kept.inputs[name], output(found, name))
+    connect(build, kept.inputs[0], build.add("GeometryNodePoints", {"Count": all_points}).outputs[0])
+    return kept.outputs[0], *(kept.outputs[name] for name in names)
+
+
+def _tilt(build: Builder, up: Socket, normal: Socket) -> Socket:
+    """The shortest rotation from one direction to another, or a part of it: a heading stays."""
+    axis = build.vector("CROSS_PRODUCT", up, normal)
+    sine = alone(build, "LENGTH", axis)
+    angle = build.math("ARCTAN2", sine, build.vector("DOT_PRODUCT", up, normal))
+    part = build.math("MULTIPLY", angle, build.given("Tilt"))
+    turned = build.add("FunctionNodeAxisAngleToRotation", {"Axis": axis, "Angle": part})
+    return output(turned, "Rotation")
+
+
+def _ride(build: Builder, places: Socket) -> bpy.types.Node:
+    inputs: dict[str, Input] = {plug.name: build.given(plug.name) for plug in RIDE_INPUTS}
+    return build.group(node_group(RIDE), {"Places": places, **inputs})
+
+
+def _of_place(build: Builder, ride: bpy.types.Node, place: Input) -> tuple[Socket, Socket]:
+    """Position and rotation of a place by its number."""
+    stencil = output(ride, "Stencil")
+    first = build.integer("MULTIPLY", place, output(ride, "Points"))
+    return (
+        sample_index(build, stencil, output(ride, "Position"), first, "FLOAT_VECTOR"),
+        sample_index(build, stencil, output(ride, "Rotation"), first, "QUATERNION"),
+    )
+
+
+def _build_float(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, (*RIDE_INPUTS, AS_ONE))
+    geometry = build.given("Geometry")
+    count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}, component="INSTANCES")
+    none = build.compare("EQUAL", output(count, "Instance Count"), 0)
+    as_one = build.logic("OR", build.given("As One"), none)
+    points = build.change("GeometryNodeInstancesToPoints", geometry)
+    ride = _ride(build, build.switch("GEOMETRY", as_one, points, _origin(build)))
+    build.finish(
+        build.switch("GEOMETRY", as_one, _each_moved(build, ride, geometry), _moved(build, ride, geometry))
+    )
+
+
+def _origin(build: Builder) -> Socket:
+    """A single point."""
+    return build.add("GeometryNodePoints", {"Count": 1}).outputs[0]
+
+
+def _moved(build: Builder, ride: bpy.types.Node, geometry: Socket) -> Socket:
+    """The geometry moved as one thing."""
+    position, rotation = _of_place(build, ride, 0)
+    inputs = {"Translation": position, "Rotation": rotation}
+    return build.change("GeometryNodeTransform", geometry, inputs)
+
+
+def _each_moved(build: Builder, ride: bpy.types.Node, geometry: Socket) -> Socket:
+    """Each instance moved and turned about its own origin."""
+    index = output(build.add("GeometryNodeInputIndex"), "Index")
+    position, rotation = _of_place(build, ride, index)
+    before = output(build.add("GeometryNodeInstanceTransform"), "Transform")
+    place = output(build.add("FunctionNodeSeparateTransform", {"Transform": before}), "Translation")
+    turned = _product(
+        build,
+        _transform(build, rotation=rotation),
+        _product(build, _transform(build, translation=build.scaled(place, -1.0)), before),
+    )
+    now = _product(build, _transform(build, translation=position), turned)
+    return build.change("GeometryNodeSetInstanceTransform", geometry, {"Transform": now})
+
+
+def _transform(build: Builder, **parts: Socket) -> Socket:
+    inputs = {name.title(): value for name, value in parts.items()}
+    return output(build.add("FunctionNodeCombineTransform", inputs), "Transform")
+
+
+def _product(build: Builder, first: Socket, second: Socket) -> Socket:
+    """What applies the second transform and then the first."""
+    node = build.add("FunctionNodeMatrixMultiply")
+    for socket, value in zip(node.inputs, (first, second), strict=True):
+        connect(build, socket, value)
+    return output(node, "Matrix")
+
+
+def _build_carrier(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, RIDE_INPUTS)
+    ride = _ride(build, _origin(build))
+    position, rotation = _of_place(build, ride, 0)
+    moved = _moved(build, ride, build.given("Geometry"))
+    there = _transform(build, translation=position, rotation=rotation)
+    build.finish(build.store(moved, TRANSFORM, there, "FLOAT4X4"))
+
+
+STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
+RIDE = GroupKind("Ocean Tweak Ride", 1, _build_ride)
+FLOAT = GroupKind("Float on Ocean", 1, _build_float)
+CARRIER = GroupKind("Float on Ocean Carrier", 1, _build_carrier)
