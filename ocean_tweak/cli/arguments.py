@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .. import __version__
 from ..core.frames import Frame, parse_frames
+from ..core.presets import built_in
 from ..core.validation import ParameterError
 from ..export.exr import COMPRESSION_ERROR, MAPS
 from . import baking, checking, info
@@ -135,8 +136,12 @@ def _add_openjd(parser: argparse.ArgumentParser) -> None:
 
 def _add_sea_arguments(parser: argparse.ArgumentParser, in_blender: bool) -> None:
     default = "the file's oceans" if in_blender else "the default sea"
-    parser.add_argument(
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument(
         "--params", type=Path, metavar="FILE.json", help=f"parameters; without them {default}"
+    )
+    source.add_argument(
+        "--preset", choices=tuple(built_in()), metavar="NAME", help=f"one of {', '.join(built_in())}"
     )
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", dest="assignments",
@@ -145,7 +150,7 @@ def _add_sea_arguments(parser: argparse.ArgumentParser, in_blender: bool) -> Non
     parser.add_argument("--fps", metavar="N", help="frames per second, also as a fraction: 24000/1001")
     parser.add_argument("--start-frame", metavar="N", help="frame at which ocean time is 0")
     if in_blender:
-        parser.add_argument("--object", metavar="NAME", help="only the ocean of this object")
+        source.add_argument("--object", metavar="NAME", help="only the ocean of this object")
 
 
 def _frames(text: str) -> tuple[Frame, ...]:

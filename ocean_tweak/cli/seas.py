@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from ..core import OceanParameters, ParameterError
 from ..core.frames import Frame
 from ..core.parameters import parse_json
+from ..core.presets import built_in
 from ..core.shot import Shot
 from .outcome import UsageError
 
@@ -39,9 +40,9 @@ SceneOceans = Callable[[], Mapping[str, Sea]]
 
 def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> dict[str, Sea]:
     """The seas that the command is about, by name. Raises ParameterError or UsageError."""
-    if arguments.params is not None or scene_oceans is None:
-        if getattr(arguments, "object", None):
-            raise UsageError("--object and --params exclude each other")
+    if arguments.preset is not None:
+        seas = {arguments.preset: Sea(Shot(built_in()[arguments.preset].parameters))}
+    elif arguments.params is not None or scene_oceans is None:
         seas = {_file_sea_name(arguments.params): Sea(_file_shot(arguments.params))}
     else:
         seas = _chosen(scene_oceans(), arguments.object)
