@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Floating baked to keyframes, one frame after another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import bpy
+
+from . import float_keys, floating
+from .floating import FloatError, Ride
+from .floating_place import Water, place_on, water_at
+from .units import metres_per_unit
+
+
+@dataclass(frozen=True)
+class _Rider:
+    """An object that is being baked.
+
+    carrier : stands where the object would be on land
+    was_live : whether the carrier was there before
+    track : where the object was so far
+    """
+
+    item: bpy.types.Object
+    carrier: bpy.types.Object
+    was_live: bool
+    ocean: bpy.types.Object
+    ride: Ride
+    track: float_keys.Track
+
+
+class FloatBake:
+    """A bake that can be done a frame at a time, and given up.
+
+    An object that floats already keeps its ocean and ride, others get the given ones. Keys are written by
+    `finish`, after `advance` was called once for each of `frames`; `cancel` leaves everything as it was. The
+    scene's frame goes along, so that parents, animation and the ocean's settings are those of each frame.
+
+    Raises FloatError for what cannot float, and OceanObjectError or ParameterError for an ocean without a
+    surface.
+    """
+
+    def __init__(
+        self,
+        scene: bpy.types.Scene,
+        items: Iterable[bpy.types.Object],
+        ocean: bpy.types.Object,
+        ride: Ride,
+        frames: range,
+    ) -> None:
+        chosen = floating.outermost(items)
+        for item in chosen:
+            floating.check(item, ocean)
+        if not len(frames):
+            raise FloatError("The first frame lies after the last one")
+        self.frames, self.done = frames, 0
+        self._scene, self._frame = scene, (scene.frame_current, scene.frame_subframe)
+        self._riders = [self._begin(item, ocean, ride) for item in chosen]
+
+    def _begin(self, item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride) -> _Rider:
+        carrier = floating.carrier_of(item)
+        if carrier is None:
+            carrier = floating.place_carrier(item, self._scene)
+            return _Rider(item, carrier, False, ocean, ride, float_keys.Track(item))
+        known, ride = floating.ride_of(carrier)
+        return _Rider(item, carrier, True, known or ocean, ride, float_keys.Track(item))
+
+    def advance(self) -> None:
+        """Go on by one frame. Raises what a missing or broken image raises."""
+        frame = self.frames[self.done]
+        self._scene.frame_set(frame)
+        metres = float(metres_per_unit(self._scene))
+        waters: dict[bpy.types.Object, Water] = {}
+        for rider in self._riders:
+            if rider.ocean not in waters:
+                waters[rider.ocean] = water_at(rider.ocean, self._scene, frame)
+            places = rider.carrier.matrix_world, rider.ocean.matrix_world
+            rider.track.add(place_on(waters[rider.ocean], *places, rider.ride, metres))
+        self.done += 1
+
+    def finish(self) -> None:
+        """Write the keys; what floated live is left to them."""
+        for rider in self._riders:
+            if not rider.was_live:
+                floating.remove_carrier(rider.carrier)
+            floating.sink(rider.item)
+            rider.track.write(self.frames[0])
+        self._go_back()
+
+    def cancel(self) -> None:
+        """Leave everything as it was before."""
+        for rider in self._riders:
+            if not rider.was_live:
+                floating.remove_carrier(rider.carrier)
+        self._go_back()
+
+    def _go_back(self) -> None:
+        frame, subframe = self._frame
+        self._scene.frame_set(frame, subframe=subframe)

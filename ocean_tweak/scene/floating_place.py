@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where an object floats, reckoned from the samples of a sea: what the node groups do, without a mesh.
+
+The sea is that of the render, whatever the viewport shows.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Quaternion, Vector
+from numpy.typing import NDArray
+
+from ..core import Ocean, OceanParameters
+from ..core.surface_query import bilinear, find_points
+from ..core.waterline import fitted_plane, stencil
+from ..export.exr import ExrError, read_image
+from .floating import FloatError, Ride
+from .image_sequence import SequenceError
+from .settings import OceanSettings, settings_of
+
+RealArray = NDArray[np.float32]
+Array = NDArray[np.float64]
+
+#: minimum eigenvalue below which several sheets of the surface are looked for
+_NEARLY_FOLDED = 0.1
+_NUMBER = re.compile(r"\d{4,}(?=\.exr$)")
+
+
+@dataclass(frozen=True)
+class Water:
+    """A sea at one frame.
+
+    displacement : (N, N, 3) [y, x], m
+    spacing : of the samples, m
+    """
+
+    displacement: RealArray
+    spacing: float
+
+    def carried(self, x: Array, y: Array) -> Array:
+        """(points, 2) how far the water of these places at rest has gone, m."""
+        values, _ = bilinear(self.displacement, None, self.spacing)(x, y, False)
+        return values.value[:, :2]
+
+    def surface(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Heights in m above places in m, and (points, 3) normals."""
+        folded = _least_eigenvalue(self.displacement, self.spacing) < _NEARLY_FOLDED
+        found = find_points(x, y, self.displacement, None, self.spacing, folded)
+        return found.height, found.normal
+
+
+def water_at(ocean: bpy.types.Object, scene: bpy.types.Scene, frame: int) -> Water:
+    """The sea of an ocean at the scene's present frame.
+
+    Raises ParameterError, OceanObjectError or MemoryError for an ocean that has no surface there.
+    """
+    settings = settings_of(ocean)
+    parameters = settings.to_parameters(scene)
+    if settings.source == "LIVE":
+        displacement = _ocean(parameters).frame(frame).displacement
+    else:
+        displacement = _baked(settings, frame)
+    return Water(displacement, parameters.domain_size / len(displacement))
+
+
+def place_on(water: Water, place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Matrix:
+    """Where something floats whose place on land is known, in the world: a rotation and a location.
+
+    place, ocean : world matrices, Blender units
+    metres : in a Blender unit
+    """
+    to_ocean = ocean.inverted_safe() @ place
+    size = (to_ocean.to_3x3() @ Vector((1.0, 0.0, 0.0))).length
+    middle = np.array(to_ocean.translation)[:2] * metres
+    height, normal, drift = _settled(water, middle, ride, 0.5 * ride.waterline * size * metres)
+    level = Vector((*(middle + drift), height)) / metres
+    level.z -= ride.draft * size
+    up = _world_normal(ocean, Vector((0.0, 0.0, 1.0)))
+    tilt = up.rotation_difference(_world_normal(ocean, Vector(normal)))
+    turned = Quaternion().slerp(tilt, ride.tilt) @ place.to_quaternion()
+    return Matrix.Translation(ocean @ level) @ turned.to_matrix().to_4x4()
+
+
+def _settled(water: Water, middle: Array, ride: Ride, radius: float) -> tuple[float, Array, Array]:
+    """Height in m, unit normal, and drift (x, y) in m, of a disc of this radius."""
+    offsets = radius * stencil() if radius > 0.0 else np.zeros((1, 2))
+    drift = np.zeros(2)
+    if ride.drift != 0.0:
+        drift = ride.drift * water.carried(*(middle + offsets).T).mean(axis=0)
+    heights, normals = water.surface(*(middle + drift + offsets).T)
+    if not radius > 0.0:
+        return float(heights[0]), normals[0], drift
+    plane = fitted_plane(heights, radius)
+    normal = np.array([-plane.slope_x, -plane.slope_y, 1.0])
+    return float(plane.height), normal / np.linalg.norm(normal), drift
+
+
+def _world_normal(ocean: Matrix, normal: Vector) -> Vector:
+    """The ocean's normal in the world: an inverse transposed, for an ocean may be scaled."""
+    turned = ocean.to_3x3().inverted_safe().transposed() @ normal
+    return turned.normalized()
+
+
+# the sea of the frame before is most often that of the next one too
+@lru_cache(maxsize=2)
+def _ocean(parameters: OceanParameters) -> Ocean:
+    return Ocean(parameters)
+
+
+def _baked(settings: OceanSettings, frame: int) -> RealArray:
+    """(N, N, 3) of the file that this frame shows."""
+    image = settings.sequence_maps.disp
+    if image is None:
+        raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
+    held = min(max(frame, settings.sequence_first), settings.sequence_last)
+    path = Path(bpy.path.abspath(image.filepath))
+    try:
+        return read_image(path.with_name(_NUMBER.sub(f"{held:04d}", path.name)))[0]
+    except ExrError as error:
+        raise FloatError(str(error)) from error
+
+
+def _least_eigenvalue(displacement: RealArray, spacing: float) -> Array:
+    """(N, N) of the map from rest to surface, between neighbouring samples."""
+    level = displacement[..., :2].astype(np.float64)
+    by_x, by_y = ((np.roll(level, -1, axis) - level) / spacing for axis in (1, 0))
+    xx, yy = 1.0 + by_x[..., 0], 1.0 + by_y[..., 1]
+    xy = 0.5 * (by_x[..., 1] + by_y[..., 0])
+    return 0.5 * (xx + yy) - np.hypot(0.5 * (xx - yy), xy)
