@@ -19,7 +19,7 @@ SYNTHESIS_VERSION = 1
 
 def fingerprint(data: object) -> str:
     """SHA-256, 64 hexadecimal digits, of plain data. Raises ValueError for numbers that are not finite."""
-    text = json.dumps(data, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    text = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -12,18 +12,22 @@ from .validation import ParameterError
 #: a whole frame is an int; a frame between two, for motion blur, is a Fraction that a decimal can write
 Frame = int | Fraction
 
-_NUMBER = r"-?\d+(?:\.\d{1,6})?"
-_RANGE = re.compile(rf"({_NUMBER})(?:-({_NUMBER})(?:x(\d+(?:\.\d{{1,6}})?))?)?")
+_NUMBER = r"-?\d{1,20}(?:\.\d{1,6})?"
+_RANGE = re.compile(rf"({_NUMBER})(?:-({_NUMBER})(?:[x:](\d{{1,20}}(?:\.\d{{1,6}})?))?)?")
 _MOST_FRAMES = 1_000_000
-_LARGEST = 10**9
+#: how far from 0 a frame may lie
+LARGEST_FRAME = 10**9
 
 
 def parse_frames(text: str) -> tuple[Frame, ...]:
     """Frames of `1-48`, `1-100x2`, `1001,1005-1010`, `-5--1`, `1-2x0.25`, ascending and each once.
 
+    A step may also stand behind a colon, `1-100:2`, as render farms write it.
+
     Raises ParameterError.
     """
     frames: set[Frame] = set()
+    total = 0
     for part in text.split(","):
         match = _RANGE.fullmatch(part.strip())
         if not match:
@@ -33,11 +37,13 @@ def parse_frames(text: str) -> tuple[Frame, ...]:
         step = Fraction(match[3]) if match[3] else Fraction(1)
         if last < first or step <= 0:
             raise ParameterError("frames", text, f"{part.strip()} holds no frames")
-        if (last - first) // step >= _MOST_FRAMES:
+        count = int((last - first) // step) + 1
+        total += count
+        if total > _MOST_FRAMES:
             raise ParameterError("frames", text, f"must hold at most {_MOST_FRAMES} frames")
-        if max(abs(first), abs(last)) > _LARGEST:
-            raise ParameterError("frames", text, f"must lie between -{_LARGEST} and {_LARGEST}")
-        frames.update(as_frame(first + index * step) for index in range(int((last - first) // step) + 1))
+        if max(abs(first), abs(last)) > LARGEST_FRAME:
+            raise ParameterError("frames", text, f"must lie between -{LARGEST_FRAME} and {LARGEST_FRAME}")
+        frames.update(as_frame(first + index * step) for index in range(count))
     return tuple(sorted(frames))
 
 

@@ -21,6 +21,10 @@ def parse_json(text: str) -> Any:
         raise ParameterError("JSON", text[:40], f"is not valid JSON at {place}: {error.msg}") from None
     except RecursionError:
         raise ParameterError("JSON", text[:40], "is nested too deeply") from None
+    except ParameterError:
+        raise
+    except ValueError as error:  # a number of more digits than Python reads
+        raise ParameterError("JSON", text[:40], f"is not valid JSON: {error}") from None
 
 
 def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from .frames import Frame
+from .frames import LARGEST_FRAME, Frame
 from .parameters import OceanParameters, parse_json
 from .plain_data import to_plain
 from .validation import ParameterError
@@ -74,6 +74,8 @@ class Animation:
     def __post_init__(self) -> None:
         if isinstance(self.first_frame, bool) or not isinstance(self.first_frame, int):
             raise ParameterError("first_frame", self.first_frame, "must be a whole number")
+        if abs(self.first_frame) > LARGEST_FRAME:
+            raise ParameterError("first_frame", self.first_frame, f"must be at most {LARGEST_FRAME} from 0")
         if not self.samples:
             raise ParameterError("samples", {}, f"must hold at least one of {', '.join(ANIMATED)}")
         for path, values in self.samples:
@@ -245,6 +247,14 @@ def _check_values(path: str, values: tuple[object, ...]) -> None:
     if not 1 <= len(values) <= _MOST_SAMPLES:
         raise ParameterError(f"samples.{path}", f"{len(values)} values", f"must be from 1 to {_MOST_SAMPLES}")
     for index, value in enumerate(values):
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not number or not math.isfinite(value):  # type: ignore[arg-type]
+        if not _is_finite(value):
             raise ParameterError(f"samples.{path}.{index}", value, "must be a finite number")
+
+
+def _is_finite(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond every float
+        return False

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from fractions import Fraction
 from typing import Any
 
@@ -90,7 +91,10 @@ def _checked_number(name: str, value: object, meta: Any) -> float:
     allowed = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
     if isinstance(value, bool) or not hasattr(value, "__float__"):
         raise ParameterError(name, value, f"must be a number {allowed}")
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
     if not math.isfinite(result):
         raise ParameterError(name, value, f"must be a finite number {allowed}")
     if not meta["minimum"] <= result <= meta["maximum"]:
@@ -109,13 +113,20 @@ def _checked_integer(name: str, value: object, meta: Any) -> int:
     return int(result)
 
 
+#: no more digits than a fraction that is allowed has: 1e999999999 would be written out in full
+_FRACTION = re.compile(r"[+-]?[0-9.]{1,40}(e[+-]?[0-9]{1,3}|/[0-9]{1,40})?", re.IGNORECASE)
+
+
 def _checked_fraction(name: str, value: object, meta: Any) -> Fraction:
     span = _range_text(meta["minimum"], meta["maximum"], meta["unit"])
     allowed = f'must be {span}, also as a fraction: "24000/1001"'
     try:
         if isinstance(value, bool) or not isinstance(value, (int, float, str, Fraction)):
             raise TypeError
-        result = Fraction(str(value).strip())  # 23.976 is what its digits say, not the nearest binary number
+        text = str(value).strip()
+        if not _FRACTION.fullmatch(text):
+            raise ValueError
+        result = Fraction(text)  # 23.976 is what its digits say, not the nearest binary number
     except (TypeError, ValueError, ZeroDivisionError):
         raise ParameterError(name, value, allowed) from None
     low, high = (Fraction(str(meta[end])) for end in ("minimum", "maximum"))
