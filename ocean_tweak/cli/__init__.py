@@ -13,6 +13,9 @@ from .seas import SceneOceans, Sea
 
 __all__ = ["SceneOceans", "Sea", "main"]
 
+#: what a user, a disk or another process can cause; anything else is a bug and raises
+_EXPECTED = (ParameterError, UsageError, OSError, ExrError, CacheError, Held, MemoryError)
+
 
 def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None) -> int:
     """Run one command. Returns the exit code: 0 done, 1 failed, 2 wrong arguments or parameters.
@@ -26,18 +29,20 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
         return int(end.code or 0)
     try:
         return int(arguments.run(arguments, scene_oceans))
-    except (ParameterError, UsageError) as error:
-        complain(error)
-        return WRONG_ARGUMENTS
-    except OSError as error:
-        complain(f"{error.filename}: {error.strerror}" if error.filename else error)
-        return FAILED
-    except (ExrError, CacheError, Held) as error:
-        complain(error)
-        return FAILED
-    except MemoryError as error:
-        complain(error if str(error) else "there is not enough memory: lower the resolution")
-        return FAILED
-    except KeyboardInterrupt:
-        complain("interrupted; the frames written so far are whole")
-        return FAILED
+    except (*_EXPECTED, KeyboardInterrupt) as error:
+        message = _message(error)
+        if getattr(arguments, "openjd", False):
+            print(f"openjd_fail: {message}", flush=True)
+        complain(message)
+        return WRONG_ARGUMENTS if isinstance(error, (ParameterError, UsageError)) else FAILED
+
+
+def _message(error: BaseException) -> str:
+    """What is wrong, in a line."""
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted; the frames written so far are whole"
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}"
+    if isinstance(error, MemoryError) and not str(error):
+        return "there is not enough memory: lower the resolution"
+    return str(error)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 from pathlib import Path
 
 from .. import __version__
@@ -14,8 +15,7 @@ from ..core.validation import ParameterError
 from ..export.exr import COMPRESSION_ERROR, MAPS
 from . import baking, checking, info
 from .seas import chosen_seas
-
-CACHE_VARIABLE = baking.CACHE_VARIABLE
+from .wanted_bake import CACHE_VARIABLE
 
 
 def make_parser(in_blender: bool) -> argparse.ArgumentParser:
@@ -30,11 +30,14 @@ def make_parser(in_blender: bool) -> argparse.ArgumentParser:
     _add_info(commands, in_blender)
     _add_bake(commands, in_blender)
     _add_resume(commands)
-    _add_verify(commands)
+    _add_verify(commands, in_blender)
     _add_clean(commands)
     return parser
 
 
+_FOLDER_HELP = "a bake's folder, NAME-UID/vNNN-hash8"
+
+_Arguments = argparse._ActionsContainer  # a parser or a group of its arguments
 _Commands = argparse._SubParsersAction  # type: ignore[type-arg]
 
 
@@ -55,31 +58,49 @@ def _add_info(commands: _Commands, in_blender: bool) -> None:
 def _add_bake(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "bake", "write frames as EXR images; frames that are there already stay")
     _add_sea_arguments(parser, in_blender)
-    parser.add_argument(
-        "--frames", type=_frames, metavar="RANGE", required=not in_blender,
-        help="1-48, 1-100x2 or 1001,1005-1010" + ("; by default the scene's" if in_blender else ""),
-    )  # fmt: skip
+    _add_frames(parser, in_blender)
     parser.add_argument(
         "--only", type=_frames, metavar="RANGE",
         help="bake these of the frames now; the others are baked elsewhere or later",
     )  # fmt: skip
+    _add_cache(parser, in_blender, "--out")
+    _add_files_arguments(parser)
+    _add_work_arguments(parser)
+    parser.set_defaults(run=lambda arguments, oceans: baking.bake(arguments, chosen_seas(arguments, oceans)))
+
+
+def _add_frames(parser: argparse.ArgumentParser, in_blender: bool) -> None:
     parser.add_argument(
-        "--out", type=Path, metavar="DIR",
+        "--frames", type=_frames, metavar="RANGE", required=not in_blender,
+        help="1-48, 1-100x2 or 1001,1005-1010" + ("; by default the scene's" if in_blender else ""),
+    )  # fmt: skip
+
+
+def _add_cache(parser: _Arguments, in_blender: bool, option: str) -> None:
+    parser.add_argument(
+        option, type=Path, metavar="DIR",
         help="cache folder, in which the sea gets one of its own; by default "
         + ("the file's, or " if in_blender else "")
         + f"${CACHE_VARIABLE}",
     )  # fmt: skip
+
+
+def _add_files_arguments(parser: _Arguments) -> None:
+    """What, beside the sea, decides which files a bake writes."""
     parser.add_argument(
         "--maps", type=_maps, metavar="LIST", default=("disp",),
         help=f"what to write, of {','.join(MAPS)}; disp by default",
     )  # fmt: skip
     parser.add_argument("--name", help="start of the file names; by default that of the sea")
     parser.add_argument(
+        "--uid",
+        type=_uid,
+        help="tells seas of one name apart, in the folder's; made from the name by default",
+    )
+    parser.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
         help="PXR24 (default) keeps 2⁻¹⁶ of a value, the others are exact; HTJ2K needs Blender 5.2 to read",
     )  # fmt: skip
-    _add_work_arguments(parser)
-    parser.set_defaults(run=lambda arguments, oceans: baking.bake(arguments, chosen_seas(arguments, oceans)))
 
 
 def _add_resume(commands: _Commands) -> None:
@@ -89,11 +110,19 @@ def _add_resume(commands: _Commands) -> None:
     parser.set_defaults(run=lambda arguments, _oceans: baking.resume(arguments))
 
 
-def _add_verify(commands: _Commands) -> None:
+def _add_verify(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "verify", "read a bake back: hashes, headers, pixels and wave heights")
-    _add_folder_arguments(parser)
+    parser.add_argument(
+        "folder", type=Path, metavar="FOLDER", nargs="?",
+        help=f"{_FOLDER_HELP}; or leave it out and give what the bake was given",
+    )  # fmt: skip
+    _add_wanted_frames(parser)
+    sea = parser.add_argument_group("the sea, instead of a folder")
+    _add_sea_arguments(sea, in_blender)
+    _add_cache(sea, in_blender, "--out")
+    _add_files_arguments(sea)
     _add_openjd(parser)
-    parser.set_defaults(run=lambda arguments, _oceans: checking.verify(arguments))
+    parser.set_defaults(run=checking.verify)
 
 
 def _add_clean(commands: _Commands) -> None:
@@ -103,7 +132,11 @@ def _add_clean(commands: _Commands) -> None:
 
 
 def _add_folder_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, metavar="FOLDER", help="a bake's folder, NAME-UID/vNNN-hash8")
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help=_FOLDER_HELP)
+    _add_wanted_frames(parser)
+
+
+def _add_wanted_frames(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--frames", type=_frames, metavar="RANGE", help="by default all that were asked for or made"
     )
@@ -134,7 +167,7 @@ def _add_openjd(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_sea_arguments(parser: argparse.ArgumentParser, in_blender: bool) -> None:
+def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
     default = "the file's oceans" if in_blender else "the default sea"
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
@@ -166,6 +199,12 @@ def _maps(text: str) -> tuple[str, ...]:
     if unknown:
         raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
     return names
+
+
+def _uid(text: str) -> str:
+    if not re.fullmatch("[0-9A-Za-z]{1,32}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} must be 1 to 32 letters and digits")
+    return text
 
 
 def _workers(text: str) -> int:

@@ -19,8 +19,6 @@ from ..export.cache.job import (
     open_folder,
     read_job,
     recovered_job,
-    safe_name,
-    uid_of,
     write_job,
 )
 from ..export.cache.locks import claimed
@@ -31,21 +29,18 @@ from .outcome import DONE, FAILED, UsageError, complain
 from .progress import Progress, duration
 from .seas import Sea
 from .stopping import stop_requested
+from .wanted_bake import cache_of, jobs_of
 from .workers import make_in_processes
-
-CACHE_VARIABLE = "OCEAN_TWEAK_CACHE"
 
 
 def bake(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     """Bake each sea into its own folder of the cache."""
-    if arguments.name and len(seas) > 1:
-        raise UsageError("--name: the file has several oceans; choose one with --object")
-    codes = [_bake_sea(arguments, name, sea) for name, sea in seas.items()]
-    return max(codes)
+    jobs = jobs_of(arguments, seas)
+    return max(_bake_sea(arguments, cache_of(arguments, seas[name]), job) for name, job in jobs.items())
 
 
-def _bake_sea(arguments: argparse.Namespace, name: str, sea: Sea) -> int:
-    frames = arguments.frames or sea.frames
+def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job) -> int:
+    frames = job.frames
     if not frames:
         raise UsageError("--frames: say which frames to bake")
     chosen = arguments.only or frames
@@ -53,21 +48,7 @@ def _bake_sea(arguments: argparse.Namespace, name: str, sea: Sea) -> int:
         raise UsageError(
             f"--only {format_frames(chosen)}: must be some of the frames {format_frames(frames)}"
         )
-    sea.shot.check(frames)
-    name = safe_name(arguments.name or name)
-    job = Job(name, sea.uid or uid_of(name), sea.shot, arguments.maps, arguments.compression, frames)
-    folder = open_folder(writable_folder(_cache(arguments, sea)), job)
-    return _make(arguments, folder, job, chosen)
-
-
-def _cache(arguments: argparse.Namespace, sea: Sea) -> Path:
-    if arguments.out is not None:
-        return Path(arguments.out)
-    if sea.cache is not None:
-        return sea.cache
-    if os.environ.get(CACHE_VARIABLE):
-        return Path(os.environ[CACHE_VARIABLE])
-    raise UsageError(f"--out: say where the frames go, or set the environment variable {CACHE_VARIABLE}")
+    return _make(arguments, open_folder(writable_folder(cache), job), job, chosen)
 
 
 def resume(arguments: argparse.Namespace) -> int:
@@ -102,9 +83,8 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
         try:
             for baked in _frames(folder, job, todo, arguments.workers, stop.is_set):
                 progress.frame(baked)
-        except BaseException as error:
+        except BaseException:
             progress.end()
-            progress.fail(str(error))
             complain(f"the frames written so far are whole; go on with: resume {folder}")
             raise
         progress.end()

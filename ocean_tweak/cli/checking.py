@@ -17,6 +17,8 @@ from ..export.cache.records import State, recorded_frames
 from ..export.cache.verify import verify as verify_frames
 from .outcome import DONE, FAILED, UsageError
 from .progress import Progress
+from .seas import SceneOceans, chosen_seas
+from .wanted_bake import cache_of, existing_folder, jobs_of
 
 
 def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> tuple[Frame, ...]:
@@ -29,14 +31,25 @@ def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> t
     return known
 
 
-def verify(arguments: argparse.Namespace) -> int:
-    """Read frames back and name each that is not whole."""
-    job = read_job(arguments.folder)
-    frames = wanted_frames(arguments.folder, job, arguments.frames)
+def verify(arguments: argparse.Namespace, scene_oceans: SceneOceans | None = None) -> int:
+    """Read frames back and name each that is not whole: of a folder, or of what the sea's arguments bake."""
+    if arguments.folder is not None:
+        if arguments.params or arguments.preset or arguments.assignments or arguments.out:
+            raise UsageError(f"{arguments.folder}: give either a folder, or a sea and --out")
+        return _verify_folder(arguments, arguments.folder)
+    seas = chosen_seas(arguments, scene_oceans)
+    jobs = jobs_of(arguments, seas)
+    folders = [existing_folder(cache_of(arguments, seas[name]), job) for name, job in jobs.items()]
+    return max(_verify_folder(arguments, folder) for folder in folders)
+
+
+def _verify_folder(arguments: argparse.Namespace, folder: Path) -> int:
+    job = read_job(folder)
+    frames = wanted_frames(folder, job, arguments.frames)
     progress = Progress(job.name, arguments.json, arguments.openjd)
     progress.begin(len(frames))
     states: Counter[State] = Counter()
-    for frame, state, reason in verify_frames(arguments.folder, job, frames):
+    for frame, state, reason in verify_frames(folder, job, frames):
         states[state] += 1
         if state is not State.WHOLE or arguments.json:
             text = f"frame {to_plain(frame)} is {state.value}: {reason}"

@@ -68,6 +68,16 @@ class Job:
             }
         )
 
+    @property
+    def home(self) -> str:
+        """The folder of all versions of this sea, in a cache."""
+        return f"{self.name}-{self.uid}"
+
+    @property
+    def hash8(self) -> str:
+        """What tells its folder from those of other versions."""
+        return self.fingerprint[:8]
+
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
         """The sink for a frame, whose header tells this frame's parameters."""
         parameters = self.shot.at(frame).parameters
@@ -133,18 +143,22 @@ def uid_of(name: str) -> str:
     return fingerprint(name)[:8]
 
 
+def find_folder(cache: Path, job: Job) -> Path | None:
+    """The job's folder in a cache; None where nobody has begun to bake it."""
+    versions = _versions(cache / job.home)
+    return next((path for path, (_, hash8) in versions if hash8 == job.hash8), None)
+
+
 def open_folder(cache: Path, job: Job) -> Path:
     """The job's folder in a cache, made where it is missing.
 
     Raises CacheError where another job has its name, OSError for what the disk refuses.
     """
-    home = cache / f"{job.name}-{job.uid}"
-    hash8 = job.fingerprint[:8]
-    versions = dict(_versions(home))
-    folder = next((path for path, (_, found) in versions.items() if found == hash8), None)
+    folder = find_folder(cache, job)
     if folder is None:
-        number = max((number for number, _ in versions.values()), default=0) + 1
-        folder = home / f"v{number:03d}-{hash8}"
+        home = cache / job.home
+        number = max((number for _, (number, _) in _versions(home)), default=0) + 1
+        folder = home / f"v{number:03d}-{job.hash8}"
     for part in (RECORDS, LOCKS):
         (folder / part).mkdir(parents=True, exist_ok=True)
     write_job(folder, job)
