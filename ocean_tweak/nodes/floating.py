@@ -37,6 +37,15 @@ AS_ONE = Plug(
 )  # fmt: skip
 
 
+#: of an input: subtype, least and greatest value
+_RANGES = {
+    "Waterline": ("DISTANCE", 0.0, 1e6),
+    "Draft": ("DISTANCE", -1e6, 1e6),
+    "Tilt": ("FACTOR", 0.0, 1.0),
+    "Drift": ("FACTOR", 0.0, 1.0),
+}
+
+
 def _build_stencil(tree: bpy.types.NodeTree) -> None:
     build = Builder(
         tree,
@@ -162,6 +171,12 @@ def _tilt(build: Builder, up: Socket, normal: Socket) -> Socket:
     return output(turned, "Rotation")
 
 
+def _set_ranges(tree: bpy.types.NodeTree) -> None:
+    for item in tree.interface.items_tree:
+        if item.name in _RANGES:
+            item.subtype, item.min_value, item.max_value = _RANGES[item.name]
+
+
 def _ride(build: Builder, places: Socket) -> bpy.types.Node:
     inputs: dict[str, Input] = {plug.name: build.given(plug.name) for plug in RIDE_INPUTS}
     return build.group(node_group(RIDE), {"Places": places, **inputs})
@@ -179,6 +194,7 @@ def _of_place(build: Builder, ride: bpy.types.Node, place: Input) -> tuple[Socke
 
 def _build_float(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, (*RIDE_INPUTS, AS_ONE))
+    _set_ranges(tree)
     geometry = build.given("Geometry")
     count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}, component="INSTANCES")
     none = build.compare("EQUAL", output(count, "Instance Count"), 0)
@@ -232,6 +248,7 @@ def _product(build: Builder, first: Socket, second: Socket) -> Socket:
 
 def _build_carrier(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, RIDE_INPUTS)
+    _set_ranges(tree)
     ride = _ride(build, _origin(build))
     position, rotation = _of_place(build, ride, 0)
     moved = _moved(build, ride, build.given("Geometry"))

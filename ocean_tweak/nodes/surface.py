@@ -35,7 +35,7 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
         (_GEOMETRY,),
         (
             Plug("Geometry", "NodeSocketGeometry", None, "The same mesh, or nothing where it is no ocean's"),
-            Plug("Corner", "NodeSocketVector", None, "First vertex at rest"),
+            Plug("Corner", "NodeSocketVector", None, "First vertex at rest; 0 where the mesh is no ocean's"),
             Plug(
                 "Spacing", "NodeSocketVector", None, "Size of a cell; (1, 1, 1) where the mesh is no ocean's"
             ),
@@ -59,22 +59,32 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
     across = whole_number(build, build.math("DIVIDE", width, step), "ROUND")
     columns = build.integer("MAXIMUM", build.integer("ADD", across, 1), 2)
     rows = build.integer("MAXIMUM", build.integer("DIVIDE_FLOOR", count, columns), 2)
-    # another object, or a mesh with modifiers that change its vertices behind ours
-    known = sample_index(build, geometry, output(displacement, "Exists"), 0, "BOOLEAN")
-    complete = build.compare("EQUAL", build.integer("MULTIPLY", columns, rows), count)
-    extent = build.compare("GREATER_THAN", build.math("MINIMUM", step, depth), 0.0, "FLOAT")
-    usable = build.logic("AND", build.logic("AND", known, complete), extent)
-    nothing = build.add("GeometryNodeJoinGeometry").outputs[0]
     spacing = combined(
         build,
         build.math("DIVIDE", width, build.integer("SUBTRACT", columns, 1)),
         build.math("DIVIDE", depth, build.integer("SUBTRACT", rows, 1)),
         1.0,
     )
+    known = sample_index(build, geometry, output(displacement, "Exists"), 0, "BOOLEAN")
+    complete = build.compare("EQUAL", build.integer("MULTIPLY", columns, rows), count)
+    extent = build.compare("GREATER_THAN", build.math("MINIMUM", step, depth), 0.0, "FLOAT")
+    usable = build.logic("AND", build.logic("AND", known, complete), extent)
+    # another object, or a mesh with modifiers that change its vertices behind ours
+    _, step_y, _ = coordinates(build, spacing)
+    for index, offset in (
+        (build.integer("SUBTRACT", columns, 1), combined(build, width, 0.0)),
+        (columns, combined(build, 0.0, step_y)),
+    ):
+        off = build.vector("SUBTRACT", at_rest(index), build.vector("ADD", first, offset))
+        near = build.compare(
+            "LESS_THAN", alone(build, "LENGTH", off), build.math("MULTIPLY", step, 0.1), "FLOAT"
+        )
+        usable = build.logic("AND", usable, near)
+    nothing = build.add("GeometryNodeJoinGeometry").outputs[0]
     build.finish_with(
         {
             "Geometry": build.switch("GEOMETRY", usable, nothing, geometry),
-            "Corner": first,
+            "Corner": build.switch("VECTOR", usable, (0.0, 0.0, 0.0), first),
             "Spacing": build.switch("VECTOR", usable, (1.0, 1.0, 1.0), spacing),
             "Columns": columns,
             "Rows": rows,

@@ -80,14 +80,15 @@ class FloatBake:
             rider.track.add(place_on(waters[rider.ocean], *places, rider.ride, metres))
         self.done += 1
 
-    def finish(self) -> None:
-        """Write the keys; what floated live is left to them."""
+    def finish(self) -> int:
+        """Write the keys; what floated live is left to them. Returns how many objects there are."""
         for rider in self._riders:
             if not rider.was_live:
                 floating.remove_carrier(rider.carrier)
             floating.sink(rider.item)
             rider.track.write(self.frames[0])
         self._go_back()
+        return len(self._riders)
 
     def cancel(self) -> None:
         """Leave everything as it was before."""

@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Float on Ocean: what the artist presses to let objects ride the sea, live or baked to keyframes."""
+
+import time
+
+import bpy
+from bpy.props import FloatProperty, IntProperty, StringProperty
+
+from ..core import ParameterError
+from ..scene import floating
+from ..scene.float_bake import FloatBake
+from ..scene.float_keys import is_baked
+from ..scene.floating import FloatError, Ride
+from ..scene.settings import OceanObjectError, is_ocean, oceans_in
+
+_EXPECTED_ERRORS = (OceanObjectError, ParameterError, MemoryError, OSError)
+# s of a modal bake before the window may draw again
+_TURN = 0.05
+
+
+def floatable(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The selected objects that are neither oceans nor carriers; of a selected carrier what it carries."""
+    chosen: dict[bpy.types.Object, None] = {}
+    for item in context.selected_objects:
+        if floating.is_carrier(item):
+            chosen.update(dict.fromkeys(floating.carried_by(item)))
+        elif not is_ocean(item):
+            chosen[item] = None
+    return list(chosen)
+
+
+class _Rides:
+    """Operators that let the selected objects float."""
+
+    ocean: StringProperty(
+        name="Ocean", description="The ocean to float on; empty for the active one, else the first by name"
+    )
+    waterline: FloatProperty(
+        name="Waterline",
+        min=0.0,
+        soft_max=1000.0,
+        unit="LENGTH",
+        description="Across what floats: waves shorter than this do not move it. "
+        "0 follows the surface at the object's origin",
+    )
+    draft: FloatProperty(
+        name="Draft",
+        unit="LENGTH",
+        soft_min=-100.0,
+        soft_max=100.0,
+        description="How deep the object's origin lies below the surface",
+    )
+    tilt: FloatProperty(
+        name="Tilt",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+        description="How much it tilts with the surface: 0 stays upright",
+    )
+    drift: FloatProperty(
+        name="Drift",
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+        description="How much it goes along with the water's to and fro: 0 stays above its place",
+    )
+    shown = ("waterline", "draft", "tilt", "drift")
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There is an ocean, and something else is selected."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Switch to Object Mode")
+        elif not any(True for _ in oceans_in(context.scene)):
+            cls.poll_message_set("There is no ocean in this scene: add one first")
+        elif not context.selected_objects:
+            cls.poll_message_set("Select the objects that shall float")
+        elif not floatable(context):
+            cls.poll_message_set("Only oceans are selected: select the objects that shall float on them")
+        else:
+            return True
+        return False
+
+    @property
+    def ride(self) -> Ride:
+        """How they shall float."""
+        return Ride(self.waterline, self.draft, self.tilt, self.drift)
+
+    def chosen_ocean(self, context: bpy.types.Context) -> bpy.types.Object:
+        """The ocean of that name, the active one or the first. Raises FloatError."""
+        return floating.chosen_ocean(context.scene, context.active_object, self.ocean)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the settings."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop_search(self, "ocean", context.scene, "objects", icon="MOD_OCEAN")
+        for name in self.shown:
+            layout.prop(self, name)
+
+
+class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
+    """Let the selected objects ride the ocean's surface."""
+
+    bl_idname = "object.ocean_tweak_float"
+    bl_description = (
+        "Let the selected objects ride the ocean's surface. Each gets a small carrier where it stands: "
+        "move or animate that one from then on"
+    )
+    bl_label = "Float on Ocean"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Let each of them float; children of others go along as they are."""
+        done, refused = 0, []
+        try:
+            ocean = self.chosen_ocean(context)
+        except FloatError as error:
+            return _refuse(self, error)
+        for item in floating.outermost(floatable(context)):
+            try:
+                floating.float_on(item, ocean, context.scene, self.ride)
+                done += 1
+            except FloatError as error:
+                refused.append(str(error))
+        if refused:
+            self.report({"WARNING" if done else "ERROR"}, "; ".join(refused))
+        else:
+            self.report({"INFO"}, f"{_objects(done)} on {ocean.name}")
+        return {"FINISHED"} if done else {"CANCELLED"}
+
+
+class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
+    """Bake the floating of the selected objects to keyframes."""
+
+    bl_idname = "object.ocean_tweak_float_bake"
+    bl_description = (
+        "Bake the floating of the selected objects to keyframes of location and rotation, on the sea of the "
+        "render. Objects that float already keep their ocean and settings. Esc gives up"
+    )
+    bl_label = "Bake Float to Keyframes"
+    bl_options = {"REGISTER", "UNDO"}
+
+    frame_start: IntProperty(
+        name="First Frame", description="First frame that gets keys; the scene's as long as it is not set"
+    )
+    frame_end: IntProperty(
+        name="Last Frame", description="Last frame that gets keys; the scene's as long as it is not set"
+    )
+    shown = ("frame_start", "frame_end", *_Rides.shown)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Bake a few frames at a time, so that the window shows how far it is and Esc is heard."""
+        if bpy.app.background:
+            return self.execute(context)
+        if not self._begin(context):
+            return {"CANCELLED"}
+        manager = context.window_manager
+        manager.progress_begin(0, len(self._bake.frames))
+        context.workspace.status_text_set("Baking the float to keyframes. Esc: give up")
+        self._timer = manager.event_timer_add(0.01, window=context.window)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Bake all frames at once."""
+        if not self._begin(context):
+            return {"CANCELLED"}
+        return self._go_on(context, until=float("inf"))
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Go on for a moment, unless Esc is pressed."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self._bake.cancel()
+            self._clean_up(context)
+            self.report({"WARNING"}, "Given up: everything is as it was")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        result = self._go_on(context, until=time.monotonic() + _TURN)
+        if result != {"RUNNING_MODAL"}:
+            self._clean_up(context)
+        return result
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender itself ends the operator: the file is closed, and its objects with it."""
+        self._clean_up(context)
+
+    def _go_on(self, context: bpy.types.Context, until: float) -> set[str]:
+        bake = self._bake
+        try:
+            while bake.done < len(bake.frames):
+                bake.advance()
+                context.window_manager.progress_update(bake.done)
+                if time.monotonic() > until:
+                    return {"RUNNING_MODAL"}
+            baked = bake.finish()
+        except _EXPECTED_ERRORS as error:
+            bake.cancel()
+            return _refuse(self, error)
+        self.report({"INFO"}, f"{_objects(baked)} baked, frames {bake.frames[0]} to {bake.frames[-1]}")
+        return {"FINISHED"}
+
+    def _clean_up(self, context: bpy.types.Context) -> None:
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
+
+    def _begin(self, context: bpy.types.Context) -> bool:
+        for name in ("frame_start", "frame_end"):
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(context.scene, name))
+        frames = range(self.frame_start, self.frame_end + 1)
+        try:
+            ocean = self.chosen_ocean(context)
+            self._bake = FloatBake(context.scene, floatable(context), ocean, self.ride, frames)
+        except _EXPECTED_ERRORS as error:
+            _refuse(self, error)
+            return False
+        return True
+
+
+class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
+    """Let the selected objects float no more."""
+
+    bl_idname = "object.ocean_tweak_float_remove"
+    bl_description = (
+        "Let the selected objects float no more, live or baked: they are back where they were, and with the "
+        "animation that they had"
+    )
+    bl_label = "Remove Float"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Something selected floats."""
+        if not any(map(_floats, context.selected_objects)):
+            cls.poll_message_set("None of the selected objects floats on an ocean")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Put them back."""
+        items = [item for item in floatable(context) if _floats(item)]
+        empty = [
+            item
+            for item in context.selected_objects
+            if floating.is_carrier(item) and not any(floating.carried_by(item))
+        ]
+        for item in (*items, *empty):
+            floating.sink(item)
+        self.report({"INFO"}, f"{_objects(len(items))} back in place")
+        return {"FINISHED"}
+
+
+def draw_object_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Draw the entries in the Object menu."""
+    self.layout.separator()
+    for operator in (OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove):
+        self.layout.operator(operator.bl_idname)
+
+
+def _floats(item: bpy.types.Object) -> bool:
+    return floating.is_carrier(item) or floating.carrier_of(item) is not None or is_baked(item)
+
+
+def _objects(count: int) -> str:
+    return "1 object" if count == 1 else f"{count} objects"
+
+
+def _refuse(operator: bpy.types.Operator, error: BaseException) -> set[str]:
+    operator.report({"ERROR"}, str(error) or "Not enough memory for this sea")
+    return {"CANCELLED"}
+
+
+CLASSES = (OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove)
