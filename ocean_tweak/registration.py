@@ -11,9 +11,15 @@ from . import cli
 from .core.shot import Shot
 from .scene import handlers
 from .scene.settings import all_oceans, settings_of
-from .ui import operators, panels, properties
+from .ui import operators, panels, preset_operators, properties, sea_operators
 
-CLASSES = (*properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
+CLASSES = (
+    *properties.CLASSES,
+    *operators.CLASSES,
+    *preset_operators.CLASSES,
+    *sea_operators.CLASSES,
+    *panels.CLASSES,
+)
 
 _COMMAND = "ocean_tweak"
 # what Blender gave for the command line's command, needed to take it back

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender's own Ocean modifier says, as a sea of ours: what carries over, and what cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import bpy
+
+from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from .units import frame_rate, metres_per_unit
+
+#: Blender's spectra and ours
+_SPECTRA = {
+    "PHILLIPS": "PHILLIPS",
+    "PIERSON_MOSKOWITZ": "PIERSON_MOSKOWITZ",
+    "JONSWAP": "JONSWAP",
+    "TEXEL_MARSEN_ARSLOE": "TMA",
+}
+_WITH_FETCH = ("JONSWAP", "TEXEL_MARSEN_ARSLOE")
+
+
+class Conversion(NamedTuple):
+    """A sea, and how it lies.
+
+    parameters : the sea
+    repeats : patches along x and y
+    viewport_resolution : samples along each side in the viewport
+    lost : a sentence for each setting that has no counterpart
+    """
+
+    parameters: OceanParameters
+    repeats: tuple[int, int]
+    viewport_resolution: int
+    lost: tuple[str, ...]
+
+
+def ocean_modifier(item: bpy.types.Object | None) -> bpy.types.OceanModifier | None:
+    """An object's first Ocean modifier, None when it has none."""
+    if item is None:
+        return None
+    return next((modifier for modifier in item.modifiers if modifier.type == "OCEAN"), None)
+
+
+def convert(item: bpy.types.Object, modifier: bpy.types.OceanModifier, scene: bpy.types.Scene) -> Conversion:
+    """The sea that a modifier's settings mean. Raises ParameterError for settings that mean none."""
+    metres = float(metres_per_unit(scene))
+    layer = {
+        "spectrum": _SPECTRA[modifier.spectrum],
+        "wind_speed": modifier.wind_velocity,
+        "wind_direction": modifier.wave_direction,
+    }
+    if modifier.spectrum in _WITH_FETCH:
+        layer["fetch"] = 1000.0 * modifier.fetch_jonswap
+    parameters = OceanParameters(
+        resolution=_samples(modifier.resolution),
+        domain_size=modifier.spatial_size * modifier.size * metres,
+        seed=modifier.random_seed,
+        choppiness=modifier.choppiness,
+        water=Water(depth=modifier.depth * metres),
+        layers=(WaveLayer(**layer),),
+        foam=Foam(coverage=1.0 if modifier.use_foam else 0.0),
+        timing=Timing(fps=frame_rate(scene), start_frame=scene.frame_start),
+    )
+    return Conversion(
+        parameters,
+        (modifier.repeat_x, modifier.repeat_y),
+        _samples(modifier.viewport_resolution),
+        tuple(_lost(item, modifier)),
+    )
+
+
+def corner(modifier: bpy.types.OceanModifier) -> tuple[float, float]:
+    """Where the generated surface begins, in the object's own units.
+
+    Blender lays the centre of the first patch at the origin and the others beyond it.
+    """
+    half = 0.5 * modifier.spatial_size * modifier.size
+    return -half, -half
+
+
+def _samples(resolution: int) -> int:
+    """Blender's grid has the square of its resolution along each side; ours an even number."""
+    return min(max(16, (resolution**2 + 1) // 2 * 2), 8192)
+
+
+def _lost(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> Iterator[str]:
+    if modifier.wave_scale != 1.0:
+        yield f"Scale {modifier.wave_scale:.3g}: waves have the height of their wind; change it with Gain"
+    if modifier.wave_alignment > 0.0:
+        yield f"Alignment {modifier.wave_alignment:.3g}: use Swell, which draws waves out"
+    if modifier.geometry_mode == "DISPLACE":
+        yield "The mesh's own shape: the sea gets a grid of its own"
+    if modifier.use_foam and modifier.foam_coverage != 0.0:
+        yield f"Foam coverage {modifier.foam_coverage:.3g}: foam covers what the wind makes it cover"
+    if modifier.use_spray:
+        yield "Spray: there is no map of it"
+    if modifier.wave_scale_min > 0.02:
+        yield f"Smallest wave {modifier.wave_scale_min:.3g} m: use Short Wave Cutoff"
+    if modifier.sharpen_peak_jonswap and modifier.spectrum in _WITH_FETCH:
+        yield f"Sharpen peak {modifier.sharpen_peak_jonswap:.3g}: use Peak Enhancement"
+    if _has_animated_time(item, modifier):
+        yield "The keys of Time: the sea moves with the frames"
+
+
+def _has_animated_time(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> bool:
+    data = item.animation_data
+    if data is None:
+        return False
+    path = f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].time'
+    if any(driver.data_path == path for driver in data.drivers):
+        return True
+    return data.action is not None and any(curve.data_path == path for curve in _curves(data))
+
+
+def _curves(data: bpy.types.AnimData) -> Iterator[bpy.types.FCurve]:
+    """The curves of an object's action, in Blender 4.5 and 5.x, where actions have layers only."""
+    for layer in data.action.layers:
+        for strip in layer.strips:
+            bag = strip.channelbag(data.action_slot) if data.action_slot is not None else None
+            if bag is not None:
+                yield from bag.fcurves

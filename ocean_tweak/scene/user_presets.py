@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The user's own presets: one JSON file each in the user's folder."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from ..core.parameters import ParameterError
+from ..core.presets import LARGEST, Preset, built_in
+from ..export.files import whole_file
+from .user_folder import user_folder
+
+#: a user's preset is told from one that came along by the start of its key
+_OWN = "user:"
+
+
+def all_presets() -> dict[str, Preset]:
+    """Those that came along, then the user's by title; a file that is no preset is left out."""
+    return {**built_in(), **own_presets()}
+
+
+def own_presets() -> dict[str, Preset]:
+    """The user's, by key, in the order of their titles."""
+    found = {}
+    for path in user_folder("presets").glob("*.json"):
+        try:
+            found[f"{_OWN}{path.stem}"] = read_preset(path)
+        except (ParameterError, OSError):
+            continue
+    return dict(sorted(found.items(), key=lambda entry: entry[1].title.lower()))
+
+
+def is_own(key: str) -> bool:
+    """Whether this is the key of a preset that can be renamed and deleted."""
+    return key.startswith(_OWN)
+
+
+def read_preset(path: Path) -> Preset:
+    """A preset from a file. Raises ParameterError for what is none, OSError for what cannot be read."""
+    with path.open("rb") as file:
+        content = file.read(LARGEST + 1)
+    try:
+        return Preset.from_json(content.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise ParameterError("preset", path.name, f"is not UTF-8 text ({error.reason})") from None
+
+
+def save(preset: Preset, replace: bool = False) -> str:
+    """Keep a preset in the user's folder; returns its key.
+
+    Raises ParameterError where the title is taken and `replace` is off, OSError for what the disk refuses.
+    """
+    key = _key(preset.title)
+    path = path_of(key)
+    if path.exists() and not replace:
+        raise ParameterError("title", preset.title, "is the name of another preset already")
+    with whole_file(path) as beside:
+        beside.write_text(preset.to_json(), encoding="utf-8")
+    return key
+
+
+def rename(key: str, title: str) -> str:
+    """Give a user's preset another title; returns its new key. Raises ParameterError or OSError."""
+    old = own_presets()[key]
+    renamed = Preset(title, old.description, old.parameters)
+    new = save(renamed, replace=_key(title) == key)
+    if new != key:
+        path_of(key).unlink(missing_ok=True)
+    return new
+
+
+def delete(key: str) -> None:
+    """Delete a user's preset. Raises OSError."""
+    path_of(key).unlink(missing_ok=True)
+
+
+def path_of(key: str) -> Path:
+    """The file of a user's preset."""
+    return user_folder("presets") / f"{key.removeprefix(_OWN)}.json"
+
+
+def _key(title: str) -> str:
+    stem = re.sub(r"[^\w\-]+", "_", title.strip()).strip("_").lower()[:60]
+    if not stem:
+        raise ParameterError("title", title, "must hold a letter or a digit")
+    return f"{_OWN}{stem}"

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What operators on the active ocean share."""
+
+import bpy
+
+from ..scene.settings import is_ocean
+
+
+class OfActiveOcean:
+    """Operators that act on the active object."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An ocean is active, and it is this file's own."""
+        item = context.active_object
+        if not is_ocean(item):
+            cls.poll_message_set("Select an ocean first")
+            return False
+        if item.library is not None:
+            cls.poll_message_set("The ocean is linked from another file: make it local or override it")
+            return False
+        return True
+
+
+def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]:
+    """Report what is wrong, and end the operator without a change."""
+    operator.report({"ERROR"}, str(error) or type(error).__name__)
+    return {"CANCELLED"}

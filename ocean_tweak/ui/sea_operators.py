@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sea from what is known of it: its height and period, a Beaufort number, or Blender's own ocean."""
+
+import dataclasses
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
+from mathutils import Matrix
+
+from ..core import Ocean, OceanParameters, ParameterError, layer_for_sea_state
+from ..core.presets import built_in
+from ..scene import conversion, ocean_object
+from ..scene.settings import OceanObjectError, settings_of
+from .active_ocean import OfActiveOcean, refuse
+
+#: wavelengths of the peak that a domain should hold
+_WAVELENGTHS = 4.5
+
+
+def _beaufort_items() -> list[tuple[str, str, str]]:
+    presets = {key: preset for key, preset in built_in().items() if key.startswith("beaufort_")}
+    return [(key, preset.title, preset.description) for key, preset in presets.items()]
+
+
+class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
+    """Give the active ocean a wave height and a period, or a Beaufort number."""
+
+    bl_idname = "ocean.match_sea_state"
+    bl_description = "Find the wind and the fetch that make waves of a known height and period"
+    bl_label = "Match Sea State"
+    bl_options = {"REGISTER", "UNDO"}
+
+    by: EnumProperty(
+        name="By",
+        items=[
+            ("WAVES", "Waves", "Significant wave height and peak period, as a forecast or a buoy gives them"),
+            ("BEAUFORT", "Beaufort", "A number of the wind scale"),
+        ],
+    )
+    height: FloatProperty(
+        name="Wave Height", default=2.0, min=0.0, max=100.0, precision=2,
+        description="Significant wave height in metres: the mean of the highest third of the waves",
+    )  # fmt: skip
+    period: FloatProperty(
+        name="Period", default=8.0, min=0.1, max=60.0, precision=1,
+        description="Peak period in seconds: that of the waves with the most energy",
+    )  # fmt: skip
+    beaufort: EnumProperty(name="Wind", items=_beaufort_items(), default="beaufort_05")
+    fit_domain: BoolProperty(
+        name="Fit Domain", default=True,
+        description="Make the patch as large as these waves want it",
+    )  # fmt: skip
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Ask for the numbers."""
+        return context.window_manager.invoke_props_dialog(self)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw what belongs to the choice."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.row().prop(self, "by", expand=True)
+        for name in ("height", "period") if self.by == "WAVES" else ("beaufort",):
+            layout.prop(self, name)
+        layout.prop(self, "fit_domain")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Change the first layer; the others, if there are any, stay."""
+        settings = settings_of(context.active_object)
+        try:
+            before = settings.to_parameters(context.scene)
+            matched, explanation = self._matched(before)
+            settings.from_parameters(matched, context.scene)
+        except (ParameterError, OceanObjectError) as error:
+            return refuse(self, error)
+        self.report({"INFO"}, explanation)
+        return {"FINISHED"}
+
+    def _matched(self, before: OceanParameters) -> tuple[OceanParameters, str]:
+        first, *rest = before.layers
+        if self.by == "WAVES":
+            match = layer_for_sea_state(round(self.height, 4), round(self.period, 4), before.water, first)
+            layer, explanation = match.layer, match.explanation
+        else:
+            preset = built_in()[self.beaufort]
+            wanted = preset.parameters.layers[0]
+            layer = dataclasses.replace(
+                first, definition="WIND", wind_speed=wanted.wind_speed, fetch=wanted.fetch
+            )
+            explanation = f"{preset.title}: {wanted.wind_speed:g} m/s over {wanted.fetch / 1e3:g} km"
+        matched = before.replace(layers=(layer, *rest))
+        if self.fit_domain:
+            length = Ocean(matched.replace(resolution=16)).statistics().peak_wavelength
+            if length > 0.0:
+                matched = matched.replace(domain_size=_round(length * _WAVELENGTHS))
+        return matched, explanation
+
+
+def _round(size: float) -> float:
+    """Two digits: a number that somebody might have typed."""
+    return float(f"{size:.2g}")
+
+
+class OCEAN_OT_convert(bpy.types.Operator):
+    """Make one of our oceans out of Blender's Ocean modifier."""
+
+    bl_idname = "ocean.convert"
+    bl_description = "Add an ocean with the settings of the active object's Ocean modifier in its place"
+    bl_label = "Convert Ocean Modifier"
+    bl_options = {"REGISTER", "UNDO"}
+
+    keep_original: BoolProperty(
+        name="Keep Original", default=True, description="Keep the object, hidden, instead of deleting it"
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An object with an Ocean modifier is active."""
+        item = context.active_object
+        if conversion.ocean_modifier(item) is None:
+            cls.poll_message_set("Select an object with Blender's Ocean modifier")
+            return False
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Switch to Object Mode to convert an ocean")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add the ocean, then hide or delete the original, and say what did not carry over."""
+        original, scene = context.active_object, context.scene
+        modifier = conversion.ocean_modifier(original)
+        try:
+            result = conversion.convert(original, modifier, scene)
+            item = ocean_object.add(
+                scene, result.parameters, name=original.name,
+                collection=original.users_collection[0], viewport_resolution=result.viewport_resolution,
+            )  # fmt: skip
+        except ocean_object.EXPECTED_ERRORS as error:
+            return refuse(self, error)
+        settings_of(item).repeats_x, settings_of(item).repeats_y = result.repeats
+        item.matrix_world = original.matrix_world @ Matrix.Translation((*conversion.corner(modifier), 0.0))
+        for material in original.data.materials:
+            item.data.materials.append(material)
+        context.view_layer.objects.active = item
+        item.select_set(True)
+        if self.keep_original:
+            original.select_set(False)
+            original.hide_render = True
+            original.hide_set(True)
+        else:
+            bpy.data.objects.remove(original)
+        if result.lost:
+            self.report({"WARNING"}, "Not carried over: " + "; ".join(result.lost))
+        else:
+            self.report({"INFO"}, "Everything carried over; waves now have the height of their wind")
+        return {"FINISHED"}
+
+
+CLASSES = (OCEAN_OT_match_sea_state, OCEAN_OT_convert)

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seas from a height and a period, from a Beaufort number, and from Blender's own Ocean modifier."""
+
+import bpy
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def ocean(ocean_object, make_parameters, empty_scene):
+    item = ocean_object.add(empty_scene, make_parameters())
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+def sea(item):
+    return item.ocean_tweak.to_parameters(bpy.context.scene)
+
+
+@pytest.mark.parametrize(("height", "period"), [(2.0, 7.0), (2.5, 14.0), (0.4, 2.5)])
+def test_waves_of_a_height_and_a_period(ocean, core, height, period):
+    assert bpy.ops.ocean.match_sea_state(by="WAVES", height=height, period=period) == {"FINISHED"}
+    state = core.Ocean(sea(ocean)).statistics()
+    assert state.spectrum.significant_wave_height == pytest.approx(height, rel=0.01)
+    assert state.spectrum.peak_period == pytest.approx(period, rel=0.01)
+    assert 4.0 < state.wavelengths_per_domain < 5.0
+
+
+def test_a_beaufort_number(ocean, core):
+    """The WMO's probable wave height of Beaufort 7 is 4 m."""
+    assert bpy.ops.ocean.match_sea_state(by="BEAUFORT", beaufort="beaufort_07", fit_domain=False) == {
+        "FINISHED"
+    }
+    state = core.Ocean(sea(ocean)).statistics()
+    assert state.spectrum.significant_wave_height == pytest.approx(4.0, rel=0.03)
+    assert sea(ocean).domain_size == 150.0
+
+
+def test_match_wants_an_ocean(empty_scene):
+    assert not bpy.ops.ocean.match_sea_state.poll()
+    assert not bpy.ops.ocean.convert.poll()
+
+
+@pytest.fixture
+def blenders_ocean(empty_scene):
+    item = bpy.data.objects.new("Old Sea", bpy.data.meshes.new("Old Sea"))
+    empty_scene.collection.objects.link(item)
+    modifier = item.modifiers.new("Ocean", "OCEAN")
+    modifier.resolution, modifier.viewport_resolution = 8, 6
+    modifier.spatial_size, modifier.size = 60, 1.5
+    modifier.repeat_x = 2
+    modifier.wind_velocity, modifier.depth, modifier.random_seed = 12.5, 30.0, 3
+    modifier.choppiness, modifier.wave_direction = 0.8, 0.5
+    modifier.spectrum, modifier.fetch_jonswap = "JONSWAP", 80.0
+    item.data.materials.append(bpy.data.materials.new("Water"))
+    item.location = (10.0, 20.0, 1.0)
+    item.rotation_euler = (0.0, 0.0, 0.3)
+    bpy.context.view_layer.objects.active = item
+    bpy.context.view_layer.update()
+    return item
+
+
+def corners(item):
+    """(2, 3) lower and upper corner of the evaluated mesh in the world, Blender units."""
+    evaluated = item.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    flat = np.empty(3 * len(evaluated.data.vertices), np.float32)
+    evaluated.data.vertices.foreach_get("co", flat)
+    places = flat.reshape(-1, 3) @ np.array(item.matrix_world.to_3x3()).T + np.array(
+        item.matrix_world.translation
+    )
+    return np.array([places.min(axis=0), places.max(axis=0)])
+
+
+def test_what_carries_over(blenders_ocean):
+    before = corners(blenders_ocean)
+    assert bpy.ops.ocean.convert() == {"FINISHED"}
+    item = bpy.context.active_object
+    converted = sea(item)
+    assert item.ocean_tweak.is_ocean
+    assert (converted.resolution, converted.domain_size, converted.seed) == (64, 90.0, 3)
+    assert converted.choppiness == pytest.approx(0.8)
+    assert converted.water.depth == 30.0
+    layer = converted.layers[0]
+    assert (layer.spectrum, layer.wind_speed, layer.fetch) == ("JONSWAP", 12.5, 80e3)
+    assert layer.wind_direction == pytest.approx(0.5)
+    assert (item.ocean_tweak.repeats_x, item.ocean_tweak.repeats_y) == (2, 1)
+    assert item.ocean_tweak.viewport_resolution == 36
+    assert [material.name for material in item.data.materials] == ["Water"]
+    # it covers the same place, but for the waves that now have their own height and push sideways
+    np.testing.assert_allclose(corners(item)[:, :2], before[:, :2], atol=4.0)
+    assert blenders_ocean.hide_render
+
+
+def test_the_original_goes_where_it_is_not_wanted(blenders_ocean):
+    name = blenders_ocean.name
+    assert bpy.ops.ocean.convert(keep_original=False) == {"FINISHED"}
+    assert bpy.context.active_object.name.startswith(name)
+    assert len(bpy.data.objects) == 1
+
+
+def test_the_list_of_what_is_lost(blenders_ocean, extension, empty_scene):
+    conversion = extension("scene.conversion")
+    modifier = blenders_ocean.modifiers["Ocean"]
+    assert conversion.convert(blenders_ocean, modifier, empty_scene).lost == ()
+    modifier.wave_scale, modifier.wave_alignment, modifier.use_spray = 2.0, 0.4, True
+    modifier.keyframe_insert("time", frame=1)
+    lost = " ".join(conversion.convert(blenders_ocean, modifier, empty_scene).lost)
+    for word in ("Gain", "Swell", "Spray", "keys of Time"):
+        assert word in lost
+
+
+def test_undo_takes_the_conversion_back(blenders_ocean, window):
+    with window.override():
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.ocean.convert()
+        assert len(bpy.data.objects) == 2
+        bpy.ops.ed.undo_push(message="converted")
+        bpy.ops.ed.undo()
+    assert [item.name for item in bpy.data.objects] == ["Old Sea"]
+    assert not bpy.data.objects[0].hide_render
+
+
+def test_settings_that_are_no_sea_are_refused(blenders_ocean):
+    blenders_ocean.modifiers["Ocean"].wind_velocity = 0.0
+    with pytest.raises(RuntimeError, match="wind_speed"):
+        bpy.ops.ocean.convert()
+    assert len(bpy.data.objects) == 1
