@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The water material, and what each ocean tells it by custom properties.
+
+One material serves many oceans, and renders where the extension is not installed: what differs between them
+are plain numbers on the objects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import bpy
+
+from ..core import OceanParameters
+from ..core.foam_threshold import foam_wind
+from ..core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ..nodes.names import TEXTURE_COORDINATES
+from ..nodes.shading import Shading
+from ..nodes.versioned import is_stale, node_group
+from ..nodes.water import WATER
+from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND
+from .units import metres_per_unit
+
+_KEY = "ocean_tweak_material"
+NAME = "Ocean Tweak Water"
+
+#: inputs of the group for waters of some kinds; absorption and backscatter per metre in red, green and blue
+WATERS: dict[str, tuple[str, str, dict[str, object]]] = {
+    "OCEANIC": ("Open Ocean", "Clear and deep blue", {}),
+    "COASTAL": (
+        "Coastal", "Green from plankton",
+        {"Absorption": (0.40, 0.105, 0.190, 1.0), "Backscatter": (0.0060, 0.0080, 0.0075, 1.0)},
+    ),
+    "STORM": (
+        "Stormy", "Green-grey, full of bubbles, with streaks of foam",
+        {
+            "Absorption": (0.37, 0.085, 0.090, 1.0), "Backscatter": (0.0035, 0.0052, 0.0058, 1.0),
+            "Foam Streaks": 0.55, "Crest Light": 0.3,
+        },
+    ),
+}  # fmt: skip
+
+
+def describe(
+    item: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene | None = None
+) -> None:
+    """Tell the material about an ocean, by custom properties; those that hold their value stay untouched.
+
+    parameters : of the render
+    scene : whose units hold, by default the first one that the object is in
+    """
+    wind = foam_wind(parameters)
+    _set_properties(
+        item,
+        {
+            DOMAIN: parameters.domain_size,
+            SPACING: parameters.domain_size / parameters.resolution,
+            SLOPES: unresolved_slope_variance(parameters),
+            WIND: wind.direction if wind is not None else 0.0,
+            DEPTH: parameters.water.depth,
+            METRES: _metres(item, scene),
+        },
+    )
+
+
+def describe_far(
+    item: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene | None = None
+) -> None:
+    """Tell the material about flat water that stands for an ocean far away: all waves are roughness."""
+    describe(item, parameters, scene)
+    _set_properties(item, {SLOPES: total_slope_variance(parameters)})
+
+
+def _metres(item: bpy.types.Object, scene: bpy.types.Scene | None) -> float:
+    scenes = (scene,) if scene is not None else item.users_scene
+    return float(metres_per_unit(scenes[0])) if scenes else 1.0
+
+
+def _set_properties(item: bpy.types.Object, values: Mapping[str, float]) -> None:
+    for name, value in values.items():
+        if item.get(name) != value:
+            item[name] = value
+
+
+def water_material(water: str = "OCEANIC") -> bpy.types.Material:
+    """The file's water material of one of the kinds in WATERS; made when there is none.
+
+    One that a user has changed is left as it is, but for a group of another version.
+    """
+    for material in bpy.data.materials:
+        if material.library is None and material.get(_KEY) == water:
+            renew(material)
+            return material
+    label = WATERS[water][0]
+    material = bpy.data.materials.new(NAME if water == "OCEANIC" else f"{NAME} {label}")
+    _fill(material, WATERS[water][2])
+    material[_KEY] = water
+    return material
+
+
+def is_water(material: bpy.types.Material | None) -> bool:
+    """Whether a material was made here."""
+    return material is not None and _KEY in material
+
+
+def renew(material: bpy.types.Material) -> None:
+    """Give a material this version of the group; its inputs keep their values by name."""
+    for node in material.node_tree.nodes:
+        if node.type == "GROUP" and is_stale(node.node_tree, WATER):
+            node.node_tree = node_group(WATER)
+
+
+def assign(item: bpy.types.Object, material: bpy.types.Material) -> None:
+    """Put a material on the first slot of an object, on its mesh where that is its own."""
+    if item.material_slots:
+        item.material_slots[0].material = material
+    else:
+        item.data.materials.append(material)
+
+
+def use_normal_image(
+    material: bpy.types.Material, image: bpy.types.Image, frames: tuple[int, int] | None = None
+) -> None:
+    """Let an image of normals, as the normal files hold them, shade waves finer than the mesh.
+
+    frames : first and last file of a sequence
+    """
+    shade = Shading.on(material.node_tree)
+    group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+    vector = shade.attribute(TEXTURE_COORDINATES).outputs["Vector"]
+    texture = shade.node("ShaderNodeTexImage", {"Vector": vector}, image=image, extension="REPEAT")
+    if frames is not None:
+        first, last = frames
+        user = texture.image_user
+        user.frame_start, user.frame_offset, user.frame_duration = first, first - 1, last - first + 1
+        user.use_auto_refresh = True
+    material.node_tree.links.new(texture.outputs[0], group.inputs["Normal Map"])
+
+
+def _fill(material: bpy.types.Material, values: Mapping[str, object]) -> None:
+    if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
+        material.use_nodes = True
+    shade = Shading(material.node_tree)
+    seconds = shade.node("ShaderNodeValue", label="Seconds")
+    _drive_time(seconds)
+    group = shade.node("ShaderNodeGroup", {"Time": seconds.outputs[0], **values}, node_tree=node_group(WATER))
+    shown = shade.node("ShaderNodeOutputMaterial")
+    shade.tree.links.new(group.outputs["Surface"], shown.inputs["Surface"])
+    material.diffuse_color = (0.02, 0.08, 0.12, 1.0)
+
+
+def _drive_time(node: bpy.types.Node) -> None:
+    """Let a value be the scene's seconds.
+
+    An expression as simple as this one is evaluated without Python, so in a file nobody has trusted yet.
+    """
+    driver = node.outputs[0].driver_add("default_value").driver
+    for name, path in (("rate", "render.fps"), ("base", "render.fps_base")):
+        variable = driver.variables.new()
+        variable.name, variable.type = name, "CONTEXT_PROP"
+        variable.targets[0].context_property = "ACTIVE_SCENE"
+        variable.targets[0].data_path = path
+    driver.expression = "frame * base / rate"
