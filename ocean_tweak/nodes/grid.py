@@ -9,45 +9,52 @@ from __future__ import annotations
 import bpy
 
 from .building import Builder, Socket, output
+from .names import TEXTURE_COORDINATES
 from .versioned import GroupKind
 
-UV_MAP = "st"
+#: the inputs besides the geometry: name, socket type, default, description
+INPUTS = (
+    ("Size", "NodeSocketFloat", 400.0, "Side of one patch in Blender units"),
+    ("Quads", "NodeSocketInt", 512, "Along each side of one patch"),
+    ("Samples", "NodeSocketInt", 512, "Along each side of the image that will move the grid"),
+    ("Repeats X", "NodeSocketInt", 1, "Patches side by side along x"),
+    ("Repeats Y", "NodeSocketInt", 1, "Patches side by side along y"),
+)
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
-    build = Builder(
-        tree,
-        (
-            ("Size", "NodeSocketFloat", 400.0, "Side of the patch in Blender units"),
-            ("Quads", "NodeSocketInt", 512, "Along each side"),
-            ("Samples", "NodeSocketInt", 512, "Along each side of the image that will move the grid"),
-        ),
-    )
-    side = build.math("ADD", output(build.input, "Quads"), 1, "FunctionNodeIntegerMath")
-    grid = build.add("GeometryNodeMeshGrid", {"Vertices X": side, "Vertices Y": side})
-    place = _place(build, side)
+    build = Builder(tree, INPUTS)
+    quads = build.integer("MAXIMUM", build.given("Quads"), 1)
+    columns, rows = (_vertices_along(build, quads, build.given(name)) for name in ("Repeats X", "Repeats Y"))
     # the primitive counts along y first; read along x first, its faces look down
+    grid = build.add("GeometryNodeMeshGrid", {"Vertices X": rows, "Vertices Y": columns})
     turned = build.change("GeometryNodeFlipFaces", output(grid, "Mesh"))
-    placed = build.change("GeometryNodeSetPosition", turned, {"Position": place})
+    place = _place(build, columns, quads)
+    position = build.scaled(place, build.given("Size"))
+    placed = build.change("GeometryNodeSetPosition", turned, {"Position": position})
     smooth = build.change("GeometryNodeSetShadeSmooth", placed)
-    half = build.math("DIVIDE", 0.5, output(build.input, "Samples"))
-    position = output(build.add("GeometryNodeInputPosition"), "Position")
-    fraction = build.math("DIVIDE", position, output(build.input, "Size"), "ShaderNodeVectorMath")
-    coordinates = build.math("ADD", fraction, half, "ShaderNodeVectorMath")
-    mapped = build.change(
-        "GeometryNodeStoreNamedAttribute", smooth, {"Name": UV_MAP, "Value": coordinates},
-        data_type="FLOAT2", domain="CORNER",
+    half = build.math("DIVIDE", 0.5, build.given("Samples"))
+    # numbers of vertices, not of corners, on which the result is stored
+    of_vertex = build.add(
+        "GeometryNodeFieldOnDomain", {"Value": build.vector("ADD", place, half)},
+        data_type="FLOAT_VECTOR", domain="POINT",
     )  # fmt: skip
-    build.finish(_with_materials(build, mapped))
+    coordinates = output(of_vertex, "Value")
+    build.finish(
+        _with_materials(build, build.store(smooth, TEXTURE_COORDINATES, coordinates, "FLOAT2", "CORNER"))
+    )
 
 
-def _place(build: Builder, side: Socket) -> Socket:
-    """Where a vertex lies by its number."""
+def _vertices_along(build: Builder, quads: Socket, repeats: Socket) -> Socket:
+    patches = build.integer("MAXIMUM", repeats, 1)
+    return build.integer("ADD", build.integer("MULTIPLY", quads, patches), 1)
+
+
+def _place(build: Builder, columns: Socket, quads: Socket) -> Socket:
+    """Where a vertex lies by its number, in patches."""
     index = output(build.add("GeometryNodeInputIndex"), "Index")
-    step = build.math("DIVIDE", output(build.input, "Size"), output(build.input, "Quads"))
-    column = build.math("MODULO", index, side, "FunctionNodeIntegerMath")
-    row = build.math("DIVIDE_FLOOR", index, side, "FunctionNodeIntegerMath")
-    x, y = build.math("MULTIPLY", column, step), build.math("MULTIPLY", row, step)
+    column, row = (build.integer(operation, index, columns) for operation in ("MODULO", "DIVIDE_FLOOR"))
+    x, y = (build.math("DIVIDE", number, quads) for number in (column, row))
     return output(build.add("ShaderNodeCombineXYZ", {"X": x, "Y": y}), "Vector")
 
 
@@ -62,12 +69,9 @@ def _with_materials(build: Builder, grid: Socket) -> Socket:
         build.tree.links.new(part, joined.inputs[0])
     count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}), "Point Count")
     index = output(build.add("GeometryNodeInputIndex"), "Index")
-    before = build.add(
-        "FunctionNodeCompare", {"A": index, "B": count}, data_type="INT", operation="LESS_THAN"
-    )
-    selection = {"Selection": output(before, "Result")}
+    selection = {"Selection": build.compare("LESS_THAN", index, count)}
     alone = build.change("GeometryNodeDeleteGeometry", joined.outputs[0], selection)
     return build.change("GeometryNodeSetMaterialIndex", alone, {"Material Index": 0})
 
 
-GRID = GroupKind("Ocean Tweak Grid", 1, _build)
+GRID = GroupKind("Ocean Tweak Grid", 2, _build)

@@ -3,30 +3,64 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import bpy
 
+_NOT_VALUES = {"NodeSocketGeometry"}
+
+
+def input_sockets(group: bpy.types.NodeTree) -> dict[str, bpy.types.NodeTreeInterfaceSocket]:
+    """The inputs of a group by their names, the geometry not among them."""
+    return {
+        item.name: item
+        for item in group.interface.items_tree
+        if getattr(item, "in_out", "") == "INPUT" and item.socket_type not in _NOT_VALUES
+    }
+
 
 def _identifiers(modifier: bpy.types.NodesModifier) -> dict[str, str]:
-    items = modifier.node_group.interface.items_tree
-    return {item.name: item.identifier for item in items if getattr(item, "in_out", "") == "INPUT"}
+    return {name: socket.identifier for name, socket in input_sockets(modifier.node_group).items()}
+
+
+def set_inputs(modifier: bpy.types.NodesModifier, values: Mapping[str, Any]) -> None:
+    """Set the inputs that differ; KeyError when the group has none of a name."""
+    identifiers = _identifiers(modifier)
+    for name, value in values.items():
+        identifier = identifiers[name]
+        if _get(modifier, identifier) == value:
+            continue
+        if hasattr(modifier, "properties"):  # 5.x
+            getattr(modifier.properties.inputs, identifier).value = value
+        else:
+            modifier[identifier] = value
 
 
 def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
     """Set an input where it differs; KeyError when the group has none of that name."""
-    identifier = _identifiers(modifier)[name]
-    if get_input(modifier, name) == value:
-        return
-    if hasattr(modifier, "properties"):  # 5.x
-        getattr(modifier.properties.inputs, identifier).value = value
-    else:
-        modifier[identifier] = value
+    set_inputs(modifier, {name: value})
 
 
 def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
     """The value of an input; KeyError when the group has none of that name."""
+    return _get(modifier, _identifiers(modifier)[name])
+
+
+def all_inputs(modifier: bpy.types.NodesModifier) -> dict[str, Any]:
+    """The values of all inputs by their names, the geometry not among them."""
+    return {name: _get(modifier, identifier) for name, identifier in _identifiers(modifier).items()}
+
+
+def input_property(modifier: bpy.types.NodesModifier, name: str) -> tuple[Any, str]:
+    """What holds an input, and the name of its property there: for a panel to draw."""
     identifier = _identifiers(modifier)[name]
+    if hasattr(modifier, "properties"):  # 5.x
+        return getattr(modifier.properties.inputs, identifier), "value"
+    return modifier, f'["{identifier}"]'
+
+
+def _get(modifier: bpy.types.NodesModifier, identifier: str) -> Any:
     if hasattr(modifier, "properties"):  # 5.x
         return getattr(modifier.properties.inputs, identifier).value
     return modifier.get(identifier)

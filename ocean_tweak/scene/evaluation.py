@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections import OrderedDict
 from fractions import Fraction
 
@@ -11,13 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
+from ..core.fields import FOAM, OUTPUTS
+from .instant_foam import instant_foam
 from .settings import all_oceans
+
+RealArray = NDArray[np.float32]
 
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
 _MOST_SURFACE_BYTES = 256 * 2**20
 # of one ocean: for the viewport, for the render, and the coarse one while a parameter is dragged
 _SEAS_OF_AN_OCEAN = 3
+# s after the foam that was made last, within which the next one is quickly made
+_FOAM_IS_NEAR = Fraction(1)
+# the name under which foam without its history is kept
+_INSTANT = "instant foam"
 
 
 class Sea:
@@ -25,33 +34,110 @@ class Sea:
 
     def __init__(self, parameters: OceanParameters) -> None:
         self.ocean = Ocean(parameters)
-        self._surfaces: OrderedDict[Fraction, NDArray[np.float32]] = OrderedDict()
+        self._surfaces: OrderedDict[Fraction, dict[str, RealArray]] = OrderedDict()
+        # arrays of a surface that was dropped, for the next one
+        self._spare: dict[str, RealArray] = {}
+        # foam remembers, and looks back anew whenever time goes back. Motion blur goes back and forth, but
+        # its whole frames ascend and so do the moments between them: each has a history of its own
+        self._foam = {whole: FoamMaker(parameters) for whole in (True, False)}
 
-    def surface(self, frame: Fraction) -> NDArray[np.float32]:
-        """Displacement at a frame: (N+1, N+1, 3), m; the last row and column are the first ones again.
+    def fields(
+        self, frame: Fraction, outputs: frozenset[str], patient: bool = True
+    ) -> tuple[dict[str, RealArray], bool]:
+        """Fields at a frame by output, and whether they are all that they will be.
 
-        A surface that was made before is not made again. The array is overwritten by one that is asked for
-        later, so it must be used up at once.
+        Each is (N+1, N+1, …) float32, in m and m/s; the last row and column are the first ones again. What
+        was made before is not made again. The arrays are overwritten by a surface that is asked for later,
+        so they must be used up at once.
+
+        outputs : known to the core; foam needs cusp
+        patient : otherwise foam is shown without its history where that would take long
         """
         time = self.ocean.parameters.timing.time(frame)
-        if time in self._surfaces:
-            self._surfaces.move_to_end(time)
-            return self._surfaces[time]
-        closed = self._array()
-        self.ocean.surface(time, out={"displacement": closed[:-1, :-1]})
-        closed[-1, :-1] = closed[0, :-1]
-        closed[:, -1] = closed[:, 0]
-        self._surfaces[time] = closed
-        return closed
+        kept = self._kept(time)
+        self._make(time, kept, outputs - kept.keys() - {FOAM})
+        result = {name: kept[name] for name in outputs - {FOAM}}
+        if FOAM not in outputs:
+            return result, True
+        maker = self.foam_of(frame)
+        if FOAM not in kept and (patient or maker.is_near(time)):
+            kept[FOAM] = self._closed(FOAM, maker.at(time))
+        if FOAM not in kept and _INSTANT not in kept:
+            foam = instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
+            kept[_INSTANT] = self._closed(_INSTANT, foam)
+        return {**result, FOAM: kept.get(FOAM, kept.get(_INSTANT))}, FOAM in kept
 
-    def _array(self) -> NDArray[np.float32]:
-        """An array for one more surface: the oldest one's where there are enough."""
-        samples = self.ocean.parameters.resolution
-        shape = (samples + 1, samples + 1, 3)
-        most = min(max(_MOST_SURFACE_BYTES // (4 * int(np.prod(shape))), 1), _MOST_SURFACES)
-        if len(self._surfaces) >= most:
-            return self._surfaces.popitem(last=False)[1]
-        return np.empty(shape, np.float32)
+    def foam_of(self, frame: Fraction) -> FoamMaker:
+        """What makes the foam of a frame."""
+        return self._foam[frame.denominator == 1]
+
+    def _make(self, time: Fraction, kept: dict[str, RealArray], outputs: frozenset[str]) -> None:
+        if not outputs:
+            return
+        made = {name: self._array(name) for name in outputs}
+        self.ocean.surface(time, outputs, out={name: field[:-1, :-1] for name, field in made.items()})
+        for field in made.values():
+            _close(field)
+        kept.update(made)
+
+    def _closed(self, name: str, field: RealArray) -> RealArray:
+        """An (N, N) field with its far edges."""
+        result = self._array(name)
+        result[:-1, :-1] = field
+        _close(result)
+        return result
+
+    def _array(self, name: str) -> RealArray:
+        if name in self._spare:
+            return self._spare.pop(name)
+        side = self.ocean.parameters.resolution + 1
+        channels = OUTPUTS[name].channels if name in OUTPUTS else 0
+        return np.empty((side, side, channels) if channels else (side, side), np.float32)
+
+    def _kept(self, time: Fraction) -> dict[str, RealArray]:
+        """What there is of a time; the oldest ones go where there are enough."""
+        if time not in self._surfaces:
+            sizes = [sum(field.nbytes for field in kept.values()) for kept in self._surfaces.values()]
+            most = min(_MOST_SURFACE_BYTES // max(sizes, default=1), _MOST_SURFACES) if sizes else 1
+            while len(self._surfaces) >= max(most, 1):
+                self._spare = self._surfaces.popitem(last=False)[1]
+            self._surfaces[time] = {}
+        self._surfaces.move_to_end(time)
+        return self._surfaces[time]
+
+
+class FoamMaker:
+    """The foam of a sea. It is quickly made where time goes on from the moment before."""
+
+    def __init__(self, parameters: OceanParameters) -> None:
+        self._ocean = Ocean(parameters)
+        self._last: Fraction | None = None
+        # the window's thread and the one that makes foam ahead of it
+        self._busy = threading.Lock()
+
+    def at(self, time: Fraction) -> RealArray:
+        """(N, N) 0…1. It may be called on any thread, and waits for another one."""
+        with self._busy:
+            foam = self._ocean.surface(time, {FOAM}).foam
+            self._last = self._reduced(time)
+        return foam
+
+    def is_near(self, time: Fraction) -> bool:
+        """Whether the foam of a time is quickly made, right now."""
+        if self._last is None or self._busy.locked():
+            return False
+        forgets = self._ocean.parameters.foam.half_life == 0.0
+        return forgets or 0 <= self._reduced(time) - self._last <= _FOAM_IS_NEAR
+
+    def _reduced(self, time: Fraction) -> Fraction:
+        loop = self._ocean.parameters.loop_duration
+        return time if loop is None else time % loop
+
+
+def _close(field: RealArray) -> None:
+    """Make the last row and column the first ones again."""
+    field[-1, :-1] = field[0, :-1]
+    field[:, -1] = field[:, 0]
 
 
 # Caches: what was used last, so that playback neither makes an initial state again nor, where the same frame

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The flat grid that the waves move: quads over one patch, anchored at the object's origin."""
+"""The flat grid that the waves move: quads over patches side by side, anchored at the object's origin."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..nodes.displace import ATTRIBUTE
-from ..nodes.grid import UV_MAP
+from ..nodes.names import TEXTURE_COORDINATES
 
 _KEY = "ocean_tweak_grid"
 
@@ -19,61 +18,73 @@ _KEY = "ocean_tweak_grid"
 class Grid:
     """What determines the mesh.
 
-    size : side in Blender units
-    quads : along each side
+    size : side of one patch in Blender units
+    quads : along each side of one patch
     samples : along each side of the image that will move it
+    repeats : patches side by side along x and y
     """
 
     size: float
     quads: int
     samples: int
+    repeats: tuple[int, int] = (1, 1)
 
     @property
     def tag(self) -> str:
         """What stands in the mesh's custom property."""
-        return f"{self.size!r} {self.quads} {self.samples}"
+        return f"{self.size!r} {self.quads} {self.samples} {self.repeats[0]} {self.repeats[1]}"
+
+    @property
+    def columns(self) -> int:
+        """Quads along x."""
+        return self.quads * self.repeats[0]
+
+    @property
+    def rows(self) -> int:
+        """Quads along y."""
+        return self.quads * self.repeats[1]
 
     @property
     def vertices(self) -> int:
         """How many there are."""
-        return (self.quads + 1) ** 2
+        return (self.columns + 1) * (self.rows + 1)
 
     def positions(self) -> NDArray[np.float32]:
-        """((quads+1)², 3) float32, Blender units: x fastest, from 0 to `size`."""
-        side = np.arange(self.quads + 1) * (self.size / self.quads)
-        result = np.zeros((self.quads + 1, self.quads + 1, 3), np.float32)
-        result[..., 0] = side[np.newaxis, :]
-        result[..., 1] = side[:, np.newaxis]
+        """(vertices, 3) float32, Blender units: x fastest, from 0 to repeats × `size`."""
+        result = np.zeros((self.rows + 1, self.columns + 1, 3), np.float32)
+        step = self.size / self.quads
+        result[..., 0] = np.arange(self.columns + 1) * step
+        result[..., 1] = (np.arange(self.rows + 1) * step)[:, np.newaxis]
         return result.reshape(-1, 3)
 
     def corners(self) -> NDArray[np.int32]:
-        """(quads², 4) int32: vertices of each quad, counter-clockwise from above."""
-        row = self.quads + 1
-        first = _numbers(self.quads, row)[:, :-1].reshape(-1, 1)
+        """(quads, 4) int32: vertices of each quad, counter-clockwise from above."""
+        row = self.columns + 1
+        first = _numbers(self.rows, row)[:, :-1].reshape(-1, 1)
         return first + np.array([0, 1, row + 1, row], np.int32)
 
     def edges(self) -> NDArray[np.int32]:
-        """(2·quads·(quads+1), 2) int32: vertices of each edge, first those along x, then those along y."""
-        vertex = _numbers(self.quads + 1, self.quads + 1)
+        """(edges, 2) int32: vertices of each edge, first those along x, then those along y."""
+        vertex = _numbers(self.rows + 1, self.columns + 1)
         along_x = np.stack([vertex[:, :-1], vertex[:, 1:]], axis=-1)
         along_y = np.stack([vertex[:-1], vertex[1:]], axis=-1)
         return np.concatenate([along_x.reshape(-1, 2), along_y.reshape(-1, 2)])
 
     def corner_edges(self) -> NDArray[np.int32]:
-        """(quads², 4) int32: the edge from each corner of a quad to its next one."""
-        along_x = _numbers(self.quads + 1, self.quads)
-        along_y = along_x.size + _numbers(self.quads, self.quads + 1)
+        """(quads, 4) int32: the edge from each corner of a quad to its next one."""
+        along_x = _numbers(self.rows + 1, self.columns)
+        along_y = along_x.size + _numbers(self.rows, self.columns + 1)
         sides = [along_x[:-1], along_y[:, 1:], along_x[1:], along_y[:, :-1]]
         return np.stack(sides, axis=-1).reshape(-1, 4)
 
     def texture_coordinates(self) -> NDArray[np.float32]:
-        """((quads+1)², 2) float32: x/size + ½/samples, the centres of the texels that hold the samples.
+        """(vertices, 2) float32: x/size + ½/samples, the centres of the texels that hold the samples.
 
-        The last column reads 1 + ½/samples, which a repeating image gives the sample of the first one.
+        They go on over the repeats: the last column of the first patch reads 1 + ½/samples, which a repeating
+        image gives the sample of the first one.
         """
-        side = np.arange(self.quads + 1) / self.quads + 0.5 / self.samples
-        u, v = np.meshgrid(side, side)
-        return np.stack([u, v], axis=-1).astype(np.float32).reshape(-1, 2)
+        x, y = (np.arange(count + 1) / self.quads + 0.5 / self.samples for count in (self.columns, self.rows))
+        return np.stack(np.meshgrid(x, y), axis=-1).astype(np.float32).reshape(-1, 2)
 
 
 def _numbers(rows: int, columns: int) -> NDArray[np.int32]:
@@ -112,38 +123,5 @@ def _fill_topology(mesh: bpy.types.Mesh, grid: Grid) -> None:
     mesh.polygons.foreach_set("loop_start", np.arange(0, corners.size, 4, dtype=np.int32))
     mesh.update()
     mesh.shade_smooth()
-    uv_map = mesh.uv_layers.new(name=UV_MAP, do_init=False)
+    uv_map = mesh.uv_layers.new(name=TEXTURE_COORDINATES, do_init=False)
     uv_map.uv.foreach_set("vector", grid.texture_coordinates()[corners.reshape(-1)].reshape(-1))
-
-
-def can_hold_displacement(mesh: bpy.types.Mesh, grid: Grid) -> bool:
-    """Whether the mesh has a vertex for each sample, and Blender lets them be written."""
-    fits = grid.quads == grid.samples and len(mesh.vertices) == grid.vertices
-    # what is written on a linked mesh is dropped without a word
-    return fits and not mesh.is_editmode and mesh.library is None
-
-
-def write_displacement(mesh: bpy.types.Mesh, displacement: NDArray[np.float32]) -> None:
-    """Put a (quads+1, quads+1, 3) field in Blender units on the vertices, as an attribute."""
-    attribute = _displacement(mesh)
-    if attribute is None:
-        taken = mesh.attributes.get(ATTRIBUTE)
-        if taken is not None:
-            mesh.attributes.remove(taken)
-        attribute = mesh.attributes.new(ATTRIBUTE, "FLOAT_VECTOR", "POINT")
-    attribute.data.foreach_set("vector", displacement.reshape(-1))
-    mesh.update_tag()
-
-
-def remove_displacement(mesh: bpy.types.Mesh) -> None:
-    """Take the attribute away where something else moves the mesh."""
-    attribute = _displacement(mesh)
-    if attribute is not None and mesh.library is None and not mesh.is_editmode:
-        mesh.attributes.remove(attribute)
-
-
-def _displacement(mesh: bpy.types.Mesh) -> bpy.types.Attribute | None:
-    attribute = mesh.attributes.get(ATTRIBUTE)
-    if attribute is None or (attribute.data_type, attribute.domain) != ("FLOAT_VECTOR", "POINT"):
-        return None
-    return attribute

@@ -8,9 +8,11 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
+from ..nodes.ocean import KINDS
+from ..nodes.renewal import renew_groups
 from . import evaluation, live_image, refinement
 from .refinement import show
-from .refresh import refresh_and_tell, refresh_render
+from .refresh import check_files, refresh_and_tell, refresh_render
 from .settings import all_oceans, oceans_in, settings_of
 
 # scene settings that change an ocean and have no update callback of ours
@@ -25,6 +27,8 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
     for item in oceans_in(scene):
         if settings_of(item).source == "LIVE":
             show(item, scene)
+        else:  # Blender reads the files itself
+            check_files(item, scene)
 
 
 @persistent
@@ -37,16 +41,18 @@ def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
     if depsgraph is None or depsgraph.mode != "RENDER":
         return
     for item in oceans_in(scene):
-        if refinement.is_coarse(item):
+        if refinement.is_unfinished(item):
             refresh_and_tell(item, scene, statistics=False)
         refresh_render(item, scene)
 
 
 @persistent
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
-    """Fill the live images of an opened file: generated images are saved without their texels."""
+    """Fill the live images of an opened file: generated images are saved without their texels. Its node
+    groups may be of another version."""
     _forget_all()
     _subscribe()
+    renew_groups(KINDS)
     refresh_live_oceans()
 
 

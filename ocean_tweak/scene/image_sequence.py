@@ -5,14 +5,19 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 import bpy
 
+from ..export.exr import ExrError, read_image
 from .live_image import mark_as_data
+from .maps import MAPS
 from .settings import OceanObjectError
 
-_FILE = re.compile(r"(?P<name>.+)_disp\.(?P<frame>\d{4,})\.exr")
+_FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>\d{{4,}})\.exr")
+# what moves the mesh: a sequence has it at every frame
+_MOVING = "disp"
 
 
 class SequenceError(OceanObjectError):
@@ -21,7 +26,7 @@ class SequenceError(OceanObjectError):
 
 @dataclass(frozen=True)
 class ImageSequence:
-    """The files NAME_disp.####.exr of a folder from a first to a last frame.
+    """The files NAME_map.####.exr of a folder from a first to a last frame.
 
     directory : may start with // for the folder of the .blend file
     """
@@ -31,25 +36,47 @@ class ImageSequence:
     first: int
     last: int
 
-    def path(self, frame: int) -> Path:
-        """Where the displacement of a frame is."""
-        return _absolute(self.directory) / f"{self.name}_disp.{frame:04d}.exr"
+    def path(self, frame: int, map_name: str = _MOVING) -> Path:
+        """Where a map of a frame is."""
+        return _absolute(self.directory) / f"{self.name}_{map_name}.{frame:04d}.exr"
 
-    def check(self) -> None:
-        """Raise SequenceError unless every frame has its file."""
+    def check(self) -> tuple[str, ...]:
+        """The maps that there are. Raises SequenceError unless every frame has a file of each of them."""
         if self.first > self.last:
             raise SequenceError(f"The first frame {self.first} lies after the last frame {self.last}")
-        available = _frames_by_name(_absolute(self.directory))
-        frames = available.get(self.name, [])
-        if not frames:
-            hint = f"; it holds {', '.join(sorted(available))}" if available else ""
+        available = _frames_by_map(_absolute(self.directory))
+        if (self.name, _MOVING) not in available:
+            names = sorted(name for name, map_name in available if map_name == _MOVING)
+            hint = f"; it holds {', '.join(names)}" if names else ""
             raise SequenceError(f"No files {self.name}_disp.####.exr in {_absolute(self.directory)}{hint}")
-        missing = sorted(set(range(self.first, self.last + 1)).difference(frames))
-        if missing:
-            raise SequenceError(
-                f"{len(missing)} of the frames {self.first} to {self.last} have no file, "
-                f"the first of them {self.path(missing[0])}"
-            )
+        wanted = range(self.first, self.last + 1)
+        frames = {name: available[self.name, name] for name in MAPS if (self.name, name) in available}
+        # a map that was baked for other frames only is none of this sequence
+        maps = tuple(
+            name for name in MAPS if name == _MOVING or not frames.get(name, set()).isdisjoint(wanted)
+        )
+        for name in maps:
+            missing = sorted(set(wanted) - frames[name])
+            if missing:
+                raise SequenceError(
+                    f"{len(missing)} of the frames {self.first} to {self.last} have no file, "
+                    f"the first of them {self.path(missing[0], name)}"
+                )
+        return maps
+
+
+@dataclass(frozen=True)
+class LoadedSequence:
+    """A sequence as images of the file.
+
+    images : by map
+    samples : along each side
+    fps : of the shot it was baked for; None where the files do not say
+    """
+
+    images: dict[str, bpy.types.Image]
+    samples: int
+    fps: Fraction | None
 
 
 def find_sequence(path: str | Path) -> ImageSequence:
@@ -64,7 +91,9 @@ def find_sequence(path: str | Path) -> ImageSequence:
         if match is None:
             raise SequenceError(f"{chosen} is neither a folder nor a file named NAME_disp.####.exr")
         directory, name = chosen.parent, match["name"]
-    available = _frames_by_name(directory)
+    available = {
+        name: frames for (name, kind), frames in _frames_by_map(directory).items() if kind == _MOVING
+    }
     if name is None:
         if len(available) != 1:
             found = f"more than one: {', '.join(sorted(available))}" if available else "none"
@@ -78,30 +107,69 @@ def find_sequence(path: str | Path) -> ImageSequence:
     return sequence
 
 
-def load_image(sequence: ImageSequence) -> tuple[bpy.types.Image, int]:
-    """The sequence as an image of the file, and its samples along each side.
+def load_sequence(sequence: ImageSequence) -> LoadedSequence:
+    """The sequence as images of the file.
 
-    An image of the same files that is there already is read anew and returned.
-    Raises SequenceError for missing files and for images that cannot be read or are not square.
+    Images of the same files that are there already are read anew and used.
+    Raises SequenceError for missing files, and for images that cannot be read, are not square or differ in
+    size.
     """
-    sequence.check()
-    path = sequence.path(sequence.first)
-    present = next((image for image in bpy.data.images if _shows(image, path)), None)
-    image = bpy.data.images.load(str(path), check_existing=False)
+    maps = sequence.check()
+    paths = {name: sequence.path(sequence.first, name) for name in maps}
+    sizes = {name: _samples(path) for name, path in paths.items()}
+    for name, samples in sizes.items():
+        if samples != sizes[_MOVING]:
+            raise SequenceError(
+                f"{paths[name]} is {samples} texels wide, the displacement {sizes[_MOVING]}: "
+                "bake all maps with one resolution"
+            )
+    images = {name: _image(path) for name, path in paths.items()}
+    return LoadedSequence(images, sizes[_MOVING], _frames_per_second(paths[_MOVING]))
+
+
+def missing_file(image: bpy.types.Image | None, frame: int) -> str:
+    """The file that a sequence's image shows at a frame, where it is not there; "" otherwise."""
+    if image is None:
+        return ""
+    path = _absolute(image.filepath)
+    match = _FILE.fullmatch(path.name)
+    if match is None:
+        return ""
+    file = path.with_name(f"{match['name']}_{match['map']}.{frame:04d}.exr")
+    return "" if file.is_file() else str(file)
+
+
+def _samples(path: Path) -> int:
+    """Texels along each side of an image."""
     # as a sequence, Blender tells the size of whichever file it read last, or none
+    image = bpy.data.images.load(str(path), check_existing=False)
     width, height = image.size
+    bpy.data.images.remove(image)
     if width != height or width == 0:
-        bpy.data.images.remove(image)
         problem = f"is {width} x {height} texels, not square" if width else "cannot be read as an image"
         raise SequenceError(f"{path} {problem}")
+    return width
+
+
+def _image(path: Path) -> bpy.types.Image:
+    """The sequence that a file belongs to, as an image."""
+    present = next((image for image in bpy.data.images if _shows(image, path)), None)
     if present is not None:
-        bpy.data.images.remove(image)
         present.reload()
-        return present, width
+        return present
+    image = bpy.data.images.load(str(path), check_existing=False)
     image.source = "SEQUENCE"
-    image.name = f"{sequence.name}_disp"
+    image.name = path.name.partition(".")[0]
     mark_as_data(image)
-    return image, width
+    return image
+
+
+def _frames_per_second(path: Path) -> Fraction | None:
+    try:
+        _, metadata = read_image(path)
+        return Fraction(metadata["parameters"]["timing"]["fps"])
+    except (ExrError, KeyError, TypeError, ValueError):  # a file that somebody else made
+        return None
 
 
 def _shows(image: bpy.types.Image, path: Path) -> bool:
@@ -116,12 +184,13 @@ def _absolute(path: str | Path) -> Path:
     return Path(bpy.path.abspath(str(path))).resolve()
 
 
-def _frames_by_name(directory: Path) -> dict[str, list[int]]:
+def _frames_by_map(directory: Path) -> dict[tuple[str, str], set[int]]:
+    """The frames of each name and map in a folder."""
     if not directory.is_dir():
         raise SequenceError(f"The folder {directory} does not exist")
-    frames: dict[str, list[int]] = {}
+    frames: dict[tuple[str, str], set[int]] = {}
     for path in directory.iterdir():
         match = _FILE.fullmatch(path.name)
         if match is not None:
-            frames.setdefault(match["name"], []).append(int(match["frame"]))
+            frames.setdefault((match["name"], match["map"]), set()).add(int(match["frame"]))
     return frames

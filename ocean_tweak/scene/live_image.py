@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generated float images that hold a sea's displacement in metres."""
+"""Generated float images that hold a map of a sea: displacement, foam, normals or velocity."""
 
 from __future__ import annotations
 
@@ -53,14 +53,14 @@ def forget_all() -> None:
     _shown.clear()
 
 
-def write(image: bpy.types.Image, displacement: NDArray[np.floating], content: Hashable = None) -> None:
+def write(image: bpy.types.Image, field: NDArray[np.floating], content: Hashable = None) -> None:
     """Put an (N, N, 3) field [y, x] into the image; row 0 is the bottom row in both.
 
     content : what `shows` will tell from then on
     """
     _shown[image.session_uid] = content
-    texels = np.empty((*displacement.shape[:2], 4), np.float32)
-    texels[..., :3] = displacement
+    texels = np.empty((*field.shape[:2], 4), np.float32)
+    texels[..., :3] = field
     texels[..., 3] = 1.0
     image.pixels.foreach_set(texels.reshape(-1))
     # without the tag the dependency graph does not see the new texels

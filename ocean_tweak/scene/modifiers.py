@@ -1,43 +1,70 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The modifiers that move the grid: geometry nodes, or Displace with a finer grid and image for renders.
+"""The modifiers that move the grid: geometry nodes, or Displace and nodes that write what shots read.
 
-All give the same vertices.
+Where a render is finer than the viewport, it has modifiers of its own. All give the same vertices and
+attributes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 
-from ..nodes.displace import DISPLACE
-from ..nodes.grid import GRID, UV_MAP
-from ..nodes.modifier_inputs import set_input
+from ..nodes.grid import GRID
+from ..nodes.modifier_inputs import all_inputs, set_inputs
+from ..nodes.names import MAP_INPUTS, TEXTURE_COORDINATES
+from ..nodes.ocean import ocean_group
 from ..nodes.versioned import is_of_kind, node_group
 from .grid_mesh import Grid
+from .textures import assign, show
 
-_NAMES = {"NODES": "Ocean Tweak", "VIEW": "Ocean Tweak", "GRID": "Ocean Tweak Render Grid"}
-_NAMES["RENDER"] = "Ocean Tweak Render"
-_TYPES = {"NODES": "NODES", "VIEW": "DISPLACE", "GRID": "NODES", "RENDER": "DISPLACE"}
+Images = Mapping[str, bpy.types.Image]
+
+OCEAN = ocean_group(1)
+
+#: what a modifier is for → its name and type
+_PURPOSES = {
+    "NODES": ("Ocean Tweak", "NODES"),
+    "NODES_RENDER": ("Ocean Tweak Render", "NODES"),
+    "GRID": ("Ocean Tweak Render Grid", "NODES"),
+    "VIEW": ("Ocean Tweak", "DISPLACE"),
+    "RENDER": ("Ocean Tweak Render", "DISPLACE"),
+    "MAPS": ("Ocean Tweak Maps", "NODES"),
+    "MAPS_RENDER": ("Ocean Tweak Render Maps", "NODES"),
+}
+#: what the viewport shows → what a render shows in its place
+_IN_RENDER = {"NODES": "NODES_RENDER", "VIEW": "RENDER", "MAPS": "MAPS_RENDER"}
 
 
 @dataclass(frozen=True)
-class Displacement:
+class Shown:
     """What the modifiers have to show.
 
-    image : metres; None where the mesh's attribute has the displacement
-    frames : first and last file number of a sequence, None for a live image
-    grid : the mesh and the samples of the image
-    render_image, render_grid : what a render reads instead; None where it shows what the viewport shows
+    images : by map; None where the mesh's attributes have the surface
+    frames : first and last file number of a sequence, None for live images
+    grid : the mesh and the samples of the images
+    render_images, render_grid : what a render reads instead; None where it shows what the viewport shows
     scale : Blender units in a metre
+    velocity_scale : Blender units per second in a metre per second of the velocity image
+    warn : whether frames without a file get a warning
     """
 
-    image: bpy.types.Image | None
+    images: Images | None
     frames: tuple[int, int] | None
     grid: Grid
-    render_image: bpy.types.Image | None
+    render_images: Images | None
     render_grid: Grid | None
     scale: float
+    velocity_scale: float
+    warn: bool
+
+    @property
+    def render_is_alike(self) -> bool:
+        """Whether a render reads the same images, on its own grid."""
+        return self.render_images == self.images
 
 
 @dataclass(frozen=True)
@@ -56,8 +83,11 @@ def own_modifiers(item: bpy.types.Object, textures: Textures) -> list[tuple[str,
 
 def _purpose(modifier: bpy.types.Modifier, textures: Textures) -> str | None:
     if modifier.type == "NODES":
-        kinds = {"NODES": DISPLACE, "GRID": GRID}
-        return next((key for key, kind in kinds.items() if is_of_kind(modifier.node_group, kind)), None)
+        if is_of_kind(modifier.node_group, GRID):
+            return "GRID"
+        if is_of_kind(modifier.node_group, OCEAN):
+            purpose = all_inputs(modifier).get("Purpose")
+            return purpose if purpose in _PURPOSES else None
     if modifier.type == "DISPLACE" and modifier.texture is not None:
         if modifier.texture == textures.view:
             return "VIEW"
@@ -66,69 +96,98 @@ def _purpose(modifier: bpy.types.Modifier, textures: Textures) -> str | None:
     return None
 
 
-def apply_nodes(item: bpy.types.Object, textures: Textures, shown: Displacement) -> None:
+def apply_nodes(item: bpy.types.Object, textures: Textures, shown: Shown) -> None:
     """Let geometry nodes move the object; Displace modifiers of ours go."""
-    modifier = _only_modifiers(item, textures, ["NODES"])["NODES"]
-    _assign(modifier, node_group=node_group(DISPLACE))
-    first, last = shown.frames or (1, 1)
-    render = shown.render_grid
-    for name, value in (
-        ("Use Attribute", shown.image is None),
-        ("Image", shown.image),
-        ("Domain Size", shown.grid.size),
-        ("Resolution", shown.grid.samples),
-        ("Scale", shown.scale),
-        ("First Frame", first),
-        ("Last Frame", last),
-        ("Render Quads", render.quads if render else 0),
-        ("Render Image", shown.render_image),
-        ("Render Resolution", render.samples if render else shown.grid.samples),
-    ):
-        set_input(modifier, name, value)
+    purposes = ["NODES"] if shown.render_grid is None else ["NODES", "NODES_RENDER"]
+    made = _only_modifiers(item, textures, purposes)
+    _set_group(made["NODES"], _sea_inputs(shown))
+    if "NODES_RENDER" in made:
+        _set_group(made["NODES_RENDER"], {**_render_inputs(shown), **_grid_inputs(shown.render_grid)})
     item.update_tag()
 
 
-def apply_displace(item: bpy.types.Object, textures: Textures, shown: Displacement) -> None:
-    """Let Displace modifiers with these textures move the object; geometry nodes of ours go."""
-    purposes = ["VIEW"]
+def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> None:
+    """Let Displace modifiers with these textures move the object; nodes behind them write the rest."""
+    purposes = ["VIEW", "MAPS"]
     if shown.render_grid is not None:
         # a baked sequence moves either grid, so the grid comes before
-        purposes = ["GRID", "VIEW"] if shown.render_image == shown.image else ["GRID", "VIEW", "RENDER"]
-    had = {purpose for purpose, _ in own_modifiers(item, textures)}
+        purposes = ["GRID", *purposes]
+        if not shown.render_is_alike:
+            purposes = ["GRID", "VIEW", "RENDER", "MAPS", "MAPS_RENDER"]
     made = _only_modifiers(item, textures, purposes)
-    if ("RENDER" in made) != ("RENDER" in had):  # otherwise it is the user's to switch
-        made["VIEW"].show_render = "RENDER" not in made
     if "GRID" in made:
-        _apply_grid(made["GRID"], shown.render_grid, is_new="GRID" not in had)
-    _apply_texture(made["VIEW"], textures.view, shown.image, shown)
+        grid = _grid_inputs(shown.render_grid)
+        del grid["Make Grid"]
+        _set_group(made["GRID"], {**grid, "Samples": shown.render_grid.samples})
+    _set_texture(made["VIEW"], textures.view, shown.images, shown)
+    _set_group(made["MAPS"], {**_sea_inputs(shown), "Move": False})
     if "RENDER" in made:
-        if "RENDER" not in had:
-            made["RENDER"].show_viewport = False
-        _apply_texture(made["RENDER"], textures.render, shown.render_image, shown)
+        _set_texture(made["RENDER"], textures.render, shown.render_images, shown)
+        _set_group(made["MAPS_RENDER"], {**_render_inputs(shown), "Move": False})
+    item.update_tag()
 
 
-def _apply_grid(modifier: bpy.types.NodesModifier, grid: Grid, is_new: bool) -> None:
-    if is_new:
-        modifier.show_viewport = False
-    _assign(modifier, node_group=node_group(GRID))
-    for name, value in (("Size", grid.size), ("Quads", grid.quads), ("Samples", grid.samples)):
-        set_input(modifier, name, value)
+def _sea_inputs(shown: Shown) -> dict[str, Any]:
+    first, last = shown.frames or (1, 1)
+    return {
+        "Use Attributes": shown.images is None,
+        "Scale": shown.scale,
+        "Velocity Scale": shown.velocity_scale,
+        "Warn Out of Range": shown.warn,
+        "Domain Size": shown.grid.size,
+        "Resolution": shown.grid.samples,
+        "First Frame": first,
+        "Last Frame": last,
+        **_image_inputs(shown.images),
+    }
 
 
-def _apply_texture(
-    modifier: bpy.types.DisplaceModifier,
-    texture: bpy.types.Texture,
-    image: bpy.types.Image,
-    shown: Displacement,
+def _render_inputs(shown: Shown) -> dict[str, Any]:
+    return {
+        **_sea_inputs(shown),
+        "Use Attributes": False,
+        "Resolution": shown.render_grid.samples,
+        **_image_inputs(shown.render_images),
+    }
+
+
+def _image_inputs(images: Images | None) -> dict[str, bpy.types.Image | None]:
+    return {socket: (images or {}).get(name) for name, socket in MAP_INPUTS.items()}
+
+
+def _grid_inputs(grid: Grid) -> dict[str, Any]:
+    repeats_x, repeats_y = grid.repeats
+    return {
+        "Make Grid": True,
+        "Size": grid.size,
+        "Quads": grid.quads,
+        "Repeats X": repeats_x,
+        "Repeats Y": repeats_y,
+    }
+
+
+def _set_group(modifier: bpy.types.NodesModifier, values: dict[str, Any]) -> None:
+    kind = GRID if is_of_kind(modifier.node_group, GRID) else OCEAN
+    if modifier.node_group != node_group(kind):
+        purpose = all_inputs(modifier).get("Purpose")
+        modifier.node_group = node_group(kind)
+        if kind is OCEAN:
+            set_inputs(modifier, {"Purpose": purpose})
+    set_inputs(modifier, values)
+
+
+def _set_texture(
+    modifier: bpy.types.DisplaceModifier, texture: bpy.types.Texture, images: Images, shown: Shown
 ) -> None:
+    image = images["disp"]
     if texture.image != image:
         # whether the modifier depends on time is found out only when its texture is assigned
         modifier.texture = None
-    _set_texture(texture, image, shown.frames)
-    _assign(
+    show(texture, image, shown.frames)
+    assign(
         modifier,
         texture=texture, direction="RGB_TO_XYZ", space="LOCAL", mid_level=0.0, strength=shown.scale,
-        texture_coords="UV", uv_layer=UV_MAP,
+        texture_coords="UV", uv_layer=TEXTURE_COORDINATES,
     )  # fmt: skip
 
 
@@ -142,6 +201,7 @@ def _only_modifiers(
     for purpose, modifier in own:
         if purpose in purposes and purpose not in names:
             names[purpose] = modifier.name
+    had = set(names) | {purpose for purpose, _ in own}
     for name in [modifier.name for _, modifier in own if modifier.name not in names.values()]:
         item.modifiers.remove(item.modifiers[name])
     for purpose in purposes:
@@ -151,50 +211,29 @@ def _only_modifiers(
         names[purpose] = _new_modifier(item, purpose, place)
         place += 1
     # by name: adding and moving modifiers makes references to them stale
-    return {purpose: item.modifiers[name] for purpose, name in names.items()}
+    made = {purpose: item.modifiers[name] for purpose, name in names.items()}
+    _share_out(made, had)
+    return made
+
+
+def _share_out(made: dict[str, bpy.types.Modifier], had: set[str]) -> None:
+    """Say which modifiers viewport and render show, when that changes; else it is the user's to switch."""
+    for view, render in _IN_RENDER.items():
+        if view in made and (render in made) != (render in had):
+            made[view].show_render = render not in made
+    for purpose in ("GRID", *_IN_RENDER.values()):
+        if purpose in made and purpose not in had:
+            made[purpose].show_viewport = False
 
 
 def _new_modifier(item: bpy.types.Object, purpose: str, place: int) -> str:
-    modifier = item.modifiers.new(_NAMES[purpose], _TYPES[purpose])
+    name, kind = _PURPOSES[purpose]
+    modifier = item.modifiers.new(name, kind)
     if purpose == "GRID":  # recognised by its group from now on
         modifier.node_group = node_group(GRID)
+    elif kind == "NODES":
+        modifier.node_group = node_group(OCEAN)
+        set_inputs(modifier, {"Purpose": purpose})
     name = modifier.name
     item.modifiers.move(len(item.modifiers) - 1, place)
     return name
-
-
-def new_texture(name: str) -> bpy.types.Texture:
-    """An image texture that reads texels as they are: bilinear, repeating, not clamped."""
-    texture = bpy.data.textures.new(name, "IMAGE")
-    texture.extension = "REPEAT"
-    texture.use_interpolation = True
-    texture.use_clamp = False
-    # any other size blurs or shifts the texels
-    texture.filter_size = 1.0
-    if hasattr(texture, "filter_type"):  # until 4.5
-        texture.filter_type = "BOX"
-        texture.use_mipmap = False
-    return texture
-
-
-def _set_texture(texture: bpy.types.Texture, image: bpy.types.Image, frames: tuple[int, int] | None) -> None:
-    _assign(texture, image=image)
-    if frames is None:
-        return
-    first, last = frames
-    # File number = frame_offset + frame - frame_start + 1, and what is added to the offset is held between
-    # 0 and the duration. To begin at 0 rather than 1 holds the first frame too; a single file has no 0.
-    begin = 0 if last > first else 1
-    _assign(
-        texture.image_user,
-        frame_start=first + 1 - begin, frame_offset=first - begin, frame_duration=last - first + begin,
-        use_auto_refresh=True, use_cyclic=False,
-    )  # fmt: skip
-    texture.update_tag()
-
-
-def _assign(item: bpy.types.bpy_struct, **values: object) -> None:
-    """Set what differs: a value set again would tag the object for evaluation on every frame."""
-    for name, value in values.items():
-        if getattr(item, name) != value:
-            setattr(item, name, value)

@@ -6,7 +6,8 @@ from __future__ import annotations
 import bpy
 
 from ..core import OceanParameters
-from .image_sequence import ImageSequence, SequenceError, load_image
+from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
+from .maps import MAPS
 from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
 from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
 
@@ -23,6 +24,7 @@ def add(
     collection: bpy.types.Collection | None = None,
     mesh_resolution: int | None = None,
     viewport_resolution: int | None = None,
+    repeats: tuple[int, int] = (1, 1),
 ) -> bpy.types.Object:
     """Add an ocean to a scene; its origin is the patch's corner x = y = 0.
 
@@ -33,8 +35,9 @@ def add(
     source : a key of SOURCES
     sequence : the files, for the source "SEQUENCE"
     collection : where the object goes, the scene's own collection by default
-    mesh_resolution : quads along each side, by default as many as there are samples
+    mesh_resolution : quads along each side of a patch, by default as many as there are samples
     viewport_resolution : samples along each side in the viewport, by default all that the sea has
+    repeats : patches side by side along x and y
 
     Raises ValueError for an unknown method or source, SequenceError for files that cannot be used and
     MemoryError for a sea too large; then nothing is added.
@@ -43,7 +46,7 @@ def add(
     _check(source, SOURCES, "source")
     if source == "SEQUENCE" and sequence is None:
         raise SequenceError('An ocean with the source "SEQUENCE" needs an image sequence')
-    baked = load_image(sequence) if sequence is not None else None
+    baked = load_sequence(sequence) if sequence is not None else None
     item = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     (collection or scene.collection).objects.link(item)
     settings = settings_of(item)
@@ -51,10 +54,11 @@ def add(
         settings.is_ocean = True
         settings.method = method
         settings.mesh_resolution = mesh_resolution or 0
+        settings.repeats_x, settings.repeats_y = repeats
         settings.viewport_resolution = viewport_resolution or max(parameters.resolution, VIEWPORT_RESOLUTION)
         settings.from_parameters(parameters, scene)
         if sequence is not None and baked is not None:
-            _set_sequence(settings, sequence, *baked)
+            _set_sequence(settings, sequence, baked)
         settings.source = source
     try:
         refresh(item, scene)
@@ -66,10 +70,10 @@ def add(
 
 def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: ImageSequence) -> None:
     """Let baked files move the ocean. Raises SequenceError, and then changes nothing."""
-    baked = load_image(sequence)
+    baked = load_sequence(sequence)
     settings = settings_of(item)
     with settings.quiet():
-        _set_sequence(settings, sequence, *baked)
+        _set_sequence(settings, sequence, baked)
         settings.source = "SEQUENCE"
     refresh(item, scene)
 
@@ -82,11 +86,11 @@ def use_live(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     refresh(item, scene)
 
 
-def _set_sequence(
-    settings: OceanSettings, sequence: ImageSequence, image: bpy.types.Image, samples: int
-) -> None:
-    settings.sequence_image = image
-    settings.sequence_samples = samples
+def _set_sequence(settings: OceanSettings, sequence: ImageSequence, baked: LoadedSequence) -> None:
+    for name in MAPS:
+        setattr(settings.sequence_maps, name, baked.images.get(name))
+    settings.sequence_samples = baked.samples
+    settings.sequence_fps = str(baked.fps) if baked.fps is not None else ""
     settings.sequence_first = sequence.first
     settings.sequence_last = sequence.last
 

@@ -3,17 +3,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 
-from . import live_image, modifiers
+from . import live_image
+from .maps import MAPS
 from .settings import all_oceans, settings_of
+from .textures import new_texture
 
 
-def own_image(item: bpy.types.Object, name: str, label: str, samples: int) -> None:
-    """Give the ocean an image of its own for the setting of this name."""
-    settings = settings_of(item)
-    if getattr(settings, name) is None or _is_borrowed(item, name):
-        setattr(settings, name, live_image.new_image(label, samples))
+def own_image(item: bpy.types.Object, owner: str, name: str, label: str, samples: int) -> bpy.types.Image:
+    """The ocean's own image of a map; made where it has none, or only that of the ocean it was copied from.
+
+    owner : the setting that holds the images, "live_maps" or "render_maps"
+    name : a key of MAPS
+    """
+    images = getattr(settings_of(item), owner)
+    present = getattr(images, name)
+    borrowed = present is not None and any(
+        getattr(getattr(settings_of(other), owner), name) == present for other in _elders(item)
+    )
+    if present is None or borrowed:
+        setattr(images, name, live_image.new_image(label, samples))
+    return getattr(images, name)
 
 
 def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
@@ -21,8 +34,8 @@ def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
     settings = settings_of(item)
     shared = getattr(settings, name)
     if shared is None:
-        setattr(settings, name, modifiers.new_texture(label))
-    elif _is_borrowed(item, name):
+        setattr(settings, name, new_texture(label))
+    elif any(getattr(settings_of(other), name) == shared for other in _elders(item)):
         setattr(settings, name, shared.copy())
         for modifier in item.modifiers:
             if modifier.type == "DISPLACE" and modifier.texture == shared:
@@ -31,9 +44,7 @@ def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
 
 def is_borrowed_mesh(item: bpy.types.Object) -> bool:
     """Whether a linked duplicate still has the mesh of the ocean it was made from, the older one."""
-    return item.data.users > 1 and any(
-        other.data == item.data and other.session_uid < item.session_uid for other in all_oceans()
-    )
+    return item.data.users > 1 and any(other.data == item.data for other in _elders(item))
 
 
 def has_other_users(image: bpy.types.Image | None) -> bool:
@@ -42,15 +53,11 @@ def has_other_users(image: bpy.types.Image | None) -> bool:
         return False
     holders = [settings_of(item) for item in all_oceans()]
     textures = {settings.texture for settings in holders if settings.texture is not None}
-    own = sum(settings.live_image == image for settings in holders)
+    own = sum(getattr(settings.live_maps, name) == image for settings in holders for name in MAPS)
     own += sum(texture.image == image for texture in textures)
     return bool(image.users > own + image.use_fake_user)
 
 
-def _is_borrowed(item: bpy.types.Object, name: str) -> bool:
-    """Whether a duplicate still has the image or texture of the object it was made from, the older one."""
-    block = getattr(settings_of(item), name)
-    return any(
-        getattr(settings_of(other), name) == block and other.session_uid < item.session_uid
-        for other in all_oceans()
-    )
+def _elders(item: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """The oceans that were there before: a duplicate is younger than what it was made from."""
+    return (other for other in all_oceans() if other.session_uid < item.session_uid)

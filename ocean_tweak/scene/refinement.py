@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is shown at once and what follows: a few samples while a parameter is dragged, then all of them, then
-the statistics.
+foam with its history and the statistics.
 
 Only in a window. Without one there are no timers, and everything is done at once.
 """
@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import bpy
 
 from ..core import OceanParameters
 from . import evaluation
-from .refresh import EXPECTED_ERRORS, has_statistics, refresh_and_tell, set_changed, tell
+from .refresh import EXPECTED_ERRORS, foam_job, has_statistics, refresh_and_tell, set_changed, tell
 from .settings import all_oceans, settings_of
 
 # s without a change after which all samples are shown
@@ -33,27 +35,44 @@ class _Outstanding:
     coarse : when all samples are due
     uncounted : oceans whose statistics are to be made
     counting : sea and result of those that are being made
-    counter : the thread that makes them; they touch no data of Blender
+    foamless : oceans whose foam lacks its history
+    foaming : the foam that is being made
+    worker : the thread that makes foam and statistics; they touch no data of Blender
     """
 
     coarse: dict[int, float] = field(default_factory=dict)
     uncounted: set[int] = field(default_factory=set)
     counting: dict[int, tuple[OceanParameters, Future[str]]] = field(default_factory=dict)
-    counter: ThreadPoolExecutor | None = None
+    foamless: set[int] = field(default_factory=set)
+    foaming: dict[int, Future[object]] = field(default_factory=dict)
+    worker: ThreadPoolExecutor | None = None
+
+    @property
+    def uids(self) -> set[int]:
+        """Objects with something to be done."""
+        return {*self.coarse, *self.uncounted, *self.counting, *self.foamless, *self.foaming}
 
     def keep_only(self, uids: Iterable[int]) -> None:
         """Forget objects that are gone."""
-        for uid in {*self.coarse, *self.uncounted, *self.counting}.difference(uids):
+        for uid in self.uids.difference(uids):
             self.coarse.pop(uid, None)
             self.uncounted.discard(uid)
             self.counting.pop(uid, None)
+            self.foamless.discard(uid)
+            self.foaming.pop(uid, None)
+
+    def submit(self, job: Callable[[], object]) -> Future[Any]:
+        """Let the thread do something."""
+        if self.worker is None:
+            self.worker = ThreadPoolExecutor(1, "Ocean Tweak")
+        return self.worker.submit(job)
 
     def clear(self) -> None:
         """Forget all objects, and end the thread."""
         self.keep_only(())
-        if self.counter is not None:
-            self.counter.shutdown(wait=False, cancel_futures=True)
-            self.counter = None
+        if self.worker is not None:
+            self.worker.shutdown(wait=False, cancel_futures=True)
+            self.worker = None
 
 
 _outstanding = _Outstanding()
@@ -68,15 +87,26 @@ def show(item: bpy.types.Object, scene: bpy.types.Scene, dragged: bool = False) 
         refresh_and_tell(item, scene)
         return
     uid = item.session_uid
-    refresh_and_tell(item, scene, coarse=dragged or uid in _outstanding.coarse, statistics=False)
-    if threading.current_thread() is not threading.main_thread():
-        return  # a render's frame: it needs no statistics, and timers belong to the main thread
+    in_window = threading.current_thread() is threading.main_thread()
+    # a render's frame is complete, it needs no statistics, and timers belong to the main thread
+    coarse = dragged or uid in _outstanding.coarse
+    complete = refresh_and_tell(item, scene, coarse=coarse, statistics=False, patient=not in_window)
+    if not in_window:
+        return
     if dragged:
         _outstanding.coarse[uid] = time.monotonic() + PAUSE
     if dragged or not has_statistics(item, scene):
         _outstanding.uncounted.add(uid)
-        if not bpy.app.timers.is_registered(go_on):
-            bpy.app.timers.register(go_on, first_interval=_INTERVAL)
+    _note_foam(uid, complete)
+    if uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):
+        bpy.app.timers.register(go_on, first_interval=_INTERVAL)
+
+
+def _note_foam(uid: int, complete: bool) -> None:
+    if complete:
+        _outstanding.foamless.discard(uid)
+    else:
+        _outstanding.foamless.add(uid)
 
 
 def has_window() -> bool:
@@ -84,15 +114,15 @@ def has_window() -> bool:
     return not bpy.app.background
 
 
-def is_coarse(item: bpy.types.Object) -> bool:
-    """Whether the viewport shows fewer samples than it will in a moment."""
-    return item.session_uid in _outstanding.coarse
+def is_unfinished(item: bpy.types.Object) -> bool:
+    """Whether the viewport will show more in a moment: all samples, or foam with its history."""
+    uid = item.session_uid
+    return uid in _outstanding.coarse or uid in _outstanding.foamless
 
 
 def is_outstanding(item: bpy.types.Object) -> bool:
     """Whether the surface or the statistics shown are not yet those of the settings."""
-    uid = item.session_uid
-    return uid in _outstanding.coarse or uid in _outstanding.uncounted or uid in _outstanding.counting
+    return item.session_uid in _outstanding.uids
 
 
 def forget_all() -> None:
@@ -108,19 +138,49 @@ def go_on() -> float | None:
         return 10 * _INTERVAL
     oceans = {item.session_uid: item for item in all_oceans() if item.users_scene}
     _outstanding.keep_only(oceans)
-    done = [*_show_all_samples(oceans), *_take_statistics(oceans)]
+    done = [*_show_all_samples(oceans), *_take_foam(oceans), *_take_statistics(oceans)]
+    _start_foam(oceans)
     _start_statistics(oceans)
     if done:
         _redraw_panels()
-    left = _outstanding.coarse or _outstanding.uncounted or _outstanding.counting
-    return _INTERVAL if left else None
+    return _INTERVAL if _outstanding.uids else None
 
 
 def _show_all_samples(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
     now = time.monotonic()
     for uid in [uid for uid, due in _outstanding.coarse.items() if due <= now]:
         del _outstanding.coarse[uid]
-        refresh_and_tell(oceans[uid], _scene_of(oceans[uid]), statistics=False)
+        _refresh(uid, oceans[uid])
+        yield uid
+
+
+def _refresh(uid: int, item: bpy.types.Object) -> None:
+    _note_foam(uid, refresh_and_tell(item, _scene_of(item), statistics=False, patient=False))
+
+
+def _start_foam(oceans: dict[int, bpy.types.Object]) -> None:
+    for uid in _outstanding.foamless - _outstanding.coarse.keys() - _outstanding.foaming.keys():
+        try:
+            job = foam_job(oceans[uid], _scene_of(oceans[uid]))
+        except EXPECTED_ERRORS as error:
+            _outstanding.foamless.discard(uid)
+            tell(oceans[uid], error)
+        else:
+            _outstanding.foaming[uid] = _outstanding.submit(job)
+
+
+def _take_foam(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
+    for uid, future in list(_outstanding.foaming.items()):
+        if not future.done():
+            continue
+        del _outstanding.foaming[uid]
+        try:
+            future.result()
+        except EXPECTED_ERRORS as error:
+            _outstanding.foamless.discard(uid)
+            tell(oceans[uid], error)
+        else:
+            _refresh(uid, oceans[uid])  # the history is there now, unless time has jumped again
         yield uid
 
 
@@ -131,9 +191,7 @@ def _start_statistics(oceans: dict[int, bpy.types.Object]) -> None:
         if has_statistics(item, _scene_of(item)):
             continue
         parameters = settings_of(item).to_parameters(_scene_of(item))
-        if _outstanding.counter is None:
-            _outstanding.counter = ThreadPoolExecutor(1, "Ocean Tweak statistics")
-        future = _outstanding.counter.submit(evaluation.computed_statistics, parameters)
+        future = _outstanding.submit(partial(evaluation.computed_statistics, parameters))
         _outstanding.counting[uid] = (parameters, future)
 
 

@@ -4,86 +4,77 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+from collections.abc import Callable
 from fractions import Fraction
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core import OceanParameters, ParameterError
-from . import evaluation, grid_mesh, live_image, modifiers, ownership
+from ..core import ParameterError
+from . import evaluation, grid_mesh, image_sequence, live_image, modifiers, ownership, vertex_attributes
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
-from .modifiers import Displacement, Textures
-from .resampling import resampled
+from .maps import ATTRIBUTES, MAPS, Fields, outputs_of
+from .modifiers import Images, Shown, Textures
+from .plan import Plan, plan_of, velocity_scale
+from .resampling import resampled, tiled
 from .settings import OceanObjectError, OceanSettings, settings_of
-from .units import frame_with_subframe, metres_per_unit
+from .units import frame_with_subframe
 
 #: what a user can cause: shown with the object; anything else is a bug and raises
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
-
-#: samples along each side of the surface that is shown while a parameter is dragged
-COARSE = 128
-_LEAST_SAMPLES = 16
 
 # a render from the window refreshes oceans on its own thread, while the window may refresh them too
 _turn = threading.RLock()
 
 
-@dataclass(frozen=True)
-class _Plan:
-    """What an ocean needs.
-
-    parameters : of the render
-    metres : in a Blender unit
-    viewport, render : mesh and samples
-    """
-
-    parameters: OceanParameters
-    metres: Fraction
-    viewport: Grid
-    render: Grid
-
-    @property
-    def has_own_render(self) -> bool:
-        return self.render != self.viewport
-
-
 def refresh_and_tell(
-    item: bpy.types.Object, scene: bpy.types.Scene, coarse: bool = False, statistics: bool = True
-) -> None:
+    item: bpy.types.Object,
+    scene: bpy.types.Scene,
+    coarse: bool = False,
+    statistics: bool = True,
+    patient: bool = True,
+) -> bool:
     """Refresh an ocean; what is wrong with its settings is kept in `error`, for the panel to show."""
     try:
-        refresh(item, scene, coarse, statistics)
+        return refresh(item, scene, coarse, statistics, patient)
     except EXPECTED_ERRORS as error:
         tell(item, error)
+    return True
 
 
 def refresh(
-    item: bpy.types.Object, scene: bpy.types.Scene, coarse: bool = False, statistics: bool = True
-) -> None:
+    item: bpy.types.Object,
+    scene: bpy.types.Scene,
+    coarse: bool = False,
+    statistics: bool = True,
+    patient: bool = True,
+) -> bool:
     """Show the ocean's present settings and frame in the viewport, and prepare its render.
 
     coarse : show a surface of few samples, on the same mesh
     statistics : bring these up to date too; otherwise they are only where they are known
+    patient : otherwise foam is shown without its history where that would take long
 
-    Raises ParameterError, SequenceError or MemoryError, and then leaves the ocean as it was.
+    Returns whether all is shown as it should be. Raises ParameterError, SequenceError or MemoryError, and
+    then leaves the ocean as it was.
     """
     with _turn:
         settings = settings_of(item)
-        plan = _plan(settings, scene)
+        plan = plan_of(settings, scene)
         text = (evaluation.statistics_of if statistics else evaluation.known_statistics)(plan.parameters)
+        complete = True
         if settings.source == "LIVE":
-            _refresh_live(item, settings, plan, scene, coarse)
+            complete = _refresh_live(item, settings, plan, scene, coarse, patient)
             # a render from the window runs the frame handler on its own thread
             set_changed(scene.render, use_lock_interface=True)
         else:
-            _refresh_baked(item, settings, plan)
+            _refresh_baked(item, settings, plan, scene)
         if text is not None:
             evaluation.keep_statistics(plan.parameters, text)
             set_changed(settings, statistics=text)
         set_changed(settings, error="")
+    return complete
 
 
 def refresh_render(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -94,17 +85,22 @@ def refresh_render(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
         if settings.source != "LIVE":
             return
         try:
-            plan = _plan(settings, scene)
-            if not plan.has_own_render:
-                return
-            frame = frame_with_subframe(scene)
-            image = settings.render_image
-            if image is not None and not live_image.shows(image, (plan.parameters, frame)):
-                surface = evaluation.sea_of(plan.parameters).surface(frame)
-                live_image.prepare(image, plan.render.samples)
-                live_image.write(image, surface[:-1, :-1], (plan.parameters, frame))
+            plan = plan_of(settings, scene)
+            if plan.has_own_render:
+                _write_render(settings, plan, frame_with_subframe(scene))
         except EXPECTED_ERRORS as error:
             tell(item, error)
+
+
+def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Keep for the panel which file of the present frame is not there."""
+    settings = settings_of(item)
+    maps, files = settings.sequence_maps, ""
+    if settings.source == "SEQUENCE":
+        images = [getattr(maps, name) for name in MAPS]
+        frame = min(max(scene.frame_current, settings.sequence_first), settings.sequence_last)
+        files = next(filter(None, (image_sequence.missing_file(image, frame) for image in images)), "")
+    set_changed(settings, missing_file=files)
 
 
 def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
@@ -113,6 +109,17 @@ def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     return bool(settings.error) or (
         evaluation.known_statistics(settings.to_parameters(scene)) == settings.statistics
     )
+
+
+def foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
+    """What makes the foam that the viewport lacks; it touches no data of Blender and may run on any thread.
+
+    Raises ParameterError or OceanObjectError for settings that are no sea.
+    """
+    plan, frame = plan_of(settings_of(item), scene), frame_with_subframe(scene)
+    maker = evaluation.sea_of(plan.viewport_sea()).foam_of(frame)
+    time = plan.parameters.timing.time(frame)
+    return lambda: maker.at(time)
 
 
 def set_changed(target: object, **values: object) -> None:
@@ -128,85 +135,117 @@ def tell(item: bpy.types.Object, error: BaseException) -> None:
     set_changed(settings_of(item), error=text, statistics="")
 
 
-def _plan(settings: OceanSettings, scene: bpy.types.Scene) -> _Plan:
-    parameters, metres = settings.to_parameters(scene), metres_per_unit(scene)
-    size = float(Fraction(parameters.domain_size) / metres)
-    # an even number, as the core wants it
-    most = max(settings.viewport_resolution // 2 * 2, _LEAST_SAMPLES)
-    if settings.source == "LIVE":
-        render, view = parameters.resolution, min(most, parameters.resolution)
-        quads = view
-    else:
-        # the files have their resolution, the viewport fewer quads to move
-        render = view = settings.sequence_samples
-        quads = min(most, view)
-    fixed = settings.mesh_resolution
-    return _Plan(parameters, metres, Grid(size, fixed or quads, view), Grid(size, fixed or render, render))
-
-
 def _refresh_live(
-    item: bpy.types.Object, settings: OceanSettings, plan: _Plan, scene: bpy.types.Scene, coarse: bool
-) -> None:
+    item: bpy.types.Object,
+    settings: OceanSettings,
+    plan: Plan,
+    scene: bpy.types.Scene,
+    coarse: bool,
+    patient: bool,
+) -> bool:
     grid = plan.viewport
-    surface = _viewport_surface(plan, frame_with_subframe(scene), coarse)
+    fields, complete = _viewport_fields(plan, frame_with_subframe(scene), coarse, patient)
     _refresh_mesh(item, grid)
-    by_attribute = settings.method == "NODES" and grid_mesh.can_hold_displacement(item.data, grid)
-    if by_attribute:
-        grid_mesh.write_displacement(item.data, _in_units(surface, plan.metres))
+    by_attributes = settings.method == "NODES" and vertex_attributes.can_hold(item.data, grid)
+    if by_attributes:
+        vertex_attributes.write(item.data, _on_vertices(fields, plan))
     else:
-        grid_mesh.remove_displacement(item.data)
-    # materials and other objects may read the image too
-    if not by_attribute or ownership.has_other_users(settings.live_image):
-        ownership.own_image(item, "live_image", f"{item.name} live", grid.samples)
-        live_image.prepare(settings.live_image, grid.samples)
-        live_image.write(settings.live_image, surface[:-1, :-1])
+        vertex_attributes.remove(item.data)
+    images: Images = {}
+    for name in plan.maps:
+        # materials and other objects may read an image too
+        if not by_attributes or ownership.has_other_users(getattr(settings.live_maps, name)):
+            image = ownership.own_image(item, "live_maps", name, f"{item.name} live {name}", grid.samples)
+            _write_image(image, fields, name)
+            images[name] = image
+    own_images: Images | None = None
     if plan.has_own_render:
         # filled when a render asks for it: playback does not pay for it
-        ownership.own_image(item, "render_image", f"{item.name} render", 1)
+        own_images = {
+            name: ownership.own_image(item, "render_maps", name, f"{item.name} render {name}", 1)
+            for name in plan.maps
+        }
     _refresh_modifiers(
         item,
         settings,
-        Displacement(
-            image=None if by_attribute else settings.live_image,
+        Shown(
+            images=None if by_attributes else images,
             frames=None,
             grid=grid,
-            render_image=settings.render_image if plan.has_own_render else None,
+            render_images=own_images,
             render_grid=plan.render if plan.has_own_render else None,
-            scale=float(1 / plan.metres),
+            scale=plan.scale,
+            velocity_scale=velocity_scale(settings, plan, scene),
+            warn=False,
         ),
     )
+    return complete
 
 
-def _refresh_baked(item: bpy.types.Object, settings: OceanSettings, plan: _Plan) -> None:
-    image = settings.sequence_image
-    if image is None:
+def _refresh_baked(
+    item: bpy.types.Object, settings: OceanSettings, plan: Plan, scene: bpy.types.Scene
+) -> None:
+    present = {name: getattr(settings.sequence_maps, name) for name in plan.maps}
+    images = {name: image for name, image in present.items() if image is not None}
+    if "disp" not in images:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
     _refresh_mesh(item, plan.viewport)
-    grid_mesh.remove_displacement(item.data)
+    vertex_attributes.remove(item.data)
     _refresh_modifiers(
         item,
         settings,
-        Displacement(
-            image=image,
+        Shown(
+            images=images,
             frames=(settings.sequence_first, settings.sequence_last),
             grid=plan.viewport,
-            render_image=image,
+            render_images=images,
             render_grid=plan.render if plan.has_own_render else None,
-            scale=float(1 / plan.metres),
+            scale=plan.scale,
+            velocity_scale=velocity_scale(settings, plan, scene),
+            warn=settings.out_of_range == "WARN",
         ),
     )
+    check_files(item, scene)
 
 
-def _viewport_surface(plan: _Plan, frame: Fraction, coarse: bool) -> NDArray[np.float32]:
-    """(samples+1, samples+1, 3), m."""
+def _viewport_fields(plan: Plan, frame: Fraction, coarse: bool, patient: bool) -> tuple[Fields, bool]:
+    """(samples+1, samples+1, …) by output, m; and whether they are all that they will be."""
+    sea = evaluation.sea_of(plan.viewport_sea(coarse))
+    fields, complete = sea.fields(frame, outputs_of(plan.maps), patient=patient and not coarse)
     samples = plan.viewport.samples
-    shown = min(COARSE, samples) if coarse else samples
-    surface = evaluation.sea_of(plan.parameters.replace(resolution=shown)).surface(frame)
-    return surface if shown == samples else resampled(surface, samples)
+    if sea.ocean.parameters.resolution != samples:
+        fields = {name: resampled(field, samples) for name, field in fields.items()}
+    return fields, complete
 
 
-def _in_units(surface: NDArray[np.float32], metres: Fraction) -> NDArray[np.float32]:
-    return surface if metres == 1 else surface * np.float32(1 / metres)
+def _on_vertices(fields: Fields, plan: Plan) -> Fields:
+    """The attributes of a mesh with a vertex a sample, by their names."""
+    result = {}
+    for output, field in fields.items():
+        name, is_length = ATTRIBUTES[output]
+        scaled = field * np.float32(plan.scale) if is_length and plan.metres != 1 else field
+        result[name] = tiled(scaled, plan.viewport.repeats)
+    return result
+
+
+def _write_render(settings: OceanSettings, plan: Plan, frame: Fraction) -> None:
+    content = (plan.parameters, frame)
+    images = {name: getattr(settings.render_maps, name) for name in plan.maps}
+    stale = [
+        name for name, image in images.items() if image is not None and not live_image.shows(image, content)
+    ]
+    if not stale:
+        return
+    fields, _ = evaluation.sea_of(plan.parameters).fields(frame, outputs_of(tuple(stale)))
+    for name in stale:
+        _write_image(images[name], fields, name, content)
+
+
+def _write_image(image: bpy.types.Image, fields: Fields, name: str, content: object = None) -> None:
+    """Put a map into an image; `fields` have the far edges, which an image has not."""
+    texels = MAPS[name].image({output: field[:-1, :-1] for output, field in fields.items()})
+    live_image.prepare(image, texels.shape[0])
+    live_image.write(image, texels, content)
 
 
 def _refresh_mesh(item: bpy.types.Object, grid: Grid) -> None:
@@ -222,11 +261,11 @@ def _refresh_mesh(item: bpy.types.Object, grid: Grid) -> None:
     grid_mesh.fill(item.data, grid)
 
 
-def _refresh_modifiers(item: bpy.types.Object, settings: OceanSettings, shown: Displacement) -> None:
+def _refresh_modifiers(item: bpy.types.Object, settings: OceanSettings, shown: Shown) -> None:
     if settings.method == "NODES":
         modifiers.apply_nodes(item, Textures(settings.texture, settings.render_texture), shown)
         return
     ownership.own_texture(item, "texture", item.name)
-    if shown.render_image != shown.image and shown.render_image is not None:
+    if shown.render_grid is not None and not shown.render_is_alike:
         ownership.own_texture(item, "render_texture", f"{item.name} render")
     modifiers.apply_displace(item, Textures(settings.texture, settings.render_texture), shown)

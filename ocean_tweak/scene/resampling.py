@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surface of few samples on a mesh of many."""
+"""A surface of few samples on a mesh of many, and on a mesh of several patches."""
 
 from __future__ import annotations
 
@@ -10,9 +10,20 @@ RealArray = NDArray[np.float32]
 
 
 def resampled(closed: RealArray, samples: int) -> RealArray:
-    """Bilinear values of an (n+1, n+1, c) field, its far edges included, as (samples+1, samples+1, c)."""
+    """Bilinear values of an (n+1, n+1, …) field, its far edges included, as (samples+1, samples+1, …)."""
+    channels = closed.reshape(*closed.shape[:2], -1)
     # columns while there are few rows: what is left are whole rows, added in place
-    return _along(0, _along(1, closed, samples), samples)
+    result = _along(0, _along(1, channels, samples), samples)
+    return result.reshape(samples + 1, samples + 1, *closed.shape[2:])
+
+
+def tiled(closed: RealArray, repeats: tuple[int, int]) -> RealArray:
+    """An (n+1, n+1, …) field side by side along x and y, neighbours sharing their edge."""
+    for axis, count in ((1, repeats[0]), (0, repeats[1])):
+        if count > 1:
+            whole, edge = np.split(closed, [closed.shape[axis] - 1], axis)
+            closed = np.concatenate([whole] * count + [edge], axis)
+    return closed
 
 
 def _along(axis: int, field: RealArray, samples: int) -> RealArray:

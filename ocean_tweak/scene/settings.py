@@ -24,6 +24,11 @@ SOURCES = {
     "SEQUENCE": ("Sequence", "Read a baked EXR sequence. Also works where this extension is not installed"),
 }
 
+OUT_OF_RANGE = {
+    "HOLD": ("Hold", "Show the nearest frame that was baked"),
+    "WARN": ("Warn", "Show the nearest frame that was baked, and a warning here and in the modifier"),
+}
+
 #: samples along each side that play smoothly
 VIEWPORT_RESOLUTION = 256
 
@@ -32,15 +37,29 @@ class OceanObjectError(ValueError):
     """Something in the file or on disk that keeps an ocean from being shown, and the remedy."""
 
 
+class MapImages(Protocol):
+    """One image a map, named as in files; None where there is none."""
+
+    disp: bpy.types.Image | None
+    foam: bpy.types.Image | None
+    normal: bpy.types.Image | None
+    vel: bpy.types.Image | None
+
+
 class OceanSettings(Protocol):
     """The part of `object.ocean_tweak` that the scene layer reads and writes.
 
     error : why the ocean cannot be shown, "" when all is well
+    missing_file : the file that the present frame of a sequence should show and that is not there, or ""
     statistics : JSON of the sea's statistics, "" when there are none
+    use_foam, use_normals, use_velocity : whether these maps are made and shown
+    repeats_x, repeats_y : patches side by side
     sequence_first, sequence_last, sequence_samples : file numbers, and texels along each side
+    sequence_fps : frames per second of the shot it was baked for, "24000/1001"; "" where it does not say
+    out_of_range : a key of OUT_OF_RANGE
     viewport_resolution : the most samples along each side in the viewport
-    mesh_resolution : quads along each side; 0 for as many as there are samples
-    live_image, texture, render_image, render_texture : what moves the mesh where its attribute does not
+    mesh_resolution : quads along each side of one patch; 0 for as many as there are samples
+    live_maps, texture, render_maps, render_texture : what moves the mesh where its attributes do not
     """
 
     is_ocean: bool
@@ -48,15 +67,23 @@ class OceanSettings(Protocol):
     source: str
     viewport_resolution: int
     mesh_resolution: int
-    live_image: bpy.types.Image | None
-    render_image: bpy.types.Image | None
-    sequence_image: bpy.types.Image | None
+    use_foam: bool
+    use_normals: bool
+    use_velocity: bool
+    repeats_x: int
+    repeats_y: int
+    live_maps: MapImages
+    render_maps: MapImages
+    sequence_maps: MapImages
     sequence_first: int
     sequence_last: int
     sequence_samples: int
+    sequence_fps: str
+    out_of_range: str
     texture: bpy.types.Texture | None
     render_texture: bpy.types.Texture | None
     error: str
+    missing_file: str
     statistics: str
     id_data: bpy.types.Object
 

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from ..scene import refinement
+from ..scene.maps import MAPS
 from ..scene.settings import is_ocean, settings_of
 from . import operators
 
@@ -113,19 +114,54 @@ class OCEAN_PT_motion(_OceanPanel, bpy.types.Panel):
         settings = settings_of(context.active_object)
         layout.row().prop(settings, "source", expand=True)
         if settings.source == "SEQUENCE":
-            image = settings.sequence_image
-            _row(layout, "Files", bpy.path.basename(image.filepath) if image else "none chosen")
-            if image:
-                _row(layout, "Frames", f"{settings.sequence_first} to {settings.sequence_last}")
-            choose = "Choose Another" if image else "Choose Sequence"
-            layout.operator(operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
-            if settings.error:
-                layout.operator(operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
+            _sequence(layout, context)
         else:
             layout.operator(operators.OCEAN_OT_use_sequence.bl_idname, icon="FILE_FOLDER")
         layout.prop(settings, "method")
-        layout.prop(settings, "mesh_resolution", text="Mesh Quads")
         layout.prop(settings.timing, "start_frame")
+
+
+class OCEAN_PT_foam(_OceanPanel, bpy.types.Panel):
+    """How much foam there is and how it lives."""
+
+    bl_idname = "OCEAN_PT_foam"
+    bl_label = "Foam"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the settings of live foam; baked foam has its own already."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = settings_of(context.active_object)
+        layout.prop(settings, "use_foam")
+        column = layout.column()
+        column.active = settings.use_foam and settings.source == "LIVE"
+        for name in ("coverage", "half_life", "drift"):
+            column.prop(settings.foam, name)
+        column.prop(settings.foam, "resolution", text="Foam Res.")
+
+
+class OCEAN_PT_mesh(_OceanPanel, bpy.types.Panel):
+    """The mesh that is moved, and what it carries besides."""
+
+    bl_idname = "OCEAN_PT_mesh"
+    bl_label = "Mesh"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw its size and its attributes."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = settings_of(context.active_object)
+        repeats = layout.column(align=True)
+        repeats.prop(settings, "repeats_x")
+        repeats.prop(settings, "repeats_y", text="Y")
+        layout.prop(settings, "mesh_resolution", text="Mesh Quads")
+        attributes = layout.column(heading="Attributes")
+        attributes.prop(settings, "use_normals")
+        attributes.prop(settings, "use_velocity")
 
 
 class OCEAN_PT_parameters(_OceanPanel, bpy.types.Panel):
@@ -177,11 +213,31 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
             "The object is scaled, so its waves are too. Set its scale to 1 and change the domain size"
         )
     first, last = settings.sequence_first, settings.sequence_last
-    if settings.source == "SEQUENCE" and not first <= frame <= last:
+    is_outside = settings.source == "SEQUENCE" and not first <= frame <= last
+    if is_outside and settings.out_of_range == "WARN":
         flat = frame < first == last and settings.method == "DISPLACE"
         shown = "the sea is flat" if flat else "the nearest one is held"
         warnings.append(f"Frame {frame} has no file: {shown}")
     return warnings
+
+
+def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the files, what is missing of them, and the way to others."""
+    settings = settings_of(context.active_object)
+    image = settings.sequence_maps.disp
+    _row(layout, "Files", bpy.path.basename(image.filepath) if image else "none chosen")
+    if image:
+        _row(layout, "Frames", f"{settings.sequence_first} to {settings.sequence_last}")
+        present = [name for name in MAPS if getattr(settings.sequence_maps, name)]
+        _row(layout, "Maps", ", ".join(present))
+    if settings.missing_file:
+        file = bpy.path.basename(settings.missing_file)
+        _message(layout, context, f"{file} is missing: bake it again or choose other files", alert=True)
+    layout.prop(settings, "out_of_range")
+    choose = "Choose Another" if image else "Choose Sequence"
+    layout.operator(operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
+    if settings.error:
+        layout.operator(operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
 
 
 def _row(layout: bpy.types.UILayout, label: str, text: str) -> None:
@@ -204,4 +260,12 @@ def _message(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, 
         box.label(text=line, icon=icon)
 
 
-CLASSES = (OCEAN_PT_start, OCEAN_PT_sea, OCEAN_PT_statistics, OCEAN_PT_motion, OCEAN_PT_parameters)
+CLASSES = (
+    OCEAN_PT_start,
+    OCEAN_PT_sea,
+    OCEAN_PT_statistics,
+    OCEAN_PT_foam,
+    OCEAN_PT_mesh,
+    OCEAN_PT_motion,
+    OCEAN_PT_parameters,
+)

@@ -15,8 +15,9 @@ from bpy.props import (
 )
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from ..scene.maps import MAPS
 from ..scene.refinement import show
-from ..scene.settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
+from ..scene.settings import METHODS, OUT_OF_RANGE, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
 from ..scene.units import frame_rate, metres_per_unit
 from . import parameter_properties
 
@@ -76,6 +77,38 @@ class OCEAN_PG_timing(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Timing, _changed, _FROM_SCENE)
 
 
+class OCEAN_PG_maps(bpy.types.PropertyGroup):
+    """One image a map."""
+
+    __annotations__ = {name: PointerProperty(type=bpy.types.Image, **_HIDDEN) for name in MAPS}
+
+
+_SWITCHES = {
+    "use_foam": BoolProperty(
+        name="Foam", default=True, **_SHOWN,
+        description="Write the attributes foam, how much of the water is white, and cusp, how far it is "
+        "squeezed. A frame alone looks back over up to 180 moments, playback goes on from the last",
+    ),
+    "use_normals": BoolProperty(
+        name="Normals", default=True, **_SHOWN,
+        description="Shade with the normals of the waves instead of those of the mesh: finer highlights for "
+        "about the cost of the displacement",
+    ),
+    "use_velocity": BoolProperty(
+        name="Velocity", default=True, **_SHOWN,
+        description="Write the attribute velocity from which Cycles makes motion blur: the only one of baked files. "
+        "Costs as much as the displacement",
+    ),
+}  # fmt: skip
+
+
+def _repeats(axis: str) -> object:
+    return IntProperty(
+        name=f"Repeats {axis.upper()}", default=1, min=1, max=64, soft_max=8, **_SHOWN,
+        description=f"Patches side by side along {axis}, without a seam. They are all alike",
+    )  # fmt: skip
+
+
 class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
@@ -102,18 +135,27 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         ),
         "mesh_resolution": IntProperty(
             name="Mesh Resolution", min=0, max=8192, **_SHOWN,
-            description="Quads along each side of the mesh, in the viewport and in the render; "
+            description="Quads along each side of a patch, in the viewport and in the render; "
             "0 for one per sample",
         ),
-        "render_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
+        **_SWITCHES,
+        "repeats_x": _repeats("x"),
+        "repeats_y": _repeats("y"),
+        "out_of_range": EnumProperty(
+            name="Out of Range", items=_choices(OUT_OF_RANGE), default="WARN", **_SHOWN,
+            description="What to do at frames that were not baked",
+        ),
         "render_texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),
-        "live_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
-        "sequence_image": PointerProperty(type=bpy.types.Image, **_HIDDEN),
+        "live_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
+        "render_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
+        "sequence_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
         "texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),
         "sequence_first": IntProperty(**_HIDDEN),
         "sequence_last": IntProperty(**_HIDDEN),
         "sequence_samples": IntProperty(**_HIDDEN),
+        "sequence_fps": StringProperty(**_HIDDEN),
         "error": StringProperty(**_HIDDEN),
+        "missing_file": StringProperty(**_HIDDEN),
         "statistics": StringProperty(**_HIDDEN),
     }  # fmt: skip
 
@@ -163,4 +205,4 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         _changed(self, bpy.context)
 
 
-CLASSES = (OCEAN_PG_water, OCEAN_PG_layer, OCEAN_PG_foam, OCEAN_PG_timing, OCEAN_PG_ocean)
+CLASSES = (OCEAN_PG_water, OCEAN_PG_layer, OCEAN_PG_foam, OCEAN_PG_timing, OCEAN_PG_maps, OCEAN_PG_ocean)

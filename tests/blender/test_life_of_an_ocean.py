@@ -124,7 +124,8 @@ def test_source_and_method_can_be_switched(add, bake, ocean_object, make_paramet
         scene.frame_set(1)
         scene.frame_set(2)
         np.testing.assert_allclose(evaluated(item), expected(parameters, 2), atol=TOLERANCE)
-        assert [modifier.type for modifier in item.modifiers] == [method, "TRIANGULATE"]
+        own = {"NODES": ["NODES"], "DISPLACE": ["DISPLACE", "NODES"]}[method]
+        assert [modifier.type for modifier in item.modifiers] == [*own, "TRIANGULATE"]
     assert below.name in item.modifiers
 
 
@@ -196,7 +197,7 @@ def test_statistics_are_the_core_s(add, make_parameters, core):
 
 
 def test_stale_node_group_is_not_used(add, make_parameters, expected, evaluated, extension):
-    kind = extension("nodes.displace").DISPLACE
+    kind = extension("nodes.ocean").ocean_group(1)
     stale = bpy.data.node_groups.new(kind.name, "GeometryNodeTree")
     stale["ocean_tweak_group"] = f"{kind.name} 0"
     item, other = add(make_parameters()), add(make_parameters())
@@ -214,13 +215,13 @@ def texels(image):
 
 def test_materials_can_hold_on_to_the_live_image(add, make_parameters, core, empty_scene):
     item = add(make_parameters(), "DISPLACE")
-    image = item.ocean_tweak.live_image
+    image = item.ocean_tweak.live_maps.disp
     item.data.materials.append(bpy.data.materials.new("Water"))
     if bpy.app.version < (5, 0):
         item.data.materials[0].use_nodes = True
     item.data.materials[0].node_tree.nodes.new("ShaderNodeTexImage").image = image
     item.ocean_tweak.resolution = 64
-    assert item.ocean_tweak.live_image == image
+    assert item.ocean_tweak.live_maps.disp == image
     # geometry nodes do without the image, the material does not
     item.ocean_tweak.method = "NODES"
     empty_scene.frame_set(5)
@@ -232,7 +233,7 @@ def test_materials_can_hold_on_to_the_live_image(add, make_parameters, core, emp
 
 def test_a_live_image_that_was_packed_lives_on(add, make_parameters, expected, evaluated, empty_scene):
     item = add(make_parameters(), "DISPLACE")
-    image = item.ocean_tweak.live_image
+    image = item.ocean_tweak.live_maps.disp
     image.pack()  # as Blender does when it saves modified images
     assert image.source == "FILE"
     empty_scene.frame_set(3)

@@ -61,8 +61,10 @@ def test_without_an_ocean_there_is_a_way_to_one(draw):
 def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     drawn = draw(item)
     for name in ("wind_speed", "wind_direction", "fetch", "swell", "choppiness", "depth", "seed",
-                 "domain_size", "viewport_resolution", "resolution", "source", "method"):  # fmt: skip
+                 "domain_size", "viewport_resolution", "source", "method", "use_foam", "coverage",
+                 "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y"):  # fmt: skip
         assert drawn.count(name) == 1
+    assert drawn.count("resolution") == 2  # of the sea and of its foam
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn
     assert f"{statistics.seed.significant_wave_height:.2f} m" in drawn

@@ -22,7 +22,7 @@ def refinement(extension, monkeypatch):
     module = extension("scene.refinement")
     monkeypatch.setattr(module, "has_window", lambda: True)
     monkeypatch.setattr(module, "PAUSE", 0.0)
-    monkeypatch.setattr(extension("scene.refresh"), "COARSE", COARSE)
+    monkeypatch.setattr(extension("scene.plan"), "COARSE", COARSE)
     yield module
     bpy.ops.wm.read_homefile(use_empty=True)
     assert not bpy.app.timers.is_registered(module.go_on)
@@ -54,7 +54,7 @@ def test_few_samples_then_all_then_the_statistics(
     before = item.ocean_tweak.statistics
     item.ocean_tweak.seed = 9
     assert bpy.app.timers.is_registered(refinement.go_on)
-    assert refinement.is_coarse(item)
+    assert refinement.is_unfinished(item)
     sea = make_parameters(seed=9)
     shown = evaluated(item)
     assert shown.shape == (SAMPLES + 1, SAMPLES + 1, 3)

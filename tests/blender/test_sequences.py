@@ -72,5 +72,5 @@ def test_oceans_share_an_image_of_the_same_files(ocean_object, bake, make_parame
         ocean_object.add(empty_scene, make_parameters(), method, "SEQUENCE", baked)
         for method in ("NODES", "DISPLACE")
     ]
-    assert len({sea.ocean_tweak.sequence_image for sea in seas}) == 1
+    assert len({sea.ocean_tweak.sequence_maps.disp for sea in seas}) == 1
     assert len(bpy.data.images) == 1

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A node group that tells, in the modifier, which frames of a baked sequence have no file."""
+
+from __future__ import annotations
+
+import bpy
+
+from .building import Builder, Input, Plug, Socket, output
+from .versioned import GroupKind
+
+
+def _build(tree: bpy.types.NodeTree) -> None:
+    inputs = (
+        ("Scene Frame", "NodeSocketInt", 1, "The scene's whole frame"),
+        ("Frame", "NodeSocketInt", 1, "The frame whose file is shown"),
+        ("Is Held", "NodeSocketBool", False, "Whether to tell that another frame is shown"),
+        ("Is Missing", "NodeSocketBool", False, "Whether to tell that the frame's file cannot be read"),
+    )
+    outputs = (Plug("Warning", "NodeSocketBool", None, "Whether something is wrong"),)
+    build = Builder(tree, inputs, outputs)
+    held = _text(
+        build,
+        "Frame", build.given("Scene Frame"), "was not baked: frame", build.given("Frame"), "is held",
+    )  # fmt: skip
+    missing = _text(
+        build,
+        "The displacement image of frame", build.given("Frame"),
+        "is missing or cannot be read, and the sea is flat: bake it again or choose other files",
+    )  # fmt: skip
+    shown = [
+        output(build.add("GeometryNodeWarning", {"Show": show, "Message": text}, warning_type=kind), "Show")
+        for show, text, kind in (
+            (build.given("Is Held"), held, "WARNING"),
+            (build.given("Is Missing"), missing, "ERROR"),
+        )
+    ]
+    build.finish_with({"Warning": build.logic("OR", *shown)})
+
+
+def _text(build: Builder, *words: Input) -> Socket:
+    """Texts and whole numbers, joined by spaces."""
+    join = build.add("GeometryNodeStringJoin", {"Delimiter": " "})
+    strings = []
+    for word in words:
+        if isinstance(word, str):
+            strings.append(output(build.add("FunctionNodeInputString", string=word), "String"))
+        else:
+            number = build.add("FunctionNodeValueToString", data_type="INT")
+            build.tree.links.new(word, next(socket for socket in number.inputs if socket.enabled))
+            strings.append(output(number, "String"))
+    for string in reversed(strings):  # what is linked last stands first
+        build.tree.links.new(string, join.inputs["Strings"])
+    return output(join, "String")
+
+
+WARNINGS = GroupKind("Ocean Tweak Warnings", 1, _build)

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names that shots, materials and other tools hold on to: attributes of the mesh, inputs of the groups."""
+
+from __future__ import annotations
+
+#: point attributes of the evaluated mesh: Blender units, Blender units per second of scene time, 0…1, and
+#: how far the surface is squeezed
+DISPLACEMENT, VELOCITY, FOAM, CUSP = "displacement", "velocity", "foam", "cusp"
+
+#: corner attribute: position / domain size + ½ / samples, going on over the repeats
+TEXTURE_COORDINATES = "st"
+
+#: point attribute that Blender takes for the mesh's free custom normals
+NORMAL = "custom_normal"
+
+#: Blender's type of each point attribute
+POINT_TYPES = {
+    DISPLACEMENT: "FLOAT_VECTOR",
+    VELOCITY: "FLOAT_VECTOR",
+    NORMAL: "FLOAT_VECTOR",
+    FOAM: "FLOAT",
+    CUSP: "FLOAT",
+}
+
+#: a map's name in files, and the input that takes its image
+MAP_INPUTS = {"disp": "Displacement", "foam": "Foam", "normal": "Normal", "vel": "Velocity"}

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geometry nodes that move a grid as a sea and write what a shot reads of it.
+
+They read either attributes of the mesh, which is what a live sea in the viewport uses and the quickest, or
+images: of baked files, for a mesh that has not one vertex a sample, and for renders finer than the viewport.
+Images hold metres; `Scale` makes Blender units of them. They are read at the attribute `st`, which has the
+half texel in it already, or, on a mesh without one, at the position.
+
+A sea of several patches is their sum, at the place of a vertex at rest:
+
+- displacements and velocities are added;
+- of normals, the slopes n_xy / n_z are added, with n_z held at 0.01 or more: a sheet that hangs over counts
+  as very steep. One patch alone keeps its normals as they are;
+- foam covers like independent layers: 1 - (1 - a)(1 - b);
+- squeezes (cusp) are added: the most that two can make together, and what they make along one direction.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import bpy
+
+from .building import Builder, Panel, Plug, Socket, output
+from .frame_warnings import WARNINGS
+from .grid import GRID
+from .grid import INPUTS as GRID_INPUTS
+from .names import CUSP, DISPLACEMENT, FOAM, TEXTURE_COORDINATES, VELOCITY
+from .patch import IMAGE_INPUTS, PATCH, SCALE_INPUTS
+from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
+from .versioned import GroupKind, node_group
+
+_VERSION = 1
+_NAME = "Ocean Tweak"
+
+#: patches that a group can add
+MOST_PATCHES = 8
+
+#: n_z of a slope is at least this
+_LEAST_UPWARDS = 0.01
+
+_SEA_INPUTS = (
+    Plug("Use Attributes", "NodeSocketBool", False, "Read the mesh's attributes instead of the images"),
+    Plug("Move", "NodeSocketBool", True, "Move the mesh; otherwise only write attributes"),
+    *(Plug(*plug) for plug in SCALE_INPUTS),
+    Plug(
+        "Warn Out of Range", "NodeSocketBool", False,
+        "Show a warning at frames that have no file. The nearest file is held either way",
+    ),
+    Plug("Purpose", "NodeSocketString", "", "What the extension made this modifier for", hidden=True),
+)  # fmt: skip
+
+_GRID_PANEL = Panel(
+    "Grid",
+    (
+        Plug(
+            "Make Grid",
+            "NodeSocketBool",
+            False,
+            "Put a grid in the place of the mesh; it keeps the materials",
+        ),
+        *(plug for plug in GRID_INPUTS if plug[0] != "Samples"),
+    ),
+)
+
+_PATCH_INPUTS = (
+    *IMAGE_INPUTS,
+    ("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch that repeats, in Blender units"),
+    ("Resolution", "NodeSocketInt", 512, "Samples along each side of the images"),
+    *FRAME_INPUTS,
+)
+
+
+def numbered(name: str, patch: int) -> str:
+    """The name of a patch's input; the first patch has number 1 and the plain name."""
+    return name if patch == 1 else f"{name} {patch}"
+
+
+@lru_cache
+def ocean_group(patches: int = 1) -> GroupKind:
+    """The group for a number of patches. Raises ValueError for one that is not from 1 to MOST_PATCHES."""
+    if not 1 <= patches <= MOST_PATCHES:
+        raise ValueError(f"patches = {patches}: must be from 1 to {MOST_PATCHES}")
+    name = _NAME if patches == 1 else f"{_NAME} {patches} Patches"
+    return GroupKind(name, _VERSION, lambda tree: _build(tree, patches))
+
+
+class _Surface(NamedTuple):
+    """Fields over the mesh, and for each map whether there is one."""
+
+    displacement: Socket
+    velocity: Socket
+    normal: Socket
+    foam: Socket
+    cusp: Socket
+    has_velocity: Socket
+    has_normal: Socket
+    has_foam: Socket
+
+
+def _build(tree: bpy.types.NodeTree, patches: int) -> None:
+    panels = (
+        Panel(
+            numbered("Patch", patch),
+            tuple((numbered(name, patch), *rest) for name, *rest in _PATCH_INPUTS),
+        )
+        for patch in range(1, patches + 1)
+    )
+    build = Builder(tree, (*_SEA_INPUTS, _GRID_PANEL, *panels))
+    geometry = build.given("Geometry")
+    base = build.switch("GEOMETRY", build.given("Make Grid"), geometry, _own_grid(build, geometry))
+    by_attributes = build.logic("NIMPLY", build.given("Use Attributes"), build.given("Make Grid"))
+    captured = build.add("GeometryNodeCaptureAttribute", domain="POINT")
+    build.tree.links.new(base, captured.inputs["Geometry"])
+    coordinates = [_captured(build, captured, patch) for patch in range(1, patches + 1)]
+    surfaces = [
+        _patch(build, place, patch, by_attributes) for patch, place in enumerate(coordinates, start=1)
+    ]
+    written = _written(build, output(captured, "Geometry"), _sum(build, surfaces))
+    known = build.switch("GEOMETRY", by_attributes, written, base)
+    offset = build.add("GeometryNodeInputNamedAttribute", {"Name": DISPLACEMENT}, data_type="FLOAT_VECTOR")
+    moved = build.change("GeometryNodeSetPosition", known, {"Offset": output(offset, "Attribute")})
+    build.finish(build.switch("GEOMETRY", build.given("Move"), known, moved))
+
+
+def _own_grid(build: Builder, geometry: Socket) -> Socket:
+    inputs = {name: build.given(name) for name, *_ in GRID_INPUTS if name != "Samples"}
+    inputs["Samples"] = build.given("Resolution")
+    return build.change("GeometryNodeGroup", geometry, inputs, node_tree=node_group(GRID))
+
+
+def _captured(build: Builder, captured: bpy.types.Node, patch: int) -> Socket:
+    """Texture coordinates of a patch, made once for all that reads them: `st` stands on corners."""
+    name = numbered("Coordinates", patch)
+    captured.capture_items.new("VECTOR", name)
+    build.tree.links.new(_texture_coordinates(build, patch), captured.inputs[name])
+    return captured.outputs[name]
+
+
+def _texture_coordinates(build: Builder, patch: int) -> Socket:
+    """Place at rest / domain size + ½ / resolution; the first patch reads `st` where there is one."""
+    attribute = build.add(
+        "GeometryNodeInputNamedAttribute", {"Name": TEXTURE_COORDINATES}, data_type="FLOAT_VECTOR"
+    )
+    exists, st = output(attribute, "Exists"), output(attribute, "Attribute")
+    place = output(build.add("GeometryNodeInputPosition"), "Position")
+    if patch > 1:  # the mesh may have been moved already: `st` knows where it was
+        at_rest = build.vector("SUBTRACT", st, _half_texel(build, 1))
+        place = build.switch("VECTOR", exists, place, build.scaled(at_rest, build.given("Domain Size")))
+    fraction = build.vector("DIVIDE", place, build.given(numbered("Domain Size", patch)))
+    centred = build.vector("ADD", fraction, _half_texel(build, patch))
+    return centred if patch > 1 else build.switch("VECTOR", exists, centred, st)
+
+
+def _half_texel(build: Builder, patch: int) -> Socket:
+    return build.math("DIVIDE", 0.5, build.given(numbered("Resolution", patch)))
+
+
+def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socket) -> _Surface:
+    """One patch's maps, and warnings where files are missing."""
+
+    def given(names: tuple[tuple[str, ...], ...]) -> dict[str, Socket]:
+        return {name: build.given(numbered(name, patch)) for name, *_ in names}
+
+    frame = build.group(node_group(SHOWN_FRAME), given(FRAME_INPUTS))
+    read = build.group(
+        node_group(PATCH),
+        {
+            **given(IMAGE_INPUTS),
+            **{name: build.given(name) for name, *_ in SCALE_INPUTS},
+            "Coordinates": coordinates,
+            "Frame": output(frame, "Frame"),
+        },
+    )
+    build.group(
+        node_group(WARNINGS),
+        {
+            "Scene Frame": output(frame, "Scene Frame"),
+            "Frame": output(frame, "Frame"),
+            "Is Held": build.logic("AND", output(frame, "Is Held"), build.given("Warn Out of Range")),
+            "Is Missing": build.logic("NOR", output(read, "Has Displacement"), by_attributes),
+        },
+    )
+    names = ("Displacement", "Velocity", "Normal", "Foam", "Cusp", "Has Velocity", "Has Normal", "Has Foam")
+    return _Surface(*(output(read, name) for name in names))
+
+
+def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
+    """The patches added; the rules stand at the top of this file."""
+    total = surfaces[0]
+    slope = _slope(build, total.normal) if len(surfaces) > 1 else None
+    for other in surfaces[1:]:
+        free = build.math(
+            "MULTIPLY",
+            build.math("SUBTRACT", 1.0, total.foam),
+            build.math("SUBTRACT", 1.0, other.foam),
+        )
+        slope = build.vector("ADD", slope, _slope(build, other.normal))
+        total = _Surface(
+            displacement=build.vector("ADD", total.displacement, other.displacement),
+            velocity=build.vector("ADD", total.velocity, other.velocity),
+            normal=total.normal,
+            foam=build.math("SUBTRACT", 1.0, free),
+            cusp=build.math("ADD", total.cusp, other.cusp),
+            has_velocity=build.logic("OR", total.has_velocity, other.has_velocity),
+            has_normal=build.logic("OR", total.has_normal, other.has_normal),
+            has_foam=build.logic("OR", total.has_foam, other.has_foam),
+        )
+    if slope is None:
+        return total
+    upwards = build.vector("ADD", slope, (0.0, 0.0, 1.0))
+    unit = build.add("ShaderNodeVectorMath", {"Vector": upwards}, operation="NORMALIZE")
+    return total._replace(normal=output(unit, "Vector"))
+
+
+def _slope(build: Builder, normal: Socket) -> Socket:
+    """n_xy / n_z, and 0."""
+    parts = build.add("ShaderNodeSeparateXYZ", {"Vector": normal})
+    held = build.math("MAXIMUM", output(parts, "Z"), _LEAST_UPWARDS)
+    flat = build.vector("MULTIPLY", normal, (1.0, 1.0, 0.0))
+    return build.vector("DIVIDE", flat, held)
+
+
+def _written(build: Builder, geometry: Socket, surface: _Surface) -> Socket:
+    """The geometry with the surface on it. What has no map is left out."""
+    result = build.store(geometry, DISPLACEMENT, surface.displacement, "FLOAT_VECTOR")
+    moving = build.store(result, VELOCITY, surface.velocity, "FLOAT_VECTOR")
+    result = build.switch("GEOMETRY", surface.has_velocity, result, moving)
+    foamy = build.store(build.store(result, FOAM, surface.foam, "FLOAT"), CUSP, surface.cusp, "FLOAT")
+    result = build.switch("GEOMETRY", surface.has_foam, result, foamy)
+    smooth = build.change("GeometryNodeSetShadeSmooth", result)  # flat faces have normals of their own
+    shaded = build.change(
+        "GeometryNodeSetMeshNormal", smooth, {"Custom Normal": surface.normal}, mode="FREE", domain="POINT"
+    )
+    return build.switch("GEOMETRY", surface.has_normal, result, shaded)
+
+
+#: every kind of group that an ocean's modifiers can hold
+KINDS = (
+    GRID,
+    SHOWN_FRAME,
+    PATCH,
+    WARNINGS,
+    *(ocean_group(patches) for patches in range(1, MOST_PATCHES + 1)),
+)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A node group that reads the maps of one patch of sea at a place and a frame."""
+
+from __future__ import annotations
+
+import bpy
+
+from .building import Builder, Plug, Socket, output
+from .names import MAP_INPUTS
+from .versioned import GroupKind
+
+#: the images' inputs: name, socket type, default, description
+IMAGE_INPUTS = (
+    ("Displacement", "NodeSocketImage", None, "Displacement in metres: red x, green y, blue z"),
+    ("Foam", "NodeSocketImage", None, "Red foam from 0 to 1, green how far the surface is squeezed"),
+    ("Normal", "NodeSocketImage", None, "Normals of the surface in object space"),
+    ("Velocity", "NodeSocketImage", None, "Velocity in metres per second"),
+)
+
+#: those that make Blender units of metres
+SCALE_INPUTS = (
+    ("Scale", "NodeSocketFloat", 1.0, "Blender units in a metre"),
+    (
+        "Velocity Scale", "NodeSocketFloat", 1.0,
+        "Blender units per second of the scene in a metre per second of the velocity image",
+    ),
+)  # fmt: skip
+
+_OUTPUTS = (
+    Plug("Displacement", "NodeSocketVector", None, "Blender units"),
+    Plug("Velocity", "NodeSocketVector", None, "Blender units per second"),
+    Plug("Normal", "NodeSocketVector", None, "Unit length; upwards where there is no image"),
+    Plug("Foam", "NodeSocketFloat", None, "From 0 to 1"),
+    Plug("Cusp", "NodeSocketFloat", None, "How far the surface is squeezed"),
+    *(
+        Plug(f"Has {name}", "NodeSocketBool", None, "Whether the image has a file for the frame")
+        for name in MAP_INPUTS.values()
+    ),
+)
+
+
+def _build(tree: bpy.types.NodeTree) -> None:
+    inputs = (
+        *IMAGE_INPUTS,
+        ("Coordinates", "NodeSocketVector", None, "Texture coordinates: 0 to 1 is one patch"),
+        ("Frame", "NodeSocketInt", 1, "File of the image sequences"),
+        *SCALE_INPUTS,
+    )
+    build = Builder(tree, inputs, _OUTPUTS)
+    texels = {name: _texel(build, name) for name in MAP_INPUTS.values()}
+    has = {name: _has_texels(build, name) for name in MAP_INPUTS.values()}
+    foam = build.add("ShaderNodeSeparateXYZ", {"Vector": texels["Foam"]})
+    unit = build.add("ShaderNodeVectorMath", {"Vector": texels["Normal"]}, operation="NORMALIZE")
+    build.finish_with(
+        {
+            "Displacement": build.scaled(texels["Displacement"], build.given("Scale")),
+            "Velocity": build.scaled(texels["Velocity"], build.given("Velocity Scale")),
+            "Normal": build.switch("VECTOR", has["Normal"], (0.0, 0.0, 1.0), output(unit, "Vector")),
+            "Foam": output(foam, "X"),
+            "Cusp": output(foam, "Y"),
+            **{f"Has {name}": value for name, value in has.items()},
+        }
+    )
+
+
+def _texel(build: Builder, name: str) -> Socket:
+    """What the image says, bilinear between texel centres; zero without an image."""
+    texture = build.add(
+        "GeometryNodeImageTexture",
+        {
+            "Image": build.given(name),
+            "Vector": build.given("Coordinates"),
+            "Frame": build.given("Frame"),
+        },
+        interpolation="Linear",
+        extension="REPEAT",
+    )
+    return output(texture, "Color")
+
+
+def _has_texels(build: Builder, name: str) -> Socket:
+    """Whether there is an image and its file can be read: otherwise it has no width."""
+    information = {"Image": build.given(name), "Frame": build.given("Frame")}
+    width = output(build.add("GeometryNodeImageInfo", information), "Width")
+    return build.compare("GREATER_THAN", width, 0)
+
+
+PATCH = GroupKind("Ocean Tweak Patch", 1, _build)

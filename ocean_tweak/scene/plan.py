@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an ocean needs, from its settings: the seas and grids of viewport and render."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from fractions import Fraction
+
+import bpy
+
+from ..core import OceanParameters
+from ..core.memory import physical_memory
+from .grid_mesh import Grid
+from .maps import wanted_maps
+from .settings import OceanObjectError, OceanSettings
+from .units import frame_rate, metres_per_unit
+
+#: samples along each side of the surface that is shown while a parameter is dragged
+COARSE = 128
+#: samples along each side at which foam is made for a viewport whose render makes its own
+VIEWPORT_FOAM = 128
+_LEAST_SAMPLES = 16
+# bytes that a vertex of a grid with all its attributes takes, counting one copy for the evaluation
+_VERTEX_BYTES = 200
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What an ocean needs.
+
+    parameters : of the render
+    metres : in a Blender unit
+    viewport, render : mesh and samples
+    maps : those that are asked for
+    """
+
+    parameters: OceanParameters
+    metres: Fraction
+    viewport: Grid
+    render: Grid
+    maps: tuple[str, ...]
+
+    @property
+    def has_own_render(self) -> bool:
+        """Whether a render shows another surface than the viewport."""
+        return self.render != self.viewport
+
+    @property
+    def scale(self) -> float:
+        """Blender units in a metre."""
+        return float(1 / self.metres)
+
+    def viewport_sea(self, coarse: bool = False) -> OceanParameters:
+        """The sea that the viewport shows; coarse, one of few samples."""
+        samples = self.viewport.samples
+        parameters = self.parameters.replace(resolution=min(COARSE, samples) if coarse else samples)
+        if not self.has_own_render:
+            return parameters
+        foam = parameters.foam
+        most = min(foam.resolution or parameters.resolution, VIEWPORT_FOAM)
+        return parameters.replace(foam=dataclasses.replace(foam, resolution=most))
+
+
+def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
+    """What the settings ask for.
+
+    Raises ParameterError for settings that are no sea, OceanObjectError for a grid too large.
+    """
+    parameters, metres = settings.to_parameters(scene), metres_per_unit(scene)
+    size = float(Fraction(parameters.domain_size) / metres)
+    # an even number, as the core wants it
+    most = max(settings.viewport_resolution // 2 * 2, _LEAST_SAMPLES)
+    if settings.source == "LIVE":
+        render, view = parameters.resolution, min(most, parameters.resolution)
+        quads = view
+    else:
+        # the files have their resolution, the viewport fewer quads to move
+        render = view = settings.sequence_samples
+        quads = min(most, view)
+    fixed, repeats = settings.mesh_resolution, (settings.repeats_x, settings.repeats_y)
+    viewport = Grid(size, fixed or quads, view, repeats)
+    plan = Plan(
+        parameters, metres, viewport, Grid(size, fixed or render, render, repeats), wanted_maps(settings)
+    )
+    for grid in (plan.viewport, plan.render):
+        _check(grid)
+    return plan
+
+
+def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> float:
+    """Blender units per second of the scene in a metre per second of the sea.
+
+    A sequence shows one file a frame, whatever the scene's frame rate: then it plays faster or slower than
+    it was baked.
+    """
+    if settings.source == "LIVE" or not settings.sequence_fps:
+        return plan.scale
+    return float(frame_rate(scene) / Fraction(settings.sequence_fps) / plan.metres)
+
+
+def _check(grid: Grid) -> None:
+    memory, need = physical_memory(), grid.vertices * _VERTEX_BYTES
+    if memory is not None and need > memory:
+        raise OceanObjectError(
+            f"{grid.repeats[0]} x {grid.repeats[1]} repeats of {grid.quads}² quads need "
+            f"{need / 2**30:.0f} GB of memory and this machine has {memory / 2**30:.0f} GB: "
+            "lower the repeats or the resolution"
+        )
