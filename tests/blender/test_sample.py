@@ -10,6 +10,7 @@ import pytest
 from mathutils import Matrix
 
 from .conftest import DOMAIN, SAMPLES
+from .sheets import new_sheet, wave
 
 WAYS = tuple(itertools.product(("NODES", "DISPLACE"), ("LIVE", "SEQUENCE")))
 OUTPUTS = {
@@ -73,34 +74,7 @@ def asker(extension, empty_scene):
 
 @pytest.fixture
 def sheet(empty_scene):
-    """A mesh that keeps the contract of an ocean's, without being one: displacement as given, (n, n, 3)."""
-
-    def make(displacement, size, attributes=(), repeats=(1, 1)):
-        n = len(displacement)
-        wide = np.tile(displacement, (repeats[1], repeats[0], 1))
-        wide = np.concatenate([wide, wide[:1]])
-        wide = np.concatenate([wide, wide[:, :1]], axis=1)
-        rows, columns = wide.shape[:2]
-        rest = np.zeros(wide.shape)
-        rest[..., 0] = np.arange(columns) * size / n
-        rest[..., 1] = (np.arange(rows) * size / n)[:, np.newaxis]
-        first = (np.arange(rows - 1)[:, np.newaxis] * columns + np.arange(columns - 1)).reshape(-1, 1)
-        mesh = bpy.data.meshes.new("Sheet")
-        faces = first + np.array([0, 1, columns + 1, columns])
-        mesh.from_pydata((rest + wide).reshape(-1, 3).tolist(), [], faces.tolist())
-        values = {
-            "displacement": wide.reshape(-1, 3),
-            **{name: f(rest) for name, f in dict(attributes).items()},
-        }
-        for name, value in values.items():
-            is_vector = value.shape[-1] == 3
-            attribute = mesh.attributes.new(name, "FLOAT_VECTOR" if is_vector else "FLOAT", "POINT")
-            attribute.data.foreach_set("vector" if is_vector else "value", value.astype(np.float32).ravel())
-        item = bpy.data.objects.new("Sheet", mesh)
-        empty_scene.collection.objects.link(item)
-        return item
-
-    return make
+    return lambda *arguments: new_sheet(empty_scene, *arguments)
 
 
 def moved(item, location, turn):
@@ -202,11 +176,8 @@ def test_in_centimetres(asker, ocean_object, core, make_parameters, empty_scene)
 
 
 def waves(n, size):
-    """(n, n, 3): one wave along x."""
-    phase = 2.0 * math.pi * np.arange(n) / n
-    field = np.zeros((n, n, 3))
-    field[..., 2] = np.cos(phase) * size / 40.0
-    return field
+    """One wave along x."""
+    return wave(n, 1, size / 40.0)
 
 
 @pytest.mark.parametrize("repeats", [(1, 1), (3, 2)])
