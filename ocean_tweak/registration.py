@@ -11,7 +11,17 @@ from . import cli
 from .core.shot import Shot
 from .scene import handlers
 from .scene.settings import all_oceans, settings_of
-from .ui import operators, panels, preset_operators, properties, sea_operators
+from .ui import (
+    float_operators,
+    float_panel,
+    node_operators,
+    operators,
+    panels,
+    preset_operators,
+    properties,
+    scene_operators,
+    sea_operators,
+)
 
 CLASSES = (
     *properties.CLASSES,
@@ -19,6 +29,10 @@ CLASSES = (
     *preset_operators.CLASSES,
     *sea_operators.CLASSES,
     *panels.CLASSES,
+    *float_operators.CLASSES,
+    *float_panel.CLASSES,
+    *node_operators.CLASSES,
+    *scene_operators.CLASSES,
 )
 
 _COMMAND = "ocean_tweak"
@@ -57,6 +71,9 @@ def register(package: str | None = None) -> None:
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
+    bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
+    bpy.types.NODE_MT_add.append(node_operators.draw_add_menu)
+    bpy.types.VIEW3D_MT_mesh_add.append(scene_operators.draw_add_menu)
     handlers.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
@@ -67,6 +84,9 @@ def unregister() -> None:
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
     handlers.unregister()
+    bpy.types.VIEW3D_MT_mesh_add.remove(scene_operators.draw_add_menu)
+    bpy.types.NODE_MT_add.remove(node_operators.draw_add_menu)
+    bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):

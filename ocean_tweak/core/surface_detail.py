@@ -54,16 +54,17 @@ def foam_lace(resolution: int, seed: int = 1) -> Array:
 def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:
     """How far from the wall to the next cell a point is, about 0…1: a periodic Worley (1996) pattern."""
     column, row = np.floor(x * cells), np.floor(y * cells)
-    distances = []
+    nearest, next_nearest = (np.full(x.shape, np.inf) for _ in range(2))
     for shift_y in (-1, 0, 1):
         for shift_x in (-1, 0, 1):
             of_x, of_y = column + shift_x, row + shift_y
             corner_x, corner_y = np.mod(of_x, cells), np.mod(of_y, cells)
             point_x = of_x + _uniform(corner_x, corner_y, seed, 0)
             point_y = of_y + _uniform(corner_x, corner_y, seed, 1)
-            distances.append(np.hypot(x * cells - point_x, y * cells - point_y))
-    nearest = np.sort(np.stack(distances), axis=0)[:2]
-    return np.asarray(nearest[1] - nearest[0])
+            distance = np.hypot(x * cells - point_x, y * cells - point_y)
+            next_nearest = np.minimum(next_nearest, np.maximum(nearest, distance))
+            nearest = np.minimum(nearest, distance)
+    return np.asarray(next_nearest - nearest)
 
 
 def _smooth_noise(resolution: int, seed: int) -> Array:

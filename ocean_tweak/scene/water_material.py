@@ -118,6 +118,17 @@ def assign(item: bpy.types.Object, material: bpy.types.Material) -> None:
         item.data.materials.append(material)
 
 
+def set_air(material: bpy.types.Material, visibility: float, haze: tuple[float, float, float]) -> None:
+    """Put haze between camera and water: its visibility in m and its radiance."""
+    inputs = _group(material).inputs
+    inputs["Visibility"].default_value = visibility
+    inputs["Haze Color"].default_value = (*haze, 1.0)
+
+
+def _group(material: bpy.types.Material) -> bpy.types.Node:
+    return next(node for node in material.node_tree.nodes if node.type == "GROUP")
+
+
 def use_normal_image(
     material: bpy.types.Material, image: bpy.types.Image, frames: tuple[int, int] | None = None
 ) -> None:
@@ -126,7 +137,7 @@ def use_normal_image(
     frames : first and last file of a sequence
     """
     shade = Shading.on(material.node_tree)
-    group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+    group = _group(material)
     vector = shade.attribute(TEXTURE_COORDINATES).outputs["Vector"]
     texture = shade.node("ShaderNodeTexImage", {"Vector": vector}, image=image, extension="REPEAT")
     if frames is not None:
@@ -146,6 +157,8 @@ def _fill(material: bpy.types.Material, values: Mapping[str, object]) -> None:
     group = shade.node("ShaderNodeGroup", {"Time": seconds.outputs[0], **values}, node_tree=node_group(WATER))
     shown = shade.node("ShaderNodeOutputMaterial")
     shade.tree.links.new(group.outputs["Surface"], shown.inputs["Surface"])
+    # or Cycles takes the haze for a lamp and sorts millions of triangles
+    material.cycles.emission_sampling = "NONE"
     material.diffuse_color = (0.02, 0.08, 0.12, 1.0)
 
 

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything around an ocean that makes a picture: horizon, sky, sun, camera, render settings.
+
+What a scene has already stays, unless the caller says otherwise.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import Ocean, OceanParameters, Timing
+from ..nodes.horizon import HORIZON
+from ..nodes.modifier_inputs import set_input
+from ..nodes.versioned import node_group
+from . import ocean_object, water_material
+from .buoy import DIAMETER, new_buoy
+from .floating import Ride, float_on
+from .moods import MOODS, VIEW, Mood
+from .settings import VIEWPORT_RESOLUTION
+from .sky import new_sun, new_world
+from .units import frame_rate, metres_per_unit
+
+_LENS = 35.0  # mm
+_FAR = 30e3  # m, beyond the horizon of any camera on a ship
+_FRAMES = 240
+_WORLD_GREY = 0.0508761  # of a new file's world
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What may be changed in a scene that has it already.
+
+    engine : "CYCLES" or "EEVEE"
+    camera, world : whether the scene gets new ones where it has its own
+    buoy : whether one floats before the camera
+    """
+
+    engine: str = "CYCLES"
+    camera: bool = False
+    world: bool = False
+    buoy: bool = True
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a scene got.
+
+    kept : what it had and kept, in words
+    """
+
+    ocean: bpy.types.Object
+    camera: bpy.types.Object
+    kept: tuple[str, ...]
+
+
+def build(
+    scene: bpy.types.Scene, mood: str, wishes: Wishes, collection: bpy.types.Collection | None = None
+) -> Made:
+    """Make the sea of a mood around the scene's 3D cursor, with all that makes a picture of it.
+
+    Raises ValueError for an unknown mood, and what `ocean_object.add` raises; then nothing is made.
+    """
+    if mood not in MOODS:
+        raise ValueError(f"mood = {mood!r}: must be one of {', '.join(MOODS)}")
+    chosen, target = MOODS[mood], collection or scene.collection
+    is_empty = not scene.objects
+    parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
+    ocean = _add_ocean(scene, parameters, target)
+    material = water_material.water_material(chosen.water)
+    water_material.set_air(material, chosen.visibility, chosen.sky().haze)
+    water_material.assign(ocean, material)
+    water_material.describe(ocean, parameters, scene)
+    add_horizon(ocean, parameters, scene, target, chosen.rings)
+    place = camera_place(chosen, parameters)
+    camera = new_camera(chosen, place, ocean, scene)
+    target.objects.link(camera)
+    kept = _set_up(scene, chosen, wishes, camera, target, is_empty)
+    if wishes.buoy:
+        _add_buoy(scene, chosen, place, ocean, target)
+    return Made(ocean, camera, kept)
+
+
+def _add_ocean(
+    scene: bpy.types.Scene, parameters: OceanParameters, collection: bpy.types.Collection
+) -> bpy.types.Object:
+    ocean = ocean_object.add(
+        scene, parameters, collection=collection, viewport_resolution=VIEWPORT_RESOLUTION
+    )
+    half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))
+    ocean.location = scene.cursor.location
+    ocean.location.x -= half
+    ocean.location.y -= half
+    return ocean
+
+
+def add_horizon(
+    ocean: bpy.types.Object,
+    parameters: OceanParameters,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection,
+    rings: int,
+) -> bpy.types.Object:
+    """Carry an ocean on to the horizon; its copies are for renders, a window shows one ring of them.
+
+    rings : of copies around the ocean
+    """
+    name = f"{ocean.name} Horizon"
+    horizon = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    horizon.parent = ocean
+    horizon.hide_select = True
+    collection.objects.link(horizon)
+    water_material.describe_far(horizon, parameters, scene)
+    modifier = horizon.modifiers.new(name, "NODES")
+    modifier.node_group = node_group(HORIZON)
+    for key, value in (
+        ("Ocean", ocean),
+        ("Rings", rings),
+        ("Viewport Rings", 0),
+        ("Far Distance", _FAR / float(metres_per_unit(scene))),
+        ("Material", ocean.material_slots[0].material if ocean.material_slots else None),
+    ):
+        set_input(modifier, key, value)
+    return horizon
+
+
+def camera_place(mood: Mood, parameters: OceanParameters) -> NDArray[np.float64]:
+    """Where a camera sees the highest wave of the first frame before it: x, y and z in m, in the patch."""
+    ocean = Ocean(parameters)
+    elevation = ocean.surface(parameters.timing.time(parameters.timing.start_frame)).displacement[..., 2]
+    height = ocean.statistics().seed.significant_wave_height
+    samples, domain = len(elevation), parameters.domain_size
+    row, column = divmod(int(elevation.argmax()), samples)
+    distance = mood.crest_distance * height
+    place = np.array([column, row]) * domain / samples
+    place = (place - distance * np.array([math.cos(VIEW), math.sin(VIEW)])) % domain
+    x, y = (int(part) % samples for part in place / domain * samples)
+    eye = max(mood.least_eye + mood.eye * height, float(elevation[y, x]) + 0.5 * height + 0.5)
+    return np.array([*place, eye])
+
+
+def new_camera(
+    mood: Mood, place: NDArray[np.float64], ocean: bpy.types.Object, scene: bpy.types.Scene
+) -> bpy.types.Object:
+    """A camera at a place in the patch, in m; in no collection yet."""
+    metres = float(metres_per_unit(scene))
+    data = bpy.data.cameras.new("Ocean Camera")
+    data.lens = _LENS
+    data.clip_start, data.clip_end = 0.1 / metres, 2.0 * _FAR / metres
+    camera = bpy.data.objects.new("Ocean Camera", data)
+    camera.location = np.array(ocean.location) + place / metres
+    camera.rotation_euler = (0.5 * math.pi - mood.tilt, 0.0, VIEW - 0.5 * math.pi)
+    return camera
+
+
+def _add_buoy(
+    scene: bpy.types.Scene,
+    mood: Mood,
+    place: NDArray[np.float64],
+    ocean: bpy.types.Object,
+    collection: bpy.types.Collection,
+) -> bpy.types.Object:
+    """A buoy before the camera, a little to the side."""
+    metres = float(metres_per_unit(scene))
+    buoy = new_buoy("Buoy", metres)
+    distance = max(13.0, 2.6 * float(place[2]))
+    aside = -0.27 * distance
+    forward = np.array([math.cos(VIEW), math.sin(VIEW), 0.0])
+    right = np.array([math.sin(VIEW), -math.cos(VIEW), 0.0])
+    offset = np.array([place[0], place[1], 0.0]) + distance * forward + aside * right
+    buoy.location = np.array(ocean.location) + offset / metres
+    collection.objects.link(buoy)
+    scene.view_layers.update()
+    float_on(buoy, ocean, scene, Ride(waterline=DIAMETER / metres, tilt=0.8))
+    return buoy
+
+
+def _set_up(
+    scene: bpy.types.Scene,
+    mood: Mood,
+    wishes: Wishes,
+    camera: bpy.types.Object,
+    collection: bpy.types.Collection,
+    is_empty: bool,
+) -> tuple[str, ...]:
+    """Sky, camera and settings, where the scene has none or they are wished for; says what was kept."""
+    kept = []
+    if wishes.camera or scene.camera is None:
+        scene.camera = camera
+    else:
+        kept.append(f"camera {scene.camera.name}")
+    if wishes.world or is_plain(scene.world):
+        sky = mood.sky()
+        scene.world = new_world(f"{mood.label} Sky", sky)
+        collection.objects.link(new_sun("Ocean Sun", sky))
+    else:
+        kept.append(f"world {scene.world.name}")
+    set_engine(scene, wishes.engine)
+    scene.render.use_motion_blur = True
+    if is_empty:
+        scene.frame_end = scene.frame_start + _FRAMES - 1
+        with contextlib.suppress(TypeError):  # a studio's OCIO configuration may lack these
+            scene.view_settings.view_transform = "AgX"
+            scene.view_settings.look = "AgX - Medium High Contrast"
+    else:
+        kept.append("frame range and color management")
+    return tuple(kept)
+
+
+def is_plain(world: bpy.types.World | None) -> bool:
+    """Whether there is no world, or only the grey one of a new file."""
+    if world is None:
+        return True
+    if world.library is not None or world.node_tree is None:
+        return False
+    backgrounds = [node for node in world.node_tree.nodes if node.type == "BACKGROUND"]
+    if len(world.node_tree.nodes) != 2 or len(backgrounds) != 1:
+        return False
+    colour = backgrounds[0].inputs["Color"].default_value
+    return all(abs(part - _WORLD_GREY) < 1e-4 for part in colour[:3])
+
+
+def set_engine(scene: bpy.types.Scene, engine: str) -> None:
+    """Choose "CYCLES" or "EEVEE", by the name that this Blender has for it."""
+    names = {"CYCLES": ("CYCLES",), "EEVEE": ("BLENDER_EEVEE", "BLENDER_EEVEE_NEXT")}[engine]
+    for name in names:
+        try:
+            scene.render.engine = name
+        except TypeError:  # the name of another version
+            continue
+        break
+    if engine == "EEVEE":
+        scene.eevee.use_raytracing = True
