@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import os
+import sys
+
 from ..core import ParameterError
 from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..export.exr import ExrError
 from .arguments import make_parser
-from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, complain
+from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, complain, message_of, remedy_of
 from .seas import SceneOceans, Sea
 
 __all__ = ["SceneOceans", "Sea", "main"]
@@ -23,6 +28,7 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
     argv : the arguments after the program's name; those of the process by default
     scene_oceans : inside Blender, gives the file's oceans by object name
     """
+    _print_anything()
     try:
         arguments = make_parser(in_blender=scene_oceans is not None).parse_args(argv)
     except SystemExit as end:  # argparse has printed the reason; Blender wants the code as a result
@@ -30,19 +36,27 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
     try:
         return int(arguments.run(arguments, scene_oceans))
     except (*_EXPECTED, KeyboardInterrupt) as error:
-        message = _message(error)
+        message = f"{message_of(error)}{remedy_of(error)}"
         if getattr(arguments, "openjd", False):
-            print(f"openjd_fail: {message}", flush=True)
+            with contextlib.suppress(BrokenPipeError):
+                print(f"openjd_fail: {message}", flush=True)
         complain(message)
         return WRONG_ARGUMENTS if isinstance(error, (ParameterError, UsageError)) else FAILED
+    finally:
+        _flush()
 
 
-def _message(error: BaseException) -> str:
-    """What is wrong, in a line."""
-    if isinstance(error, KeyboardInterrupt):
-        return "interrupted; the frames written so far are whole"
-    if isinstance(error, OSError) and error.filename:
-        return f"{error.filename}: {error.strerror}"
-    if isinstance(error, MemoryError) and not str(error):
-        return "there is not enough memory: lower the resolution"
-    return str(error)
+def _print_anything() -> None:
+    """Where the terminal's alphabet lacks a letter, print its number instead of failing."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _flush() -> None:
+    """Where nobody reads what was printed, the interpreter must not stumble over it at its end."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

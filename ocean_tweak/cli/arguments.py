@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from ..core.frames import Frame, parse_frames
 from ..core.presets import built_in
 from ..core.validation import ParameterError
 from ..export.exr import COMPRESSION_ERROR, MAPS
-from . import baking, checking, info
+from . import baking, checking, info, job
 from .seas import chosen_seas
 from .wanted_bake import CACHE_VARIABLE
 
@@ -32,6 +31,7 @@ def make_parser(in_blender: bool) -> argparse.ArgumentParser:
     _add_resume(commands)
     _add_verify(commands, in_blender)
     _add_clean(commands)
+    _add_job(commands, in_blender)
     return parser
 
 
@@ -128,7 +128,67 @@ def _add_verify(commands: _Commands, in_blender: bool) -> None:
 def _add_clean(commands: _Commands) -> None:
     parser = _command(commands, "clean", "delete the frames of a bake, and nothing else")
     _add_folder_arguments(parser)
+    _add_take_over(parser)
     parser.set_defaults(run=lambda arguments, _oceans: checking.clean(arguments))
+
+
+def _add_job(commands: _Commands, in_blender: bool) -> None:
+    parser = _command(commands, "job", "write a job for a render farm: bake, verify and render a shot")
+    _add_sea_arguments(parser, in_blender)
+    _add_frames(parser, in_blender)
+    _add_files_arguments(parser)
+    _add_cache(parser, in_blender, "--cache")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        required=True,
+        help="folder for the job, on a disk that the farm reads",
+    )
+    parser.add_argument(
+        "--form", choices=tuple(job.FORMS), default="openjd",
+        help="openjd (default): Open Job Description, as AWS Deadline Cloud takes it; flamenco: a job type",
+    )  # fmt: skip
+    parser.add_argument(
+        "--chunk", type=_count, metavar="N", default=25, help="frames in a task of baking; 25 by default"
+    )
+    parser.add_argument(
+        "--plain-ranges", action="store_true",
+        help="write the tasks' frames out, for a farm that does not know the extension TASK_CHUNKING",
+    )  # fmt: skip
+    _add_program_arguments(parser)
+    _add_render_arguments(parser)
+    parser.set_defaults(run=lambda arguments, oceans: job.job(arguments, chosen_seas(arguments, oceans)))
+
+
+def _add_program_arguments(parser: argparse.ArgumentParser) -> None:
+    programs = parser.add_argument_group("programs on the farm")
+    programs.add_argument(
+        "--bake-with", choices=tuple(job.BAKERS), default="python",
+        help="what bakes: a Python that has Ocean Tweak (default), or Blender with the extension",
+    )  # fmt: skip
+    programs.add_argument("--python", metavar="COMMAND", default=job.PYTHON, help=f"{job.PYTHON} by default")
+    programs.add_argument("--blender", metavar="COMMAND", default="blender", help="blender by default")
+    programs.add_argument(
+        "--workers", type=_workers, metavar="N", help="processes of a task that bakes; by default one a core"
+    )
+
+
+def _add_render_arguments(parser: argparse.ArgumentParser) -> None:
+    rendering = parser.add_argument_group("rendering")
+    rendering.add_argument(
+        "--blend", type=Path, metavar="FILE.blend", help="render this file from the bake; not without it"
+    )
+    rendering.add_argument(
+        "--pictures", type=Path, metavar="DIR", help="by default a folder in the job's own"
+    )
+    rendering.add_argument(
+        "--render-chunk",
+        type=_count,
+        metavar="N",
+        default=5,
+        help="frames in a task of rendering; 5 by default",
+    )
 
 
 def _add_folder_arguments(parser: argparse.ArgumentParser) -> None:
@@ -144,19 +204,24 @@ def _add_wanted_frames(parser: argparse.ArgumentParser) -> None:
 
 def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--workers", type=_workers, metavar="N", default=os.cpu_count() or 1,
-        help="processes that share the frames, by default one a core; one that is killed is started again",
+        "--workers", type=_workers, metavar="N",
+        help="processes that share the frames, by default one a core as far as memory allows; "
+        "one that is killed is started again",
     )  # fmt: skip
     parser.add_argument(
         "--wait", action="store_true", help="wait for others that bake the same frames, instead of refusing"
     )
-    parser.add_argument(
-        "--take-over", action="store_true", help="remove the locks of others that died baking the same frames"
-    )
+    _add_take_over(parser)
     parser.add_argument(
         "--estimate", action="store_true", help="only say how many frames, bytes and seconds it will take"
     )
     _add_openjd(parser)
+
+
+def _add_take_over(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--take-over", action="store_true", help="remove the locks of others that died baking the same frames"
+    )
 
 
 def _add_openjd(parser: argparse.ArgumentParser) -> None:
@@ -205,6 +270,12 @@ def _uid(text: str) -> str:
     if not re.fullmatch("[0-9A-Za-z]{1,32}", text):
         raise argparse.ArgumentTypeError(f"{text!r} must be 1 to 32 letters and digits")
     return text
+
+
+def _count(text: str) -> int:
+    if not (text.isdecimal() and 1 <= int(text) <= 1_000_000):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1")
+    return int(text)
 
 
 def _workers(text: str) -> int:

@@ -5,27 +5,24 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from ..core.bake import BakedFrame
 from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames
+from ..core.memory import check_memory, memory_need, physical_memory
 from ..export.cache.estimate import Estimate, estimate, readable_bytes
-from ..export.cache.job import (
-    CacheError,
-    Job,
-    open_folder,
-    read_job,
-    recovered_job,
-    write_job,
-)
-from ..export.cache.locks import claimed
+from ..export.cache.job import JOB_FILE, CacheError, Job, open_folder, read_job, recovered_job, write_job
+from ..export.cache.locks import Held, claimed
 from ..export.cache.records import CacheSink, Finding, remove_leftovers, unfinished
+from ..export.exr import ExrError
 from ..export.files import writable_folder
 from .checking import wanted_frames
-from .outcome import DONE, FAILED, UsageError, complain
+from .outcome import DONE, FAILED, UsageError, complain, message_of, remedy_of
 from .progress import Progress, duration
 from .seas import Sea
 from .stopping import stop_requested
@@ -34,9 +31,12 @@ from .workers import make_in_processes
 
 
 def bake(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
-    """Bake each sea into its own folder of the cache."""
-    jobs = jobs_of(arguments, seas)
-    return max(_bake_sea(arguments, cache_of(arguments, seas[name]), job) for name, job in jobs.items())
+    """Bake each sea into its own folder of the cache; after one that fails or is stopped, no more."""
+    for name, job in jobs_of(arguments, seas).items():
+        code = _bake_sea(arguments, cache_of(arguments, seas[name]), job)
+        if code != DONE:
+            return code
+    return DONE
 
 
 def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job) -> int:
@@ -56,9 +56,10 @@ def resume(arguments: argparse.Namespace) -> int:
     folder = arguments.folder
     try:
         job = read_job(folder)
-    except CacheError:
+    except CacheError as error:
         job = recovered_job(folder)
         write_job(folder, job)
+        complain(f"{error.args[0].partition(': run')[0]}; the job is written again from what the images tell")
     frames = wanted_frames(folder, job, arguments.frames)
     job.shot.check(frames)
     return _make(arguments, folder, job, frames)
@@ -69,44 +70,97 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
     progress = Progress(job.name, arguments.json, arguments.openjd)
     with (
         stop_requested() as stop,
-        claimed(folder, tuple(frames), arguments.wait, arguments.take_over, stop.is_set),
+        claimed(
+            folder, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark
+        ) as hold,
     ):
-        left = list(unfinished(folder, job, frames))
-        needed = estimate(folder, job, [finding.frame for finding in left])
-        _announce(progress, folder, job, frames, left, needed, arguments.workers)
+        left = list(unfinished(folder, job, frames, stop.is_set))
+        todo = tuple(finding.frame for finding in left)
+        workers = _worker_count(arguments.workers, job, todo)
+        needed = estimate(folder, job, todo)
+        _announce(progress, folder, job, frames, left, needed, workers)
         needed.check(folder)
-        if arguments.estimate or not left:
+        if arguments.estimate:
             return DONE
         progress.begin(len(left))
-        todo = tuple(finding.frame for finding in left)
-        remove_leftovers(folder, job, todo)
-        try:
-            for baked in _frames(folder, job, todo, arguments.workers, stop.is_set):
+        with _telling_how_to_go_on(folder):
+            _make_frames(progress, folder, job, todo, workers, lambda: stop.is_set() or hold.is_lost())
+            if hold.is_lost():
+                raise Held(f"{folder}: the lock is gone: somebody took it over, or the folder was removed")
+    if progress.is_complete:
+        return DONE
+    progress.fail("stopped")
+    complain(f"stopped after a whole frame; {_go_on(folder)}")
+    return FAILED
+
+
+def _make_frames(
+    progress: Progress,
+    folder: Path,
+    job: Job,
+    frames: tuple[Frame, ...],
+    workers: int,
+    stopped: Callable[[], bool],
+) -> None:
+    remove_leftovers(folder, job, frames)
+    try:
+        with closing(_frames(folder, job, frames, workers, stopped)) as making:
+            for baked in making:
                 progress.frame(baked)
-        except BaseException:
-            progress.end()
-            complain(f"the frames written so far are whole; go on with: resume {folder}")
-            raise
+    finally:
         progress.end()
-    if stop.is_set():
-        progress.fail("stopped")
-        complain(f"stopped after a whole frame; go on with: resume {folder}")
-        return FAILED
-    return DONE
 
 
 def _frames(
     folder: Path, job: Job, frames: tuple[Frame, ...], workers: int, stopped: Callable[[], bool]
-) -> Iterator[BakedFrame]:
-    if min(workers, len(frames)) > 1:
+) -> Generator[BakedFrame, None, None]:
+    if workers > 1:
         yield from make_in_processes(folder, job, frames, workers, stopped)
         return
-    making = make_frames(job.shot, frames, CacheSink(folder, job))
-    for baked in making:
-        yield baked
-        if stopped():
-            making.close()  # finishes what is under way
-            return
+    with closing(make_frames(job.shot, frames, CacheSink(folder, job))) as making:
+        while not stopped():  # what is under way is finished
+            baked = next(making, None)
+            if baked is None:
+                return
+            yield baked
+
+
+def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:
+    """Processes: as many as were asked for, or as cores and memory allow. Raises MemoryError."""
+    most = max(len(frames), 1)
+    need = memory_need(job.shot.parameters, job.outputs).peak()
+    if wanted is not None:
+        workers = min(wanted, most)
+        check_memory(
+            workers * need, f"Baking {job.shot.parameters.resolution}² samples with {workers} workers"
+        )
+        return workers
+    memory = physical_memory()
+    fitting = most if memory is None else max(1, memory // need)
+    return min(_cores(), fitting, most)
+
+
+def _cores() -> int:
+    """Those that this process may use: a farm gives it a part of a machine."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@contextmanager
+def _telling_how_to_go_on(folder: Path) -> Iterator[None]:
+    """Adds the remedy to what ended a bake, in the same line."""
+    try:
+        yield
+    except (OSError, ExrError, CacheError, Held, MemoryError) as error:
+        message = message_of(error).rstrip(".")
+        raise CacheError(f"{message}{remedy_of(error)}; {_go_on(folder)}") from error
+
+
+def _go_on(folder: Path) -> str:
+    if not (folder / JOB_FILE).exists():
+        return "the folder is gone: bake it again"
+    return f"whole frames stay; go on with: resume {shlex.quote(str(folder))}"
 
 
 def _announce(
@@ -120,7 +174,7 @@ def _announce(
 ) -> None:
     reasons = Counter(finding.state.value for finding in left)
     found = ", ".join(f"{count} {state}" for state, count in reasons.items())
-    seconds = needed.seconds / min(workers, max(len(left), 1), os.cpu_count() or 1)
+    seconds = needed.seconds / min(workers, _cores())
     progress.say(
         f"{folder}\n  {len(frames)} frames of {','.join(job.maps)}"
         + (f": {found}" if left else ", all whole")

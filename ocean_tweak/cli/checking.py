@@ -5,27 +5,33 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from ..core.frames import Frame, format_frames
 from ..core.plain_data import to_plain
-from ..export.cache.clean import clean as clean_folder
+from ..export.cache.clean import clean as clean_frames
+from ..export.cache.clean import foreign_images, remove_rest
 from ..export.cache.estimate import readable_bytes
-from ..export.cache.job import LOCKS, Job, read_job
-from ..export.cache.locks import Held, claims
-from ..export.cache.records import State, recorded_frames
+from ..export.cache.job import CacheError, Job, is_bake, read_job
+from ..export.cache.locks import claimed
+from ..export.cache.records import State, asked_frames, recorded_frames
 from ..export.cache.verify import verify as verify_frames
 from .outcome import DONE, FAILED, UsageError
 from .progress import Progress
 from .seas import SceneOceans, chosen_seas
+from .stopping import stop_requested
 from .wanted_bake import cache_of, existing_folder, jobs_of
+
+#: names of files in a line
+_MOST_NAMES = 20
 
 
 def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> tuple[Frame, ...]:
     """The frames that a command is about: those given, else all that were asked for or made."""
     if frames is not None:
         return frames
-    known = tuple(sorted({*job.frames, *recorded_frames(folder)}))
+    known = tuple(sorted({*job.frames, *recorded_frames(folder), *asked_frames(folder)}))
     if not known:
         raise UsageError(f"{folder}: holds no frames; say with --frames which ones are meant")
     return known
@@ -49,14 +55,23 @@ def _verify_folder(arguments: argparse.Namespace, folder: Path) -> int:
     progress = Progress(job.name, arguments.json, arguments.openjd)
     progress.begin(len(frames))
     states: Counter[State] = Counter()
-    for frame, state, reason in verify_frames(folder, job, frames):
-        states[state] += 1
-        if state is not State.WHOLE or arguments.json:
-            text = f"frame {to_plain(frame)} is {state.value}: {reason}"
-            progress.say(text, frame=to_plain(frame), state=state.value, reason=reason)
-        progress.count("verified")
+    with stop_requested() as stop:
+        for frame, state, reason in verify_frames(folder, job, frames):
+            states[state] += 1
+            if state is not State.WHOLE or arguments.json:
+                label = format_frames((frame,))
+                text = f"frame {label} is {state.value}: {reason}"
+                progress.say(text, frame=to_plain(frame), state=state.value, reason=reason)
+            progress.count("verified")
+            if stop.is_set() and not progress.is_complete:
+                break
+    foreign = foreign_images(folder)
+    if foreign:
+        progress.remark(f"no record lists {_first(foreign)}")
     counts = {state.value: states[state] for state in State if states[state]}
     summary = ", ".join(f"{count} {name}" for name, count in counts.items())
+    if not progress.is_complete:
+        summary += "; stopped before the rest was read"
     progress.say(f"{len(frames)} frames: {summary}", frames=format_frames(frames), **counts)
     if states[State.WHOLE] == len(frames):
         return DONE
@@ -64,17 +79,29 @@ def _verify_folder(arguments: argparse.Namespace, folder: Path) -> int:
     return FAILED
 
 
+def _first(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    return ", ".join(names[:_MOST_NAMES]) + more
+
+
 def clean(arguments: argparse.Namespace) -> int:
     """Delete frames, as far as nobody is baking them."""
     folder, frames = arguments.folder, arguments.frames
     if not folder.is_dir():
         raise UsageError(f"{folder}: is no folder")
-    for claim in claims(folder / LOCKS):
-        if frames is None or claim.frames.intersection(frames):
-            raise Held(f"{folder}: frames {format_frames(claim.frames)} are being baked by {claim.holder}")
-    cleaned = clean_folder(folder, frames)
+    if not is_bake(folder.resolve()):
+        raise CacheError(f"{folder}: is no folder of a bake, so nothing in it is deleted")
+    chosen = recorded_frames(folder) if frames is None else frames
+    with claimed(folder, chosen, take_over=arguments.take_over):
+        cleaned = clean_frames(folder, chosen)
+    foreign = remove_rest(folder) if frames is None and not cleaned.left else ()
     lines = [f"{cleaned.files} files deleted, {readable_bytes(cleaned.bytes)}"]
     lines += [f"left {reason}" for reason in cleaned.left]
-    progress = Progress(folder.parent.name, arguments.json)
-    progress.say("\n".join(lines), files=cleaned.files, bytes=cleaned.bytes, left=list(cleaned.left))
+    if foreign:
+        lines.append(f"left what no record lists: {_first(foreign)}")
+    progress = Progress(folder.resolve().parent.name, arguments.json)
+    progress.say(
+        "\n  ".join(lines), files=cleaned.files, bytes=cleaned.bytes,
+        left=list(cleaned.left), foreign=list(foreign),
+    )  # fmt: skip
     return FAILED if cleaned.left else DONE

@@ -3,9 +3,23 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
+
+_NOT_ALLOWED = "give yourself the right to write there, or choose another folder with --out"
+#: what to do about what a system refuses
+_REMEDIES = {
+    errno.ENOSPC: "make room on the disk",
+    errno.EDQUOT: "make room, or have the quota raised",
+    errno.EFBIG: "the disk or the shell's limits allow no larger file",
+    errno.EACCES: _NOT_ALLOWED,
+    errno.EPERM: _NOT_ALLOWED,
+    errno.EROFS: _NOT_ALLOWED,
+    errno.ENAMETOOLONG: "choose a shorter --name, or a folder with a shorter path",
+    errno.EIO: "the disk or the network failed",
+}
 
 
 class UsageError(ValueError):
@@ -15,3 +29,20 @@ class UsageError(ValueError):
 def complain(message: object) -> None:
     """Say what is wrong, in a line."""
     print(f"ocean_tweak: {message}", file=sys.stderr, flush=True)
+
+
+def message_of(error: BaseException) -> str:
+    """What is wrong, in a line."""
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted; the frames written so far are whole"
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}"
+    if isinstance(error, MemoryError) and not str(error):
+        return "there is not enough memory: lower the resolution"
+    return " ".join(str(error).split())
+
+
+def remedy_of(error: BaseException) -> str:
+    """What to do about it, with a colon in front; nothing where the message says so itself."""
+    remedy = _REMEDIES.get(error.errno or 0) if isinstance(error, OSError) else None
+    return f": {remedy}" if remedy else ""

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 import time
 from typing import Any, TextIO
 
 from ..core.bake import BakedFrame
-from ..core.frames import frame_label
+from ..core.frames import format_frames
 from ..core.plain_data import to_plain
 
 _BAR = 30
@@ -34,14 +35,26 @@ class Progress:
         self._total = 0
         self._done = 0
         self._started = time.monotonic()
+        self._drawn = 0
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all frames that were to be made are."""
+        return self._done >= self._total
 
     def say(self, text: str, **data: Any) -> None:
         """A line of text, or its data for a machine."""
         self._print(json.dumps({"sea": self.name, **data}) if self.machine else f"{self.name}: {text}")
 
+    def remark(self, text: str) -> None:
+        """A line that says why nothing happens."""
+        self.say(text, remark=text)
+
     def begin(self, total: int) -> None:
         """Frames are made from now on."""
         self._total, self._done, self._started = total, 0, time.monotonic()
+        if total == 0:
+            self.share("nothing is left to do")
 
     def frame(self, baked: BakedFrame) -> None:
         """A frame has been made."""
@@ -50,17 +63,19 @@ class Progress:
             self._draw_bar()
             return
         seconds = round(baked.seconds, 4)
+        label = format_frames((baked.frame,))
         self.say(
-            f"frame {frame_label(baked.frame).lstrip('0') or '0'} ({self._done}/{self._total}) "
+            f"frame {label} ({self._done}/{self._total}) "
             f"{seconds:.2f} s  {', '.join(path.name for path in baked.paths)}",
             frame=to_plain(baked.frame), paths=[str(path) for path in baked.paths], seconds=seconds,
         )  # fmt: skip
-        self.share(f"frame {to_plain(baked.frame)}")
+        self.share(f"frame {label}")
 
     def share(self, status: str) -> None:
         """What part is done, for a farm."""
         if self.openjd:
-            self._print(f"openjd_progress: {100.0 * self._done / max(self._total, 1):.1f}")
+            part = 100.0 * self._done / self._total if self._total else 100.0
+            self._print(f"openjd_progress: {part:.1f}")
             self._print(f"openjd_status: {self.name}: {status} ({self._done}/{self._total})")
 
     def count(self, status: str) -> None:
@@ -75,7 +90,7 @@ class Progress:
 
     def end(self) -> None:
         """No more frames are made."""
-        if self._is_terminal and self._done:
+        if self._drawn:
             self._print("")
 
     def _draw_bar(self) -> None:
@@ -83,8 +98,12 @@ class Progress:
         passed = time.monotonic() - self._started
         left = passed / self._done * (self._total - self._done)
         bar = "#" * filled + "." * (_BAR - filled)
-        self.stream.write(f"\r{self.name}: [{bar}] {self._done}/{self._total}, {duration(left)} left ")
+        # a line that is longer than the terminal would not be drawn over by the next
+        columns = shutil.get_terminal_size().columns - 1
+        line = f"{self._done}/{self._total} [{bar}] {duration(left)} left  {self.name}"[:columns]
+        self.stream.write(f"\r{line:<{self._drawn}}")
         self.stream.flush()
+        self._drawn = len(line)
 
     def _print(self, line: str) -> None:
         print(line, file=self.stream, flush=True)

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Processes that share the frames of a bake. One that is killed is started again for what it left.
 
-A process is `python -m ocean_tweak.cli.workers FOLDER FRAMES`: it makes its frames from what lies in the
-folder, prints a JSON object a frame, and locks nothing: whoever started it holds the lock.
+A process is `python -m ocean_tweak.cli.workers FOLDER`: it reads a JSON line that says which frames, makes
+them from what lies in the folder and prints a JSON line a frame. It locks nothing: whoever started it holds
+the lock. It ends after a frame when its input is closed, as it is when whoever started it is gone.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import queue
@@ -15,17 +17,16 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from fractions import Fraction
 from pathlib import Path
 from typing import IO, Any
 
 from ..core.bake import BakedFrame
 from ..core.bake import bake as make_frames
-from ..core.frames import Frame, as_frame, format_frames, parse_frames
+from ..core.frames import Frame, format_frames, parse_frames
 from ..export.cache.job import CacheError, Job, read_job
 from ..export.cache.records import CacheSink
 from ..export.exr import ExrError
-from .outcome import DONE, FAILED, complain
+from .outcome import DONE, FAILED, message_of
 
 #: how often a process may die before its first frame
 _MOST_DEATHS = 3
@@ -40,14 +41,14 @@ def make_in_processes(
     job : must be that of the folder
     stopped : asked again and again; True lets every process end after its frame
 
-    Raises CacheError with what a process said when it failed, or when it dies again and again.
+    Raises what ended a process, as OSError or CacheError, or CacheError when one dies again and again.
     """
     size = -(-len(frames) // workers)
     events: queue.SimpleQueue[tuple[_Process, dict[str, Any] | None]] = queue.SimpleQueue()
     running = [
-        _Process(folder, frames[start : start + size], events) for start in range(0, len(frames), size)
+        _Process(folder, job, frames[start : start + size], events) for start in range(0, len(frames), size)
     ]
-    problem: CacheError | None = None
+    problem: CacheError | OSError | None = None
     try:
         while running:
             try:
@@ -57,14 +58,16 @@ def make_in_processes(
                     _end(running)
                 continue
             if line is not None:
-                yield process.made(line)
+                baked = process.made(line)
+                if baked is not None:
+                    yield baked
                 continue
             running.remove(process)
             if process.succeeded() or stopped() or problem is not None:
                 continue
             try:
                 running.append(process.again())
-            except CacheError as error:  # the others end after their frame
+            except (CacheError, OSError) as error:  # the others end after their frame
                 problem = error
                 _end(running)
     finally:
@@ -86,30 +89,43 @@ class _Process:
     def __init__(
         self,
         folder: Path,
+        job: Job,
         frames: Sequence[Frame],
         events: queue.SimpleQueue[tuple[_Process, dict[str, Any] | None]],
         deaths: int = 0,
     ) -> None:
         self.folder = folder
+        self.job = job
         self.left = list(frames)
         self._events = events
         self._deaths = deaths
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "ocean_tweak.cli.workers", str(folder), format_frames(frames)],
+            [sys.executable, "-m", "ocean_tweak.cli.workers", str(folder)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            env=_environment(), text=True, encoding="utf-8",
+            env=_environment(), text=True, encoding="utf-8", errors="replace",
         )  # fmt: skip
         self._said: list[str] = []
+        self._problem: CacheError | OSError | None = None
         self._readers = [
             threading.Thread(target=self._read_errors, daemon=True),
             threading.Thread(target=self._read_frames, daemon=True),
         ]
         for reader in self._readers:
             reader.start()
+        # not among the arguments, whose length systems limit
+        order = {"frames": format_frames(frames), "asked": format_frames(job.frames)}
+        with contextlib.suppress(OSError):  # it has ended already, and is asked why
+            assert self._process.stdin is not None
+            self._process.stdin.write(json.dumps(order) + "\n")
+            self._process.stdin.flush()
 
-    def made(self, line: dict[str, Any]) -> BakedFrame:
-        """Take a frame's line."""
-        frame = as_frame(Fraction(line["frame"]))
+    def made(self, line: dict[str, Any]) -> BakedFrame | None:
+        """Take a line: a frame, or None where it is what ended the process."""
+        if "failed" in line:
+            code, path = line["errno"], line["path"]
+            self._problem = OSError(code, os.strerror(code), path) if code else CacheError(line["failed"])
+            return None
+        (frame,) = parse_frames(line["frame"])
         self.left.remove(frame)
         self._deaths = 0
         return BakedFrame(frame, tuple(map(Path, line["paths"])), line["seconds"])
@@ -119,22 +135,25 @@ class _Process:
         return self.wait() == DONE and not self.left
 
     def again(self) -> _Process:
-        """Another process for what is left. Raises CacheError where that does not help."""
+        """Another process for what is left. Raises OSError or CacheError where that does not help."""
         code, said = self.wait(), " ".join(self._said).strip()
-        if code == FAILED:
-            raise CacheError(said or "a process of the bake failed without a word")
+        if self._problem is not None:
+            raise self._problem
+        if code == FAILED:  # Python's own end by an error, which would come again
+            raise CacheError(f"a process of the bake failed: {said or 'without a word'}")
         if self._deaths + 1 >= _MOST_DEATHS:
             raise CacheError(
                 f"a process of the bake ended {_MOST_DEATHS} times with code {code} before it had made "
                 f"frame {self.left[0]}: {said or 'perhaps there is not enough memory; use fewer workers'}"
             )
-        return _Process(self.folder, self.left, self._events, self._deaths + 1)
+        return _Process(self.folder, self.job, self.left, self._events, self._deaths + 1)
 
     def end(self) -> None:
         """Let it end after its frame."""
         stdin = self._process.stdin
         if stdin is not None and not stdin.closed:
-            stdin.close()
+            with contextlib.suppress(OSError):
+                stdin.close()
 
     def wait(self) -> int:
         """Wait until it has ended and all that it said is here. Returns its code."""
@@ -146,9 +165,15 @@ class _Process:
         return code
 
     def _read_frames(self) -> None:
-        for line in _lines(self._process.stdout):
-            self._events.put((self, json.loads(line)))
-        self._events.put((self, None))
+        try:
+            for line in _lines(self._process.stdout):
+                # what was being written when it was killed, or what a library had to say
+                with contextlib.suppress(ValueError):
+                    said = json.loads(line)
+                    if isinstance(said, dict):
+                        self._events.put((self, said))
+        finally:
+            self._events.put((self, None))
 
     def _read_errors(self) -> None:
         for line in _lines(self._process.stderr):
@@ -166,41 +191,59 @@ def _environment() -> dict[str, str]:
     package = Path(__file__).resolve().parents[2]
     path = os.pathsep.join([str(package), *(entry for entry in sys.path if entry)])
     # a process is a worker: threads of its own would only fight with the others'
-    return {**os.environ, "PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    own = {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    return {**os.environ, **own, "PYTHONIOENCODING": "utf-8:backslashreplace"}
 
 
 def main(argv: Sequence[str]) -> int:
-    """Make the frames argv[1] of the folder argv[0]; ends after a frame when stdin is closed."""
+    """Make the frames that stdin tells in the folder argv[0]. Returns the exit code."""
+    ended = threading.Event()
     # Ctrl-C reaches the whole group: whoever started this process decides
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    ended = threading.Event()
-
-    def watch() -> None:
-        sys.stdin.read()
-        ended.set()
-
-    threading.Thread(target=watch, daemon=True).start()
-    folder = Path(argv[0])
+    signal.signal(signal.SIGTERM, lambda _number, _frame: ended.set())
     try:
-        job = read_job(folder)
-        making = make_frames(job.shot, parse_frames(argv[1]), CacheSink(folder, job))
-        for frame, paths, seconds in making:
-            text = {"frame": str(frame), "paths": [str(path) for path in paths], "seconds": seconds}
-            print(json.dumps(text), flush=True)
-            if ended.is_set():
-                making.close()
-                break
-    except OSError as error:
-        complain(f"{error.filename}: {error.strerror}" if error.filename else error)
-        return FAILED
-    except (ExrError, CacheError, MemoryError) as error:
-        complain(error)
+        order = json.loads(sys.stdin.readline() or "{}")
+        if not order:
+            return DONE  # nobody wants it any more
+        threading.Thread(target=_watch, args=(ended,), daemon=True).start()
+        folder = Path(argv[0])
+        job = read_job(folder, parse_frames(order["asked"]) if order["asked"] else ())
+        _make(folder, job, parse_frames(order["frames"]), ended)
+    except BrokenPipeError:
+        return DONE  # nobody wants to know
+    except (OSError, ExrError, CacheError, MemoryError) as error:
+        code, path = (error.errno, error.filename) if isinstance(error, OSError) else (None, None)
+        _say({"failed": message_of(error), "errno": code, "path": path and str(path)})
         return FAILED
     return DONE
+
+
+def _watch(ended: threading.Event) -> None:
+    sys.stdin.read()
+    ended.set()
+
+
+def _make(folder: Path, job: Job, frames: Sequence[Frame], ended: threading.Event) -> None:
+    with contextlib.closing(make_frames(job.shot, frames, CacheSink(folder, job))) as making:
+        for frame, paths, seconds in making:
+            _say(
+                {
+                    "frame": format_frames((frame,)),
+                    "paths": [str(path) for path in paths],
+                    "seconds": seconds,
+                }
+            )
+            if ended.is_set():
+                return
+
+
+def _say(line: dict[str, Any]) -> None:
+    print(json.dumps(line), flush=True)
 
 
 if __name__ == "__main__":
     code = main(sys.argv[1:])
     # the thread that waits for stdin would hold up the interpreter's own way out
-    sys.stdout.flush()
+    with contextlib.suppress(OSError):
+        sys.stdout.flush()
     os._exit(code)

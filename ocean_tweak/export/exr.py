@@ -6,12 +6,14 @@ Row 0 of an EXR image is its top row, so arrays [y, x] are written with their ro
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ from ..core.fields import SurfaceFields
 from ..core.frames import Frame, frame_label
 from ..core.parameters import OceanParameters
 from ..core.plain_data import to_plain
+from .exr_layout import is_complete
 from .files import whole_file
 
 FORMAT_VERSION = 1
@@ -27,6 +30,12 @@ METADATA_ATTRIBUTE = "oceanTweak"
 
 #: largest relative error of a stored value, by compression
 COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0, "HTJ2K": 0.0}
+
+#: what a system answers that cannot take a file
+_REFUSALS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EACCES, errno.EROFS, errno.ENOENT, errno.EIO)
+
+#: what damaged images give: wrong bytes, text that is no text, JSON that is none or too deep
+_UNREADABLE = (RuntimeError, KeyError, ValueError, TypeError, OSError, RecursionError)
 
 #: OpenEXR's names where they differ
 _OPENEXR_NAMES = {"NONE": "NO", "HTJ2K": "HTJ2K256"}
@@ -145,33 +154,59 @@ def write_image(
         try:
             openexr.File(header, channels).write(str(beside))
         except RuntimeError as error:
-            raise ExrError(f"{path}: {error}") from error
+            _raise_as_system_error(path, error)
+        if not is_complete(beside):
+            raise ExrError(f"{path}: the disk did not take all of it; perhaps it is full")
 
 
-def read_image(path: Path) -> tuple[NDArray[np.float32], dict[str, Any]]:
+def _raise_as_system_error(path: Path, error: RuntimeError) -> NoReturn:
+    """OpenEXR tells what the system refused as text; as an OSError its remedy can be named."""
+    for code in _REFUSALS:
+        if os.strerror(code) in str(error):
+            raise OSError(code, os.strerror(code), str(path)) from error
+    raise ExrError(f"{path}: {error}") from error
+
+
+def read_image(
+    path: Path, shape: tuple[int, int] | None = None
+) -> tuple[NDArray[np.float32], dict[str, Any]]:
     """The (N, M, 3) array [y, x] and the metadata of an image written by `write_image`.
 
-    Raises ExrError for a file that is damaged or not one of ours.
+    shape : (N, M) that it must have; otherwise its pixels, which may be very many, are not read
+
+    Raises ExrError for a file that is damaged, not one of ours or of another shape.
     """
     openexr = _openexr()
+    metadata, found = _header(path)
+    if shape is not None and found != shape:
+        raise ExrError(f"{path}: has {found[1]} x {found[0]} texels, not {shape[1]} x {shape[0]}")
+    if not is_complete(path):
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak (a part of it is missing)")
     try:
         with openexr.File(str(path), separate_channels=True) as file:
-            header, channels = file.header(), file.channels()
+            channels = file.channels()
             rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
-            metadata = json.loads(header[METADATA_ATTRIBUTE])
-    except (RuntimeError, KeyError, ValueError) as error:
+    except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
     return np.ascontiguousarray(rows[::-1], np.float32), metadata
 
 
 def read_header(path: Path) -> dict[str, Any]:
     """The metadata of an image written by `write_image`, without its pixels. Raises ExrError."""
+    return _header(path)[0]
+
+
+def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
+    """The metadata, and rows and columns."""
     openexr = _openexr()
     try:
         with openexr.File(str(path), header_only=True) as file:
-            metadata = json.loads(file.header()[METADATA_ATTRIBUTE])
-    except (RuntimeError, KeyError, ValueError) as error:
+            header = file.header()
+            kind, (low, high) = header["type"], header["dataWindow"]
+            columns, rows = (int(end) - int(start) + 1 for start, end in zip(low, high, strict=True))
+            metadata = json.loads(header[METADATA_ATTRIBUTE])
+    except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
-    if not isinstance(metadata, dict):
+    if not isinstance(metadata, dict) or kind != openexr.scanlineimage:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak")
-    return metadata
+    return metadata, (rows, columns)

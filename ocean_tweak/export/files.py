@@ -1,13 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writing files so that nobody ever sees half of one."""
+"""Writing files so that nobody ever sees half of one, also from several machines at once."""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
-import threading
+import time
+import uuid
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
+
+#: ending of what is not whole yet
+PART = ".part"
+
+#: s for which a file is replaced again and again: on Windows that fails while somebody reads the old one
+_REPLACE_PATIENCE = 5.0 if os.name == "nt" else 0.0
+#: s to wait for a file lock, which nobody alive holds as long
+_LOCK_PATIENCE = 10.0
+
+#: what file systems without synced folders answer
+_NO_FOLDER_SYNC = {errno.EINVAL, errno.ENOTSUP, errno.EBADF, errno.EACCES, errno.EISDIR}
+
+
+def _beside(path: Path) -> Path:
+    """A name that no other process has, on this machine or another, even where process numbers agree."""
+    return path.with_name(f".{path.name}.{uuid.uuid4().hex}{PART}")
+
+
+def begun_file(part: Path) -> str:
+    """The name that an unfinished file was to get."""
+    return part.name[1:].rsplit(".", 2)[0]
 
 
 @contextlib.contextmanager
@@ -16,16 +40,29 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     On any error the old file stays as it was and what was written is removed.
     """
-    beside = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.part")
+    beside = _beside(path)
     try:
         yield beside
         with beside.open("rb+") as file:
             os.fsync(file.fileno())
-        beside.replace(path)
+        _replace(beside, path)
     except BaseException:
         with contextlib.suppress(OSError):
             beside.unlink(missing_ok=True)
         raise
+
+
+def _replace(source: Path, target: Path) -> None:
+    until = time.monotonic() + _REPLACE_PATIENCE
+    while True:
+        try:
+            source.replace(target)
+        except PermissionError:
+            if time.monotonic() >= until:
+                raise
+            time.sleep(0.05)
+        else:
+            return
 
 
 def new_file(path: Path, text: str) -> bool:
@@ -33,7 +70,7 @@ def new_file(path: Path, text: str) -> bool:
 
     Of several that try at the same time, one succeeds.
     """
-    beside = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.part")
+    beside = _beside(path)
     try:
         with beside.open("w", encoding="utf-8") as file:
             file.write(text)
@@ -53,7 +90,40 @@ def _claim(beside: Path, path: Path) -> bool:
     except OSError:  # a file system without links
         if path.exists():
             return False
-        beside.replace(path)
+        _replace(beside, path)
+    return True
+
+
+@contextlib.contextmanager
+def alone(path: Path) -> Iterator[None]:
+    """Nobody else in here who asks for the same file; for a moment only.
+
+    The system lets go of the lock of a process that dies. On a disk without file locks, or when one is held
+    for much too long, everybody gets in: what is done in here must not rely on it alone.
+    """
+    with path.open("a+b") as file:
+        until = time.monotonic() + _LOCK_PATIENCE
+        while not _locked(file) and time.monotonic() < until:
+            time.sleep(0.01)
+        yield  # closing the file lets go
+
+
+def _locked(file: BinaryIO) -> bool:
+    """Whether the file's lock is held now, or there are none on this disk."""
+    try:
+        if os.name == "nt":
+            import msvcrt
+
+            file.seek(0)
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
+        return False
+    except OSError:
+        return True
     return True
 
 
@@ -64,6 +134,9 @@ def sync_folder(path: Path) -> None:
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in _NO_FOLDER_SYNC:
+            raise
     finally:
         os.close(descriptor)
 
@@ -71,7 +144,7 @@ def sync_folder(path: Path) -> None:
 def writable_folder(path: Path) -> Path:
     """The folder, made if it is missing. Raises OSError naming it when files cannot be written there."""
     path.mkdir(parents=True, exist_ok=True)
-    probe = path / f".ocean_tweak.{os.getpid()}.part"
+    probe = _beside(path / "ocean_tweak")
     try:
         probe.touch()
     finally:

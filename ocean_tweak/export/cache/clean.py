@@ -4,64 +4,121 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core.frames import Frame
-from .job import JOB_FILE, LOCKS, RECORDS, record_path
+from ...core.frames import Frame, frame_label
+from ..exr import MAPS
+from ..files import PART
+from .job import ENTRY, JOB_FILE, LOCKS, RECORDS, CacheError, is_bake, record_path
 from .locks import claims
-from .records import read_record, recorded_frames
+from .records import FileEntry, read_record, recorded_frames
 
 
 class Cleaned(NamedTuple):
-    """What was deleted, and what was left and why."""
+    """What was deleted, and what was left.
+
+    left : what records list and was left, and why
+    """
 
     files: int
     bytes: int
     left: tuple[str, ...]
 
 
-def clean(folder: Path, frames: Iterable[Frame] | None = None) -> Cleaned:
-    """Delete frames of a bake's folder; all of them, with the job and the empty folders, by default.
+def clean(folder: Path, frames: Iterable[Frame]) -> Cleaned:
+    """Delete frames of a bake's folder; whoever calls holds them.
 
-    Raises OSError where something cannot be deleted.
+    Raises CacheError for a folder that is no bake's, OSError where something cannot be deleted.
     """
     home = folder.resolve()
+    if not is_bake(home):
+        raise CacheError(f"{folder}: is no folder of a bake, so nothing in it is deleted")
+    if (home / RECORDS).is_symlink():
+        raise CacheError(f"{folder / RECORDS} is a link: what it lists is not known to be of this bake")
     count, size, left = 0, 0, []
-    for frame in recorded_frames(folder) if frames is None else frames:
+    for frame in frames:
         try:
-            record = read_record(folder, frame)
+            record = read_record(home, frame)
         except ValueError as error:
             left.append(f"{record_path(folder, frame)}: {error}, so what it lists is not known")
             continue
         if record is None:
             continue
+        problems = []
         for entry in record.files:
-            path = folder / entry.name
-            if path.is_symlink() or path.resolve().parent != home:
-                left.append(f"{path}: lies outside the folder")
+            problem = _why_not(home, frame, entry)
+            if problem:
+                problems.append(f"{folder / entry.name}: {problem}")
                 continue
             with contextlib.suppress(FileNotFoundError):
-                size += path.stat().st_size
+                path = home / entry.name
+                length = path.stat().st_size
                 path.unlink()
-                count += 1
-        record_path(folder, frame).unlink()
-    if frames is None and not left:
-        _remove_rest(folder)
+                count, size = count + 1, size + length
+        left += problems
+        if not problems:
+            record_path(home, frame).unlink()
     return Cleaned(count, size, tuple(left))
 
 
-def _remove_rest(folder: Path) -> None:
+def remove_rest(folder: Path) -> tuple[str, ...]:
+    """Delete the job, the lock files and the folders of a bake without frames, as far as nobody uses them.
+
+    Returns what else is in the folder, which stays.
+    """
+    home = folder.resolve()
+    if not claims(home / LOCKS):
+        _remove_rest(home)
+    return tuple(_foreign(home))
+
+
+def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
+    """Why a file that a record lists is not deleted."""
+    if entry.map not in MAPS or not entry.name.endswith(f"_{entry.map}.{frame_label(frame)}.exr"):
+        return "is not named as a frame's image is"
+    path = home / entry.name
+    if path.is_symlink() or path.resolve().parent != home:
+        return "is a link, or lies outside the folder"
+    return "is a folder" if path.is_dir() else ""
+
+
+def _remove_rest(home: Path) -> None:
     """The job, the lock files and the folders, as far as nothing else is in them."""
-    if claims(folder / LOCKS):
-        return
-    (folder / LOCKS / "entry").unlink(missing_ok=True)
-    for part in (folder / LOCKS, folder / RECORDS):
+    for part in (home / LOCKS, home / RECORDS):
+        if not part.is_symlink():
+            for begun in part.glob(f".*{PART}"):  # of processes that were killed
+                begun.unlink(missing_ok=True)
+    (home / LOCKS / ENTRY).unlink(missing_ok=True)
+    for part in (home / LOCKS, home / RECORDS):
         with contextlib.suppress(OSError):
             part.rmdir()
-    if not any(path.name != JOB_FILE for path in folder.iterdir()):
-        (folder / JOB_FILE).unlink(missing_ok=True)
-        for empty in (folder, folder.parent):
-            with contextlib.suppress(OSError):
-                empty.rmdir()
+    if any(path.name != JOB_FILE for path in home.iterdir()):
+        return
+    (home / JOB_FILE).unlink(missing_ok=True)
+    home.rmdir()
+    if [path.name for path in home.parent.iterdir()] == [ENTRY]:
+        (home.parent / ENTRY).unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # somebody has just begun another version
+            home.parent.rmdir()
+
+
+def foreign_images(folder: Path) -> list[str]:
+    """Images in a bake's folder that no record lists."""
+    return [name for name in _foreign(folder) if name.endswith(".exr")]
+
+
+def _foreign(home: Path) -> Iterator[str]:
+    """What is in the folder and listed by no record."""
+    if not home.is_dir():
+        return
+    own = {JOB_FILE, LOCKS, RECORDS}
+    listed = set()
+    for frame in recorded_frames(home):
+        with contextlib.suppress(ValueError):
+            record = read_record(home, frame)
+            listed.update(entry.name for entry in (record.files if record is not None else ()))
+    for path in sorted(home.iterdir()):
+        if path.name not in own | listed:
+            yield path.name

@@ -13,11 +13,15 @@ from pathlib import Path
 from ...core import OceanParameters
 from ...core.bake import ShotSurfaces
 from ...core.frames import Frame
+from ...core.shot import Shot
 from .job import CacheError, Job
 
 #: the trial frame's samples along each side: few enough to take a moment. Images of more are smoother and
 #: pack better, never worse
 _TRIAL = 128
+#: bytes in which disks give room; a frame's record takes two of them with its name and its folder's
+_BLOCK = 4096
+_RECORD = 2 * _BLOCK
 
 
 @dataclass(frozen=True)
@@ -44,31 +48,43 @@ class Estimate:
 
 
 def estimate(folder: Path, job: Job, frames: Sequence[Frame]) -> Estimate:
-    """What the frames will take, from a frame of the same sea with few samples, made and written aside."""
+    """What the frames will take, from two of them with few samples, made and written aside."""
     free = shutil.disk_usage(folder).free
     if not frames:
         return Estimate(0, 0, 0.0, free)
-    parameters = job.shot.at(frames[0]).parameters
-    trial = parameters.replace(resolution=min(parameters.resolution, _TRIAL))
-    scale = (parameters.resolution / trial.resolution) ** 2
+    trial = _with_few_samples(job.shot.parameters)
+    scale = (job.shot.parameters.resolution / trial.resolution) ** 2
+    small = replace(job, shot=Shot(trial, job.shot.animation))
     with tempfile.TemporaryDirectory() as aside:
-        size, seconds = _trial_frame(Path(aside), job, trial, frames[0])
-    return Estimate(len(frames), int(size * scale * len(frames)), seconds * scale * len(frames), free)
+        sizes, seconds = _trial_frame(Path(aside), small, frames)
+    size = sum(_room(length * scale) for length in sizes) + _RECORD
+    return Estimate(len(frames), size * len(frames), seconds * scale * len(frames), free)
 
 
-def _trial_frame(folder: Path, job: Job, parameters: OceanParameters, frame: Frame) -> tuple[int, float]:
-    """Bytes of a frame's files, and seconds to make them without what is made once."""
-    sequence = replace(job.sequence(folder, frame), parameters=parameters)
+def _with_few_samples(parameters: OceanParameters) -> OceanParameters:
+    samples = min(parameters.resolution, _TRIAL)
+    foam = parameters.foam
+    if foam.resolution:  # in proportion, so that its time is too
+        of_foam = max(16, 2 * round(foam.resolution * samples / parameters.resolution / 2))
+        foam = replace(foam, resolution=of_foam)
+    return parameters.replace(resolution=samples, foam=foam)
+
+
+def _room(size: float) -> int:
+    return -int(-size // _BLOCK) * _BLOCK
+
+
+def _trial_frame(folder: Path, job: Job, frames: Sequence[Frame]) -> tuple[list[int], float]:
+    """Bytes of a frame's files, and seconds to make them after the frame before."""
     surfaces = ShotSurfaces(job.shot)
-    time_at = job.shot.at(frame).time
-    ocean = surfaces.ocean(parameters)
-    ocean.surface(time_at, sequence.outputs)
     started = time.perf_counter()
-    # the next frame: foam goes on from the one before, as in a bake
-    fields = ocean.surface(time_at + 1 / parameters.timing.fps, sequence.outputs)
-    paths = sequence.write(frame, fields)
-    seconds = time.perf_counter() - started
-    return sum(path.stat().st_size for path in paths), seconds
+    sequence = job.sequence(folder, frames[0])
+    fields = surfaces.frame(frames[0], job.outputs)
+    if len(frames) > 1:  # what is made once does not count where there are many
+        started = time.perf_counter()
+        fields = surfaces.frame(frames[1], job.outputs)
+    paths = sequence.write(frames[0], fields)
+    return [path.stat().st_size for path in paths], time.perf_counter() - started
 
 
 def readable_bytes(size: float) -> str:

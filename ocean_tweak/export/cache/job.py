@@ -2,19 +2,20 @@
 """A bake's job and its folder, `CACHE/NAME-UID/vNNN-hash8/`.
 
 The folder's name holds the job's fingerprint, so frames of another sea are never overwritten, and whoever
-bakes the same job, on whatever machine, finds the same folder. `bake.json` in it is the job, written once.
+bakes the same job, on whatever machine, finds the same folder. `bake.json` in it is the job, written once;
+only one that was damaged is ever replaced.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
-import os
 import platform
 import re
+import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain, combinations
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +26,18 @@ from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.shot import Shot
 from ...core.validation import ParameterError
 from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
-from ..files import new_file
+from ..files import alone, new_file, sync_folder, whole_file
 
 JOB_FILE = "bake.json"
 RECORDS, LOCKS = "records", "locks"
+#: locked while versions are told apart, or claims are looked at
+ENTRY = "entry"
 FORMAT = 1
+_SEAL = "sha256"
 
 _VERSION = re.compile(r"v(\d{3,})-([0-9a-f]{8})")
+#: images that are asked for a lost job
+_TELLING_IMAGES = 8
 _LARGEST_JSON = 64 * 2**20
 
 
@@ -45,8 +51,9 @@ class Job:
 
     name : of the sea, and of its files
     uid : tells seas of the same name apart
-    maps, compression : keys of `export.exr.MAPS` and COMPRESSION_ERROR
-    frames : those that were asked for first
+    maps : keys of `export.exr.MAPS`; in whatever order they are given, the job is the same
+    compression : a key of COMPRESSION_ERROR
+    frames : those that are asked for
     """
 
     name: str
@@ -56,11 +63,15 @@ class Job:
     compression: str = "PXR24"
     frames: tuple[Frame, ...] = field(default=(), compare=False)
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "maps", tuple(name for name in MAPS if name in self.maps))
+
     @cached_property
     def fingerprint(self) -> str:
         """SHA-256 of all that the frames' files depend on, whichever frames are made."""
         return fingerprint(
             {
+                "format": FORMAT,
                 "synthesis": SYNTHESIS_VERSION,
                 "shot": self.shot.to_dict(),
                 "maps": list(self.maps),
@@ -78,6 +89,11 @@ class Job:
         """What tells its folder from those of other versions."""
         return self.fingerprint[:8]
 
+    @property
+    def outputs(self) -> frozenset[str]:
+        """The fields that its maps are made of."""
+        return frozenset().union(*(MAPS[name].outputs for name in self.maps))
+
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
         """The sink for a frame, whose header tells this frame's parameters."""
         parameters = self.shot.at(frame).parameters
@@ -85,7 +101,7 @@ class Job:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in `bake.json`."""
-        return {
+        data = {
             "format": FORMAT,
             "synthesis": SYNTHESIS_VERSION,
             "fingerprint": self.fingerprint,
@@ -97,6 +113,7 @@ class Job:
             "shot": self.shot.to_dict(),
             "made_with": made_with(),
         }
+        return sealed(data)
 
     @classmethod
     def from_dict(cls, data: Any) -> Job:
@@ -108,6 +125,7 @@ class Job:
                 f"is of format {data.get('format')!r} and synthesis {data.get('synthesis')!r}; "
                 f"this version bakes format {FORMAT} and synthesis {SYNTHESIS_VERSION}"
             )
+        check_seal(data)
         name, uid, maps = data.get("name"), data.get("uid"), data.get("maps")
         if not (isinstance(name, str) and isinstance(uid, str) and safe_name(name) == name):
             raise ValueError(f"has the name {name!r} and uid {uid!r}")
@@ -132,9 +150,22 @@ def made_with() -> dict[str, str]:
     return {"numpy": np.__version__, "machine": platform.machine(), "host": platform.node()}
 
 
+def sealed(data: dict[str, Any]) -> dict[str, Any]:
+    """The data with a SHA-256 of its contents, by which a changed byte is seen."""
+    return {**data, _SEAL: fingerprint(data)}
+
+
+def check_seal(data: dict[str, Any]) -> None:
+    """Raise ValueError for data that were changed since they were sealed."""
+    contents = {key: value for key, value in data.items() if key != _SEAL}
+    if data.get(_SEAL) != fingerprint(contents):
+        raise ValueError("was changed: its SHA-256 is not that of its contents")
+
+
 def safe_name(name: str) -> str:
     """The name without what file systems or frame patterns cannot hold, at most 100 bytes."""
-    clean = re.sub(r"[^\w\- ]+", "_", name).strip()
+    # a Mac takes an accented letter apart, a farm's Linux does not: both must mean the same folder
+    clean = re.sub(r"[^\w\- ]+", "_", unicodedata.normalize("NFC", name)).strip()
     return clean.encode()[:100].decode(errors="ignore").strip() or "ocean"
 
 
@@ -154,38 +185,52 @@ def open_folder(cache: Path, job: Job) -> Path:
 
     Raises CacheError where another job has its name, OSError for what the disk refuses.
     """
-    folder = find_folder(cache, job)
-    if folder is None:
-        home = cache / job.home
-        number = max((number for _, (number, _) in _versions(home)), default=0) + 1
-        folder = home / f"v{number:03d}-{job.hash8}"
-    for part in (RECORDS, LOCKS):
-        (folder / part).mkdir(parents=True, exist_ok=True)
-    write_job(folder, job)
+    home = cache / job.home
+    home.mkdir(parents=True, exist_ok=True)
+    with alone(home / ENTRY):  # else two machines might number the same job differently
+        folder = find_folder(cache, job)
+        if folder is None:
+            number = max((number for _, (number, _) in _versions(home)), default=0) + 1
+            folder = home / f"v{number:03d}-{job.hash8}"
+        for part in (RECORDS, LOCKS):
+            (folder / part).mkdir(parents=True, exist_ok=True)
+        write_job(folder, job)
+        sync_folder(home)
     return folder
 
 
 def write_job(folder: Path, job: Job) -> None:
     """Write `bake.json`, or see that it is this job; one that cannot be read is replaced."""
     path = folder / JOB_FILE
-    text = json.dumps(job.to_dict(), indent=1, ensure_ascii=False) + "\n"
+    text = json.dumps(job.to_dict(), indent=1) + "\n"
     if new_file(path, text):
         return
     try:
         present = read_job(folder)
     except CacheError:
-        aside = path.with_name(f".{JOB_FILE}.{os.getpid()}.damaged")
-        with contextlib.suppress(FileNotFoundError):
-            path.replace(aside)
-            aside.unlink()
-        new_file(path, text)
-        present = read_job(folder)
+        with whole_file(path) as beside:
+            beside.write_text(text, encoding="utf-8")
+        return
     if present.fingerprint != job.fingerprint:
         raise CacheError(f"{path} is another job, though its folder has this one's name: move it away")
 
 
-def read_job(folder: Path) -> Job:
-    """The job of a folder. Raises CacheError when it is missing, damaged or of another version."""
+def is_bake(folder: Path) -> bool:
+    """Whether a folder is one of baked frames: by its name, or by the job in it."""
+    if _VERSION.fullmatch(folder.name) and (folder / RECORDS).is_dir():
+        return True
+    try:
+        read_job(folder)
+    except CacheError:
+        return False
+    return True
+
+
+def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:
+    """The job of a folder, for these frames or else those asked for first.
+
+    Raises CacheError when it is missing, damaged or of another version.
+    """
     path = folder / JOB_FILE
     try:
         with path.open("rb") as file:
@@ -195,9 +240,12 @@ def read_job(folder: Path) -> Job:
     if len(content) > _LARGEST_JSON:
         raise CacheError(f"{path} is too large to be a job")
     try:
-        return Job.from_dict(json.loads(content))
+        job = Job.from_dict(json.loads(content))
+    except json.JSONDecodeError as error:
+        raise CacheError(f"{path} is no JSON ({error}): run resume to have it written again") from None
     except (ValueError, RecursionError) as error:
         raise CacheError(f"{path} {error}: run resume to have it written again") from None
+    return replace(job, frames=asked) if asked else job
 
 
 def recovered_job(folder: Path) -> Job:
@@ -207,21 +255,27 @@ def recovered_job(folder: Path) -> Job:
     """
     match = _VERSION.fullmatch(folder.name)
     name, _, uid = folder.parent.name.rpartition("-")
-    problem = f"{folder / JOB_FILE} cannot be read, and the images do not tell the job: bake it again"
+    problem = (
+        f"{folder / JOB_FILE} cannot be read, and the images do not tell the job: bake it with the same "
+        "arguments as before; frames that are whole stay"
+    )
     if match is None or not name:
         raise CacheError(problem)
-    images = sorted(folder.glob("*.exr"))
-    found = {path.name[len(name) + 1 :].partition(".")[0] for path in images}
-    maps = tuple(key for key in MAPS if key in found)
-    for path in images[:8]:
+    for path in sorted(folder.glob("*.exr"))[:_TELLING_IMAGES]:
         try:
             metadata = read_header(path)
-            job = Job(name, uid, Shot.from_dict(metadata["parameters"]), maps, metadata["compression"])
-        except (ExrError, ParameterError, KeyError, TypeError):
+            shot, compression = Shot.from_dict(metadata["parameters"]), str(metadata["compression"])
+        except (ExrError, ParameterError, KeyError):
             continue
-        if job.fingerprint[:8] == match[2]:
-            return job
+        for maps in _all_choices(tuple(MAPS)):
+            job = Job(name, uid, shot, maps, compression)
+            if job.fingerprint[:8] == match[2]:
+                return job
     raise CacheError(problem)
+
+
+def _all_choices(names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    return chain.from_iterable(combinations(names, count) for count in range(1, len(names) + 1))
 
 
 def _versions(home: Path) -> Iterator[tuple[Path, tuple[int, str]]]:

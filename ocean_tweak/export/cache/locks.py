@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Who is making which frames of a folder, so that nobody makes them twice at the same time.
 
-A claim is a file with the frames, the host, the process and a counter that its holder keeps raising. Claims
-are looked at and written under the system's own file lock, which a process that dies lets go; it is held for
-a moment only. Clocks are not compared: a holder on another machine counts as dead only when its counter
-stands still while it is watched.
+A claim is a file with the frames, the host, the process and a counter that its holder keeps raising. It is
+written first and the others are looked at afterwards, so of two that come at the same time at least one sees
+the other, also on a disk without file locks and from machines that remember a folder's old contents for a
+while; the system's own file lock only sees to it that one of them always gets in.
+
+Clocks are not compared: a holder that cannot be asked counts as dead only when its counter stands still while
+it is watched. Should it be alive nevertheless, it notices that its claim is gone and stops.
 """
 
 from __future__ import annotations
@@ -13,22 +16,29 @@ import contextlib
 import json
 import os
 import platform
+import random
 import threading
 import time
 import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ...core.frames import Frame, format_frames, parse_frames
-from ..files import whole_file
-from .job import LOCKS
+from ..files import alone, whole_file
+from .job import ENTRY, LOCKS
 
 #: s between two beats
 BEAT = 5.0
-#: s without one after which a watched holder is taken for dead
-SILENCE = 3.0 * BEAT
+#: s without one after which a watched holder is taken for dead: longer than network disks show old contents
+SILENCE = 90.0
+
+_LARGEST_LOCK = 2**24
+#: of the counter, on a line of its own at the end: it is raised in place, which needs no room on a full disk
+#: and never brings back a claim that was removed
+_DIGITS = 12
 
 
 class Held(RuntimeError):
@@ -39,21 +49,45 @@ class Held(RuntimeError):
 class Claim:
     """Somebody's claim to frames.
 
+    machine : tells machines of one name apart, and what runs in containers
     started : of the process in the system's own count, to tell it from a later one with the same number
+    frames : None for a claim that cannot be read: it may be to any
     beat : how often its holder has said that it lives
     """
 
     path: Path
     host: str
+    machine: str
     process: int
     started: str
-    frames: frozenset[Frame]
+    frames: frozenset[Frame] | None
     beat: int
 
     @property
     def holder(self) -> str:
         """Who it is, for a message."""
+        if self.frames is None:
+            return f"somebody whose lock {self.path} cannot be read"
         return f"process {self.process} on {self.host}"
+
+    def shared(self, frames: frozenset[Frame]) -> frozenset[Frame]:
+        """Which of the frames it claims."""
+        return frames if self.frames is None else frames & self.frames
+
+
+class Hold:
+    """Frames that are held."""
+
+    def __init__(self) -> None:
+        self._lost = threading.Event()
+
+    def is_lost(self) -> bool:
+        """Whether the claim is gone: taken over, or the folder was removed."""
+        return self._lost.is_set()
+
+    def lose(self) -> None:
+        """Say that the claim is gone."""
+        self._lost.set()
 
 
 @contextlib.contextmanager
@@ -63,151 +97,204 @@ def claimed(
     wait: bool = False,
     take_over: bool = False,
     stopped: Callable[[], bool] = lambda: False,
-    beat: float = BEAT,
-) -> Iterator[None]:
+    say: Callable[[str], None] = lambda text: None,
+) -> Iterator[Hold]:
     """Hold frames of a folder while this is open.
 
     wait : until others have finished with them; otherwise refuse
     take_over : remove the claims of holders that are dead
     stopped : asked while waiting; True ends it with Held
+    say : is told once whom it waits for
 
     Raises Held naming who has them.
     """
     locks = folder / LOCKS
     locks.mkdir(exist_ok=True)
     own = _own_claim(locks, frames)
+    told = None
     while (other := _enter(own)) is not None:
-        if take_over:
-            if not _is_dead(other, SILENCE / BEAT * beat, stopped):
-                raise Held(f"{_overlap(own, other)} and is alive: only a dead one's lock is taken over")
+        if take_over and _has_died(other, stopped, say):
             other.path.unlink(missing_ok=True)
-        elif not wait:
-            raise Held(
-                f"{_overlap(own, other)}: wait for it with --wait, "
-                "or, if it died, take its lock over with --take-over"
-            )
-        elif stopped():
-            raise Held(f"{_overlap(own, other)}; stopped waiting for it")
-        else:
-            time.sleep(min(beat, 1.0) / 4.0)
-    ended = threading.Event()
-    heart = threading.Thread(target=_beat, args=(own, ended, beat), name="Ocean Tweak lock", daemon=True)
+            continue
+        problem = _refusal(own, other, wait, take_over, stopped)
+        if problem:
+            raise Held(f"{_overlap(own, other)}{problem}")
+        if told != other.path:
+            say(f"waiting: {_overlap(own, other)}")
+            told = other.path
+        time.sleep(random.uniform(0.5, 1.0) * min(BEAT, 1.0) / 4.0)
+    hold, ended = Hold(), threading.Event()
+    heart = threading.Thread(target=_beat, args=(own, hold, ended), name="Ocean Tweak lock", daemon=True)
     heart.start()
     try:
-        yield
+        yield hold
     finally:
         ended.set()
         heart.join()
-        own.path.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # what is wrong with the folder has been told
+            own.path.unlink(missing_ok=True)
+
+
+def _refusal(own: Claim, other: Claim, wait: bool, take_over: bool, stopped: Callable[[], bool]) -> str:
+    """Why not to wait for the other claim."""
+    if stopped():
+        return "; stopped waiting for it"
+    if is_alive_here(other) is False and not take_over:
+        return ", which has died: take its lock over with --take-over"
+    if wait:
+        return ""
+    if take_over:
+        return " and is alive: only a dead one's lock is taken over; wait for it with --wait"
+    return ": wait for it with --wait, or, if it died, take its lock over with --take-over"
 
 
 def _enter(own: Claim) -> Claim | None:
     """Write the claim, or return one that stands against it."""
-    with _alone(own.path.parent):
-        for other in claims(own.path.parent):
-            if other.frames & own.frames:
-                return other
-        _write(own)
-    return None
-
-
-@contextlib.contextmanager
-def _alone(locks: Path) -> Iterator[None]:
-    """Nobody else in here; on a system or disk without file locks, everybody."""
-    with (locks / "entry").open("a+b") as file:
+    locks = own.path.parent
+    with alone(locks / ENTRY):
         try:
-            import fcntl
+            _write(own)
+            other = next((other for other in claims(locks) if _stands_against(own, other)), None)
+        except BaseException:
+            own.path.unlink(missing_ok=True)
+            raise
+        if other is not None:
+            own.path.unlink(missing_ok=True)
+    return other
 
-            fcntl.flock(file, fcntl.LOCK_EX)
-        except (ImportError, OSError):
-            yield
-            return
-        yield  # closing the file lets go
+
+def _stands_against(own: Claim, other: Claim) -> bool:
+    return other.path != own.path and bool(other.shared(own.frames or frozenset()))
 
 
 def _overlap(own: Claim, other: Claim) -> str:
-    return f"frames {format_frames(own.frames & other.frames)} are being baked by {other.holder}"
+    shared = other.shared(own.frames or frozenset())
+    return f"frames {format_frames(shared)} are being baked by {other.holder}"
 
 
 def claims(locks: Path) -> list[Claim]:
-    """All claims that can be read; one that cannot be read claims nothing."""
+    """All claims; one that cannot be read claims every frame."""
     found = []
     for path in sorted(locks.glob("*.lock")):
-        with contextlib.suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+        with contextlib.suppress(FileNotFoundError):  # it was let go meanwhile
             found.append(_read(path))
     return found
 
 
 def is_alive_here(claim: Claim) -> bool | None:
-    """Whether the claim's process runs, where that can be told: on its own host."""
-    if claim.host != platform.node():
+    """Whether the claim's process runs, where that can be told: on its own machine."""
+    if claim.frames is None or claim.machine != this_machine():
         return None
     started = _process_start(claim.process)
-    return started is not None and started == claim.started
+    if started is None:
+        return False
+    return started == claim.started if started and claim.started else None
 
 
-def _is_dead(claim: Claim, silence: float, stopped: Callable[[], bool]) -> bool:
+@cache
+def this_machine() -> str:
+    """What tells this machine from others of its name, from itself restarted, and from a container."""
+    identity = [platform.node()]
+    with contextlib.suppress(OSError):
+        identity.append(Path("/proc/sys/kernel/random/boot_id").read_text().strip())
+        identity.append(str(Path("/proc/self/ns/pid").readlink()))
+    if len(identity) == 1:
+        identity.append(f"{uuid.getnode():012x}")
+    return " ".join(identity)
+
+
+def _has_died(claim: Claim, stopped: Callable[[], bool], say: Callable[[str], None]) -> bool:
     alive = is_alive_here(claim)
     if alive is not None:
         return not alive
-    until = time.monotonic() + silence
-    while time.monotonic() < until and not stopped():
-        time.sleep(silence / 20.0)
+    say(f"watching {claim.holder} for {SILENCE:.0f} s")
+    until = time.monotonic() + SILENCE
+    while time.monotonic() < until:
+        time.sleep(min(1.0, SILENCE / 20.0))
+        if stopped():
+            return False
         try:
             if _read(claim.path).beat != claim.beat:
                 return False
-        except (OSError, ValueError):
-            return not claim.path.exists()
-    return not stopped()
+        except FileNotFoundError:
+            return True  # it was let go meanwhile
+    return True
 
 
 def _own_claim(locks: Path, frames: tuple[Frame, ...]) -> Claim:
     process = os.getpid()
     path = locks / f"{uuid.uuid4().hex}.lock"
-    return Claim(path, platform.node(), process, _process_start(process) or "", frozenset(frames), 0)
+    started = _process_start(process) or ""
+    return Claim(path, platform.node(), this_machine(), process, started, frozenset(frames), 0)
 
 
-def _write(claim: Claim, beat: int = 0) -> None:
+def _write(claim: Claim) -> None:
     data = {
         "host": claim.host,
+        "machine": claim.machine,
         "process": claim.process,
         "started": claim.started,
-        "frames": format_frames(claim.frames),
-        "beat": beat,
+        "frames": format_frames(claim.frames or ()),
     }
     with whole_file(claim.path) as beside:
-        beside.write_text(json.dumps(data), encoding="utf-8")
+        beside.write_text(f"{json.dumps(data)}\n{0:0{_DIGITS}d}\n", encoding="ascii")
 
 
 def _read(path: Path) -> Claim:
-    data: Any = json.loads(path.read_text(encoding="utf-8"))
-    return Claim(
-        path, str(data["host"]), int(data["process"]), str(data["started"]),
-        frozenset(parse_frames(data["frames"])), int(data["beat"]),
-    )  # fmt: skip
+    """The claim in a file. Raises FileNotFoundError where there is none."""
+    for _ in range(3):
+        try:
+            with path.open("rb") as file:
+                content = file.read(_LARGEST_LOCK)
+            break
+        except FileNotFoundError:
+            raise
+        except OSError:  # network disks do so now and then for a file that changes
+            time.sleep(0.05)
+    else:
+        content = b""
+    try:
+        text, _, beat = content.partition(b"\n")
+        data: Any = json.loads(text)
+        return Claim(
+            path, str(data["host"]), str(data["machine"]), int(data["process"]), str(data["started"]),
+            frozenset(parse_frames(data["frames"])), int(beat),
+        )  # fmt: skip
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError):
+        return Claim(path, "", "", 0, "", None, 0)
 
 
-def _beat(claim: Claim, ended: threading.Event, beat: float) -> None:
+def _beat(claim: Claim, hold: Hold, ended: threading.Event) -> None:
     count = 0
-    while not ended.wait(beat):
+    while not ended.wait(BEAT):
         count += 1
-        # a folder that is gone or full is the bake's to report
-        with contextlib.suppress(OSError):
-            if claim.path.exists():
-                _write(claim, count)
+        try:
+            with claim.path.open("r+b") as file:
+                file.seek(-_DIGITS - 1, os.SEEK_END)
+                file.write(b"%0*d" % (_DIGITS, count))
+        except (FileNotFoundError, NotADirectoryError):
+            hold.lose()
+            return
+        except OSError:  # of a disk that fails, the bake's own files tell
+            pass
 
 
 def _process_start(process: int) -> str | None:
-    """When a process of this machine was started, in the system's own count; None when there is none."""
+    """When a process of this machine was started, in the system's own count.
+
+    "" for one of which it cannot be told, not even whether it runs; None when there is none.
+    """
+    if os.name == "nt":
+        return ""  # asking with a signal would end it
     try:
-        os.kill(process, 0) if os.name != "nt" else None
-    except ProcessLookupError:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
         return None
     except PermissionError:
         pass  # it runs, and is somebody else's
     try:
         # after the last bracket: a program's name may hold spaces and brackets itself
-        status = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+        status = Path(f"/proc/{process}/stat").read_text(errors="replace").rpartition(")")[2].split()
     except OSError:
-        return "" if not Path("/proc/self").exists() else None
+        return ""
     return None if status[0] == "Z" else status[19]

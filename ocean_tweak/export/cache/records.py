@@ -7,9 +7,10 @@ are compared.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -17,13 +18,15 @@ from typing import Any, NamedTuple
 
 from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
-from ...core.frames import Frame, frame_label, parse_frames
+from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.validation import ParameterError
-from ..files import sync_folder, whole_file
-from .job import FORMAT, RECORDS, Job, made_with, record_path
+from ..files import PART, begun_file, sync_folder, whole_file
+from .job import FORMAT, RECORDS, Job, check_seal, made_with, record_path, sealed
 
 _LARGEST_RECORD = 2**20
 _BLOCK = 2**20
+#: characters: scattered frames by the thousand would fill every record
+_LONGEST_RANGE = 4000
 
 
 class FileEntry(NamedTuple):
@@ -40,31 +43,39 @@ class FrameRecord:
     """A frame's own record.
 
     fingerprint : of the parameters that made it
+    asked : the frames that were asked for with it, as `format_frames` writes them; "" where that is too long
     """
 
     frame: Frame
     fingerprint: str
     files: tuple[FileEntry, ...]
+    asked: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in the file."""
-        return {
+        data = {
             "format": FORMAT,
             "frame": frame_label(self.frame),
             "fingerprint": self.fingerprint,
             "files": [entry._asdict() for entry in self.files],
+            "asked": self.asked,
             "made_with": made_with(),
         }
+        return sealed(data)
 
     @classmethod
     def from_dict(cls, data: Any) -> FrameRecord:
         """A record from plain data. Raises ValueError for what is none."""
         if not isinstance(data, dict) or data.get("format") != FORMAT:
             raise ValueError("it is of another format")
+        check_seal(data)
         files = data.get("files")
         if not isinstance(files, list) or not files:
             raise ValueError("it lists no files")
-        return cls(_frame(data.get("frame")), _text(data.get("fingerprint")), tuple(map(_entry, files)))
+        return cls(
+            _frame(data.get("frame")), _text(data.get("fingerprint")), tuple(map(_entry, files)),
+            _text(data.get("asked")),
+        )  # fmt: skip
 
 
 class State(Enum):
@@ -90,11 +101,13 @@ class CacheSink:
     def __init__(self, folder: Path, job: Job) -> None:
         self.folder = folder
         self.job = job
+        asked = format_frames(job.frames)
+        self._asked = asked if len(asked) <= _LONGEST_RANGE else ""
 
     @property
     def outputs(self) -> frozenset[str]:
         """The fields that a frame must have."""
-        return self.job.sequence(self.folder, _any_frame(self.job)).outputs
+        return self.job.outputs
 
     def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Write the frame, all or nothing. Returns its images' paths."""
@@ -107,16 +120,11 @@ class CacheSink:
             FileEntry(name, path.name, path.stat().st_size, file_hash(path))
             for name, path in zip(self.job.maps, paths, strict=True)
         )
-        made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries)
+        made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries, self._asked)
         with whole_file(record) as beside:
             beside.write_text(json.dumps(made.to_dict(), indent=1) + "\n", encoding="utf-8")
         sync_folder(record.parent)
         return paths
-
-
-def _any_frame(job: Job) -> Frame:
-    animation = job.shot.animation
-    return animation.first_frame if animation is not None else 1
 
 
 def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
@@ -127,6 +135,8 @@ def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
             content = file.read(_LARGEST_RECORD + 1)
     except FileNotFoundError:
         return None
+    except OSError as error:
+        raise ValueError(f"it cannot be read: {error.strerror}") from None
     if len(content) > _LARGEST_RECORD:
         raise ValueError("it is too large")
     try:
@@ -151,13 +161,18 @@ def recorded_frames(folder: Path) -> tuple[Frame, ...]:
     return tuple(sorted(frames))
 
 
-def inspect(folder: Path, job: Job, frame: Frame, hashes: bool = True) -> Finding:
-    """Whether a frame is whole: its record, its fingerprint and its files.
+def asked_frames(folder: Path) -> set[Frame]:
+    """The frames that were asked for when those that have a record were made."""
+    texts = set()
+    for frame in recorded_frames(folder):
+        with contextlib.suppress(ValueError):
+            record = read_record(folder, frame)
+            texts.add(record.asked if record is not None else "")
+    return {frame for text in texts - {""} for frame in parse_frames(text)}
 
-    hashes : read all bytes; otherwise sizes are enough
 
-    Raises OSError for a folder that cannot be read.
-    """
+def inspect(folder: Path, job: Job, frame: Frame) -> Finding:
+    """Whether a frame is whole: its record, its fingerprint and all bytes of its files."""
     try:
         record = read_record(folder, frame)
     except ValueError as error:
@@ -168,31 +183,40 @@ def inspect(folder: Path, job: Job, frame: Frame, hashes: bool = True) -> Findin
         return Finding(frame, State.STALE, "it was made from other parameters")
     sequence = job.sequence(folder, frame)
     wanted = {name: sequence.path(frame, name).name for name in job.maps}
-    if {entry.map: entry.name for entry in record.files} != wanted:
+    listed = {entry.map: entry.name for entry in record.files}
+    if listed != wanted or len(record.files) != len(wanted):
         return Finding(frame, State.DAMAGED, "its record lists other files than the job has")
     for entry in record.files:
-        problem = _problem(folder / entry.name, entry, hashes)
+        try:
+            problem = _problem(folder / entry.name, entry)
+        except OSError as error:
+            problem = f"cannot be read: {error.strerror}"
         if problem:
             return Finding(frame, State.DAMAGED, f"{entry.name} {problem}")
     return Finding(frame, State.WHOLE)
 
 
-def _problem(path: Path, entry: FileEntry, hashes: bool) -> str:
+def _problem(path: Path, entry: FileEntry) -> str:
     try:
         size = path.stat().st_size
     except FileNotFoundError:
         return "is gone"
     if size != entry.bytes:
         return f"has {size} bytes, not {entry.bytes}"
-    if hashes and file_hash(path) != entry.sha256:
+    if file_hash(path) != entry.sha256:
         return "has other contents than were written"
     return ""
 
 
-def unfinished(folder: Path, job: Job, frames: Iterable[Frame], hashes: bool = True) -> Iterator[Finding]:
-    """What of the frames must be made, and why."""
+def unfinished(
+    folder: Path, job: Job, frames: Iterable[Frame], stopped: Callable[[], bool] = lambda: False
+) -> Iterator[Finding]:
+    """What of the frames must be made, and why.
+
+    stopped : asked before each frame; the rest then counts as missing
+    """
     for frame in frames:
-        finding = inspect(folder, job, frame, hashes)
+        finding = Finding(frame, State.MISSING) if stopped() else inspect(folder, job, frame)
         if finding.state is not State.WHOLE:
             yield finding
 
@@ -204,8 +228,8 @@ def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
         sequence = job.sequence(folder, frame)
         names.update(sequence.path(frame, name).name for name in job.maps)
         names.add(record_path(folder, frame).name)
-    for part in (*folder.glob(".*.part"), *(folder / RECORDS).glob(".*.part")):
-        if part.name[1:].rsplit(".", 3)[0] in names:
+    for part in (*folder.glob(f".*{PART}"), *(folder / RECORDS).glob(f".*{PART}")):
+        if begun_file(part) in names:
             part.unlink(missing_ok=True)
 
 
