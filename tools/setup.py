@@ -48,6 +48,7 @@ def _job(name: str) -> Callable[[], None]:
             venvs.make_venv(blender, interpreter)
         if blender == "5.2":
             venvs.make_pytest_for_blender()
+            venvs.make_farm()
 
     return make
 

@@ -10,6 +10,7 @@ from .project import REQUIREMENTS, TOOLS, run_logged
 
 PYTHON_OF_BLENDER = {"5.2": "3.13", "4.5": "3.11"}
 PYTEST_IN_BLENDER = TOOLS / "pytest"
+FARM = TOOLS / "farm"
 
 
 def python(blender: str) -> Path:
@@ -46,6 +47,18 @@ def make_pytest_for_blender() -> None:
     install = [str(python("5.2")), "-m", "pip", "install", "--target", str(PYTEST_IN_BLENDER), "-r"]
     with stamps.making(PYTEST_IN_BLENDER, recipe):
         run_logged([*install, str(requirements)], TOOLS / "logs" / "pytest.log")
+
+
+def make_farm() -> None:
+    """Make the environment of the farms' own programs; beside Blender's, their versions would disturb others."""
+    requirements = REQUIREMENTS / "farm.txt"
+    recipe = requirements.read_text()
+    if stamps.is_made(FARM, recipe):
+        return
+    log = TOOLS / "logs" / "farm.log"
+    with stamps.making(FARM, recipe):
+        run_logged([str(python("5.2")), "-m", "venv", str(FARM)], log)
+        run_logged([str(FARM / "bin" / "python"), "-m", "pip", "install", "-r", str(requirements)], log)
 
 
 def _folder(blender: str) -> Path:
