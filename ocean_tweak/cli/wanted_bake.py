@@ -36,13 +36,16 @@ def _job(arguments: argparse.Namespace, name: str, sea: Sea) -> Job:
 
 def cache_of(arguments: argparse.Namespace, sea: Sea) -> Path:
     """The folder of all bakes. Raises UsageError where nobody said which."""
-    if arguments.out is not None:
-        return Path(arguments.out)
-    if sea.cache is not None:
-        return sea.cache
-    if os.environ.get(CACHE_VARIABLE):
-        return Path(os.environ[CACHE_VARIABLE])
-    raise UsageError(f"--out: say where the frames go, or set the environment variable {CACHE_VARIABLE}")
+    cache = known_cache(arguments.out, sea)
+    if cache is None:
+        raise UsageError(f"--out: say where the frames go, or set the environment variable {CACHE_VARIABLE}")
+    return cache
+
+
+def known_cache(chosen: Path | None, sea: Sea) -> Path | None:
+    """The folder of all bakes: the chosen one, else the .blend file's, else the environment's."""
+    variable = os.environ.get(CACHE_VARIABLE)
+    return chosen or sea.cache or (Path(variable) if variable else None)
 
 
 def existing_folder(cache: Path, job: Job) -> Path:

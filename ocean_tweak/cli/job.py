@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`job`: what a render farm is given to bake, verify and render a shot."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from ..core.frames import Frame, format_frames
+from ..export.cache.job import Job
+from ..export.farm import flamenco, openjd
+from ..export.farm.shot_job import BAKERS, Render, ShotJob
+from ..export.files import writable_folder
+from .outcome import DONE, UsageError
+from .progress import Progress
+from .seas import Sea
+from .wanted_bake import jobs_of, known_cache
+
+__all__ = ["BAKERS", "FORMS", "PYTHON", "job"]
+
+#: kind of job → what writes it
+FORMS: dict[str, Callable[[Path, ShotJob], list[Path]]] = {"openjd": openjd.write, "flamenco": flamenco.write}
+
+#: what the machines of a farm call Python
+PYTHON = "python" if os.name == "nt" else "python3"
+
+# the package of what needs Blender cannot be imported here, but its file can be read
+_RENDER_SCRIPT = Path(__file__).resolve().parents[1] / "scene" / "render_baked.py"
+
+
+def job(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
+    """Write a job for a farm."""
+    bakes = tuple(jobs_of(arguments, seas).values())
+    caches = {known_cache(arguments.cache, sea) for sea in seas.values()}
+    frames = _frames(bakes)
+    render = _render(arguments)
+    name = render.blend.stem if render is not None and len(bakes) > 1 else bakes[0].name
+    try:
+        shot = ShotJob(
+            name, bakes, frames, arguments.chunk, caches.pop() if len(caches) == 1 else None,
+            arguments.bake_with, arguments.python, arguments.blender, arguments.workers,
+            arguments.plain_ranges, render,
+        )  # fmt: skip
+        files = FORMS[arguments.form](writable_folder(arguments.out), shot)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
+    Progress(name, arguments.json).say(
+        f"frames {format_frames(frames)}\n" + "\n".join(f"  {path}" for path in files),
+        frames=format_frames(frames), form=arguments.form, files=[str(path) for path in files],
+    )  # fmt: skip
+    return DONE
+
+
+def _frames(bakes: tuple[Job, ...]) -> tuple[Frame, ...]:
+    frames = bakes[0].frames
+    if not frames:
+        raise UsageError("--frames: say which frames the shot has")
+    if any(bake.frames != frames for bake in bakes):
+        raise UsageError("--frames: the oceans are in scenes of other frames; say which are meant")
+    return frames
+
+
+def _render(arguments: argparse.Namespace) -> Render | None:
+    if arguments.blend is None:
+        if arguments.pictures is not None:
+            raise UsageError("--pictures: there are none without --blend, the file to render")
+        return None
+    if not arguments.blend.is_file():
+        raise UsageError(f"--blend {arguments.blend}: is no file")
+    script = _RENDER_SCRIPT.read_text(encoding="utf-8")
+    return Render(arguments.blend, arguments.pictures, arguments.render_chunk, script)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A shot as a job for a farm: what is baked, verified and rendered, in which portions, with which programs.
+
+The seas travel as JSON files beside the job, so a farm bakes without Blender and without the .blend file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...core.frames import Frame, format_frames
+from ..cache.job import Job
+from ..files import whole_file
+
+#: folder of the seas' parameters, in a job's own
+SEAS = "seas"
+
+#: what bakes → its arguments before those of the command line
+BAKERS = {
+    "python": ("-m", "ocean_tweak"),
+    "blender": ("--background", "--command", "ocean_tweak"),
+}
+
+
+@dataclass(frozen=True)
+class Render:
+    """A render of the shot from its bakes.
+
+    blend : the .blend file
+    pictures : folder for the pictures; None for one in the job's own
+    chunk : frames in a task
+    script : text of the Python script that renders, in a Blender with or without this extension
+    """
+
+    blend: Path
+    pictures: Path | None
+    chunk: int
+    script: str
+
+
+@dataclass(frozen=True)
+class ShotJob:
+    """A shot for a farm.
+
+    bakes : one for each sea, all of the same frames
+    frames : of the shot, whole numbers
+    chunk : frames in a task of baking or verifying
+    cache : folder of all bakes; None for one in the job's own
+    bake_with : a key of BAKERS
+    python, blender : how the machines of the farm call these programs
+    workers : processes of one baking task; None for one a core
+    plain_ranges : write tasks out, for farms that cannot divide frames into chunks themselves
+    """
+
+    name: str
+    bakes: tuple[Job, ...]
+    frames: tuple[Frame, ...]
+    chunk: int
+    cache: Path | None
+    bake_with: str
+    python: str
+    blender: str
+    workers: int | None = None
+    plain_ranges: bool = False
+    render: Render | None = None
+
+    def __post_init__(self) -> None:
+        between = [frame for frame in self.frames if not isinstance(frame, int)]
+        if between:
+            raise ValueError(f"frame {float(between[0])}: the tasks of a farm are whole frames")
+        names = [bake.name for bake in self.bakes]
+        if len(set(names)) < len(names):
+            raise ValueError(f"{', '.join(names)}: two seas of a job cannot have the same file names")
+
+
+def chunks(frames: Sequence[Frame], size: int) -> list[str]:
+    """Ranges of at most so many frames each."""
+    return [format_frames(frames[start : start + size]) for start in range(0, len(frames), size)]
+
+
+def sea_arguments(bake: Job, seas: str, cache: str) -> list[str]:
+    """What `bake` and `verify` are told alike: the sea, its files and their place.
+
+    seas, cache : folders, as the farm writes them
+    """
+    return [
+        "--params", f"{seas}/{bake.name}.json",
+        "--name", bake.name,
+        "--uid", bake.uid,
+        "--maps", ",".join(bake.maps),
+        "--compression", bake.compression,
+        "--out", cache,
+    ]  # fmt: skip
+
+
+def bake_arguments(
+    job: ShotJob, bake: Job, seas: str, cache: str, frames: str, only: str, openjd: bool
+) -> list[str]:
+    """The arguments of Python or Blender that bake some of the frames."""
+    # a farm gives a lost machine's task to another one, which finds the lost one's lock
+    arguments = [*BAKERS[job.bake_with], "bake", *sea_arguments(bake, seas, cache), "--take-over"]
+    if job.workers is not None:
+        arguments += ["--workers", str(job.workers)]
+    return [*arguments, *_openjd(openjd), "--frames", frames, "--only", only]
+
+
+def verify_arguments(job: ShotJob, bake: Job, seas: str, cache: str, only: str, openjd: bool) -> list[str]:
+    """The arguments of Python or Blender that read some of the frames back."""
+    sea = sea_arguments(bake, seas, cache)
+    return [*BAKERS[job.bake_with], "verify", *sea, *_openjd(openjd), "--frames", only]
+
+
+def render_arguments(job: ShotJob, cache: str, frames: str, pictures: str, openjd: bool) -> list[str]:
+    """What the render's script is told, behind Blender's own arguments."""
+    bakes = [word for bake in job.bakes for word in ("--bake", f"{bake.home}/{bake.hash8}")]
+    return ["--cache", cache, *bakes, "--pictures", pictures, *_openjd(openjd), "--frames", frames]
+
+
+def _openjd(openjd: bool) -> list[str]:
+    return ["--openjd"] if openjd else []
+
+
+def write_seas(folder: Path, job: ShotJob) -> list[Path]:
+    """Write the seas' parameters into a job's folder. Raises OSError."""
+    (folder / SEAS).mkdir(parents=True, exist_ok=True)
+    return [write_text(folder / SEAS / f"{bake.name}.json", bake.shot.to_json() + "\n") for bake in job.bakes]
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a file that appears whole. Raises OSError."""
+    with whole_file(path) as beside:
+        beside.write_text(text, encoding="utf-8")
+    return path
