@@ -19,6 +19,7 @@ from .ui import (
     panels,
     preset_operators,
     properties,
+    scene_operators,
     sea_operators,
 )
 
@@ -31,6 +32,7 @@ CLASSES = (
     *float_operators.CLASSES,
     *float_panel.CLASSES,
     *node_operators.CLASSES,
+    *scene_operators.CLASSES,
 )
 
 _COMMAND = "ocean_tweak"
@@ -71,6 +73,7 @@ def register(package: str | None = None) -> None:
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
     bpy.types.NODE_MT_add.append(node_operators.draw_add_menu)
+    bpy.types.VIEW3D_MT_mesh_add.append(scene_operators.draw_add_menu)
     handlers.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
@@ -81,6 +84,7 @@ def unregister() -> None:
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
     handlers.unregister()
+    bpy.types.VIEW3D_MT_mesh_add.remove(scene_operators.draw_add_menu)
     bpy.types.NODE_MT_add.remove(node_operators.draw_add_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
