@@ -96,8 +96,8 @@ _SWITCHES = {
     ),
     "use_velocity": BoolProperty(
         name="Velocity", default=True, **_SHOWN,
-        description="Write the attribute velocity from which Cycles makes motion blur: the only one of baked files. "
-        "Costs as much as the displacement",
+        description="Write the attribute velocity from which Cycles makes motion blur: the only blur of baked "
+        "files. Costs as much as the displacement",
     ),
 }  # fmt: skip
 

@@ -69,12 +69,12 @@ def expected(core):
 def bake(extension, core, tmp_path):
     """Write a sequence; returns where it is."""
 
-    def write(parameters, first, last, name="sea", directory=tmp_path / "frames"):
+    def write(parameters, first, last, name="sea", directory=tmp_path / "frames", maps=("disp",)):
         directory.mkdir(exist_ok=True)
-        sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP")
+        sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP", maps)
         ocean = core.Ocean(parameters)
         for frame in range(first, last + 1):
-            sink.write(frame, ocean.frame(frame))
+            sink.write(frame, ocean.frame(frame, sink.outputs))
         return extension("scene.image_sequence").ImageSequence(directory, name, first, last)
 
     return write
@@ -96,6 +96,44 @@ def positions_of(mesh):
 @pytest.fixture
 def evaluated():
     return vertices
+
+
+def evaluated_mesh(item):
+    """The object's evaluated mesh, as the viewport has it."""
+    return item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+
+
+@pytest.fixture
+def rendering(empty_scene):
+    """Render with an engine that hands over the meshes it is given: look(name, mesh) → what is kept of it.
+
+    Returns a function of look that renders the present frame and gives {name: what was kept}.
+    """
+    kept, looks = {}, []
+
+    class Probe(bpy.types.RenderEngine):
+        bl_idname, bl_label = "OCEAN_TEST_MESHES", "Meshes"
+
+        def render(self, depsgraph):
+            for instance in depsgraph.object_instances:
+                if instance.object.type == "MESH":
+                    kept[instance.object.name] = looks[-1](instance.object.data)
+
+    bpy.utils.register_class(Probe)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    empty_scene.render.engine = Probe.bl_idname
+    empty_scene.render.resolution_x = empty_scene.render.resolution_y = 8
+
+    def render(look):
+        kept.clear()
+        looks.append(look)
+        assert bpy.ops.render.render() == {"FINISHED"}
+        return dict(kept)
+
+    yield render
+    bpy.utils.unregister_class(Probe)
 
 
 @pytest.fixture
