@@ -27,6 +27,7 @@ def floating(extension, empty_scene):
 def ocean(ocean_object, make_parameters, empty_scene):
     """A small sea that stands somewhere and is turned."""
     item = ocean_object.add(empty_scene, make_parameters())
+    item.ocean_tweak.use_foam = False  # quicker
     item.location, item.rotation_euler.z = (12.0, -30.0, 2.0), 0.6
     bpy.context.view_layer.update()
     return item

@@ -30,6 +30,7 @@ def select(empty_scene):
 def ocean(ocean_object, make_parameters, empty_scene):
     empty_scene.frame_start, empty_scene.frame_end = FRAMES
     item = ocean_object.add(empty_scene, make_parameters(), viewport_resolution=16)
+    item.ocean_tweak.use_foam = False  # quicker
     item.location, item.rotation_euler.z = (12.0, -30.0, 2.0), 0.6
     return item
 
@@ -382,6 +383,27 @@ def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, exten
     assert drawn() == [*inputs, *buttons]
 
 
-def test_the_menu_offers_it():
-    functions = bpy.types.VIEW3D_MT_object.draw._draw_funcs
-    assert "draw_object_menu" in [function.__name__ for function in functions]
+@pytest.mark.parametrize(("menu", "function"), [("VIEW3D_MT_object", "draw_object_menu"),
+                                               ("NODE_MT_add", "draw_add_menu")])  # fmt: skip
+def test_the_menus_offer_it(menu, function):
+    functions = getattr(bpy.types, menu).draw._draw_funcs
+    assert function in [each.__name__ for each in functions]
+
+
+@pytest.mark.parametrize("group", ["SAMPLE", "FLOAT"])
+def test_the_node_editor_adds_the_groups(extension, empty_scene, window, group):
+    tree = bpy.data.node_groups.new("Own", "GeometryNodeTree")
+    with window.override():
+        area = bpy.context.area
+        before = area.type
+        area.type = "NODE_EDITOR"
+        try:
+            space = area.spaces.active
+            space.tree_type = "GeometryNodeTree"
+            assert not bpy.ops.node.ocean_tweak_add_group.poll()
+            space.pin, space.node_tree = True, tree
+            assert bpy.ops.node.ocean_tweak_add_group(group=group) == {"FINISHED"}
+        finally:
+            area.type = before
+    kind = {"SAMPLE": extension("nodes.sample").SAMPLE, "FLOAT": extension("nodes.floating").FLOAT}[group]
+    assert [node.node_tree.name for node in tree.nodes] == [kind.name]
