@@ -9,6 +9,7 @@ from bpy.props import (
     BoolProperty,
     CollectionProperty,
     EnumProperty,
+    FloatProperty,
     IntProperty,
     PointerProperty,
     StringProperty,
@@ -96,7 +97,7 @@ _SWITCHES = {
     ),
     "use_velocity": BoolProperty(
         name="Velocity", default=True, **_SHOWN,
-        description="Write the attribute velocity from which Cycles makes motion blur: the only blur of baked "
+        description="Write the attribute velocity from which Cycles makes motion blur, the only one of baked "
         "files. Costs as much as the displacement",
     ),
 }  # fmt: skip
@@ -120,6 +121,15 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
+        "use_ocean_time": BoolProperty(
+            name="Own Time", **_SHOWN,
+            description="Let the waves follow a clock of their own, which can be animated: slow motion, "
+            "ramps, a still sea",
+        ),
+        "ocean_time": FloatProperty(
+            name="Ocean Time", unit="TIME_ABSOLUTE", precision=3, step=10, update=_changed,
+            description="Seconds on the waves' own clock; animate it", options={"ANIMATABLE"}, **_OVERRIDE,
+        ),
         "method": EnumProperty(
             name="Method", items=_choices(METHODS), default="NODES", **_SHOWN,
             description="What moves the mesh",

@@ -41,6 +41,8 @@ def make_parameters(core):
             "seed": 7,
             "layers": (layer,),
             "timing": timing,
+            # foam that is soon forgotten: every frame alone looks back over its memory
+            "foam": core.Foam(half_life=0.3),
         }
         return core.OceanParameters(**{**values, **changes})
 

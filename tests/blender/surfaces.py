@@ -2,6 +2,7 @@
 """What a shot reads of an ocean's mesh, and what the core says it must read."""
 
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def _numbers(data, name, count):
 def wanted(core, parameters, frame, metres=1.0, repeats=(1, 1)):
     """What `read` must give for a mesh with a vertex a sample, from the core and arithmetic alone."""
     time = (Fraction(frame) - parameters.timing.start_frame) / parameters.timing.fps
-    fields = core.Ocean(parameters).surface(time, OUTPUTS)
+    fields = _surface(core.Ocean, parameters, time)
     samples, size = parameters.resolution, parameters.domain_size / metres
     column, row = (np.arange(count * samples + 1) for count in repeats)
 
@@ -76,6 +77,11 @@ def wanted(core, parameters, frame, metres=1.0, repeats=(1, 1)):
         "normal": over_all(fields.normal),
         "st": st,
     }
+
+
+@lru_cache(maxsize=64)
+def _surface(ocean, parameters, time):
+    return ocean(parameters).surface(time, OUTPUTS)
 
 
 def assert_alike(found, expected, metres=1.0, tolerance=1e-4):

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The node groups are what they were, for each Blender, or the change is meant.
+
+After a meant change, raise the version of the group's kind and write the snapshots anew, with each Blender:
+
+    RENEW_SNAPSHOTS=1 .tools/python-5.2/bin/python -m pytest tests/blender/test_node_trees.py
+    RENEW_SNAPSHOTS=1 .tools/python-4.5/bin/python -m pytest tests/blender/test_node_trees.py
+"""
+
+import os
+from pathlib import Path
+
+import bpy
+import pytest
+
+from .node_tree_text import tree_text
+
+SNAPSHOTS = Path(__file__).parent / "snapshots"
+BLENDER = f"{bpy.app.version[0]}.{bpy.app.version[1]}"
+KINDS = {
+    "ocean": ("nodes.ocean", lambda module: module.ocean_group(1)),
+    "ocean-2-patches": ("nodes.ocean", lambda module: module.ocean_group(2)),
+    "patch": ("nodes.patch", lambda module: module.PATCH),
+    "frame": ("nodes.shown_frame", lambda module: module.SHOWN_FRAME),
+    "frame-warnings": ("nodes.frame_warnings", lambda module: module.WARNINGS),
+    "grid": ("nodes.grid", lambda module: module.GRID),
+}
+
+
+@pytest.fixture
+def built(extension, empty_scene):
+    """Build a group by its name in KINDS; returns its kind and the tree."""
+
+    def build(name):
+        module, choose = KINDS[name]
+        kind = choose(extension(module))
+        return kind, extension("nodes.versioned").node_group(kind)
+
+    return build
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_as_the_snapshot(built, name):
+    kind, tree = built(name)
+    text = f"version {kind.version}\n{tree_text(tree)}"
+    file = SNAPSHOTS / f"{name}-{BLENDER}.txt"
+    if os.environ.get("RENEW_SNAPSHOTS"):
+        file.write_text(text, encoding="utf-8")
+    assert text == file.read_text(encoding="utf-8"), f"{file.name} differs: see the top of {__file__}"
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_every_link_is_valid_and_every_node_is_used(built, name):
+    _, tree = built(name)
+    assert all(link.is_valid for link in tree.links)
+    used = {link.from_node for link in tree.links}
+    # a warning is shown without anybody reading its result
+    ends = {"NodeGroupOutput", "GeometryNodeWarning"}
+    for node in tree.nodes:
+        warns = node.bl_idname == "GeometryNodeGroup" and "Warnings" in node.node_tree.name
+        assert node in used or node.bl_idname in ends or warns, node.name
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_group_is_built_once(built, name):
+    assert built(name)[1] == built(name)[1]
+
+
+@pytest.mark.parametrize("patches", [0, 9])
+def test_too_many_patches_are_refused(extension, patches):
+    with pytest.raises(ValueError, match=f"patches = {patches}: must be from 1 to 8"):
+        extension("nodes.ocean").ocean_group(patches)
