@@ -50,7 +50,7 @@ def make_pytest_for_blender() -> None:
 
 
 def make_farm() -> None:
-    """Make the environment of the farms' own programs; beside Blender's, their versions would disturb others."""
+    """Make the environment of the farms' own programs: their versions would disturb those of the others."""
     requirements = REQUIREMENTS / "farm.txt"
     recipe = requirements.read_text()
     if stamps.is_made(FARM, recipe):

@@ -103,19 +103,20 @@ def bake_arguments(
     arguments = [*BAKERS[job.bake_with], "bake", *sea_arguments(bake, seas, cache), "--take-over"]
     if job.workers is not None:
         arguments += ["--workers", str(job.workers)]
-    return [*arguments, *_openjd(openjd), "--frames", frames, "--only", only]
+    # with an equals sign, as a range may begin with a minus
+    return [*arguments, *_openjd(openjd), f"--frames={frames}", f"--only={only}"]
 
 
 def verify_arguments(job: ShotJob, bake: Job, seas: str, cache: str, only: str, openjd: bool) -> list[str]:
     """The arguments of Python or Blender that read some of the frames back."""
     sea = sea_arguments(bake, seas, cache)
-    return [*BAKERS[job.bake_with], "verify", *sea, *_openjd(openjd), "--frames", only]
+    return [*BAKERS[job.bake_with], "verify", *sea, *_openjd(openjd), f"--frames={only}"]
 
 
 def render_arguments(job: ShotJob, cache: str, frames: str, pictures: str, openjd: bool) -> list[str]:
     """What the render's script is told, behind Blender's own arguments."""
     bakes = [word for bake in job.bakes for word in ("--bake", f"{bake.home}/{bake.hash8}")]
-    return ["--cache", cache, *bakes, "--pictures", pictures, *_openjd(openjd), "--frames", frames]
+    return ["--cache", cache, *bakes, "--pictures", pictures, *_openjd(openjd), f"--frames={frames}"]
 
 
 def _openjd(openjd: bool) -> list[str]:

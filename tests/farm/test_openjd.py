@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Open Job Description bundles: what openjd and Deadline Cloud say to them, and the real jobs, run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from ocean_tweak.cli import Sea, main
+from ocean_tweak.core import OceanParameters
+from ocean_tweak.core.shot import Shot as SeaOfShot
+from tools import real_blender, venvs
+
+from .conftest import Run, Shot
+from .light import NOTHING, PER_METRE, PIXELS
+
+WITH_BLEND = ["--blend", "BLEND", "--blender", "blender 5"]
+
+
+@pytest.fixture(scope="module")
+def shot(make_shot: Callable[[str], Shot]) -> Shot:
+    return make_shot("images")
+
+
+@pytest.fixture(scope="module")
+def bundle(shot: Shot, wheel: Path) -> Path:
+    """The job of which everything is run here, in the order of this file."""
+    blend = shot.folder / "shot.blend"
+    return shot.write("job", "--blend", blend, "--blender", wheel, "--render-chunk", "2")
+
+
+def run_step(openjd: Run, shot: Shot, bundle: Path, step: str, *more: str, **environment: str) -> str:
+    """Run a step, here and now; what it said, and OK or FAILED before it."""
+    values = {"Cache": shot.cache, "BlendFile": shot.folder / "shot.blend", "Pictures": shot.pictures}
+    parameters = [word for name, value in values.items() for word in ("-p", f"{name}={value}")]
+    answer = openjd("run", bundle / "template.json", "--step", step, *parameters, *more, **environment)
+    return ("FAILED" if answer.returncode else "OK") + "\n" + answer.stdout
+
+
+def pixels(path: Path) -> np.ndarray:
+    """(y, x, 3), from the bottom row to the top."""
+    with OpenEXR.File(str(path)) as file:
+        return np.array(file.channels()["RGB"].pixels)[::-1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "tasks"),
+    [
+        ([], {"Bake": 3, "Verify": 3}),
+        (["--frames=-3-95x2", "--bake-with", "blender", "--workers", "3"], {"Bake": 50, "Verify": 50}),
+        (WITH_BLEND, {"Bake": 3, "Verify": 3, "Render": 3}),
+        ([*WITH_BLEND, "--plain-ranges", "--chunk", "1"], {"Bake": 3, "Verify": 3, "Render": 1}),
+    ],
+    ids=["bake", "blender", "render", "plain"],
+)
+def test_openjd_accepts_it(
+    shot: Shot, openjd: Run, tmp_path: Path, arguments: list[str], tasks: dict[str, int]
+) -> None:
+    words = [str(shot.folder / "shot.blend") if word == "BLEND" else word for word in arguments]
+    template = shot.write(f"accepted {tmp_path.name}", *words) / "template.json"
+    extensions = ["--extensions", ""] if "--plain-ranges" in arguments else []
+    checked = openjd("check", template, *extensions)
+    assert checked.returncode == 0, checked.stdout
+    blend = ["-p", "BlendFile=shot.blend"] if "--blend" in arguments else []
+    summary = openjd("summary", template, *blend, *extensions, "--output", "json")
+    assert summary.returncode == 0, summary.stdout
+    steps = json.loads(summary.stdout[summary.stdout.index("{") :])["steps"]
+    assert {step["name"]: step["total_tasks"] for step in steps} == tasks
+
+
+def test_oceans_of_a_file_are_baked_side_by_side(openjd: Run, tmp_path: Path) -> None:
+    seas = {
+        "Bay.001": Sea(SeaOfShot(OceanParameters(resolution=32)), "0123abcd", (1, 2)),
+        "Open Sea": Sea(SeaOfShot(OceanParameters(resolution=64)), None, (1, 2)),
+    }
+    (tmp_path / "shot.blend").touch()
+    out = tmp_path / "job"
+    arguments = ["job", "--out", str(out), "--blend", str(tmp_path / "shot.blend")]
+    assert main(arguments, lambda: seas) == 0
+    steps = json.loads((out / "template.json").read_text())["steps"]
+    assert [step["name"] for step in steps] == ["Bake 1", "Verify 1", "Bake 2", "Verify 2", "Render"]
+    assert steps[-1]["dependencies"] == [{"dependsOn": "Verify 1"}, {"dependsOn": "Verify 2"}]
+    assert json.loads((out / "seas" / "Bay_001.json").read_text())["resolution"] == 32
+    render = steps[-1]["script"]["actions"]["onRun"]["args"]
+    assert [word for word in render if word.startswith("Bay_001-0123abcd/")]
+    assert openjd("check", out / "template.json").returncode == 0
+
+
+def test_deadline_cloud_reads_the_bundle(bundle: Path, run: Run, shot: Shot) -> None:
+    answer = run(venvs.FARM / "bin" / "deadline", "bundle", "info", bundle)
+    assert answer.returncode == 0, answer.stdout
+    told = json.loads(answer.stdout[answer.stdout.index("{") :])
+    assert told["steps"] == ["Bake", "Verify", "Render"]
+    values = json.loads((bundle / "parameter_values.json").read_text())["parameterValues"]
+    assert values == [{"name": "BlendFile", "value": str(shot.folder / "shot.blend")}]
+    # what it does before it sends a job off
+    script = (
+        "import sys; from deadline.client.job_bundle import parameters, loader;"
+        "loader.validate_directory_symlink_containment(sys.argv[1]);"
+        "read = parameters.read_job_bundle_parameters(sys.argv[1]);"
+        "print(*sorted(parameter['name'] for parameter in read))"
+    )
+    answer = run(venvs.FARM / "bin" / "python", "-c", script, bundle)
+    names = "BlendFile Blender Cache ChunkSize Frames Pictures Python RenderChunkSize Seas"
+    assert answer.stdout.strip() == names
+
+
+def test_the_job_bakes_verifies_and_renders(openjd: Run, shot: Shot, bundle: Path) -> None:
+    said = run_step(openjd, shot, bundle, "Render", "--run-dependencies")
+    assert said.startswith("OK"), said
+    assert sorted(path.name for path in shot.pictures.iterdir()) == [
+        f"shot_{frame:04d}.exr" for frame in (1, 2, 3)
+    ]
+    for frame in (1, 2, 3):
+        displacement = pixels(shot.bake / f"storm_disp.{frame:04d}.exr")[:PIXELS, :PIXELS]
+        picture = pixels(shot.pictures / f"shot_{frame:04d}.exr")
+        np.testing.assert_allclose(picture, NOTHING + PER_METRE * displacement, atol=2e-5)
+    assert "openjd_progress: 100.0" in said
+
+
+def test_a_damaged_frame_stops_the_job_until_its_task_ran_again(
+    openjd: Run, shot: Shot, bundle: Path
+) -> None:
+    frame, other = (shot.bake / f"storm_disp.{number:04d}.exr" for number in (2, 3))
+    before, untouched = frame.read_bytes(), other.stat().st_mtime_ns
+    frame.write_bytes(before[:-100] + bytes(100))
+    said = run_step(openjd, shot, bundle, "Verify", "--no-run-dependencies")
+    assert said.startswith("FAILED"), said
+    assert "frame 2 is damaged: storm_disp.0002.exr has other contents than were written" in said
+    again = run_step(openjd, shot, bundle, "Bake", "--no-run-dependencies", "--task-param", "Frames=1-2")
+    assert again.startswith("OK"), again
+    assert frame.read_bytes() == before
+    assert other.stat().st_mtime_ns == untouched
+    said = run_step(openjd, shot, bundle, "Verify", "--no-run-dependencies")
+    assert said.startswith("OK"), said
+
+
+def test_a_missing_frame_is_not_rendered_flat(openjd: Run, shot: Shot, bundle: Path) -> None:
+    frame = shot.bake / "storm_disp.0003.exr"
+    aside = frame.rename(frame.with_suffix(".aside"))
+    said = run_step(openjd, shot, bundle, "Render", "--no-run-dependencies", "--task-param", "Frames=3")
+    aside.rename(frame)
+    assert said.startswith("FAILED"), said
+    assert f"{frame} is missing: bake and verify this frame again" in said
+
+
+def test_written_out_ranges_bake_without_the_extension(openjd: Run, shot: Shot) -> None:
+    plain = shot.write("plain", "--plain-ranges")
+    cache = shot.folder / "plain cache"
+    answer = openjd(
+        "run", plain / "template.json", "--extensions", "", "--step", "Bake", "-p", f"Cache={cache}"
+    )
+    assert answer.returncode == 0, answer.stdout
+    baked = {path.name: path.read_bytes() for path in cache.glob("*/v*/*.exr")}
+    assert baked == {path.name: path.read_bytes() for path in shot.bake.glob("*.exr")}
+
+
+def test_a_real_blender_renders_the_same(shot: Shot, bundle: Path, run: Run, tmp_path: Path) -> None:
+    try:
+        blender = real_blender.find()
+    except real_blender.NoBlender as reason:
+        pytest.skip(str(reason))
+    step = json.loads((bundle / "template.json").read_text())["steps"][-1]["script"]
+    script = tmp_path / "render_baked.py"
+    script.write_text(step["embeddedFiles"][0]["data"])
+    given = {
+        "{{Param.BlendFile}}": shot.folder / "shot.blend", "{{Task.File.Render}}": script,
+        "{{Param.Cache}}": shot.cache, "{{Param.Pictures}}": tmp_path,
+        "--frames={{Task.Param.Frames}}": "--frames=2",
+    }  # fmt: skip
+    answer = run(*blender.command, *(given.get(word, word) for word in step["actions"]["onRun"]["args"]))
+    assert answer.returncode == 0, answer.stdout
+    picture = pixels(tmp_path / "shot_0002.exr")
+    np.testing.assert_allclose(picture, pixels(shot.pictures / "shot_0002.exr"), atol=2e-5)
+
+
+def test_a_live_ocean_is_rendered_from_its_bake(
+    openjd: Run, make_shot: Callable[[str], Shot], wheel: Path
+) -> None:
+    live = make_shot("live")
+    rendered = ["--blend", live.folder / "shot.blend", "--blender", wheel]
+    step = ["Render", "--no-run-dependencies", "--task-param", "Frames=2"]
+    bake = ["bake", "--params", str(live.folder / "storm.json"), "--frames", "1-2", "--out", str(live.cache)]
+    assert main(bake) == 0
+    said = run_step(openjd, live, live.write("job", *rendered), *step, WITH_EXTENSION="1")
+    assert said.startswith("OK"), said
+    assert f"Ocean reads {live.bake}" in said
+    assert [path.name for path in live.pictures.iterdir()] == ["shot_0002.exr"]
+
+    wider = ["--set", "domain_size=300"]
+    assert main([*bake, *wider]) == 0
+    said = run_step(openjd, live, live.write("other", *rendered, *wider), *step, WITH_EXTENSION="1")
+    assert said.startswith("FAILED")
+    assert "Ocean is 200 m wide" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--frames", "1-2x0.5"], "frame 1.5: the tasks of a farm are whole frames"),
+        (["--frames", "1-2000", "--chunk", "1", "--plain-ranges"], "2000 tasks in a step: at most 1024"),
+        (["--frames", "1", "--blend", "absent.blend"], "--blend absent.blend: is no file"),
+        (["--frames", "1", "--pictures", "x"], "--pictures: there are none without --blend"),
+        (["--frames", "1", "--chunk", "0"], "'0' must be a whole number from 1"),
+        (["--frames=-1", "--form", "flamenco"], "frame -1: Flamenco knows no negative frames"),
+        (["--frames", "1", "--form", "flamenco", "--plain-ranges"], "divides frames itself"),
+    ],
+)
+def test_what_no_farm_can_run_is_refused(
+    arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["job", "--out", str(tmp_path / "job"), *arguments]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_what_ends_a_command_is_told_to_the_farm(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", "--out", str(tmp_path), "--openjd"]) == 1
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.startswith(f"openjd_fail: {tmp_path}/ocean-")
+    assert main(["verify", str(tmp_path), "--out", str(tmp_path)]) == 2
