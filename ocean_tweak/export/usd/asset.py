@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The asset's own layer, which a shot references, and the payload that it brings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .box import Box, tile_offsets
+from .grid import proxy_step
+from .layers import MARK, whole_layer, write_header
+from .library import pxr
+from .material import MATERIAL, SCOPE
+from .mesh import ROOT
+from .package import Package
+
+GEOMETRY = "geo"
+VARIANT_SET = "resolution"
+_KIND = "component"
+
+
+def prim_name(package: Package) -> str:
+    """The asset's name, as a prim may have it."""
+    return str(pxr().Tf.MakeValidIdentifier(package.name))
+
+
+def write_payload(path: Path, package: Package, geometry: str, material: str) -> None:
+    """Write payload.usd: geometry and material under the asset's own prim.
+
+    geometry, material : names of the layers beside it
+    """
+    modules = pxr()
+    root = f"/{prim_name(package)}"
+    with whole_layer(path, text=True) as layer:
+        write_header(layer, package, package.frames, root[1:])
+        stage = modules.Usd.Stage.Open(layer)
+        modules.UsdGeom.Xform.Define(stage, root)
+        scope = modules.UsdGeom.Scope.Define(stage, f"{root}/{GEOMETRY}").GetPrim()
+        looks = modules.UsdGeom.Scope.Define(stage, f"{root}/{SCOPE}").GetPrim()
+        looks.GetReferences().AddReference(f"./{material}")
+        _add_tiles(stage, scope, package, geometry)
+        # bound above the tiles, so that all instances share it
+        binding = modules.UsdShade.MaterialBindingAPI.Apply(scope)
+        water = modules.UsdShade.Material(stage.GetPrimAtPath(f"{root}/{SCOPE}/{MATERIAL}"))
+        binding.Bind(water)
+        del stage
+
+
+def _add_tiles(stage: Any, scope: Any, package: Package, geometry: str) -> None:
+    modules = pxr()
+    offsets = tile_offsets(package)
+    for name, offset in offsets.items():
+        several = len(offsets) > 1
+        path = scope.GetPath().AppendChild(name if several else ROOT)
+        tile = modules.UsdGeom.Xform.Define(stage, path)
+        tile.GetPrim().GetReferences().AddReference(f"./{geometry}")
+        if several:
+            tile.AddTranslateOp().Set(modules.Gf.Vec3d(*offset.tolist()))
+            tile.GetPrim().SetInstanceable(True)
+
+
+def write_asset(path: Path, package: Package, payloads: Mapping[int, str], box: Box) -> None:
+    """Write the asset's layer, last of all: it makes the rest visible.
+
+    payloads : by resolution, relative to the layer
+    box : around all that the asset shows, in any frame
+    """
+    modules = pxr()
+    with whole_layer(path, text=True) as layer:
+        write_header(layer, package, package.frames, prim_name(package))
+        stage = modules.Usd.Stage.Open(layer)
+        prim = modules.UsdGeom.Xform.Define(stage, f"/{prim_name(package)}").GetPrim()
+        model = modules.Usd.ModelAPI(prim)
+        model.SetKind(_KIND)
+        model.SetAssetName(package.name)
+        model.SetAssetIdentifier(modules.Sdf.AssetPath(f"./{path.name}"))
+        model.SetAssetVersion(package.fingerprint[:8])
+        hint = modules.Vt.Vec3fArray.FromNumpy(_extents_hint(package, box))
+        modules.UsdGeom.ModelAPI.Apply(prim).SetExtentsHint(hint)
+        prim.SetCustomDataByKey(MARK, package.record())
+        if package.variants:
+            _add_variants(prim, package, payloads)
+        else:
+            prim.GetPayloads().AddPayload(next(iter(payloads.values())))
+        del stage
+
+
+def _add_variants(prim: Any, package: Package, payloads: Mapping[int, str]) -> None:
+    variants = prim.GetVariantSets().AddVariantSet(VARIANT_SET)
+    for resolution in package.resolutions:
+        variants.AddVariant(str(resolution))
+        variants.SetVariantSelection(str(resolution))
+        with variants.GetVariantEditContext():
+            prim.GetPayloads().AddPayload(payloads[resolution])
+    variants.SetVariantSelection(str(package.resolutions[0]))
+
+
+def _extents_hint(package: Package, box: Box) -> Any:
+    """Boxes by purpose: default, and, where the mesh has a coarse stand-in, render and proxy."""
+    full = np.stack(box).astype(np.float32)
+    if not any(proxy_step(resolution, package.proxy) for resolution in package.resolutions):
+        return full
+    most = np.finfo(np.float32).max
+    empty = np.array([[most] * 3, [-most] * 3], np.float32)
+    has_plain = not all(proxy_step(resolution, package.proxy) for resolution in package.resolutions)
+    return np.concatenate([full if has_plain else empty, full, full])

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What moves: the attributes of the mesh that change from frame to frame, from the core's fields.
+
+All is 32-bit: USD's own schemas say so of points, velocities, normals and displayColor. Foam and cusp may
+be halved: then they err by 2⁻¹² of a value at most, less than a step of an 8-bit picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.fields import SurfaceFields
+from .grid import Patch
+
+RealArray = NDArray[np.floating]
+
+#: linear colours that a viewport without our material shows, of water and of foam
+WATER_COLOUR = (0.012, 0.045, 0.06)
+FOAM_COLOUR = (0.8, 0.83, 0.85)
+
+
+class Attribute(NamedTuple):
+    """An animated attribute of the mesh.
+
+    name, type : in USD, the type a name of `Sdf.ValueTypeNames`
+    outputs : the fields that it is made of
+    values : from those and the patch to (vertices, …) float32 in the layer's units and axes
+    rest : the same of a flat sea
+    halved : whether it may be stored in 16 bits
+    """
+
+    name: str
+    type: str
+    outputs: frozenset[str]
+    values: Callable[[Patch, SurfaceFields], RealArray]
+    rest: Callable[[Patch], RealArray]
+    halved: bool = False
+
+
+def _points(patch: Patch, fields: SurfaceFields) -> RealArray:
+    return patch.positions(fields.displacement)
+
+
+def _velocities(patch: Patch, fields: SurfaceFields) -> RealArray:
+    return patch.turned(patch.wrapped(fields.velocity), patch.scale)
+
+
+def _normals(patch: Patch, fields: SurfaceFields) -> RealArray:
+    return patch.turned(patch.wrapped(fields.normal))
+
+
+def _up(patch: Patch) -> RealArray:
+    up = np.zeros((patch.vertices, 3), np.float32)
+    up[:, 1 if patch.up_axis == "Y" else 2] = 1.0
+    return up
+
+
+def _colours(patch: Patch, fields: SurfaceFields) -> RealArray:
+    return _mixed(patch.wrapped(fields.foam).reshape(-1, 1))
+
+
+def _mixed(foam: RealArray) -> RealArray:
+    water, white = np.array(WATER_COLOUR, np.float32), np.array(FOAM_COLOUR, np.float32)
+    return water + foam * (white - water)
+
+
+def _plain(name: str) -> Callable[[Patch, SurfaceFields], RealArray]:
+    return lambda patch, fields: patch.wrapped(getattr(fields, name)).reshape(-1)
+
+
+def _nothing(patch: Patch) -> RealArray:
+    return np.zeros(patch.vertices, np.float32)
+
+
+POINTS = Attribute(
+    "points", "Point3fArray", frozenset({"displacement"}), _points, lambda patch: patch.positions(None)
+)
+
+#: what may be asked for beside points and extent → how it is made
+ATTRIBUTES: dict[str, Attribute] = {
+    "velocities": Attribute(
+        "velocities", "Vector3fArray", frozenset({"velocity"}), _velocities,
+        lambda patch: np.zeros((patch.vertices, 3), np.float32),
+    ),
+    "normals": Attribute("normals", "Normal3fArray", frozenset({"normal"}), _normals, _up),
+    "foam": Attribute("primvars:foam", "FloatArray", frozenset({"foam"}), _plain("foam"), _nothing, True),
+    "cusp": Attribute("primvars:cusp", "FloatArray", frozenset({"cusp"}), _plain("cusp"), _nothing, True),
+    "displayColor": Attribute(
+        "primvars:displayColor", "Color3fArray", frozenset({"foam"}), _colours,
+        lambda patch: _mixed(np.zeros((patch.vertices, 1), np.float32)),
+    ),
+}  # fmt: skip
+
+EXTENT = ("extent", "Float3Array")
+
+
+def chosen(names: tuple[str, ...]) -> tuple[Attribute, ...]:
+    """Points, and those that were asked for."""
+    return (POINTS, *(ATTRIBUTES[name] for name in names))
+
+
+def outputs_of(names: tuple[str, ...]) -> frozenset[str]:
+    """The fields that a frame must have."""
+    return frozenset().union(*(attribute.outputs for attribute in chosen(names)))
+
+
+def type_name(attribute: Attribute, half: bool) -> str:
+    """Of `Sdf.ValueTypeNames`."""
+    return "HalfArray" if half and attribute.halved else attribute.type
+
+
+def to_vt(vt: Any, values: RealArray, half: bool = False) -> Any:
+    """An array of OpenUSD's own from (n,) or (n, 3), in 16 or 32 bits."""
+    array = np.ascontiguousarray(values, np.float16 if half else np.float32)
+    if array.ndim == 1:
+        return (vt.HalfArray if half else vt.FloatArray).FromNumpy(array)
+    return (vt.Vec3fArray if array.shape[1] == 3 else vt.Vec2fArray).FromNumpy(array)
+
+
+def mesh_values(
+    vt: Any, patch: Patch, attributes: tuple[Attribute, ...], half: bool, fields: SurfaceFields | None
+) -> Mapping[str, Any]:
+    """Arrays of a mesh at a frame by attribute name, its extent among them; without fields those at rest.
+
+    Raises ValueError for numbers that are not finite.
+    """
+    arrays = {
+        attribute.name: attribute.rest(patch) if fields is None else attribute.values(patch, fields)
+        for attribute in attributes
+    }
+    for name, array in arrays.items():
+        if not np.all(np.isfinite(array)):
+            raise ValueError(f"{name} has values that are not finite")
+    points = arrays[POINTS.name]
+    extent = np.stack([points.min(axis=0), points.max(axis=0)])
+    halved = {attribute.name for attribute in attributes if half and attribute.halved}
+    values = {name: to_vt(vt, array, name in halved) for name, array in arrays.items()}
+    return {**values, EXTENT[0]: to_vt(vt, extent)}

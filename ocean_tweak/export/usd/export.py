@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An export: checked, then its frames, then the layers that hold them together, the asset's own last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ...core import ParameterError
+from ...core.bake import BakedFrame, bake
+from ...core.frames import Frame, format_frames
+from ..cache.job import Job, read_job
+from ..files import sync_folder, writable_folder
+from . import textures
+from .asset import prim_name, write_asset, write_payload
+from .box import Box, of_tiles, union
+from .clips import ClipSink, write_manifest, write_stitch, write_topology_layer
+from .layers import refuse_foreign, whole_layer, write_header
+from .library import UsdError, pxr
+from .material import write_material
+from .mesh import ROOT, SURFACE, Edition, write_topology
+from .package import Package, edition_folder
+from .points import points_sink
+
+TOPOLOGY, MANIFEST, PAYLOAD, MATERIAL = "topology.usd", "manifest.usda", "payload.usd", "mtl.usd"
+#: form → the layer of the geometry, and the others that belong to it alone
+_GEOMETRY = {
+    "points": ("geo.usdc",),
+    "clips": ("geo.usd", TOPOLOGY, MANIFEST),
+    "displacement": ("geo.usd",),
+}
+
+
+@dataclass(frozen=True)
+class Export:
+    """A package and where it goes.
+
+    top : the asset's own layer; all others lie beside it
+    bake : folder of a bake whose images displace the sea; none to make one beside the asset
+    force : replace files of others, and clips that are there already
+
+    Raises UsdError where `pxr` is missing, ParameterError for a file that has no name of a layer.
+    """
+
+    package: Package
+    top: Path
+    bake: Path | None = None
+    force: bool = False
+
+    def __post_init__(self) -> None:
+        pxr()
+        if self.top.suffix not in (".usd", ".usda", ".usdc"):
+            raise ParameterError("out", str(self.top), "must end in .usd, .usda or .usdc")
+
+    @property
+    def editions(self) -> tuple[tuple[Path, Edition], ...]:
+        """The folder of each resolution, and its sea."""
+        package = self.package
+        return tuple(
+            (edition_folder(self.top, package, resolution), Edition(package, resolution))
+            for resolution in package.resolutions
+        )
+
+    def paths(self) -> Iterator[Path]:
+        """All layers but the clips."""
+        yield self.top
+        for folder, _ in self.editions:
+            for name in (*_GEOMETRY[self.package.form], MATERIAL, PAYLOAD):
+                yield folder / name
+
+    def check(self, frames: Sequence[Frame]) -> None:
+        """Raise UsdError or OSError, before anything is made, for what cannot be written.
+
+        frames : those that will be made
+        """
+        package = self.package
+        if not set(frames) <= set(package.frames):
+            raise ParameterError(
+                "only", format_frames(frames), f"must be some of the frames {format_frames(package.frames)}"
+            )
+        if package.form == "points" and len(frames) < len(package.frames):
+            raise ParameterError(
+                "only", format_frames(frames), "is for clips: one layer of points is made at once"
+            )
+        writable_folder(self.top.parent)
+        if not self.force:
+            refuse_foreign(self.paths(), package)
+            for _, _, sink in self._clips():
+                refuse_foreign(map(sink.path, frames), package)
+        if self.bake is not None:
+            self.images  # noqa: B018  # names what is missing
+
+    def left(self, frames: Sequence[Frame]) -> int:
+        """How many frames will be made, over all resolutions."""
+        if self.package.form == "clips":
+            return sum(len(self._todo(sink, frames)) for _, _, sink in self._clips())
+        if self.package.form == "displacement":
+            return sum(1 for _ in textures.unfinished(self.bake_folder, self.job, frames))
+        return len(frames) * len(self.editions)
+
+    def make(self, frames: Sequence[Frame], workers: int = 1) -> Iterator[BakedFrame]:
+        """Make frames; yields each when it is written. Those of points appear together at the end."""
+        yield from _MAKERS[self.package.form](self, frames, workers)
+
+    def finish(self) -> None:
+        """Write the layers that hold the frames together. Raises UsdError where frames are missing."""
+        package = self.package
+        for _, _, sink in self._clips():
+            sink.check_complete()
+        boxes, payloads = [], {}
+        for folder, edition in self.editions:
+            folder.mkdir(exist_ok=True)
+            boxes.append(_FINISHERS[package.form](self, folder, edition))
+            material = folder / MATERIAL
+            write_material(material, package, self._relative_images(material))
+            write_payload(folder / PAYLOAD, package, _GEOMETRY[package.form][0], MATERIAL)
+            sync_folder(folder)
+            payloads[edition.resolution] = f"./{(folder / PAYLOAD).relative_to(self.top.parent).as_posix()}"
+        write_asset(self.top, package, payloads, of_tiles(package, union(boxes)))
+        sync_folder(self.top.parent)
+
+    @property
+    def prim(self) -> str:
+        """The asset's prim."""
+        return f"/{prim_name(self.package)}"
+
+    def _clips(self) -> Iterator[tuple[Path, Edition, ClipSink]]:
+        if self.package.form == "clips":
+            for folder, edition in self.editions:
+                yield folder, edition, ClipSink(folder, edition)
+
+    def _todo(self, sink: ClipSink, frames: Sequence[Frame]) -> tuple[Frame, ...]:
+        return tuple(frame for frame in frames if self.force or not sink.is_current(frame))
+
+    @cached_property
+    def bake_folder(self) -> Path:
+        """Where the images are."""
+        return self.bake or textures.own_bake(self.top, self.package)
+
+    @cached_property
+    def job(self) -> Job:
+        """What the bake holds."""
+        return read_job(self.bake_folder)
+
+    @cached_property
+    def images(self) -> dict[Frame, Path]:
+        """The image of each frame, once all are there. Raises UsdError naming those that are not."""
+        return textures.image_paths(self.bake_folder, self.job, self.package.frames)
+
+    def _relative_images(self, layer: Path) -> dict[Frame, str]:
+        if self.package.form != "displacement":
+            return {}
+        return {frame: textures.relative_path(path, layer) for frame, path in self.images.items()}
+
+
+def _make_points(export: Export, frames: Sequence[Frame], workers: int) -> Iterator[BakedFrame]:
+    for folder, edition in export.editions:
+        folder.mkdir(exist_ok=True)
+        shot = export.package.at(edition.resolution)
+        with points_sink(folder / _GEOMETRY["points"][0], edition) as sink:
+            yield from bake(shot, frames, sink, workers)
+
+
+def _make_clips(export: Export, frames: Sequence[Frame], workers: int) -> Iterator[BakedFrame]:
+    for folder, edition, sink in export._clips():
+        sink.path(frames[0]).parent.mkdir(parents=True, exist_ok=True)
+        todo = export._todo(sink, frames)
+        yield from bake(export.package.at(edition.resolution), todo, sink, workers)
+        sync_folder(folder)
+
+
+def _make_images(export: Export, frames: Sequence[Frame], workers: int) -> Iterator[BakedFrame]:
+    if export.bake is None:
+        yield from textures.make(export.bake_folder, export.job, frames, workers)
+
+
+_MAKERS: dict[str, Callable[[Export, Sequence[Frame], int], Iterator[BakedFrame]]] = {
+    "points": _make_points, "clips": _make_clips, "displacement": _make_images
+}  # fmt: skip
+
+
+def _finish_points(_export: Export, folder: Path, edition: Edition) -> Box:
+    return union(extents(folder / _GEOMETRY["points"][0], edition.package.frames))
+
+
+def _finish_clips(_export: Export, folder: Path, edition: Edition) -> Box:
+    sink = ClipSink(folder, edition)
+    write_topology_layer(folder / TOPOLOGY, edition)
+    write_manifest(folder / MANIFEST, edition)
+    write_stitch(folder / _GEOMETRY["clips"][0], edition, TOPOLOGY, MANIFEST)
+    return union(box for frame in edition.package.frames for box in extents(sink.path(frame), (frame,)))
+
+
+def _finish_displacement(export: Export, folder: Path, edition: Edition) -> Box:
+    box = textures.displaced_box(edition, tuple(export.images.values()))
+    with whole_layer(folder / _GEOMETRY["displacement"][0]) as layer:
+        write_header(layer, export.package, (), ROOT)
+        write_topology(layer, edition)
+    return box
+
+
+_FINISHERS: dict[str, Callable[[Export, Path, Edition], Box]] = {
+    "points": _finish_points, "clips": _finish_clips, "displacement": _finish_displacement
+}  # fmt: skip
+
+
+def extents(path: Path, frames: Sequence[Frame]) -> Iterator[Box]:
+    """The surface's box at frames, from a layer that holds them. Raises UsdError where there is none."""
+    sdf = pxr().Sdf
+    layer = sdf.Layer.OpenAsAnonymous(str(path))
+    for frame in frames:
+        extent = layer.QueryTimeSample(sdf.Path(f"/{ROOT}/{SURFACE}.extent"), float(frame))
+        if extent is None:
+            raise UsdError(f"{path}: holds no frame {frame}: make it again with --force")
+        yield Box(*np.array(extent, np.float64))

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The mesh of one patch: quads between its samples, closed by the first row and column repeated a period on.
+
+Vertices stand x fastest, from 0 to the domain's size, as in Blender.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+RealArray = NDArray[np.floating]
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A mesh over a patch of the sea.
+
+    size : side of the patch in m
+    samples : along each side
+    texels : along each side of the images that may lie on it
+    step : how many samples from one vertex to the next
+    up_axis, scale : of the layer; units in a metre
+    """
+
+    size: float
+    samples: int
+    texels: int
+    step: int = 1
+    up_axis: str = "Z"
+    scale: float = 1.0
+
+    @property
+    def quads(self) -> int:
+        """Along each side."""
+        return self.samples // self.step
+
+    @property
+    def vertices(self) -> int:
+        """How many there are."""
+        return (self.quads + 1) ** 2
+
+    def wrapped(self, field: RealArray) -> RealArray:
+        """(N, N, …) samples as (quads + 1, quads + 1, …), the first row and column once more at the end."""
+        inner = field[:: self.step, :: self.step]
+        count = self.quads
+        result = np.empty((count + 1, count + 1, *inner.shape[2:]), np.float32)
+        result[:count, :count] = inner
+        result[count, :count] = inner[0]
+        result[:, count] = result[:, 0]
+        return result
+
+    def turned(self, vectors: RealArray, scale: float = 1.0) -> RealArray:
+        """(…, 3) vectors as (vertices, 3) along the layer's axes, times the scale; may change the array."""
+        if self.up_axis == "Y":  # turned by -90° about x
+            vectors = np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
+        if scale != 1.0:
+            vectors *= scale
+        return vectors.reshape(-1, 3)
+
+    def positions(self, displacement: RealArray | None) -> RealArray:
+        """(vertices, 3) float32: displaced vertices, or the flat ones."""
+        count = self.quads + 1
+        shape = (count, count, 3)
+        position = np.zeros(shape, np.float32) if displacement is None else self.wrapped(displacement)
+        # summed in double precision and rounded once
+        rest = np.arange(count) * (self.size / self.quads)
+        for component, along in ((0, rest), (1, rest[:, np.newaxis])):
+            moved = position[..., component]
+            np.add(moved, along, out=moved, dtype=np.float64, casting="same_kind")
+        return self.turned(position, self.scale)
+
+    def corners(self) -> NDArray[np.int32]:
+        """(quads², 4) int32: vertices of each quad, counter-clockwise from above."""
+        row = self.quads + 1
+        first = np.arange(row * row, dtype=np.int32).reshape(row, row)[:-1, :-1].reshape(-1, 1)
+        return first + np.array([0, 1, row + 1, row], np.int32)
+
+    def texture_coordinates(self) -> RealArray:
+        """(vertices, 2) float32: x/size + ½/texels, the centres of the texels that hold the samples."""
+        along = np.arange(self.quads + 1) / self.quads + 0.5 / self.texels
+        return np.stack(np.meshgrid(along, along), axis=-1).astype(np.float32).reshape(-1, 2)
+
+
+def proxy_step(samples: int, most: int) -> int:
+    """The least step that divides the samples and leaves at most so many quads along a side; 0 for none."""
+    if most < 1 or samples <= most:
+        return 0
+    return next(step for step in range(2, samples + 1) if samples % step == 0 and samples // step <= most)

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layers: written whole or not at all, marked as ours, and never over somebody else's."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from ...core.frames import Frame
+from ..files import whole_file
+from .library import UsdError, pxr
+from .package import FORMAT, Package
+
+#: key of customData and customLayerData
+MARK = "ocean_tweak"
+
+
+@contextlib.contextmanager
+def whole_layer(path: Path, text: bool = False) -> Iterator[Any]:
+    """A new layer to fill, an `Sdf.Layer`; at the end it is saved, synced and takes the place of `path`.
+
+    text : readable rather than binary, for a layer named .usd
+
+    Raises UsdError where it cannot be written; then the old file is as it was.
+    """
+    sdf, tf = pxr().Sdf, pxr().Tf
+    with whole_file(path) as beside:
+        # OpenUSD chooses the format by the ending
+        draft = beside.with_name(beside.name + path.suffix)
+        try:
+            with _errors_named(tf, path):
+                layer = sdf.Layer.CreateNew(str(draft), args=_format(path, text))
+                try:
+                    yield layer
+                    save(layer, path)
+                finally:
+                    del layer  # or the next one to open this path would get this one
+                if sdf.Layer.OpenAsAnonymous(str(draft), metadataOnly=True) is None:
+                    raise UsdError(f"{path}: what was written cannot be read back")
+            draft.replace(beside)
+        finally:
+            with contextlib.suppress(OSError):
+                draft.unlink(missing_ok=True)
+
+
+def _format(path: Path, text: bool) -> dict[str, str]:
+    return {"format": "usda" if text else "usdc"} if path.suffix == ".usd" else {}
+
+
+@contextlib.contextmanager
+def _errors_named(tf: Any, path: Path) -> Iterator[None]:
+    try:
+        yield
+    except tf.ErrorException as error:
+        raise UsdError(f"{path}: {reason(error)}") from error
+
+
+def reason(error: Exception) -> str:
+    """What OpenUSD's error says, without the place in its source."""
+    said = [line.rpartition(" : ")[2].strip().strip("'") for line in str(error).splitlines() if line.strip()]
+    return "; ".join(dict.fromkeys(said)) or "OpenUSD failed without a word"
+
+
+def save(layer: Any, path: Path) -> None:
+    """Save a layer; what it held in memory is in the file afterwards. Raises UsdError."""
+    tf = pxr().Tf
+    try:
+        saved = layer.Save()
+    except tf.ErrorException as error:
+        raise UsdError(f"{path}: {reason(error)}") from error
+    if not saved:
+        raise UsdError(f"{path}: OpenUSD could not save it")
+
+
+def write_header(
+    layer: Any, package: Package, frames: tuple[Frame, ...], prim: str, mark: dict[str, Any] | None = None
+) -> None:
+    """Units, axis, time and mark of a layer.
+
+    frames : what it covers; none for a layer that does not move
+    prim : its default prim
+    """
+    usd_geom = pxr().UsdGeom
+    layer.defaultPrim = prim
+    layer.timeCodesPerSecond = layer.framesPerSecond = package.frames_per_second
+    if frames:
+        layer.startTimeCode, layer.endTimeCode = float(frames[0]), float(frames[-1])
+    root = layer.pseudoRoot
+    root.SetInfo("metersPerUnit", package.metres_per_unit)
+    root.SetInfo("upAxis", {"Z": usd_geom.Tokens.z, "Y": usd_geom.Tokens.y}[package.up_axis])
+    layer.customLayerData = {MARK: {"format": FORMAT, "asset": package.name, **(mark or {})}}
+
+
+def mark_of(path: Path) -> dict[str, Any] | None:
+    """Our mark in a layer; None where there is none, or where it cannot be read."""
+    sdf, tf = pxr().Sdf, pxr().Tf
+    try:
+        layer = sdf.Layer.OpenAsAnonymous(str(path))
+    except tf.ErrorException:
+        return None
+    mark = layer.customLayerData.get(MARK) if layer is not None else None
+    return dict(mark) if isinstance(mark, dict) else None
+
+
+def refuse_foreign(paths: Iterable[Path], package: Package) -> None:
+    """Raise UsdError for a file that this asset's export did not write."""
+    for path in paths:
+        if not path.exists():
+            continue
+        owner = (mark_of(path) or {}).get("asset")
+        if owner is None:
+            raise UsdError(
+                f"{path} is there already and was not written by Ocean Tweak, or is damaged: "
+                "choose another folder, or replace it with --force"
+            )
+        if owner != package.name:
+            raise UsdError(
+                f"{path} belongs to the asset {owner!r}: give each asset a folder of its own, "
+                "or replace it with --force"
+            )

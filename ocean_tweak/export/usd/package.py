@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is exported: a sea, its frames, and how they are laid out."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from ...core import ParameterError
+from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint, shot_fingerprint
+from ...core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
+from ...core.shot import Shot
+from .attributes import ATTRIBUTES
+
+FORMAT = 1
+FORMS = ("points", "clips", "displacement")
+UP_AXES = ("Z", "Y")
+#: names of the layers beside the asset's own
+LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest")
+_MOST_TILES = 64
+_UNITS = (1e-6, 1e6)
+
+
+@dataclass(frozen=True)
+class Package:
+    """What is exported.
+
+    name : of the asset and of its files
+    frames : ascending; those between whole numbers are samples for motion blur
+    up_axis : Z as in Blender, or Y: then all vectors are turned
+    metres_per_unit : of the layers; 0.01 gives centimetres
+    attributes : keys of ATTRIBUTES
+    half : foam and cusp in 16 bits instead of 32
+    tiles : patches side by side along x and y, as instances
+    proxy : most quads along a side of the coarse mesh for viewports; 0 for none
+    variants : resolutions to choose from, the first one by default; none for the sea's own alone
+
+    Raises ParameterError naming what does not fit.
+    """
+
+    name: str
+    shot: Shot
+    frames: tuple[Frame, ...]
+    form: str = "points"
+    up_axis: str = "Z"
+    metres_per_unit: float = 1.0
+    attributes: tuple[str, ...] = tuple(ATTRIBUTES)
+    half: bool = False
+    tiles: tuple[int, int] = (1, 1)
+    proxy: int = 64
+    variants: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        _check_choice("form", self.form, FORMS)
+        _check_choice("up_axis", self.up_axis, UP_AXES)
+        for name in self.attributes:
+            _check_choice("attributes", name, tuple(ATTRIBUTES))
+        low, high = _UNITS
+        if not (math.isfinite(self.metres_per_unit) and low <= self.metres_per_unit <= high):
+            raise ParameterError("metres_per_unit", self.metres_per_unit, f"must be from {low:g} to {high:g}")
+        if not all(1 <= count <= _MOST_TILES for count in self.tiles):
+            raise ParameterError("tiles", self.tiles, f"must be from 1 to {_MOST_TILES} along each side")
+        if self.proxy < 0:
+            raise ParameterError("proxy", self.proxy, "must be 0 or more")
+        if len(set(self.variants)) < len(self.variants):
+            raise ParameterError("variants", self.variants, "must differ from each other")
+        if not self.frames:
+            raise ParameterError("frames", "", "must hold at least one frame")
+        _check_name(self.name)
+        self.shot.check(self.frames)
+        for resolution in self.resolutions:
+            self.at(resolution)
+
+    @property
+    def resolutions(self) -> tuple[int, ...]:
+        """Of the editions; the first one is shown by default."""
+        return self.variants or (self.shot.parameters.resolution,)
+
+    def at(self, resolution: int) -> Shot:
+        """The sea with as many samples along a side: the same waves, as far as they can be held."""
+        return replace(self.shot, parameters=self.shot.parameters.replace(resolution=resolution))
+
+    @property
+    def frames_per_second(self) -> float:
+        """Of the shot, and of every layer."""
+        return float(self.shot.parameters.timing.fps)
+
+    @property
+    def scale(self) -> float:
+        """Units of the layers in a metre."""
+        return 1.0 / self.metres_per_unit
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """That of the shot."""
+        return shot_fingerprint(self.shot)
+
+    def edition_fingerprint(self, resolution: int) -> str:
+        """SHA-256 of all that an edition's animated arrays depend on, whichever frames are made."""
+        return fingerprint(
+            {
+                "format": FORMAT,
+                "synthesis": SYNTHESIS_VERSION,
+                "shot": self.at(resolution).to_dict(),
+                "up_axis": self.up_axis,
+                "metres_per_unit": self.metres_per_unit,
+                "attributes": list(self.attributes),
+                "half": self.half,
+                "proxy": self.proxy,
+            }
+        )
+
+    def record(self) -> dict[str, Any]:
+        """What stands in the asset's customData: strings and plain numbers."""
+        return {
+            "format": FORMAT,
+            "name": self.name,
+            "form": self.form,
+            "fingerprint": self.fingerprint,
+            "shot": self.shot.to_json(indent=None),
+            "frames": format_frames(self.frames),
+            "upAxis": self.up_axis,
+            "metersPerUnit": self.metres_per_unit,
+            "attributes": ",".join(self.attributes),
+            "half": self.half,
+            "tiles": f"{self.tiles[0]}x{self.tiles[1]}",
+            "proxy": self.proxy,
+            "variants": ",".join(map(str, self.variants)),
+        }
+
+    @classmethod
+    def from_record(cls, data: dict[str, Any]) -> Package:
+        """The package that `record` described. Raises ValueError or KeyError for what is none."""
+        if data.get("format") != FORMAT:
+            raise ValueError(f"is of format {data.get('format')!r}, and this version reads {FORMAT}")
+        across, along = str(data["tiles"]).split("x")
+        package = cls(
+            data["name"],
+            Shot.from_json(data["shot"]),
+            parse_frames(data["frames"]),
+            form=data["form"],
+            up_axis=data["upAxis"],
+            metres_per_unit=float(data["metersPerUnit"]),
+            attributes=_listed(data["attributes"]),
+            half=bool(data["half"]),
+            tiles=(int(across), int(along)),
+            proxy=int(data["proxy"]),
+            variants=tuple(map(int, _listed(data["variants"]))),
+        )
+        if package.fingerprint != data["fingerprint"]:
+            raise ValueError("was changed: its fingerprint is not that of its parameters")
+        return package
+
+
+def with_samples_between(frames: Iterable[Frame], samples: int) -> tuple[Frame, ...]:
+    """Frames with as many samples from each one to the next as asked for; 1 leaves them as they are.
+
+    Raises ParameterError for a number whose parts six decimals cannot write.
+    """
+    frames = tuple(frames)
+    if samples < 1:
+        raise ParameterError("subframes", samples, "must be 1 or more")
+    step = Fraction(1, samples)
+    if (step * 10**6).denominator != 1:
+        raise ParameterError("subframes", samples, "must divide a frame into decimals: 2, 4, 5, 8, 10 or so")
+    between = {frame + part * step for frame in frames for part in range(samples) if frame + 1 in frames}
+    return tuple(sorted(as_frame(frame) for frame in {*frames, *between}))
+
+
+def clip_name(name: str, frame: Frame) -> str:
+    """A clip's path beside its geo.usd."""
+    return f"clips/{name}.{frame_label(frame)}.usdc"
+
+
+def edition_folder(top: Path, package: Package, resolution: int) -> Path:
+    """Where the layers of a resolution lie: beside the asset, or in a folder each where it has several."""
+    return top.parent / str(resolution) if package.variants else top.parent
+
+
+def _listed(text: str) -> tuple[str, ...]:
+    return tuple(text.split(",")) if text else ()
+
+
+def _check_choice(field: str, value: object, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise ParameterError(field, value, f"must be one of {', '.join(known)}")
+
+
+def _check_name(name: str) -> None:
+    if name in LAYER_NAMES:
+        raise ParameterError(
+            "name", name, f"is the name of a layer beside it; {', '.join(LAYER_NAMES)} are taken"
+        )
+    if not re.fullmatch(r"[\w\- ]+", name):
+        raise ParameterError("name", name, "must be made of letters, digits, spaces, - and _")

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a layer of ours says of the sea that it was made from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ...core import ParameterError
+from ...core.shot import Shot
+from .layers import MARK, reason
+from .library import UsdError, pxr
+from .package import Package
+
+SUFFIXES = (".usd", ".usda", ".usdc")
+
+
+def shot_of(path: Path) -> Shot:
+    """The shot in a layer of ours, or in one that brings a single asset of ours.
+
+    Raises UsdError for a layer that cannot be read or holds no sea, or several.
+    """
+    return read_package(path)[1].shot
+
+
+def read_package(path: Path) -> tuple[str, Package]:
+    """The path of the asset's prim and what was exported. Raises UsdError like `shot_of`."""
+    modules = pxr()
+    if not path.is_file():
+        raise UsdError(f"{path}: there is no such file")
+    try:
+        stage = modules.Usd.Stage.Open(str(path), modules.Usd.Stage.LoadNone)
+    except modules.Tf.ErrorException as error:
+        raise UsdError(f"{path}: {reason(error)}") from error
+    found = {str(prim.GetPath()): data for prim in stage.TraverseAll() if (data := _record(prim))}
+    if not found:
+        raise UsdError(f"{path}: holds no sea of Ocean Tweak")
+    if len(found) > 1:
+        raise UsdError(f"{path}: holds several seas, {', '.join(found)}: give the layer of one of them")
+    ((prim_path, data),) = found.items()
+    try:
+        return prim_path, Package.from_record(data)
+    except ParameterError as error:
+        raise UsdError(f"{path}: {prim_path} {error}") from error
+    except (KeyError, ValueError, TypeError) as error:
+        raise UsdError(f"{path}: what {prim_path} says of its sea cannot be used: {error}") from error
+
+
+def _record(prim: Any) -> dict[str, Any] | None:
+    data = prim.GetCustomDataByKey(MARK)
+    return data if isinstance(data, dict) else None
