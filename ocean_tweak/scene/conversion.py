@@ -9,6 +9,7 @@ from typing import NamedTuple
 import bpy
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from .animated import curves_of
 from .units import frame_rate, metres_per_unit
 
 #: Blender's spectra and ours
@@ -111,13 +112,4 @@ def _has_animated_time(item: bpy.types.Object, modifier: bpy.types.OceanModifier
     path = f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].time'
     if any(driver.data_path == path for driver in data.drivers):
         return True
-    return data.action is not None and any(curve.data_path == path for curve in _curves(data))
-
-
-def _curves(data: bpy.types.AnimData) -> Iterator[bpy.types.FCurve]:
-    """The curves of an object's action, in Blender 4.5 and 5.x, where actions have layers only."""
-    for layer in data.action.layers:
-        for strip in layer.strips:
-            bag = strip.channelbag(data.action_slot) if data.action_slot is not None else None
-            if bag is not None:
-                yield from bag.fcurves
+    return any(curve.data_path == path for curve in curves_of(item))

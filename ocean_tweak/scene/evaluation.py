@@ -42,24 +42,24 @@ class Sea:
         self._foam = {whole: FoamMaker(parameters) for whole in (True, False)}
 
     def fields(
-        self, frame: Fraction, outputs: frozenset[str], patient: bool = True
+        self, time: Fraction, outputs: frozenset[str], is_whole: bool = True, patient: bool = True
     ) -> tuple[dict[str, RealArray], bool]:
-        """Fields at a frame by output, and whether they are all that they will be.
+        """Fields at a time in s by output, and whether they are all that they will be.
 
         Each is (N+1, N+1, …) float32, in m and m/s; the last row and column are the first ones again. What
         was made before is not made again. The arrays are overwritten by a surface that is asked for later,
         so they must be used up at once.
 
         outputs : known to the core; foam needs cusp
+        is_whole : whether it is the time of a whole frame
         patient : otherwise foam is shown without its history where that would take long
         """
-        time = self.ocean.parameters.timing.time(frame)
         kept = self._kept(time)
         self._make(time, kept, outputs - kept.keys() - {FOAM})
         result = {name: kept[name] for name in outputs - {FOAM}}
         if FOAM not in outputs:
             return result, True
-        maker = self.foam_of(frame)
+        maker = self.foam_of(is_whole)
         if FOAM not in kept and (patient or maker.is_near(time)):
             kept[FOAM] = self._closed(FOAM, maker.at(time))
         if FOAM not in kept and _INSTANT not in kept:
@@ -67,9 +67,9 @@ class Sea:
             kept[_INSTANT] = self._closed(_INSTANT, foam)
         return {**result, FOAM: kept.get(FOAM, kept.get(_INSTANT))}, FOAM in kept
 
-    def foam_of(self, frame: Fraction) -> FoamMaker:
-        """What makes the foam of a frame."""
-        return self._foam[frame.denominator == 1]
+    def foam_of(self, is_whole: bool) -> FoamMaker:
+        """What makes the foam of whole frames, or of those between."""
+        return self._foam[is_whole]
 
     def _make(self, time: Fraction, kept: dict[str, RealArray], outputs: frozenset[str]) -> None:
         if not outputs:

@@ -11,6 +11,7 @@ from bpy.app.handlers import persistent
 from ..nodes.ocean import KINDS
 from ..nodes.renewal import renew_groups
 from . import evaluation, live_image, refinement
+from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, refresh_and_tell, refresh_render
 from .settings import all_oceans, oceans_in, settings_of
@@ -26,9 +27,18 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
     """Show the frame that the scene is about to evaluate, sub-frame included."""
     for item in oceans_in(scene):
         if settings_of(item).source == "LIVE":
-            show(item, scene)
+            if not is_animated(item):
+                show(item, scene)
         else:  # Blender reads the files itself
             check_files(item, scene)
+
+
+@persistent
+def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
+    for item in oceans_in(scene):
+        if settings_of(item).source == "LIVE" and is_animated(item):
+            show(item, scene, shown=shown_settings(item, depsgraph))
 
 
 @persistent
@@ -41,9 +51,10 @@ def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
     if depsgraph is None or depsgraph.mode != "RENDER":
         return
     for item in oceans_in(scene):
+        shown = shown_settings(item, depsgraph)
         if refinement.is_unfinished(item):
-            refresh_and_tell(item, scene, statistics=False)
-        refresh_render(item, scene)
+            refresh_and_tell(item, scene, statistics=False, shown=shown)
+        refresh_render(item, scene, shown)
 
 
 @persistent
@@ -79,6 +90,7 @@ def refresh_all_oceans() -> None:
 
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_pre", refresh_on_frame_change),
+    ("frame_change_post", refresh_animated),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_render),
     ("load_post", refresh_after_load),

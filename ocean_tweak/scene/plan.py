@@ -11,10 +11,11 @@ import bpy
 
 from ..core import OceanParameters
 from ..core.memory import physical_memory
+from .animated import clock_of
 from .grid_mesh import Grid
 from .maps import wanted_maps
 from .settings import OceanObjectError, OceanSettings
-from .units import frame_rate, metres_per_unit
+from .units import frame_rate, frame_with_subframe, metres_per_unit
 
 #: samples along each side of the surface that is shown while a parameter is dragged
 COARSE = 128
@@ -33,6 +34,9 @@ class Plan:
     metres : in a Blender unit
     viewport, render : mesh and samples
     maps : those that are asked for
+    frame : of the scene, sub-frame included
+    time : the ocean's, s
+    rate : seconds of it in a second of the scene
     """
 
     parameters: OceanParameters
@@ -40,11 +44,19 @@ class Plan:
     viewport: Grid
     render: Grid
     maps: tuple[str, ...]
+    frame: Fraction
+    time: Fraction
+    rate: float
 
     @property
     def has_own_render(self) -> bool:
         """Whether a render shows another surface than the viewport."""
         return self.render != self.viewport
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the frame is not one between two."""
+        return self.frame.denominator == 1
 
     @property
     def scale(self) -> float:
@@ -63,7 +75,7 @@ class Plan:
 
 
 def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
-    """What the settings ask for.
+    """What the settings ask for, at the scene's present frame.
 
     Raises ParameterError for settings that are no sea, OceanObjectError for a grid too large.
     """
@@ -80,9 +92,13 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
         quads = min(most, view)
     fixed, repeats = settings.mesh_resolution, (settings.repeats_x, settings.repeats_y)
     viewport = Grid(size, fixed or quads, view, repeats)
+    clock, maps = clock_of(settings, scene, parameters.timing.start_frame), wanted_maps(settings)
+    if clock.rate is None:  # without a velocity, renderers make motion blur from the frames between
+        maps = tuple(name for name in maps if name != "vel")
     plan = Plan(
-        parameters, metres, viewport, Grid(size, fixed or render, render, repeats), wanted_maps(settings)
-    )
+        parameters, metres, viewport, Grid(size, fixed or render, render, repeats), maps,
+        frame_with_subframe(scene), clock.time, 1.0 if clock.rate is None else clock.rate,
+    )  # fmt: skip
     for grid in (plan.viewport, plan.render):
         _check(grid)
     return plan

@@ -20,7 +20,7 @@ import bpy
 from ..core import OceanParameters
 from . import evaluation
 from .refresh import EXPECTED_ERRORS, foam_job, has_statistics, refresh_and_tell, set_changed, tell
-from .settings import all_oceans, settings_of
+from .settings import OceanSettings, all_oceans, settings_of
 
 # s without a change after which all samples are shown
 PAUSE = 0.15
@@ -78,24 +78,33 @@ class _Outstanding:
 _outstanding = _Outstanding()
 
 
-def show(item: bpy.types.Object, scene: bpy.types.Scene, dragged: bool = False) -> None:
+def show(
+    item: bpy.types.Object,
+    scene: bpy.types.Scene,
+    dragged: bool = False,
+    shown: OceanSettings | None = None,
+) -> None:
     """Refresh an ocean, now or in two steps; what is wrong with it is kept in `error`.
 
     dragged : a setting changed, and it may change again within a moment
+    shown : the settings as animation makes them, where it does
     """
     if not has_window():
-        refresh_and_tell(item, scene)
+        # statistics of each frame of an animated sea would cost more than the frame
+        refresh_and_tell(item, scene, statistics=shown is None, shown=shown)
         return
     uid = item.session_uid
     in_window = threading.current_thread() is threading.main_thread()
     # a render's frame is complete, it needs no statistics, and timers belong to the main thread
     coarse = dragged or uid in _outstanding.coarse
-    complete = refresh_and_tell(item, scene, coarse=coarse, statistics=False, patient=not in_window)
+    complete = refresh_and_tell(
+        item, scene, coarse=coarse, statistics=False, patient=not in_window, shown=shown
+    )
     if not in_window:
         return
     if dragged:
         _outstanding.coarse[uid] = time.monotonic() + PAUSE
-    if dragged or not has_statistics(item, scene):
+    if dragged or not (_is_playing() or has_statistics(item, scene)):
         _outstanding.uncounted.add(uid)
     _note_foam(uid, complete)
     if uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):
@@ -107,6 +116,10 @@ def _note_foam(uid: int, complete: bool) -> None:
         _outstanding.foamless.discard(uid)
     else:
         _outstanding.foamless.add(uid)
+
+
+def _is_playing() -> bool:
+    return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
 
 
 def has_window() -> bool:

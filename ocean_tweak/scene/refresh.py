@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from fractions import Fraction
 
 import bpy
 import numpy as np
@@ -19,7 +18,6 @@ from .modifiers import Images, Shown, Textures
 from .plan import Plan, plan_of, velocity_scale
 from .resampling import resampled, tiled
 from .settings import OceanObjectError, OceanSettings, settings_of
-from .units import frame_with_subframe
 
 #: what a user can cause: shown with the object; anything else is a bug and raises
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
@@ -34,10 +32,11 @@ def refresh_and_tell(
     coarse: bool = False,
     statistics: bool = True,
     patient: bool = True,
+    shown: OceanSettings | None = None,
 ) -> bool:
     """Refresh an ocean; what is wrong with its settings is kept in `error`, for the panel to show."""
     try:
-        return refresh(item, scene, coarse, statistics, patient)
+        return refresh(item, scene, coarse, statistics, patient, shown)
     except EXPECTED_ERRORS as error:
         tell(item, error)
     return True
@@ -49,19 +48,21 @@ def refresh(
     coarse: bool = False,
     statistics: bool = True,
     patient: bool = True,
+    shown: OceanSettings | None = None,
 ) -> bool:
     """Show the ocean's present settings and frame in the viewport, and prepare its render.
 
     coarse : show a surface of few samples, on the same mesh
     statistics : bring these up to date too; otherwise they are only where they are known
     patient : otherwise foam is shown without its history where that would take long
+    shown : the settings as animation makes them, where it does
 
     Returns whether all is shown as it should be. Raises ParameterError, SequenceError or MemoryError, and
     then leaves the ocean as it was.
     """
     with _turn:
         settings = settings_of(item)
-        plan = plan_of(settings, scene)
+        plan = plan_of(shown or settings, scene)
         text = (evaluation.statistics_of if statistics else evaluation.known_statistics)(plan.parameters)
         complete = True
         if settings.source == "LIVE":
@@ -77,17 +78,22 @@ def refresh(
     return complete
 
 
-def refresh_render(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+def refresh_render(
+    item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings | None = None
+) -> None:
     """Make the present frame for a render, where the viewport does not show the same; texels that are there
-    stay. What is wrong with the settings is kept in `error`."""
+    stay. What is wrong with the settings is kept in `error`.
+
+    shown : the settings as animation makes them, where it does
+    """
     with _turn:
         settings = settings_of(item)
         if settings.source != "LIVE":
             return
         try:
-            plan = plan_of(settings, scene)
+            plan = plan_of(shown or settings, scene)
             if plan.has_own_render:
-                _write_render(settings, plan, frame_with_subframe(scene))
+                _write_render(settings, plan)
         except EXPECTED_ERRORS as error:
             tell(item, error)
 
@@ -116,10 +122,9 @@ def foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], obj
 
     Raises ParameterError or OceanObjectError for settings that are no sea.
     """
-    plan, frame = plan_of(settings_of(item), scene), frame_with_subframe(scene)
-    maker = evaluation.sea_of(plan.viewport_sea()).foam_of(frame)
-    time = plan.parameters.timing.time(frame)
-    return lambda: maker.at(time)
+    plan = plan_of(settings_of(item), scene)
+    maker = evaluation.sea_of(plan.viewport_sea()).foam_of(plan.is_whole)
+    return lambda: maker.at(plan.time)
 
 
 def set_changed(target: object, **values: object) -> None:
@@ -144,7 +149,7 @@ def _refresh_live(
     patient: bool,
 ) -> bool:
     grid = plan.viewport
-    fields, complete = _viewport_fields(plan, frame_with_subframe(scene), coarse, patient)
+    fields, complete = _viewport_fields(plan, coarse, patient)
     _refresh_mesh(item, grid)
     by_attributes = settings.method == "NODES" and vertex_attributes.can_hold(item.data, grid)
     if by_attributes:
@@ -208,14 +213,23 @@ def _refresh_baked(
     check_files(item, scene)
 
 
-def _viewport_fields(plan: Plan, frame: Fraction, coarse: bool, patient: bool) -> tuple[Fields, bool]:
+def _viewport_fields(plan: Plan, coarse: bool, patient: bool) -> tuple[Fields, bool]:
     """(samples+1, samples+1, …) by output, m; and whether they are all that they will be."""
     sea = evaluation.sea_of(plan.viewport_sea(coarse))
-    fields, complete = sea.fields(frame, outputs_of(plan.maps), patient=patient and not coarse)
+    fields, complete = sea.fields(
+        plan.time, outputs_of(plan.maps), plan.is_whole, patient=patient and not coarse
+    )
     samples = plan.viewport.samples
     if sea.ocean.parameters.resolution != samples:
         fields = {name: resampled(field, samples) for name, field in fields.items()}
-    return fields, complete
+    return _in_scene_time(fields, plan), complete
+
+
+def _in_scene_time(fields: Fields, plan: Plan) -> Fields:
+    """The fields with velocity per second of the scene."""
+    if "velocity" not in fields or plan.rate == 1.0:
+        return fields
+    return {**fields, "velocity": fields["velocity"] * np.float32(plan.rate)}
 
 
 def _on_vertices(fields: Fields, plan: Plan) -> Fields:
@@ -228,15 +242,16 @@ def _on_vertices(fields: Fields, plan: Plan) -> Fields:
     return result
 
 
-def _write_render(settings: OceanSettings, plan: Plan, frame: Fraction) -> None:
-    content = (plan.parameters, frame)
+def _write_render(settings: OceanSettings, plan: Plan) -> None:
+    content = (plan.parameters, plan.time, plan.rate)
     images = {name: getattr(settings.render_maps, name) for name in plan.maps}
     stale = [
         name for name, image in images.items() if image is not None and not live_image.shows(image, content)
     ]
     if not stale:
         return
-    fields, _ = evaluation.sea_of(plan.parameters).fields(frame, outputs_of(tuple(stale)))
+    made, _ = evaluation.sea_of(plan.parameters).fields(plan.time, outputs_of(tuple(stale)), plan.is_whole)
+    fields = _in_scene_time(made, plan)
     for name in stale:
         _write_image(images[name], fields, name, content)
 

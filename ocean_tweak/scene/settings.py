@@ -49,6 +49,7 @@ class MapImages(Protocol):
 class OceanSettings(Protocol):
     """The part of `object.ocean_tweak` that the scene layer reads and writes.
 
+    use_ocean_time, ocean_time : seconds on the waves' own clock, where it does not follow the frames
     error : why the ocean cannot be shown, "" when all is well
     missing_file : the file that the present frame of a sequence should show and that is not there, or ""
     statistics : JSON of the sea's statistics, "" when there are none
@@ -63,6 +64,8 @@ class OceanSettings(Protocol):
     """
 
     is_ocean: bool
+    use_ocean_time: bool
+    ocean_time: float
     method: str
     source: str
     viewport_resolution: int

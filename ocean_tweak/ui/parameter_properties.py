@@ -18,6 +18,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..core.shot import ANIMATED
 from ..scene.units import shortest_decimal
 
 _Field = dataclasses.Field[Any]
@@ -28,6 +29,8 @@ _LENGTHS = {"m": "LENGTH", "m/s": "VELOCITY"}
 _ABSOLUTE = {"wind_height"}
 _SUBTYPES = {"rad": {"subtype": "ANGLE", "unit": "ROTATION", "soft_min": -math.pi, "soft_max": math.pi}}
 _FLOAT32_MAX = 3e38
+#: what may change during a shot; the rest sets which waves there are and how fast they run
+_ANIMATED = {path.rpartition(".")[2] for path in ANIMATED}
 _ACRONYMS = {"TMA", "JONSWAP"}
 
 #: what sliders offer, where the allowed range is much wider than the useful one
@@ -90,7 +93,7 @@ def _property(field: _Field, update: Callable[[Any, bpy.types.Context], None]) -
         "name": field.name.replace("_", " ").title(),
         "default": field.default,
         "update": update,
-        "options": set(),  # not animatable: the initial state is made anew when it changes
+        "options": {"ANIMATABLE"} if field.name in _ANIMATED else set(),
         "override": {"LIBRARY_OVERRIDABLE"},
     }
     return _BUILDERS[field.metadata["kind"]](field, common)

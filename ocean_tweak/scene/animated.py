@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Oceans whose settings are animated or driven.
+
+Blender evaluates animation after the handlers of a new frame and writes it back to the settings in the
+viewport only, so an animated ocean is shown after the evaluation, from the evaluated object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+import bpy
+
+from .settings import OceanSettings, settings_of
+from .units import frame_rate, frame_with_subframe, shortest_decimal
+
+_GROUP = "ocean_tweak."
+_OCEAN_TIME = "ocean_tweak.ocean_time"
+
+
+class Clock(NamedTuple):
+    """An ocean's time at a moment of the scene.
+
+    time : s, exact
+    rate : seconds of it in a second of the scene; None where a driver leaves that open
+    """
+
+    time: Fraction
+    rate: float | None
+
+
+def is_animated(item: bpy.types.Object) -> bool:
+    """Whether keys, drivers or the nonlinear animation change an ocean's settings."""
+    data = item.animation_data
+    if data is None:
+        return False
+    paths = [driver.data_path for driver in data.drivers]
+    paths += [curve.data_path for curve in curves_of(item)]
+    return any(path.startswith(_GROUP) for path in paths)
+
+
+def shown_settings(item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None) -> OceanSettings:
+    """The settings with what animation makes of them in this evaluation."""
+    if depsgraph is None or not is_animated(item):
+        return settings_of(item)
+    return settings_of(item.evaluated_get(depsgraph))
+
+
+def clock_of(settings: OceanSettings, scene: bpy.types.Scene, start_frame: int) -> Clock:
+    """The ocean's time at the scene's frame, sub-frame included."""
+    frame, fps = frame_with_subframe(scene), frame_rate(scene)
+    if not settings.use_ocean_time:
+        return Clock((frame - start_frame) / fps, 1.0)
+    return Clock(shortest_decimal(settings.ocean_time), _rate(settings.id_data, frame, fps))
+
+
+def _rate(item: bpy.types.Object, frame: Fraction, fps: Fraction) -> float | None:
+    """From the keys on both sides of the moment."""
+    data = item.animation_data
+    if data is not None and any(driver.data_path == _OCEAN_TIME for driver in data.drivers):
+        return None
+    curve = next((curve for curve in curves_of(item) if curve.data_path == _OCEAN_TIME), None)
+    if curve is None:
+        return 0.0
+    half = 0.5
+    change = curve.evaluate(float(frame) + half) - curve.evaluate(float(frame) - half)
+    return float(change * fps)
+
+
+def curves_of(item: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
+    """All curves of an object: those of its action, and of the strips of its nonlinear animation."""
+    data = item.animation_data
+    if data is None:
+        return
+    yield from _action_curves(data.action, data.action_slot)
+    for track in data.nla_tracks:
+        for strip in track.strips:
+            yield from _action_curves(strip.action, strip.action_slot)
+
+
+def _action_curves(
+    action: bpy.types.Action | None, slot: bpy.types.ActionSlot | None
+) -> Iterator[bpy.types.FCurve]:
+    if action is None or slot is None:
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            bag = strip.channelbag(slot)
+            if bag is not None:
+                yield from bag.fcurves
