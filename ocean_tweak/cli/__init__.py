@@ -12,6 +12,7 @@ from ..core import ParameterError
 from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..export.exr import ExrError
+from ..export.usd.library import UsdError
 from .arguments import make_parser
 from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, complain, message_of, remedy_of
 from .seas import SceneOceans, Sea
@@ -19,7 +20,7 @@ from .seas import SceneOceans, Sea
 __all__ = ["SceneOceans", "Sea", "main"]
 
 #: what a user, a disk or another process can cause; anything else is a bug and raises
-_EXPECTED = (ParameterError, UsageError, OSError, ExrError, CacheError, Held, MemoryError)
+_EXPECTED = (ParameterError, UsageError, OSError, ExrError, CacheError, UsdError, Held, MemoryError)
 
 
 def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None) -> int:

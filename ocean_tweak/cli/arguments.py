@@ -12,7 +12,9 @@ from ..core.frames import Frame, parse_frames
 from ..core.presets import built_in
 from ..core.validation import ParameterError
 from ..export.exr import COMPRESSION_ERROR, MAPS
-from . import baking, checking, info, job
+from ..export.usd.attributes import ATTRIBUTES
+from ..export.usd.package import FORMS, UP_AXES
+from . import baking, checking, info, job, usd
 from .seas import chosen_seas
 from .wanted_bake import CACHE_VARIABLE
 
@@ -32,6 +34,8 @@ def make_parser(in_blender: bool) -> argparse.ArgumentParser:
     _add_verify(commands, in_blender)
     _add_clean(commands)
     _add_job(commands, in_blender)
+    _add_usd(commands, in_blender)
+    _add_usd_verify(commands)
     return parser
 
 
@@ -191,6 +195,75 @@ def _add_render_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_usd(commands: _Commands, in_blender: bool) -> None:
+    parser = _command(commands, "usd", "write the sea as USD layers, for other programs")
+    _add_sea_arguments(parser, in_blender)
+    parser.add_argument(
+        "--frames", type=_frames, metavar="RANGE", help="1-48, 1001-1010x0.5; with --bake by default all"
+    )
+    parser.add_argument("--form", choices=FORMS, required=True, help="what moves the mesh; see docs/usd.md")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="FILE.usd", help="the asset; its other layers go beside it"
+    )
+    parser.add_argument("--name", help="of the asset, by default that of the file")
+    parser.add_argument("--force", action="store_true", help="replace files that are there, also of others")
+    parser.add_argument(
+        "--workers", type=_workers, metavar="N", help="threads that make frames; by default two"
+    )
+    _add_openjd(parser)
+    _add_usd_content(parser.add_argument_group("what the layers hold"))
+    forms = parser.add_argument_group("one form only")
+    forms.add_argument(
+        "--only", type=_frames, metavar="RANGE", help="clips: write these of the frames now, and not the top"
+    )
+    forms.add_argument("--stitch", action="store_true", help="clips: write the top of clips that are there")
+    forms.add_argument(
+        "--bake", type=Path, metavar="FOLDER", help="displacement: by this bake instead of one of its own"
+    )
+    parser.set_defaults(run=usd.run)
+
+
+def _add_usd_content(parser: _Arguments) -> None:
+    parser.add_argument("--up-axis", choices=UP_AXES, default="Z", help="Z by default")
+    parser.add_argument(
+        "--metres-per-unit", type=float, default=1.0, metavar="M", help="1 by default; 0.01 for centimetres"
+    )
+    parser.add_argument(
+        "--subframes",
+        type=_count,
+        default=1,
+        metavar="N",
+        help="samples a frame, for motion blur; 1 by default",
+    )
+    parser.add_argument(
+        "--attributes", type=_attributes, metavar="LIST", default=tuple(ATTRIBUTES),
+        help=f"beside points and extent, of {','.join(ATTRIBUTES)}; all by default",
+    )  # fmt: skip
+    parser.add_argument("--half", action="store_true", help="foam and cusp in 16 bits")
+    parser.add_argument(
+        "--tiles", type=_tiles, default=(1, 1), metavar="3x3", help="patches side by side, as instances"
+    )
+    parser.add_argument(
+        "--proxy", type=int, default=64, metavar="N",
+        help="quads along a side of the coarse mesh for viewports; 64 by default, 0 for none",
+    )  # fmt: skip
+    parser.add_argument(
+        "--variants", type=_resolutions, default=(), metavar="512,256",
+        help="resolutions to choose from, the first one by default",
+    )  # fmt: skip
+
+
+def _add_usd_verify(commands: _Commands) -> None:
+    parser = _command(
+        commands, "usd-verify", "read USD layers back: what is missing, still or of another sea"
+    )
+    parser.add_argument("file", type=Path, metavar="FILE.usd", help="the asset's own layer")
+    parser.add_argument(
+        "--frames", type=_frames, metavar="RANGE", help="compare these; by default first, middle and last"
+    )
+    parser.set_defaults(run=lambda arguments, _oceans: usd.verify(arguments))
+
+
 def _add_folder_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="FOLDER", help=_FOLDER_HELP)
     _add_wanted_frames(parser)
@@ -236,7 +309,10 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
     default = "the file's oceans" if in_blender else "the default sea"
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
-        "--params", type=Path, metavar="FILE.json", help=f"parameters; without them {default}"
+        "--params",
+        type=Path,
+        metavar="FILE",
+        help=f"parameters: JSON, or a USD layer of ours; without them {default}",
     )
     source.add_argument(
         "--preset", choices=tuple(built_in()), metavar="NAME", help=f"one of {', '.join(built_in())}"
@@ -264,6 +340,23 @@ def _maps(text: str) -> tuple[str, ...]:
     if unknown:
         raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
     return names
+
+
+def _attributes(text: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+
+
+def _tiles(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,4})x(\d{1,4})", text)
+    if not match:
+        raise argparse.ArgumentTypeError(f"{text!r} must look like 3x3")
+    return int(match[1]), int(match[2])
+
+
+def _resolutions(text: str) -> tuple[int, ...]:
+    if not re.fullmatch(r"\d{1,6}(,\d{1,6})*", text):
+        raise argparse.ArgumentTypeError(f"{text!r} must look like 512,256")
+    return tuple(map(int, text.split(",")))
 
 
 def _uid(text: str) -> str:

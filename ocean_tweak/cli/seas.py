@@ -13,6 +13,7 @@ from ..core.frames import Frame
 from ..core.parameters import parse_json
 from ..core.presets import built_in
 from ..core.shot import Shot
+from ..export.usd import reading
 from .outcome import UsageError
 
 
@@ -56,6 +57,8 @@ def _file_sea_name(path: Path | None) -> str:
 def _file_shot(path: Path | None) -> Shot:
     if path is None:
         return Shot(OceanParameters())
+    if path.suffix in reading.SUFFIXES:
+        return reading.shot_of(path)
     try:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:

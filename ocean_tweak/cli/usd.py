@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`usd` and `usd-verify`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+from ..core.frames import Frame, format_frames
+from ..core.plain_data import to_plain
+from ..core.shot import Shot
+from ..export.cache.job import read_job
+from ..export.cache.records import recorded_frames
+from ..export.usd.export import Export
+from ..export.usd.package import Package, with_samples_between
+from ..export.usd.verify import verify as problems_of
+from .outcome import DONE, FAILED, UsageError, complain
+from .progress import Progress
+from .seas import SceneOceans, chosen_seas
+from .stopping import stop_requested
+
+#: threads that make frames: one computes while another writes
+_THREADS = 2
+
+
+def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
+    """Write a sea as USD layers."""
+    shot, frames = _shot_and_frames(arguments, scene_oceans)
+    package = Package(
+        arguments.name or arguments.out.stem,
+        shot,
+        with_samples_between(frames, arguments.subframes),
+        form=arguments.form,
+        up_axis=arguments.up_axis,
+        metres_per_unit=arguments.metres_per_unit,
+        attributes=arguments.attributes,
+        half=arguments.half,
+        tiles=arguments.tiles,
+        proxy=arguments.proxy,
+        variants=arguments.variants,
+    )
+    if arguments.stitch and arguments.only:
+        raise UsageError("--stitch: makes no frames; leave --only out")
+    if arguments.form != "clips" and arguments.stitch:
+        raise UsageError(f"--stitch: is for --form clips, not {arguments.form}")
+    export = Export(package, arguments.out, arguments.bake, arguments.force)
+    progress = Progress(package.name, arguments.json, arguments.openjd)
+    chosen = arguments.only or package.frames
+    with stop_requested() as stop:
+        export.check(chosen)
+        if not arguments.stitch:
+            _make(export, chosen, arguments, progress, stop.is_set)
+    if not progress.is_complete:
+        progress.fail("stopped")
+        complain(_stopped(package))
+        return FAILED
+    if arguments.only:
+        progress.say(
+            "these clips are written; when all are, stitch them with --stitch", frames=format_frames(chosen)
+        )
+        return DONE
+    export.finish()
+    progress.say(
+        f"{arguments.out}\n  {len(package.frames)} frames, {format_frames(package.frames)}, as "
+        f"{package.form}; check it with: usd-verify {shlex.quote(str(arguments.out))}",
+        path=str(arguments.out), frames=format_frames(package.frames), form=package.form,
+    )  # fmt: skip
+    return DONE
+
+
+def _make(
+    export: Export,
+    frames: tuple[Frame, ...],
+    arguments: argparse.Namespace,
+    progress: Progress,
+    stopped: Callable[[], bool],
+) -> None:
+    progress.begin(export.left(frames))
+    workers = arguments.workers or min(_THREADS, os.cpu_count() or 1)
+    try:
+        with closing(export.make(frames, workers)) as making:
+            for made in making:
+                progress.frame(made)
+                if stopped():
+                    break
+    finally:
+        progress.end()
+
+
+def _stopped(package: Package) -> str:
+    if package.form == "points":
+        return "stopped; nothing was changed"
+    return "stopped after a whole frame; the same command goes on"
+
+
+def _shot_and_frames(
+    arguments: argparse.Namespace, scene_oceans: SceneOceans | None
+) -> tuple[Shot, tuple[Frame, ...]]:
+    """The sea and its frames, of the arguments or of a bake. Raises UsageError or CacheError."""
+    if arguments.bake is not None:
+        return _of_bake(arguments)
+    seas = chosen_seas(arguments, scene_oceans)
+    if len(seas) > 1:
+        raise UsageError(
+            f"the file has several oceans: choose one with --object, of {', '.join(sorted(seas))}"
+        )
+    ((_, sea),) = seas.items()
+    frames = arguments.frames or sea.frames
+    if not frames:
+        raise UsageError("--frames: say which frames to write")
+    return sea.shot, frames
+
+
+def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...]]:
+    folder: Path = arguments.bake
+    if arguments.form != "displacement":
+        raise UsageError(f"--bake: is for --form displacement, not {arguments.form}")
+    given = {
+        "--params": arguments.params, "--preset": arguments.preset, "--set": arguments.assignments,
+        "--fps": arguments.fps, "--start-frame": arguments.start_frame,
+    }  # fmt: skip
+    for option, value in given.items():
+        if value:
+            raise UsageError(f"{option}: the bake in {folder} tells its sea; leave {option} or --bake out")
+    job = read_job(folder)
+    frames = arguments.frames or job.frames or recorded_frames(folder)
+    if not frames:
+        raise UsageError(f"{folder}: holds no frames")
+    return job.shot, frames
+
+
+def verify(arguments: argparse.Namespace) -> int:
+    """Read an asset back and say what is wrong with it."""
+    progress = Progress(arguments.file.stem, arguments.json)
+    count = 0
+    for frame, text in problems_of(arguments.file, arguments.frames):
+        count += 1
+        place = "" if frame is None else f"frame {format_frames((frame,))}: "
+        progress.say(f"{place}{text}", problem=text, frame=None if frame is None else to_plain(frame))
+    progress.say(f"{count} problems" if count else "all is well", problems=count)
+    return FAILED if count else DONE
