@@ -8,10 +8,12 @@ import atexit
 import bpy
 
 from . import cli
-from .core.shot import Shot
 from .scene import handlers
-from .scene.settings import all_oceans, settings_of
+from .scene.cache_place import cache_folder, own_uid
+from .scene.settings import all_oceans
+from .scene.shots import scene_frames, shot_of
 from .ui import (
+    bake_operators,
     float_operators,
     float_panel,
     node_operators,
@@ -26,6 +28,7 @@ from .ui import (
 CLASSES = (
     *properties.CLASSES,
     *operators.CLASSES,
+    *bake_operators.CLASSES,
     *preset_operators.CLASSES,
     *sea_operators.CLASSES,
     *panels.CLASSES,
@@ -46,8 +49,10 @@ def scene_oceans() -> dict[str, cli.Sea]:
     for item in all_oceans():
         if item.users_scene:
             scene = item.users_scene[0]
-            frames = tuple(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
-            oceans[item.name] = cli.Sea(Shot(settings_of(item).to_parameters(scene)), frames=frames)
+            frames = scene_frames(scene)
+            oceans[item.name] = cli.Sea(
+                shot_of(item, scene, frames), own_uid(item), frames, cache_folder(item)
+            )
     return oceans
 
 

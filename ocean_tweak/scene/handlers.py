@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import bpy
 from bpy.app.handlers import persistent
 
 from ..nodes.ocean import KINDS
 from ..nodes.renewal import renew_groups
-from . import evaluation, live_image, refinement
+from . import bake_process, evaluation, live_image, refinement
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, refresh_and_tell, refresh_render
@@ -61,6 +62,7 @@ def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels. Its node
     groups may be of another version."""
+    bake_process.stop_all()
     _forget_all()
     _subscribe()
     renew_groups(KINDS)
@@ -101,18 +103,37 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
 
 def register() -> None:
     """Attach the handlers."""
+    _attach()
+    _subscribe()
+
+
+@contextmanager
+def asleep() -> Iterator[None]:
+    """While this is open, no frame, render or file makes an ocean compute."""
+    _detach()
+    try:
+        yield
+    finally:
+        _attach()
+
+
+def _attach() -> None:
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
-    _subscribe()
+
+
+def _detach() -> None:
+    for name, handler in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
 
 
 def unregister() -> None:
     """Detach the handlers and forget the seas."""
     bpy.msgbus.clear_by_owner(_OWNER)
-    for name, handler in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if handler in handlers:
-            handlers.remove(handler)
+    _detach()
+    bake_process.stop_all()
     _forget_all()
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ..core import OceanParameters
+from .cache_place import new_uid
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
 from .maps import MAPS
 from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
@@ -52,6 +53,7 @@ def add(
     settings = settings_of(item)
     with settings.quiet():
         settings.is_ocean = True
+        settings.uid = new_uid()
         settings.method = method
         settings.mesh_resolution = mesh_resolution or 0
         settings.repeats_x, settings.repeats_y = repeats

@@ -49,6 +49,8 @@ class MapImages(Protocol):
 class OceanSettings(Protocol):
     """The part of `object.ocean_tweak` that the scene layer reads and writes.
 
+    uid : what tells the ocean's bakes from those of others; "" while nothing was baked
+    cache_folder : where they go; "" for the usual place
     use_ocean_time, ocean_time : seconds on the waves' own clock, where it does not follow the frames
     error : why the ocean cannot be shown, "" when all is well
     missing_file : the file that the present frame of a sequence should show and that is not there, or ""
@@ -64,6 +66,8 @@ class OceanSettings(Protocol):
     """
 
     is_ocean: bool
+    uid: str
+    cache_folder: str
     use_ocean_time: bool
     ocean_time: float
     method: str

@@ -16,6 +16,7 @@ from bpy.props import (
 )
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.maps import MAPS
 from ..scene.refinement import show
 from ..scene.settings import METHODS, OUT_OF_RANGE, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
@@ -121,6 +122,14 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
+        "uid": StringProperty(**_HIDDEN),
+        "cache_folder": StringProperty(
+            name="Cache", default=DEFAULT_CACHE, subtype="DIR_PATH",
+            options={"PATH_SUPPORTS_BLEND_RELATIVE"}, **_OVERRIDE,
+            description="Folder of baked frames; each bake gets one of its own in it. // is beside the file",
+        ),
+        "bake_done": IntProperty(**_HIDDEN),
+        "bake_total": IntProperty(**_HIDDEN),
         "use_ocean_time": BoolProperty(
             name="Own Time", **_SHOWN,
             description="Let the waves follow a clock of their own, which can be animated: slow motion, "

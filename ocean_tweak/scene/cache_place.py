@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where an ocean's baked frames lie, and what tells them from those of other oceans."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import uuid
+from pathlib import Path
+
+import bpy
+
+from ..export.cache.job import JOB_FILE, safe_name, uid_of
+from .image_sequence import ImageSequence, find_sequence
+from .settings import OceanObjectError, all_oceans, settings_of
+from .user_folder import user_folder
+
+#: beside the .blend file
+DEFAULT_CACHE = "//cache"
+CACHE_VARIABLE = "OCEAN_TWEAK_CACHE"
+
+
+def cache_folder(item: bpy.types.Object) -> Path:
+    """The cache of an ocean: what its settings say, or the environment, or beside its .blend file.
+
+    A path that begins with // is relative to the file that the ocean is stored in, a library's too. While
+    that file has never been saved, the user's own folder takes its place. Raises OSError where that cannot
+    be made.
+    """
+    path = settings_of(item).cache_folder or DEFAULT_CACHE
+    if path == DEFAULT_CACHE and os.environ.get(CACHE_VARIABLE):
+        return Path(os.environ[CACHE_VARIABLE])
+    if path.startswith("//") and item.library is None and not bpy.data.filepath:
+        return user_folder("cache")
+    return Path(bpy.path.abspath(path, library=item.library)).resolve()
+
+
+def own_uid(item: bpy.types.Object) -> str:
+    """What tells the ocean from all others: a duplicate gets another one than the ocean it was made from.
+
+    It follows from what is stored in the file, so that every machine of a farm finds the same.
+    """
+    settings = settings_of(item)
+    taken = {
+        settings_of(other).uid
+        for other in all_oceans()
+        if other != item and other.session_uid < item.session_uid
+    }
+    if settings.uid and settings.uid not in taken:
+        return settings.uid
+    uid = uid_of(f"{settings.uid} {item.name_full}")
+    if item.library is None:
+        settings.uid = uid
+    return uid
+
+
+def new_uid() -> str:
+    """One that no other ocean has, in any file."""
+    return uuid.uuid4().hex[:8]
+
+
+def bake_name(item: bpy.types.Object) -> str:
+    """The name of the ocean's files."""
+    return safe_name(item.name)
+
+
+def shown_bake(item: bpy.types.Object) -> Path | None:
+    """The folder of the bake that the ocean reads, None where it reads none of ours."""
+    image = settings_of(item).sequence_maps.disp
+    if image is None or image.source != "SEQUENCE":
+        return None
+    folder = Path(bpy.path.abspath(image.filepath, library=image.library)).resolve().parent
+    return folder if (folder / JOB_FILE).is_file() else None
+
+
+def is_left_behind(item: bpy.types.Object) -> bool:
+    """Whether the ocean reads a bake that is not in its cache: its file was saved elsewhere."""
+    folder = shown_bake(item)
+    if folder is None or not bpy.data.filepath:
+        return False
+    return cache_folder(item) not in folder.parents
+
+
+def take_along(item: bpy.types.Object) -> ImageSequence:
+    """Copy the bake that the ocean reads into its cache. Returns the copy.
+
+    Raises OceanObjectError where there is nothing to copy, OSError for what the disk refuses.
+    """
+    folder = shown_bake(item)
+    if folder is None:
+        raise OceanObjectError("The ocean reads no bake that could be copied")
+    goal = cache_folder(item) / folder.parent.name / folder.name
+    if not goal.exists():
+        beside = goal.with_name(f".{goal.name}.part")
+        shutil.rmtree(beside, ignore_errors=True)
+        beside.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            shutil.copytree(folder, beside, ignore=shutil.ignore_patterns("*.lock", ".*"))
+            beside.rename(goal)
+        except BaseException:
+            shutil.rmtree(beside, ignore_errors=True)
+            raise
+    return find_sequence(goal)

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An ocean as a shot that needs no Blender: its sea, and what of it is animated, a sample a frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import bpy
+
+from ..core import OceanParameters
+from ..core.frames import Frame
+from ..core.shot import ANIMATED, OCEAN_TIME, Animation, Shot
+from . import handlers
+from .animated import clock_of, is_animated, shown_settings
+from .settings import settings_of
+
+
+def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()) -> Shot:
+    """The shot of an ocean over frames, by default the scene's. Raises ParameterError for what is no sea.
+
+    The scene ends at the frame where it was.
+    """
+    settings = settings_of(item)
+    parameters = settings.to_parameters(scene)
+    if not (is_animated(item) or settings.use_ocean_time):
+        return Shot(parameters)
+    wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
+    # one more on either side: the velocity of an end is that of the motion through it
+    first, last = math.floor(min(wanted)) - 1, math.ceil(max(wanted)) + 1
+    samples = [_sample(item, scene, depsgraph) for depsgraph in _evaluations(scene, range(first, last + 1))]
+    changing = {
+        path: tuple(sample[path] for sample in samples)
+        for path in samples[0]
+        if path == OCEAN_TIME or any(sample[path] != samples[0][path] for sample in samples)
+    }
+    if not changing:
+        return Shot(parameters)
+    return Shot(parameters, Animation(first, tuple(changing.items())))
+
+
+def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:
+    """The frames that the scene renders."""
+    return tuple(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
+
+
+def _evaluations(scene: bpy.types.Scene, frames: Iterable[int]) -> Iterator[bpy.types.Depsgraph]:
+    """The scene at each frame, without the waves of any ocean."""
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        with handlers.asleep():
+            for frame in frames:
+                scene.frame_set(frame)
+                yield _depsgraph(scene)
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+
+
+def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
+    depsgraph = scene.view_layers[0].depsgraph
+    depsgraph.update()
+    return depsgraph
+
+
+def _sample(
+    item: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+) -> dict[str, float]:
+    """What can be animated, by its path, at the scene's present frame."""
+    settings = shown_settings(item, depsgraph)
+    parameters = settings.to_parameters(scene)
+    values = dict(_values(parameters))
+    if settings.use_ocean_time:
+        values[OCEAN_TIME] = float(clock_of(settings, scene, parameters.timing.start_frame).time)
+    return values
+
+
+def _values(parameters: OceanParameters) -> Iterator[tuple[str, float]]:
+    data = parameters.to_dict()
+    for path in ANIMATED:
+        *parents, name = path.split(".")
+        if parents:
+            layers: list[dict[str, Any]] = data["layers"]
+            yield from ((f"layers.{index}.{name}", layer[name]) for index, layer in enumerate(layers))
+        elif path != OCEAN_TIME:
+            yield path, data[name]

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Baking from Blender: the frames are the core's, they lie where they should, and nothing is lost."""
+
+import json
+import shutil
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+
+TOLERANCE = 2e-3  # m; images keep 2⁻¹⁶ of their values
+
+
+@pytest.fixture
+def saved(empty_scene, tmp_path, monkeypatch):
+    """A file that has been saved, with four frames."""
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    empty_scene.frame_start, empty_scene.frame_end = 1, 4
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    return bpy.context.scene
+
+
+@pytest.fixture
+def ocean(saved, ocean_object, make_parameters):
+    item = ocean_object.add(saved, make_parameters())
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+def bakes(folder):
+    return sorted(path.parent for path in folder.glob("cache/*/v*/bake.json"))
+
+
+def test_a_bake_lies_beside_the_file_and_moves_the_ocean(
+    ocean, make_parameters, expected, evaluated, saved, tmp_path
+):
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    (folder,) = bakes(tmp_path)
+    assert folder.parent.name == f"Ocean-{ocean.ocean_tweak.uid}"
+    assert len(list(folder.glob("*.exr"))) == 4 * 4  # frames times maps
+    assert ocean.ocean_tweak.source == "SEQUENCE"
+    for frame in (4, 2):
+        saved.frame_set(frame)
+        np.testing.assert_allclose(evaluated(ocean), expected(make_parameters(), frame), atol=TOLERANCE)
+
+
+def test_another_sea_gets_another_version(ocean, tmp_path):
+    bpy.ops.ocean.bake()
+    (first,) = bakes(tmp_path)
+    before = {path.name: path.read_bytes() for path in first.glob("*.exr")}
+    ocean.ocean_tweak.layers[0].wind_speed = 8.0
+    bpy.ops.ocean.bake()
+    versions = bakes(tmp_path)
+    assert [folder.name[:5] for folder in versions] == ["v001-", "v002-"]
+    assert {path.name: path.read_bytes() for path in first.glob("*.exr")} == before
+    assert Path(bpy.path.abspath(ocean.ocean_tweak.sequence_maps.disp.filepath)).parent == versions[1]
+
+
+def test_a_bake_goes_on(ocean, tmp_path):
+    bpy.ops.ocean.bake()
+    (folder,) = bakes(tmp_path)
+    kept = {path.name: path.stat().st_mtime_ns for path in folder.glob("*.exr") if ".0003." not in path.name}
+    for path in folder.glob("*.0003.exr"):
+        path.unlink()
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert len(list(folder.glob("*.exr"))) == 16
+    assert {name: (folder / name).stat().st_mtime_ns for name in kept} == kept
+
+
+def test_the_baked_sea_is_animated_too(ocean, core, make_parameters, extension, saved, tmp_path):
+    layer = ocean.ocean_tweak.layers[0]
+    for frame, wind in ((1, 6.0), (4, 12.0)):
+        layer.wind_speed = wind
+        layer.keyframe_insert("wind_speed", frame=frame)
+    saved.frame_set(2)
+    bpy.context.view_layer.update()
+    shown = ocean.ocean_tweak.to_parameters(saved)
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert saved.frame_current == 2
+    (folder,) = bakes(tmp_path)
+    image, _ = extension("export.exr").read_image(folder / "Ocean_disp.0002.exr")
+    assert 6.0 < shown.layers[0].wind_speed < 12.0
+    surface = core.Ocean(shown).frame(2).displacement
+    np.testing.assert_allclose(image, surface, atol=TOLERANCE)
+    animation = json.loads((folder / "bake.json").read_text())["shot"]["animation"]
+    assert animation["first_frame"] == 0
+    assert len(animation["samples"]["layers.0.wind_speed"]) == 6
+
+
+def test_duplicates_bake_beside_each_other(ocean, saved, tmp_path):
+    bpy.ops.ocean.bake()
+    twin = ocean.copy()
+    twin.data = ocean.data.copy()
+    saved.collection.objects.link(twin)
+    twin.ocean_tweak.source = "LIVE"
+    bpy.context.view_layer.objects.active = twin
+    bpy.ops.ocean.bake()
+    assert twin.ocean_tweak.uid != ocean.ocean_tweak.uid
+    assert len(bakes(tmp_path)) == 2
+
+
+def test_what_keeps_a_bake_from_being_made_is_said(ocean, tmp_path):
+    (tmp_path / "cache").write_text("a file")
+    with pytest.raises(RuntimeError, match="cache"):
+        bpy.ops.ocean.bake()
+    assert ocean.ocean_tweak.source == "LIVE"
+    assert not extension_running(ocean)
+
+
+def extension_running(item):
+    bpy.context.view_layer.objects.active = item
+    return bpy.ops.ocean.stop_bake.poll()
+
+
+def test_bake_wants_an_ocean(empty_scene):
+    for operator in (bpy.ops.ocean.bake, bpy.ops.ocean.stop_bake, bpy.ops.ocean.take_cache_along):
+        assert not operator.poll()
+
+
+def test_unsaved_files_bake_into_the_users_folder(
+    empty_scene, ocean_object, make_parameters, extension, tmp_path, monkeypatch
+):
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    place = extension("scene.cache_place")
+    monkeypatch.setattr(place, "user_folder", lambda name: tmp_path / name)
+    item = ocean_object.add(empty_scene, make_parameters())
+    assert place.cache_folder(item) == tmp_path / "cache"
+    monkeypatch.setenv("OCEAN_TWEAK_CACHE", str(tmp_path / "farm"))
+    assert place.cache_folder(item) == tmp_path / "farm"
+    item.ocean_tweak.cache_folder = str(tmp_path / "own")
+    assert place.cache_folder(item) == tmp_path / "own"
+
+
+def test_a_librarys_cache_is_beside_the_library(ocean, extension, tmp_path):
+    bpy.ops.wm.save_mainfile()
+    library = tmp_path / "assets" / "library.blend"
+    library.parent.mkdir()
+    shutil.move(bpy.data.filepath, library)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
+    with bpy.data.libraries.load(str(library), link=True) as (source, target):
+        target.objects = source.objects
+    place = extension("scene.cache_place")
+    assert place.cache_folder(target.objects[0]) == (library.parent / "cache").resolve()
+
+
+def test_save_as_elsewhere_offers_to_take_the_bake_along(
+    ocean, make_parameters, expected, evaluated, saved, tmp_path
+):
+    bpy.ops.ocean.bake()
+    assert not bpy.ops.ocean.take_cache_along.poll()
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(elsewhere / "shot.blend"))
+    saved.frame_set(3)
+    np.testing.assert_allclose(evaluated(ocean), expected(make_parameters(), 3), atol=TOLERANCE)
+    assert bpy.ops.ocean.take_cache_along() == {"FINISHED"}
+    assert not bpy.ops.ocean.take_cache_along.poll()
+    assert len(bakes(elsewhere)) == 1
+    shutil.rmtree(tmp_path / "cache")
+    saved.frame_set(2)
+    np.testing.assert_allclose(evaluated(ocean), expected(make_parameters(), 2), atol=TOLERANCE)
+
+
+def test_the_window_is_free_while_it_bakes(ocean, extension, saved):
+    """What the running operator does: start, look, stop, and go on later."""
+    process, shots = extension("scene.bake_process"), extension("scene.shots")
+    frames = tuple(range(1, 200))
+    bake = process.start(ocean, shots.shot_of(ocean, saved, frames), frames)
+    assert process.running(ocean) is bake
+    assert not bpy.ops.ocean.bake.poll()
+    while bake.done < 3:
+        assert not bake.has_ended(), bake.error
+    assert 0.0 < bake.factor < 1.0
+    assert bake.seconds_left > 0.0
+    bpy.ops.ocean.stop_bake()
+    bake.wait()
+    assert bake.is_stopped
+    assert not bake.is_complete
+    process.forget(bake)
+    assert process.running(ocean) is None
+    made = len(list(bake.folder.glob("records/*.json")))
+    assert 3 <= made < 199
+    again = process.start(ocean, shots.shot_of(ocean, saved, frames), frames[: made + 1])
+    again.wait()
+    process.forget(again)
+    assert again.is_complete, again.error
+    assert again.left < made
