@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from ocean_tweak.cli import main
 from tools import venvs
 
 ROOT = Path(__file__).parents[2]
@@ -89,7 +90,6 @@ class Shot:
     """A folder with storm.json and shot.blend, whose plane shows storm_disp as light."""
 
     folder: Path
-    run: Run
 
     @property
     def cache(self) -> Path:
@@ -108,11 +108,11 @@ class Shot:
     def write(self, name: str, *arguments: str | Path) -> Path:
         """Write a job for frames 1 to 3 into a folder of this name, as the command line does."""
         folder = self.folder / name
-        answer = self.run(
-            sys.executable, "-m", "ocean_tweak", "job", "--params", self.folder / "storm.json",
-            "--frames", "1-3", "--chunk", "2", "--out", folder, "--python", sys.executable, *arguments,
-        )  # fmt: skip
-        assert answer.returncode == 0, answer.stdout
+        words = [
+            "job", "--params", self.folder / "storm.json", "--frames", "1-3", "--chunk", "2", "--workers", "1",
+            "--out", folder, "--python", sys.executable, *arguments,
+        ]  # fmt: skip
+        assert main([str(word) for word in words]) == 0
         return folder
 
 
@@ -127,6 +127,6 @@ def make_shot(tmp_path_factory: pytest.TempPathFactory, run: Run) -> Callable[[s
         script = [ROOT / "tools" / "bpy_script.py", HERE / "make_blend.py"]
         answer = run(sys.executable, *script, *arguments)
         assert (folder / "shot.blend").exists(), answer.stdout
-        return Shot(folder, run)
+        return Shot(folder)
 
     return make

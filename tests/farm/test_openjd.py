@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -124,7 +125,7 @@ def test_the_job_bakes_verifies_and_renders(openjd: Run, shot: Shot, bundle: Pat
 
 
 def test_a_damaged_frame_stops_the_job_until_its_task_ran_again(
-    openjd: Run, shot: Shot, bundle: Path
+    openjd: Run, run: Run, shot: Shot, bundle: Path
 ) -> None:
     frame, other = (shot.bake / f"storm_disp.{number:04d}.exr" for number in (2, 3))
     before, untouched = frame.read_bytes(), other.stat().st_mtime_ns
@@ -132,6 +133,13 @@ def test_a_damaged_frame_stops_the_job_until_its_task_ran_again(
     said = run_step(openjd, shot, bundle, "Verify", "--no-run-dependencies")
     assert said.startswith("FAILED"), said
     assert "frame 2 is damaged: storm_disp.0002.exr has other contents than were written" in said
+    # a machine that was lost in the middle leaves its lock behind
+    lost = (
+        "import os, sys; from pathlib import Path; from ocean_tweak.export.cache.locks import claimed\n"
+        "with claimed(Path(sys.argv[1]), (1, 2)): os._exit(0)"
+    )
+    assert run(sys.executable, "-c", lost, shot.bake).returncode == 0
+    assert list((shot.bake / "locks").glob("*.lock"))
     again = run_step(openjd, shot, bundle, "Bake", "--no-run-dependencies", "--task-param", "Frames=1-2")
     assert again.startswith("OK"), again
     assert frame.read_bytes() == before
@@ -185,7 +193,7 @@ def test_a_live_ocean_is_rendered_from_its_bake(
     live = make_shot("live")
     rendered = ["--blend", live.folder / "shot.blend", "--blender", wheel]
     step = ["Render", "--no-run-dependencies", "--task-param", "Frames=2"]
-    bake = ["bake", "--params", str(live.folder / "storm.json"), "--frames", "1-2", "--out", str(live.cache)]
+    bake = ["bake", "--params", str(live.folder / "storm.json"), "--frames", "2", "--out", str(live.cache)]
     assert main(bake) == 0
     said = run_step(openjd, live, live.write("job", *rendered), *step, WITH_EXTENSION="1")
     assert said.startswith("OK"), said
