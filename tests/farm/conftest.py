@@ -109,8 +109,8 @@ class Shot:
         """Write a job for frames 1 to 3 into a folder of this name, as the command line does."""
         folder = self.folder / name
         words = [
-            "job", "--params", self.folder / "storm.json", "--frames", "1-3", "--chunk", "2", "--workers", "1",
-            "--out", folder, "--python", sys.executable, *arguments,
+            "job", "--params", self.folder / "storm.json", "--frames", "1-3", "--chunk", "2",
+            "--workers", "1", "--out", folder, "--python", sys.executable, *arguments,
         ]  # fmt: skip
         assert main([str(word) for word in words]) == 0
         return folder
