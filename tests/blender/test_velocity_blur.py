@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion blur from the attribute `velocity` is what an open shutter sees."""
+
+import bpy
+import numpy as np
+import pytest
+
+from .surfaces import ALL_MAPS
+
+PIXELS = 128
+DOMAIN = 600.0  # m
+WIDTH = 25.0  # of what is seen, m
+FRAME = 3
+SHUTTER = 0.8  # frames
+MOMENTS = 16
+WAYS = (("NODES", "LIVE"), ("NODES", "SEQUENCE"), ("DISPLACE", "LIVE"), ("DISPLACE", "SEQUENCE"))
+
+
+@pytest.fixture
+def render(empty_scene, tmp_path):
+    """Render stripes that swim on the water, from above; returns the pixels' brightness."""
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", WIDTH
+    camera.location = (DOMAIN / 2, DOMAIN / 2, 90.0)
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    empty_scene.render.engine, empty_scene.cycles.device = "CYCLES", "CPU"
+    empty_scene.cycles.use_denoising = False
+    empty_scene.render.resolution_x = empty_scene.render.resolution_y = PIXELS
+    empty_scene.render.image_settings.file_format = "OPEN_EXR"
+    empty_scene.render.motion_blur_shutter = SHUTTER
+
+    def pixels(moment=FRAME, blur=False, samples=8):
+        empty_scene.render.use_motion_blur = blur
+        empty_scene.cycles.samples = samples
+        empty_scene.cycles.seed = round(1000 * moment)  # moments share no noise
+        empty_scene.frame_set(int(moment), subframe=moment - int(moment))
+        empty_scene.render.filepath = str(tmp_path / "moment.exr")
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(empty_scene.render.filepath)
+        result = np.array(image.pixels[:]).reshape(PIXELS, PIXELS, 4)[..., 0]
+        bpy.data.images.remove(image)
+        return result
+
+    return pixels
+
+
+def stripes():
+    """A material that shines in soft stripes, 2 m apart, which stay with the water."""
+    material = bpy.data.materials.new("Stripes")
+    if bpy.app.version < (5, 0):
+        material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    coordinates = nodes.new("ShaderNodeAttribute")
+    coordinates.attribute_name = "st"
+    wave = nodes.new("ShaderNodeTexWave")
+    wave.inputs["Scale"].default_value = 94.0
+    shine, out = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeOutputMaterial")
+    links.new(coordinates.outputs["Vector"], wave.inputs["Vector"])
+    links.new(wave.outputs["Color"], shine.inputs["Color"])
+    links.new(shine.outputs["Emission"], out.inputs["Surface"])
+    return material
+
+
+def test_blur_is_the_average_of_the_moments(ocean_object, core, bake, make_parameters, empty_scene, render):
+    """Long waves, a second a frame: the water goes a stripe's width while its speed hardly turns."""
+    layer = core.WaveLayer(wind_speed=20.0, fetch=300e3)
+    parameters = make_parameters(
+        fps=1, domain_size=DOMAIN, layers=(layer,), foam=core.Foam(coverage=0.0), start_frame=1
+    )
+    empty_scene.render.fps = 1
+    material = stripes()
+
+    def add(method, source):
+        sequence = bake(parameters, FRAME - 1, FRAME + 1, maps=ALL_MAPS) if source == "SEQUENCE" else None
+        item = ocean_object.add(empty_scene, parameters, method, source, sequence)
+        item.data.materials.append(material)
+        return item
+
+    item = add("NODES", "LIVE")
+    shutter = FRAME + ((np.arange(MOMENTS) + 0.5) / MOMENTS - 0.5) * SHUTTER
+    seen = np.mean([render(moment) for moment in shutter], axis=0)
+    without = rms(render(samples=64) - seen)
+    assert without > 0.1
+    bpy.data.objects.remove(item)
+    for method, source in WAYS:
+        item = add(method, source)
+        assert rms(render(blur=True, samples=64) - seen) < 0.25 * without, (method, source)
+        bpy.data.objects.remove(item)
+
+
+def rms(difference):
+    return float(np.sqrt(np.mean(difference**2)))
