@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import float_keys, floating
+from . import float_keys, floating, handlers
 from .floating import FloatError, Ride
 from .floating_place import Water, place_on, water_at
 from .units import metres_per_unit
@@ -70,7 +70,8 @@ class FloatBake:
     def advance(self) -> None:
         """Go on by one frame. Raises what a missing or broken image raises."""
         frame = self.frames[self.done]
-        self._scene.frame_set(frame)
+        with handlers.asleep():  # the waves in the viewport are not needed
+            self._scene.frame_set(frame)
         metres = float(metres_per_unit(self._scene))
         waters: dict[bpy.types.Object, Water] = {}
         for rider in self._riders:

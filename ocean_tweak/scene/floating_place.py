@@ -20,9 +20,11 @@ from ..core import Ocean, OceanParameters
 from ..core.surface_query import bilinear, find_points
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
+from .animated import shown_settings
 from .floating import FloatError, Ride
 from .image_sequence import SequenceError
-from .settings import OceanSettings, settings_of
+from .plan import plan_of
+from .settings import OceanSettings
 
 RealArray = NDArray[np.float32]
 Array = NDArray[np.float64]
@@ -60,13 +62,13 @@ def water_at(ocean: bpy.types.Object, scene: bpy.types.Scene, frame: int) -> Wat
 
     Raises ParameterError, OceanObjectError or MemoryError for an ocean that has no surface there.
     """
-    settings = settings_of(ocean)
-    parameters = settings.to_parameters(scene)
+    settings = shown_settings(ocean, scene.view_layers[0].depsgraph)
+    plan = plan_of(settings, scene)
     if settings.source == "LIVE":
-        displacement = _ocean(parameters).frame(frame).displacement
+        displacement = _ocean(plan.parameters).surface(plan.time).displacement
     else:
         displacement = _baked(settings, frame)
-    return Water(displacement, parameters.domain_size / len(displacement))
+    return Water(displacement, plan.parameters.domain_size / len(displacement))
 
 
 def place_on(water: Water, place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Matrix:

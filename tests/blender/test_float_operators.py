@@ -215,6 +215,23 @@ def test_in_centimetres(ocean_object, buoy, select, core, make_parameters, empty
     assert buoy.location.z / 100.0 == pytest.approx(height, abs=CENTIMETRE)
 
 
+def test_an_animated_sea(ocean, buoy, select, core, make_parameters, empty_scene):
+    """Its own clock at half speed, and a choppiness that grows."""
+    ocean.ocean_tweak.use_ocean_time = True
+    for frame, time, choppiness in ((1, 0.0, 0.2), (25, 0.5, 1.0)):
+        ocean.ocean_tweak.ocean_time, ocean.ocean_tweak.choppiness = time, choppiness
+        ocean.keyframe_insert("ocean_tweak.ocean_time", frame=frame)
+        ocean.keyframe_insert("ocean_tweak.choppiness", frame=frame)
+    select(buoy)
+    bpy.ops.object.ocean_tweak_float_bake(frame_start=24, frame_end=25)
+    empty_scene.frame_set(25)
+    # 0.5 s are frame 13 of a sea that keeps the scene's time
+    assert_rides(buoy, core, ocean, make_parameters(choppiness=1.0), 13)
+    bpy.ops.object.ocean_tweak_float()
+    empty_scene.frame_set(1)
+    assert_rides(buoy, core, ocean, make_parameters(resolution=16, choppiness=0.2), 1)
+
+
 def test_esc_leaves_everything_as_it_was(ocean, buoy, extension, empty_scene):
     floating = extension("scene.floating")
     action = bpy.data.actions.new("Own")
