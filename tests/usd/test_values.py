@@ -205,7 +205,7 @@ def test_tiles_stand_side_by_side_and_move(exported, form):
         assert tuple(place) == (int(column) * SIZE, int(row) * SIZE, 0.0)
     cache = UsdGeom.BBoxCache(Usd.TimeCode(1003), ["default"])
     box = cache.ComputeWorldBound(stage.GetDefaultPrim()).ComputeAlignedRange()
-    low, high = wanted.min(axis=0), wanted.max(axis=0) + [2 * SIZE, SIZE, 0.0]
+    low, high = wanted.min(axis=0), wanted.max(axis=0) + np.array([2 * SIZE, SIZE, 0.0])
     np.testing.assert_allclose([box.GetMin(), box.GetMax()], [low, high], atol=1e-4)
 
 
@@ -228,7 +228,9 @@ def test_extents_hint_holds_every_frame(exported, form):
 @pytest.mark.parametrize("form", ANIMATED)
 def test_proxy_beside_render(exported, form):
     stage = Usd.Stage.Open(str(exported(form=form, proxy=10)))
-    surface, proxy = (UsdGeom.Mesh(stage.GetPrimAtPath(f"/sea/geo/sea/{name}")) for name in ("surface", "proxy"))
+    surface, proxy = (
+        UsdGeom.Mesh(stage.GetPrimAtPath(f"/sea/geo/sea/{name}")) for name in ("surface", "proxy")
+    )
     assert surface.ComputePurpose() == "render"
     assert proxy.ComputePurpose() == "proxy"
     assert surface.GetProxyPrimRel().GetForwardedTargets() == [proxy.GetPath()]

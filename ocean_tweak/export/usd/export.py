@@ -19,7 +19,7 @@ from . import textures
 from .asset import prim_name, write_asset, write_payload
 from .box import Box, of_tiles, union
 from .clips import ClipSink, write_manifest, write_stitch, write_topology_layer
-from .layers import refuse_foreign, whole_layer, write_header
+from .layers import refuse_foreign, remove_leftovers, whole_layer, write_header
 from .library import UsdError, pxr
 from .material import write_material
 from .mesh import ROOT, SURFACE, Edition, write_topology
@@ -122,6 +122,12 @@ class Export:
             payloads[edition.resolution] = f"./{(folder / PAYLOAD).relative_to(self.top.parent).as_posix()}"
         write_asset(self.top, package, payloads, of_tiles(package, union(boxes)))
         sync_folder(self.top.parent)
+        self._clean()
+
+    def _clean(self) -> None:
+        clips = (sink.path(frame) for _, _, sink in self._clips() for frame in self.package.frames)
+        for path in (*self.paths(), *clips):
+            remove_leftovers(path)
 
     @property
     def prim(self) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.frames import Frame
-from ..files import whole_file
+from ..files import PART, begun_file, whole_file
 from .library import UsdError, pxr
 from .package import FORMAT, Package
 
@@ -43,6 +43,13 @@ def whole_layer(path: Path, text: bool = False) -> Iterator[Any]:
         finally:
             with contextlib.suppress(OSError):
                 draft.unlink(missing_ok=True)
+
+
+def remove_leftovers(path: Path) -> None:
+    """Remove what a killed process had begun to write of a layer."""
+    for part in path.parent.glob(f".{path.name}.*{PART}*"):
+        if begun_file(part.with_suffix("") if part.suffix != PART else part) == path.name:
+            part.unlink(missing_ok=True)
 
 
 def _format(path: Path, text: bool) -> dict[str, str]:

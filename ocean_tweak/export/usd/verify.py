@@ -83,7 +83,15 @@ def verify(path: Path, frames: Sequence[Frame] | None = None) -> Iterator[Proble
         opened = _open(path, prim, package, resolution)
         yield from _stage_problems(opened)
         yield from _gaps(opened)
-        yield from _CHECKS[package.form](opened, chosen)
+        yield from _readable(_CHECKS[package.form](opened, chosen))
+
+
+def _readable(problems: Iterator[Problem]) -> Iterator[Problem]:
+    """The problems; a layer that cannot be read ends them and is one itself."""
+    try:
+        yield from problems
+    except pxr().Tf.ErrorException as error:
+        yield Problem(None, f"a layer cannot be read: {reason(error)}")
 
 
 def _open(path: Path, prim: str, package: Package, resolution: int) -> _Opened:
@@ -121,6 +129,10 @@ def _gaps(opened: _Opened) -> Iterator[Problem]:
     """Frames that nothing is there for."""
     if opened.package.form == "clips":
         yield from _missing_clips(opened)
+    yield from _readable(_missing_samples(opened))
+
+
+def _missing_samples(opened: _Opened) -> Iterator[Problem]:
     attribute = _moving_attribute(opened)
     if not attribute:
         return
