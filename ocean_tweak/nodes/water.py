@@ -57,7 +57,7 @@ FOAM_PANEL = Panel(
     (
         ("Foam Amount", "NodeSocketFloat", 1.0, "Multiplies the ocean's foam"),
         ("Foam Map", "NodeSocketFloat", 0.0, "Foam from an image, instead of or above the ocean's own"),
-        ("Foam Color", "NodeSocketColor", (0.78, 0.80, 0.80, 1.0), "Of dense foam"),
+        ("Foam Color", "NodeSocketColor", (0.83, 0.85, 0.85, 1.0), "Of dense foam"),
         ("Foam Roughness", "NodeSocketFloat", 0.65, "Of foam's own surface"),
         ("Foam Size", "NodeSocketFloat", 6.0, "Of the pattern that foam thins out by, in metres"),
         ("Foam Streaks", "NodeSocketFloat", 0.0, "Thin old foam in lines along the wind, as from 7 Bft on"),

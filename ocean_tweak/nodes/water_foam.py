@@ -15,6 +15,7 @@ from .water_pattern import Place, tile
 
 _STREAK_LENGTH = 70.0  # m
 _STREAK_NARROWER = 5.0
+_SPREAD = 1.5
 _THICKNESS = 0.05  # m, of the height that shading shows
 
 
@@ -43,8 +44,9 @@ def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Socket
     amount = shade.math("ADD", foam, shade.math("MULTIPLY", old, 0.55))
     lace = shade.math("MULTIPLY_ADD", middle, 0.5, shade.math("MULTIPLY", fine, 0.22))
     lace = shade.math("MULTIPLY_ADD", coarse, 0.28, lace)
-    # dense foam is whole, thin foam is threads
-    above = shade.math("SUBTRACT", shade.math("MULTIPLY", amount, 1.15), lace)
+    # a sum of patterns gathers in the middle: spread out again, a share F covers about F of the water
+    lace = shade.math("MULTIPLY_ADD", lace, _SPREAD, 0.5 - 0.5 * _SPREAD)
+    above = shade.math("SUBTRACT", shade.math("MULTIPLY", amount, 1.08), lace)
     has_any = shade.smooth(amount, 0.0, 0.08)
     cover = shade.math("MULTIPLY", shade.smooth(above, -0.09, 0.10), has_any)
     return Cover(cover, shade.smooth(above, -0.05, 0.65))

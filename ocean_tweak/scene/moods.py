@@ -71,8 +71,8 @@ def _degrees(value: float) -> float:
 
 MOODS = {
     "CALM": Mood(
-        "Calm", "A gentle breeze of 4 m/s, low sun and clear water",
-        wind_speed=4.0, fetch=15e3, domain_size=120.0, resolution=512, wind=_degrees(200.0), water="OCEANIC",
+        "Calm", "A light breeze of 3 m/s, low sun and clear water",
+        wind_speed=3.0, fetch=15e3, domain_size=120.0, resolution=512, wind=_degrees(200.0), water="OCEANIC",
         sun=_degrees(33.0), sun_elevation=_degrees(11.0), clouds=0.5, overcast=0.0, visibility=30e3,
         eye=1.0, least_eye=2.2, crest_distance=30.0, tilt=_degrees(3.0), rings=9,
     ),
@@ -84,8 +84,8 @@ MOODS = {
     ),
     "STORM": Mood(
         "Storm", "25 m/s: waves of eleven metres, streaks of foam and torn cloud",
-        wind_speed=25.0, fetch=500e3, domain_size=1200.0, resolution=512, wind=_degrees(160.0),
-        water="STORM", sun=_degrees(-28.0), sun_elevation=_degrees(16.0), clouds=0.6, overcast=0.85,
-        visibility=12e3, eye=0.75, least_eye=1.0, crest_distance=13.0, tilt=_degrees(0.0), rings=3,
+        wind_speed=25.0, fetch=500e3, domain_size=1200.0, resolution=1024, wind=_degrees(160.0),
+        water="STORM", sun=_degrees(-40.0), sun_elevation=_degrees(20.0), clouds=0.6, overcast=0.78,
+        visibility=12e3, eye=0.6, least_eye=1.0, crest_distance=9.0, tilt=_degrees(0.5), rings=3,
     ),
 }  # fmt: skip

@@ -42,11 +42,11 @@ _HORIZONS = {
 
 #: a closed cloud's radiance over sin(elevation), brightest where it thins out at the horizon
 _OVERCAST = (
-    (0.0, (0.56, 0.60, 0.63)), (0.05, (0.47, 0.52, 0.565)), (0.16, (0.27, 0.32, 0.37)),
-    (0.42, (0.12, 0.15, 0.185)), (1.0, (0.085, 0.11, 0.14)),
+    (0.0, (0.44, 0.485, 0.52)), (0.05, (0.40, 0.45, 0.49)), (0.16, (0.31, 0.36, 0.405)),
+    (0.42, (0.235, 0.28, 0.325)), (1.0, (0.21, 0.255, 0.30)),
 )  # fmt: skip
 _GLOW = (1.0, 0.90, 0.76)
-_OVERCAST_HAZE = (0.60, 0.635, 0.66)
+_OVERCAST_HAZE = (0.46, 0.50, 0.53)
 
 
 @dataclass(frozen=True)
@@ -153,10 +153,10 @@ def _overcast(shade: Shading, sky: Sky, direction: Socket, above: Socket) -> Soc
     plane = _plane(shade, direction, above, 0.09)
     large = shade.noise(plane, 0.55, Detail=7.0, Roughness=0.56, Distortion=0.35)
     contrast = shade.smooth(above, 0.0, 0.12, 0.25, 1.0)
-    torn = shade.math("MULTIPLY_ADD", shade.smooth(large, 0.33, 0.70, -0.42, 0.50), contrast, 1.0)
+    torn = shade.math("MULTIPLY_ADD", shade.smooth(large, 0.33, 0.70, -0.50, 0.45), contrast, 1.0)
     ragged = shade.noise(shade.vector("MULTIPLY", direction, (1.0, 1.0, 5.0)), 2.6, Detail=6.0, Roughness=0.6)
     edge = shade.math("ADD", above, shade.math("MULTIPLY_ADD", ragged, 0.16, -0.08))
-    low = shade.smooth(edge, 0.0, 0.20, 1.5, 0.0)
+    low = shade.smooth(edge, 0.0, 0.20, 1.1, 0.0)
     flat = (math.cos(sky.sun_azimuth), math.sin(sky.sun_azimuth), 0.0)
     facing = shade.math("MAXIMUM", shade.number("DOT_PRODUCT", direction, flat), 0.0)
     glow = shade.math("MULTIPLY", shade.math("POWER", facing, 9.0), low)

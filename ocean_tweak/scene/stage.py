@@ -168,8 +168,8 @@ def _add_buoy(
     """A buoy before the camera, a little to the side."""
     metres = float(metres_per_unit(scene))
     buoy = new_buoy("Buoy", metres)
-    distance = max(13.0, 2.6 * float(place[2]))
-    aside = -0.27 * distance
+    distance = max(24.0, 7.5 * float(place[2]))
+    aside = -0.25 * distance
     forward = np.array([math.cos(VIEW), math.sin(VIEW), 0.0])
     right = np.array([math.sin(VIEW), -math.cos(VIEW), 0.0])
     offset = np.array([place[0], place[1], 0.0]) + distance * forward + aside * right

@@ -34,8 +34,8 @@ WATERS: dict[str, tuple[str, str, dict[str, object]]] = {
     "STORM": (
         "Stormy", "Green-grey, full of bubbles, with streaks of foam",
         {
-            "Absorption": (0.37, 0.085, 0.090, 1.0), "Backscatter": (0.0035, 0.0052, 0.0058, 1.0),
-            "Foam Streaks": 0.55, "Crest Light": 0.3,
+            "Absorption": (0.36, 0.080, 0.070, 1.0), "Backscatter": (0.0040, 0.0065, 0.0070, 1.0),
+            "Foam Streaks": 0.5, "Crest Light": 0.4, "Foam Size": 9.0,
         },
     ),
 }  # fmt: skip

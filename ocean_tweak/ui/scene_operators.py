@@ -166,6 +166,7 @@ def _new_scene(like: bpy.types.Scene) -> bpy.types.Scene:
 
 def _select(context: bpy.types.Context, scene: bpy.types.Scene, item: bpy.types.Object) -> None:
     layer = scene.view_layers[0] if scene != context.scene else context.view_layer
+    layer.update()  # it does not know yet what has just been linked
     for other in layer.objects:
         other.select_set(False, view_layer=layer)
     # an excluded collection keeps its objects out of the view layer

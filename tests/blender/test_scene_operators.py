@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A whole scene at one press: what it makes, what it leaves alone, and that undo takes it back."""
+
+import bpy
+import numpy as np
+import pytest
+from mathutils import Vector
+
+
+@pytest.fixture
+def quick(extension, monkeypatch):
+    """Moods with few samples: the sea itself is tested elsewhere."""
+    moods = extension("scene.moods")
+    original = moods.Mood.sea
+
+    def small(self, timing):
+        return original(self, timing).replace(resolution=64, foam=extension("core").Foam(resolution=32))
+
+    monkeypatch.setattr(moods.Mood, "sea", small)
+    return moods.MOODS
+
+
+def ocean_of(scene):
+    return next(item for item in scene.objects if item.ocean_tweak.is_ocean)
+
+
+def by_name(scene, start):
+    return next(item for item in scene.objects if item.name.startswith(start))
+
+
+@pytest.mark.parametrize("mood", ["CALM", "FRESH_BREEZE", "STORM"])
+def test_everything_is_there(quick, empty_scene, mood):
+    assert bpy.ops.ocean.add_scene(mood=mood, engine="CYCLES") == {"FINISHED"}
+    ocean, camera = ocean_of(empty_scene), empty_scene.camera
+    assert ocean == bpy.context.active_object
+    assert ocean.ocean_tweak.error == ""
+    assert ocean.active_material.name.startswith("Ocean Tweak Water")
+    assert ocean["ocean_tweak_slope_variance"] > 0.0
+    assert empty_scene.world is not None
+    assert [item.type for item in empty_scene.objects].count("LIGHT") == 1
+    assert empty_scene.render.engine == "CYCLES"
+    assert empty_scene.render.use_motion_blur
+    assert empty_scene.frame_end > empty_scene.frame_start + 100
+    # the camera is above the water and sees the horizon in its frame
+    looks = camera.matrix_world.to_quaternion() @ Vector((0.0, 0.0, -1.0))
+    half = 0.5 * camera.data.angle_y
+    assert abs(np.arcsin(looks.z)) < half
+    evaluated = ocean.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    height = max((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
+    assert 1.5 < camera.location.z < 2.0 * height + 3.0
+    names = set(evaluated.data.attributes.keys())
+    assert {"displacement", "foam", "st"} <= names
+
+
+def test_the_buoy_floats(quick, empty_scene):
+    bpy.ops.ocean.add_scene(mood="FRESH_BREEZE")
+    buoy = by_name(empty_scene, "Buoy")
+    heights = []
+    for frame in (1, 20, 40):
+        empty_scene.frame_set(frame)
+        heights.append(buoy.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z)
+    assert np.ptp(heights) > 0.1
+    assert max(np.abs(heights)) < 3.0
+
+
+def test_copies_and_flat_water_reach_the_horizon(quick, empty_scene):
+    bpy.ops.ocean.add_scene(mood="FRESH_BREEZE", use_buoy=False)
+    horizon, ocean = by_name(empty_scene, "Ocean Horizon"), ocean_of(empty_scene)
+    horizon.modifiers[0].show_viewport = True
+    evaluated = horizon.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    corners = np.array([vertex.co for vertex in evaluated.data.vertices])
+    assert np.abs(corners).max() == pytest.approx(30e3)
+    assert len(evaluated.data.polygons) == 8
+    # in the viewport without copies, the hole is as large as the ocean
+    inner = corners[np.abs(corners).max(axis=1) < 20e3]
+    np.testing.assert_allclose([inner.min(axis=0), inner.max(axis=0)], [(0, 0, 0), (400, 400, 0)], atol=1e-2)
+    assert all(polygon.normal.z > 0.99 for polygon in evaluated.data.polygons)
+    used = {evaluated.data.materials[polygon.material_index].name for polygon in evaluated.data.polygons}
+    assert used == {ocean.active_material.name}
+
+
+def test_what_a_scene_has_stays(quick, empty_scene):
+    camera = bpy.data.objects.new("Mine", bpy.data.cameras.new("Mine"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera, empty_scene.world = camera, bpy.data.worlds.new("My World")
+    if empty_scene.world.node_tree is None:
+        empty_scene.world.use_nodes = True
+    background = next(node for node in empty_scene.world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs[0].default_value = (0.9, 0.2, 0.1, 1.0)
+    empty_scene.frame_end = 77
+    bpy.ops.ocean.add_scene(mood="CALM")
+    assert empty_scene.camera == camera
+    assert empty_scene.world.name == "My World"
+    assert empty_scene.frame_end == 77
+    bpy.ops.ocean.add_scene(mood="CALM", use_new_camera=True, use_new_world=True)
+    assert empty_scene.camera != camera
+    assert empty_scene.world.name == "Calm Sky"
+    assert "My World" in bpy.data.worlds
+
+
+def test_a_scene_of_its_own_leaves_the_old_one_alone(quick, empty_scene):
+    empty_scene.unit_settings.scale_length = 0.5
+    before = (empty_scene.render.engine, empty_scene.render.use_motion_blur, len(empty_scene.objects))
+    bpy.ops.ocean.add_scene(mood="CALM", use_new_scene=True)
+    assert (empty_scene.render.engine, empty_scene.render.use_motion_blur, len(empty_scene.objects)) == before
+    made = next(scene for scene in bpy.data.scenes if scene != empty_scene)
+    assert made.camera is not None
+    assert made.unit_settings.scale_length == 0.5
+
+
+def test_eevee_by_the_name_of_this_version(quick, empty_scene):
+    bpy.ops.ocean.add_scene(mood="CALM", engine="EEVEE")
+    assert empty_scene.render.engine in ("BLENDER_EEVEE", "BLENDER_EEVEE_NEXT")
+
+
+def test_in_centimetres_everything_is_a_hundred_times_as_large(quick, empty_scene):
+    empty_scene.unit_settings.scale_length = 0.01
+    bpy.ops.ocean.add_scene(mood="FRESH_BREEZE")
+    ocean, buoy = ocean_of(empty_scene), by_name(empty_scene, "Buoy")
+    assert ocean.location.x == pytest.approx(-20000.0)
+    assert ocean["ocean_tweak_metres_per_unit"] == pytest.approx(0.01)
+    assert ocean["ocean_tweak_domain_size"] == pytest.approx(400.0)
+    assert buoy.dimensions.x == pytest.approx(220.0, rel=1e-3)
+    assert 200.0 < empty_scene.camera.location.z < 1000.0
+
+
+def test_undo_takes_it_back(quick, empty_scene, window):
+    with window.override():
+        bpy.ops.ed.undo_push(message="Before")
+        bpy.ops.ocean.add_scene(mood="CALM")
+        bpy.ops.ed.undo_push(message="Ocean Scene")  # a window does this for operators with UNDO
+        assert len(bpy.context.scene.objects) > 4
+        bpy.ops.ed.undo()
+        assert not bpy.context.scene.objects
+        assert bpy.context.scene.camera is None
+    assert "UNDO" in bpy.types.OCEAN_OT_add_scene.bl_options
+
+
+def test_water_for_an_ocean(quick, ocean_object, make_parameters, empty_scene):
+    assert not bpy.ops.ocean.use_water_material.poll()
+    item = ocean_object.add(empty_scene, make_parameters())
+    bpy.context.view_layer.objects.active = item
+    assert bpy.ops.ocean.use_water_material(water="COASTAL") == {"FINISHED"}
+    assert item.active_material.name == "Ocean Tweak Water Coastal"
+    assert item["ocean_tweak_domain_size"] == 150.0
+    bpy.ops.ocean.use_water_material(water="OCEANIC")
+    assert [slot.material.name for slot in item.material_slots] == ["Ocean Tweak Water"]
+
+
+def test_an_unknown_mood_is_refused(extension, empty_scene):
+    stage = extension("scene.stage")
+    with pytest.raises(ValueError, match="mood = 'HAPPY'"):
+        stage.build(empty_scene, "HAPPY", stage.Wishes())
+    assert not empty_scene.objects

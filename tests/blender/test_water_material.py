@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The water material against Fresnel's formula, the two-flow model and arithmetic, in rendered pixels."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+SIDE = 16  # pixels
+
+
+@pytest.fixture
+def water(extension):
+    return extension("scene.water_material")
+
+
+@pytest.fixture
+def sea(empty_scene, water):
+    """A flat square under a white sky, with the water material; without foam, ripples and haze."""
+    mesh = bpy.data.meshes.new("Flat")
+    mesh.from_pydata([(-500, -500, 0), (500, -500, 0), (500, 500, 0), (-500, 500, 0)], [], [(0, 1, 2, 3)])
+    item = bpy.data.objects.new("Flat", mesh)
+    empty_scene.collection.objects.link(item)
+    material = water.water_material()
+    water.assign(item, material)
+    world = bpy.data.worlds.new("White")
+    if world.node_tree is None:
+        world.use_nodes = True
+    background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+    background.inputs[0].default_value = (1.0, 1.0, 1.0, 1.0)
+    empty_scene.world = world
+    return item
+
+
+@pytest.fixture
+def inputs(sea):
+    """The group's inputs, black water at first."""
+    material = sea.active_material
+    group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+    group.inputs["Absorption"].default_value = (1e3, 1e3, 1e3, 1.0)
+    group.inputs["Backscatter"].default_value = (0.0, 0.0, 0.0, 1.0)
+    group.inputs["Gusts"].default_value = 0.0
+    return group.inputs
+
+
+@pytest.fixture
+def seen(sea, empty_scene, tmp_path):
+    """Mean linear colour of the water, seen at an angle in degrees from straight down."""
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 1.0
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    empty_scene.render.engine = "CYCLES"
+    empty_scene.cycles.device = "CPU"
+    empty_scene.cycles.samples = 32
+    empty_scene.cycles.use_denoising = False
+    empty_scene.render.resolution_x = empty_scene.render.resolution_y = SIDE
+    empty_scene.view_settings.view_transform = "Raw"
+    empty_scene.render.image_settings.file_format = "OPEN_EXR"
+    empty_scene.render.filepath = str(tmp_path / "seen.exr")
+
+    def colour(angle=0.0, place=(0.0, 0.0)):
+        camera.location = (
+            place[0], place[1] - 50.0 * math.sin(math.radians(angle)), 50.0 * math.cos(math.radians(angle))
+        )  # fmt: skip
+        camera.rotation_euler = (math.radians(angle), 0.0, 0.0)
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(empty_scene.render.filepath)
+        pixels = np.empty(4 * SIDE * SIDE, np.float32)
+        image.pixels.foreach_get(pixels)
+        bpy.data.images.remove(image)
+        assert np.isfinite(pixels).all()
+        return pixels.reshape(-1, 4)[:, :3].astype(np.float64).mean(axis=0)
+
+    return colour
+
+
+def fresnel(angle, n=1.333):
+    """Unpolarised reflectance of a flat dielectric, Fresnel (1823)."""
+    before = math.radians(angle)
+    below = math.asin(math.sin(before) / n)
+    across = (math.cos(before) - n * math.cos(below)) / (math.cos(before) + n * math.cos(below))
+    along = (math.cos(below) - n * math.cos(before)) / (math.cos(below) + n * math.cos(before))
+    return 0.5 * (across**2 + along**2)
+
+
+def leaving(absorption, backscatter, depth=math.inf, bottom=0.0, returned=0.47):
+    """What of the two-flow reflectance leaves the water."""
+    deep = 0.33 * backscatter / (absorption + backscatter)
+    below = deep + (bottom - deep) * math.exp(-2.0 * (absorption + backscatter) * depth)
+    return (1.0 - returned) * below / (1.0 - returned * below)
+
+
+def set_property(item, name, value):
+    item[name] = value
+    item.update_tag()
+
+
+def add_foam(item, amount):
+    attribute = item.data.attributes.get("foam") or item.data.attributes.new("foam", "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.full(4, amount, np.float32))
+    item.data.update()
+
+
+def test_no_link_is_broken(sea):
+    trees = [sea.active_material.node_tree, *bpy.data.node_groups]
+    assert all(link.is_valid for tree in trees for link in tree.links)
+    assert not [node.name for tree in trees for node in tree.nodes if node.bl_idname == "NodeUndefined"]
+
+
+@pytest.mark.parametrize("angle", [0.0, 45.0, 70.0, 80.0, 86.0])
+def test_black_water_reflects_by_fresnel(inputs, seen, angle):
+    assert seen(angle) == pytest.approx(np.full(3, fresnel(angle)), rel=0.04)
+
+
+def test_rough_water_reflects_less_at_grazing_angles_and_no_less_from_above(inputs, sea, seen):
+    flat, flat_above = seen(85.0)[0], seen(0.0)[0]
+    set_property(sea, "ocean_tweak_slope_variance", 0.04)
+    inputs["Ripples"].default_value = 0.0
+    assert seen(85.0)[0] < 0.75 * flat
+    assert seen(0.0)[0] == pytest.approx(flat_above, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("absorption", "backscatter", "depth"),
+    [(0.5, 0.5, 1e4), (0.05, 0.02, 1e4), (0.1, 0.0, 3.0), (0.02, 0.01, 9.0)],
+)
+def test_light_from_below_is_that_of_the_two_flow_model(inputs, seen, absorption, backscatter, depth):
+    inputs["Absorption"].default_value = (absorption, 1e3, absorption, 1.0)
+    inputs["Backscatter"].default_value = (backscatter, 0.0, backscatter, 1.0)
+    inputs["Bottom Color"].default_value = (0.4, 0.4, 0.8, 1.0)
+    inputs["Water Depth"].default_value = depth
+    surface = fresnel(0.0)
+    expected = [leaving(absorption, backscatter, depth, bottom) for bottom in (0.4, 0.4, 0.8)]
+    expected[1] = 0.0
+    shown = (seen() - surface) / (1.0 - surface)
+    np.testing.assert_allclose(shown, expected, rtol=0.05, atol=2e-3)
+
+
+def test_depth_is_the_ocean_s_own_unless_given(inputs, sea, seen):
+    inputs["Absorption"].default_value = (0.1, 0.1, 0.1, 1.0)
+    inputs["Bottom Color"].default_value = (0.5, 0.5, 0.5, 1.0)
+    deep = seen()[0]
+    set_property(sea, "ocean_tweak_water_depth", 1.0)
+    shallow = seen()[0]
+    assert shallow > deep + 0.1
+    inputs["Water Depth"].default_value = 50.0
+    assert seen()[0] == pytest.approx(deep, abs=2e-3)
+
+
+def test_foam_is_bright_and_half_the_foam_covers_half(inputs, sea, seen, empty_scene):
+    inputs["Bubbles"].default_value = 0.0
+    empty_scene.camera.data.ortho_scale = 100.0
+    none = seen()[0]
+    levels = []
+    for amount in (0.25, 0.5, 1.0):
+        add_foam(sea, amount)
+        levels.append(seen()[0])
+    assert none < levels[0] < levels[1] < levels[2]
+    assert levels[2] > 0.6
+    assert (levels[1] - none) / (levels[2] - none) == pytest.approx(0.55, abs=0.17)
+
+
+def test_haze_hides_far_water(inputs, seen):
+    inputs["Haze Color"].default_value = (0.5, 0.25, 0.0, 1.0)
+    bare = seen()
+    inputs["Visibility"].default_value = 50.0  # the camera's distance: a fiftieth of the contrast is left
+    np.testing.assert_allclose(seen(), 0.98 * np.array([0.5, 0.25, 0.0]) + 0.02 * bare, atol=2e-3)
+
+
+def test_a_normal_image_turns_the_surface(inputs, sea, water, seen):
+    """Tilted away by 15°, water seen at 45° reflects as at 60°."""
+    tilted = bpy.data.images.new("Normals", 4, 4, float_buffer=True, is_data=True)
+    normal = (0.0, math.sin(math.radians(15.0)), math.cos(math.radians(15.0)), 1.0)
+    tilted.pixels.foreach_set(np.tile(np.array(normal, np.float32), 16))
+    water.use_normal_image(sea.active_material, tilted)
+    assert seen(45.0)[0] == pytest.approx(fresnel(60.0), rel=0.04)
+
+
+def test_describe_says_what_the_sea_is_and_only_once(ocean_object, water, make_parameters, core, empty_scene):
+    parameters = make_parameters(domain_size=200.0, resolution=64, water=core.Water(depth=12.0))
+    item = ocean_object.add(empty_scene, parameters)
+    water.describe(item, parameters)
+    values = {name: item[name] for name in item.keys() if name.startswith("ocean_tweak_")}  # noqa: SIM118
+    assert values["ocean_tweak_domain_size"] == 200.0
+    assert values["ocean_tweak_sample_spacing"] == 3.125
+    assert values["ocean_tweak_water_depth"] == 12.0
+    assert values["ocean_tweak_wind_direction"] == pytest.approx(0.4)
+    assert 0.005 < values["ocean_tweak_slope_variance"] < 0.05
+    assert values["ocean_tweak_metres_per_unit"] == 1.0
+    updates = []
+
+    def watch(_scene, depsgraph):
+        updates.extend(update.id.name for update in depsgraph.updates)
+
+    bpy.context.view_layer.update()
+    bpy.app.handlers.depsgraph_update_post.append(watch)
+    try:
+        water.describe(item, parameters)
+        bpy.context.view_layer.update()
+    finally:
+        bpy.app.handlers.depsgraph_update_post.remove(watch)
+    assert item.name not in updates
+    empty_scene.unit_settings.scale_length = 0.01
+    water.describe(item, parameters)
+    assert item["ocean_tweak_metres_per_unit"] == pytest.approx(0.01)
+
+
+def test_one_material_serves_all_and_a_changed_one_stays(water, empty_scene):
+    first = water.water_material()
+    group = next(node for node in first.node_tree.nodes if node.type == "GROUP")
+    group.inputs["Foam Amount"].default_value = 0.3
+    assert water.water_material() == first
+    assert group.inputs["Foam Amount"].default_value == pytest.approx(0.3)
+    assert water.water_material("COASTAL") != first
+    # a group from another version goes, its inputs stay
+    group.node_tree["ocean_tweak_group"] = "Ocean Tweak Water 0"
+    old = group.node_tree
+    water.water_material()
+    assert group.node_tree != old
+    assert group.inputs["Foam Amount"].default_value == pytest.approx(0.3)
+
+
+def test_seconds_run_with_the_frame_rate(water, empty_scene):
+    material = water.water_material()
+    empty_scene.render.fps, empty_scene.render.fps_base = 25, 1.0
+    item = bpy.data.objects.new("Item", bpy.data.meshes.new("Item"))
+    item.data.materials.append(material)
+    empty_scene.collection.objects.link(item)
+    empty_scene.frame_set(50)
+    shown = material.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    seconds = next(node for node in shown.node_tree.nodes if node.label == "Seconds")
+    assert seconds.outputs[0].default_value == pytest.approx(2.0)
