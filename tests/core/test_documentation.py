@@ -222,7 +222,7 @@ def test_commands_of_the_readme_run(
     monkeypatch.chdir(tmp_path)
     assert cli.main([*command, "--set", "resolution=16"]) == 0
     if command[0] == "bake":
-        assert list((tmp_path / "sea").glob("*_disp.*.exr"))
+        assert list((tmp_path / "sea").glob("*/v*/*_disp.*.exr"))
 
 
 def test_links_of_the_readme_lead_somewhere() -> None:

@@ -46,6 +46,19 @@ def test_bake_writes_what_python_computes(ocean_tweak, extension, params, tmp_pa
     np.testing.assert_array_equal(pixels, surface.displacement)
 
 
+@pytest.mark.parametrize("form", ["openjd", "flamenco"])
+def test_job_is_written_with_all_that_it_needs(ocean_tweak, params, tmp_path, form):
+    out, blend = tmp_path / "job", tmp_path / "shot.blend"
+    blend.touch()
+    answer = ocean_tweak(
+        "job", "--form", form, "--params", params, "--frames", "1-3", "--out", out, "--blend", blend
+    )
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    assert json.loads((out / "seas" / "sea.json").read_text())["resolution"] == 32
+    (job,) = [path for path in out.iterdir() if path.name in ("template.json", "ocean_tweak_sea.js")]
+    assert "render_baked.py" in job.read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
