@@ -107,6 +107,40 @@ def test_an_object_follows_the_surface(floating, ocean, new_object, core, make_p
     assert np.ptp(heights) > 0.5
 
 
+def test_in_a_render_it_rides_the_sea_of_the_render(
+    floating, ocean, new_object, core, make_parameters, empty_scene
+):
+    ocean.ocean_tweak.viewport_resolution = 16
+    item = new_object("Buoy", None, (25.0, 40.0, 9.0))
+    floating.float_on(item, ocean, empty_scene)
+    seen = []
+
+    class Probe(bpy.types.RenderEngine):
+        bl_idname, bl_label = "OCEAN_TEST_BUOY", "Buoy"
+
+        def render(self, depsgraph):
+            seen.append(np.array(item.evaluated_get(depsgraph).matrix_world))
+            seen.append([each.object.name for each in depsgraph.object_instances])
+
+    empty_scene.camera = new_object("Camera", bpy.data.cameras.new("Camera"))
+    bpy.utils.register_class(Probe)
+    empty_scene.render.engine = Probe.bl_idname
+    empty_scene.render.resolution_x = empty_scene.render.resolution_y = 8
+    try:
+        empty_scene.frame_set(6)
+        bpy.ops.render.render()
+    finally:
+        bpy.utils.unregister_class(Probe)
+    for matrix, shown in (
+        (seen[0], make_parameters()),
+        (item.matrix_world, make_parameters(resolution=16)),
+    ):
+        point, normal = sea_below(core, ocean, shown, 6, (25.0, 40.0))
+        assert np.linalg.norm(np.array(matrix)[:3, 3] - point) < CENTIMETRE
+        assert angle(up(matrix), normal) < DEGREE
+    assert "Buoy Float" not in seen[1]
+
+
 def test_back_where_it_was(floating, ocean, new_object, empty_scene):
     parent = new_object("Quay", None, (5.0, 6.0, 1.0), 0.3)
     item = new_object("Buoy", None, (3.0, 4.0, 2.0), 0.2)
