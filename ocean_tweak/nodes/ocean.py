@@ -97,6 +97,7 @@ class _Surface(NamedTuple):
     has_velocity: Socket
     has_normal: Socket
     has_foam: Socket
+    warns: Socket
 
 
 def _build(tree: bpy.types.NodeTree, patches: int) -> None:
@@ -117,11 +118,14 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
     surfaces = [
         _patch(build, place, patch, by_attributes) for patch, place in enumerate(coordinates, start=1)
     ]
-    written = _written(build, output(captured, "Geometry"), _sum(build, surfaces))
+    surface = _sum(build, surfaces)
+    written = _written(build, output(captured, "Geometry"), surface)
     known = build.switch("GEOMETRY", by_attributes, written, base)
     offset = build.add("GeometryNodeInputNamedAttribute", {"Name": DISPLACEMENT}, data_type="FLOAT_VECTOR")
     moved = build.change("GeometryNodeSetPosition", known, {"Offset": output(offset, "Attribute")})
-    build.finish(build.switch("GEOMETRY", build.given("Move"), known, moved))
+    result = build.switch("GEOMETRY", build.given("Move"), known, moved)
+    # nobody asks a group for its warnings unless something hangs on them
+    build.finish(build.switch("GEOMETRY", surface.warns, result, result))
 
 
 def _own_grid(build: Builder, geometry: Socket) -> Socket:
@@ -173,7 +177,7 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
             "Frame": output(frame, "Frame"),
         },
     )
-    build.group(
+    warnings = build.group(
         node_group(WARNINGS),
         {
             "Scene Frame": output(frame, "Scene Frame"),
@@ -183,7 +187,7 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
         },
     )
     names = ("Displacement", "Velocity", "Normal", "Foam", "Cusp", "Has Velocity", "Has Normal", "Has Foam")
-    return _Surface(*(output(read, name) for name in names))
+    return _Surface(*(output(read, name) for name in names), warns=output(warnings, "Warning"))
 
 
 def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
@@ -206,6 +210,7 @@ def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
             has_velocity=build.logic("OR", total.has_velocity, other.has_velocity),
             has_normal=build.logic("OR", total.has_normal, other.has_normal),
             has_foam=build.logic("OR", total.has_foam, other.has_foam),
+            warns=build.logic("OR", total.warns, other.warns),
         )
     if slope is None:
         return total

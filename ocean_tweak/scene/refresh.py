@@ -71,6 +71,7 @@ def refresh(
             set_changed(scene.render, use_lock_interface=True)
         else:
             _refresh_baked(item, settings, plan, scene)
+        check_files(item, scene)
         if text is not None:
             evaluation.keep_statistics(plan.parameters, text)
             set_changed(settings, statistics=text)
@@ -210,7 +211,6 @@ def _refresh_baked(
             warn=settings.out_of_range == "WARN",
         ),
     )
-    check_files(item, scene)
 
 
 def _viewport_fields(plan: Plan, coarse: bool, patient: bool) -> tuple[Fields, bool]:
