@@ -16,10 +16,12 @@ from .ui import (
     bake_operators,
     float_operators,
     float_panel,
+    layer_operators,
     node_operators,
     operators,
     panels,
     preset_operators,
+    preset_thumbnails,
     properties,
     scene_operators,
     sea_operators,
@@ -29,6 +31,7 @@ CLASSES = (
     *properties.CLASSES,
     *operators.CLASSES,
     *bake_operators.CLASSES,
+    *layer_operators.CLASSES,
     *preset_operators.CLASSES,
     *sea_operators.CLASSES,
     *panels.CLASSES,
@@ -75,6 +78,7 @@ def register(package: str | None = None) -> None:
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
+    preset_thumbnails.register()
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
     bpy.types.NODE_MT_add.append(node_operators.draw_add_menu)
@@ -93,6 +97,7 @@ def unregister() -> None:
     bpy.types.NODE_MT_add.remove(node_operators.draw_add_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
+    preset_thumbnails.unregister()
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

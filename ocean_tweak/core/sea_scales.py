@@ -9,6 +9,12 @@ from typing import NamedTuple
 #: WMO-No. 306, code table 1100: mean wind speeds in m/s at which Beaufort numbers 1…12 begin
 BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
 
+#: what sailors call them, 0…12
+BEAUFORT_NAMES = (
+    "Calm", "Light air", "Light breeze", "Gentle breeze", "Moderate breeze", "Fresh breeze", "Strong breeze",
+    "Near gale", "Gale", "Strong gale", "Storm", "Violent storm", "Hurricane",
+)  # fmt: skip
+
 #: WMO-No. 306, code table 3700: significant wave heights in m at which sea states 1…9 begin
 SEA_STATE_FROM = (0.0, 0.1, 0.5, 1.25, 2.5, 4.0, 6.0, 9.0, 14.0)
 

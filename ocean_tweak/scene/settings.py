@@ -21,7 +21,7 @@ METHODS = {
 }
 SOURCES = {
     "LIVE": ("Live", "Compute the sea on every frame change. Needs no files, but this extension"),
-    "SEQUENCE": ("Sequence", "Read a baked EXR sequence. Also works where this extension is not installed"),
+    "SEQUENCE": ("Baked", "Read a baked EXR sequence. Also works where this extension is not installed"),
 }
 
 OUT_OF_RANGE = {
@@ -49,6 +49,7 @@ class MapImages(Protocol):
 class OceanSettings(Protocol):
     """The part of `object.ocean_tweak` that the scene layer reads and writes.
 
+    preset : title of the preset whose sea this is, "" for one of the user's own making
     uid : what tells the ocean's bakes from those of others; "" while nothing was baked
     cache_folder : where they go; "" for the usual place
     use_ocean_time, ocean_time : seconds on the waves' own clock, where it does not follow the frames
@@ -66,6 +67,7 @@ class OceanSettings(Protocol):
     """
 
     is_ocean: bool
+    preset: str
     uid: str
     cache_folder: str
     use_ocean_time: bool

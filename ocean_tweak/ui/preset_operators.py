@@ -43,6 +43,7 @@ class OCEAN_OT_apply_preset(OfActiveOcean, bpy.types.Operator):
             settings.from_parameters(presets[self.key].for_shot(now), context.scene)
         except _ERRORS as error:
             return refuse(self, error)
+        settings.preset = presets[self.key].title
         self.report({"INFO"}, presets[self.key].title)
         return {"FINISHED"}
 

@@ -32,6 +32,8 @@ def _changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None
     settings = item.ocean_tweak
     if settings.is_quiet or not settings.is_ocean:
         return
+    if settings.preset:
+        settings.preset = ""
     scenes = item.users_scene
     if scenes:
         show(item, context.scene if context.scene in scenes else scenes[0], dragged=True)
@@ -61,10 +63,34 @@ class OCEAN_PG_water(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Water, _changed)
 
 
+def _metres(layer: bpy.types.PropertyGroup) -> float:
+    """Metres in a Blender unit of the layer's scene."""
+    scenes = layer.id_data.users_scene
+    scene = bpy.context.scene if bpy.context.scene in scenes or not scenes else scenes[0]
+    return float(metres_per_unit(scene))
+
+
+def _fetch_in_km(layer: bpy.types.PropertyGroup) -> float:
+    return layer.fetch * _metres(layer) / 1000.0
+
+
+def _set_fetch_in_km(layer: bpy.types.PropertyGroup, value: float) -> None:
+    layer.fetch = value * 1000.0 / _metres(layer)
+
+
 class OCEAN_PG_layer(bpy.types.PropertyGroup):
     """One wave system."""
 
-    __annotations__ = parameter_properties.annotations(WaveLayer, _changed)
+    __annotations__ = {
+        **parameter_properties.annotations(WaveLayer, _changed),
+        # Blender has no property that is always shown in kilometres; this is the fetch itself
+        "fetch_km": FloatProperty(
+            name="Fetch", min=0.001, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
+            get=_fetch_in_km, set=_set_fetch_in_km, options=set(),
+            description="Distance of open water over which the wind has blown, in kilometres. "
+            "Longer fetch: higher and longer waves, until the sea is fully developed",
+        ),
+    }  # fmt: skip
 
 
 class OCEAN_PG_foam(bpy.types.PropertyGroup):
@@ -127,6 +153,17 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             name="Cache", default=DEFAULT_CACHE, subtype="DIR_PATH",
             options={"PATH_SUPPORTS_BLEND_RELATIVE"}, **_OVERRIDE,
             description="Folder of baked frames; each bake gets one of its own in it. // is beside the file",
+        ),
+        "preset": StringProperty(**_HIDDEN),
+        "active_layer": IntProperty(name="Active Layer", options={"HIDDEN"}, **_OVERRIDE),
+        "use_loop": BoolProperty(
+            name="Loop", **_SHOWN,
+            description="Let the sea repeat itself exactly after a number of frames. Changes the speed of "
+            "the waves a little, the more the shorter the loop",
+        ),
+        "loop_frames": IntProperty(
+            name="Loop Frames", default=240, min=1, soft_min=24, max=1_000_000, **_SHOWN,
+            description="Frames after which the sea repeats itself",
         ),
         "bake_done": IntProperty(**_HIDDEN),
         "bake_total": IntProperty(**_HIDDEN),
@@ -199,6 +236,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["layers"] = [parameter_properties.read(layer, WaveLayer, metres) for layer in self.layers]
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
+        data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
 
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
@@ -218,6 +256,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
+            self.use_loop = parameters.loop_duration is not None
+            if parameters.loop_duration is not None:
+                self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
             _set_count(self.layers, len(data["layers"]))
             for layer, values in zip(self.layers, data["layers"], strict=True):
                 parameter_properties.write(layer, WaveLayer, values, metres)

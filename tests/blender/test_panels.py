@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What stands in the sidebar, read from a layout that records it."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import bpy
@@ -18,7 +19,23 @@ class Layout:
 
     row = column = box = split = part
 
-    def label(self, text, icon="NONE"):
+    def label(self, text, **_named):
+        self.drawn.append(text)
+
+    def template_list(self, name, _id, owner, items, _active_owner, active, **_named):
+        assert hasattr(bpy.types, name)
+        assert {items, active} <= set(owner.bl_rna.properties.keys())
+        self.drawn.append(name)
+
+    def template_icon(self, icon_value, **_named):
+        assert icon_value
+
+    def menu(self, name, **_named):
+        assert hasattr(bpy.types, name)
+        self.drawn.append(name)
+
+    def progress(self, factor, text, **_named):
+        assert 0.0 <= factor <= 1.0
         self.drawn.append(text)
 
     def prop(self, owner, name, **_named):
@@ -38,12 +55,15 @@ def draw(extension, empty_scene):
     def draw_all(item):
         drawn = []
         context = SimpleNamespace(
-            active_object=item, scene=empty_scene, region=SimpleNamespace(width=300),
+            active_object=item, scene=empty_scene, window_manager=None, region=SimpleNamespace(width=300),
             preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
         )  # fmt: skip
-        for panel in extension("ui.panels").CLASSES:
+        panels = [cls for cls in extension("ui.panels").CLASSES if issubclass(cls, bpy.types.Panel)]
+        for panel in panels:
             if panel.poll(context):
-                panel.draw(SimpleNamespace(layout=Layout(drawn)), context)
+                shown = SimpleNamespace(layout=Layout(drawn))
+                getattr(panel, "draw_header", lambda *_: None)(shown, context)
+                panel.draw(shown, context)
         return drawn
 
     return draw_all
@@ -55,16 +75,62 @@ def item(ocean_object, make_parameters, empty_scene):
 
 
 def test_without_an_ocean_there_is_a_way_to_one(draw):
-    assert draw(None) == ["No ocean is active", "mesh.ocean_tweak_add"]
+    assert draw(None) == ["No ocean is active", "mesh.ocean_tweak_add", "ocean.add_scene"]
+
+
+def test_blenders_own_ocean_can_be_converted(draw, empty_scene):
+    item = bpy.data.objects.new("Old", bpy.data.meshes.new("Old"))
+    item.modifiers.new("Ocean", "OCEAN")
+    assert "ocean.convert" in draw(item)
+
+
+def test_every_parameter_can_be_reached(draw, item, core):
+    """What an expert may want to set stands somewhere, whatever the layer's models are."""
+    drawn = set()
+    layer = item.ocean_tweak.layers[0]
+    models = (("WIND", "TMA", "COSINE_2S"), ("SEA_STATE", "GENERALIZED_AB", "FLAT"))
+    for definition, spectrum, spreading in models:
+        layer.definition, layer.spectrum, layer.spreading = definition, spectrum, spreading
+        layer.spreading_mix = 0.3
+        drawn.update(draw(item))
+    fields = [core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing]
+    names = {field.name for kind in fields for field in dataclasses.fields(kind)}
+    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration"}
+    assert names - elsewhere - drawn == set()
+
+
+def test_the_beaufort_number_is_that_of_the_wind(draw, item):
+    item.ocean_tweak.layers[0].wind_speed = 15.0
+    assert "7, Near gale" in draw(item)
+
+
+def test_a_bake_under_way_shows_how_far_it_is(draw, item, extension):
+    process = extension("scene.bake_process")
+    bake = SimpleNamespace(done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)
+    process._running[item.session_uid] = bake
+    try:
+        drawn = draw(item)
+    finally:
+        del process._running[item.session_uid]
+    assert "3 / 12, 1:02" in drawn
+    assert "ocean.stop_bake" in drawn
+    assert "ocean.bake" not in drawn
 
 
 def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     drawn = draw(item)
-    for name in ("wind_speed", "wind_direction", "fetch", "swell", "choppiness", "depth", "seed",
-                 "domain_size", "viewport_resolution", "source", "method", "use_foam", "coverage",
-                 "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y"):  # fmt: skip
-        assert drawn.count(name) == 1
-    assert drawn.count("resolution") == 2  # of the sea and of its foam
+    once = {
+        "fetch_km", "choppiness", "domain_size", "viewport_resolution", "source", "method", "use_foam",
+        "coverage", "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y",
+        "dispersion", "gravity", "trough_damping", "orbits", "start_frame", "use_loop", "loop_frames",
+        "ocean_time", "spectrum", "peak_enhancement", "depth_factor", "definition", "gain", "spreading",
+        "shortest_wavelength", "OCEAN_UL_layers", "cache_folder", "ocean.bake", "ocean.match_sea_state",
+        "OCEAN_MT_presets",
+    }  # fmt: skip
+    assert {name for name in once if drawn.count(name) != 1} == set()
+    # in the first panel and in the active layer's, the water's or the foam's own
+    twice = {"wind_speed", "wind_direction", "swell", "depth", "seed", "resolution"}
+    assert {name for name in twice if drawn.count(name) != 2} == set()
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn
     assert f"{statistics.seed.significant_wave_height:.2f} m" in drawn

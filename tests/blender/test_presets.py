@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets in Blender: taken, kept, renamed, deleted, imported, exported; neither executed nor half applied."""
+"""Presets in Blender: taken, kept, renamed, deleted, imported and exported; a bad file changes nothing."""
 
 import json
 import random

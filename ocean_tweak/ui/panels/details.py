@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an expert sets besides: water, shape, time, foam, and the mesh that carries it all."""
+
+import bpy
+
+from .. import operators, scene_operators
+from .drawing import SubPanel, active_settings, split
+
+
+class OCEAN_PT_water(SubPanel, bpy.types.Panel):
+    """The liquid, and how fast waves run on it."""
+
+    bl_idname = "OCEAN_PT_water"
+    bl_label = "Water"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the dispersion and the liquid's numbers."""
+        layout, settings = split(self.layout), active_settings(context)
+        layout.prop(settings, "dispersion")
+        column = layout.column(align=True)
+        for name in ("depth", "gravity", "density", "surface_tension"):
+            column.prop(settings.water, name)
+        layout.operator(scene_operators.OCEAN_OT_use_water_material.bl_idname, icon="MATERIAL")
+
+
+class OCEAN_PT_shape(SubPanel, bpy.types.Panel):
+    """What is done with the waves."""
+
+    bl_idname = "OCEAN_PT_shape"
+    bl_label = "Shape"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw orbits, damping and amplitudes."""
+        layout, settings = split(self.layout), active_settings(context)
+        for name in ("trough_damping", "orbits", "amplitudes", "match_height"):
+            layout.prop(settings, name)
+
+
+class OCEAN_PT_time(SubPanel, bpy.types.Panel):
+    """How frames become seconds."""
+
+    bl_idname = "OCEAN_PT_time"
+    bl_label = "Time"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw where time begins, whether it repeats, and a clock of its own."""
+        layout, settings = split(self.layout, animated=True), active_settings(context)
+        layout.prop(settings.timing, "start_frame")
+        loop = layout.row(heading="Loop")
+        loop.prop(settings, "use_loop", text="")
+        part = loop.row()
+        part.active = settings.use_loop
+        part.prop(settings, "loop_frames", text="Frames")
+        own = layout.row(heading="Own Time")
+        own.prop(settings, "use_ocean_time", text="")
+        part = own.row()
+        part.active = settings.use_ocean_time
+        part.prop(settings, "ocean_time", text="")
+
+
+class OCEAN_PT_foam(SubPanel, bpy.types.Panel):
+    """How much foam there is and how it lives."""
+
+    bl_idname = "OCEAN_PT_foam"
+    bl_label = "Foam"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw its switch."""
+        self.layout.prop(active_settings(context), "use_foam", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the settings of live foam; baked foam has its own already."""
+        layout, settings = split(self.layout), active_settings(context)
+        column = layout.column()
+        column.active = settings.use_foam and settings.source == "LIVE"
+        for name in ("coverage", "half_life", "drift"):
+            column.prop(settings.foam, name)
+        column.prop(settings.foam, "resolution", text="Foam Res.")
+
+
+class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
+    """The mesh that is moved, and what it carries besides."""
+
+    bl_idname = "OCEAN_PT_mesh"
+    bl_label = "Mesh"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw its size and its attributes."""
+        layout, settings = split(self.layout), active_settings(context)
+        layout.prop(settings, "method")
+        repeats = layout.column(align=True)
+        repeats.prop(settings, "repeats_x")
+        repeats.prop(settings, "repeats_y", text="Y")
+        layout.prop(settings, "mesh_resolution", text="Mesh Quads")
+        attributes = layout.column(heading="Attributes")
+        attributes.prop(settings, "use_normals")
+        attributes.prop(settings, "use_velocity")
+
+
+class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
+    """Parameters as files."""
+
+    bl_idname = "OCEAN_PT_parameters"
+    bl_label = "Parameters"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the two buttons."""
+        buttons = self.layout.row(align=True)
+        buttons.operator(operators.OCEAN_OT_import_parameters.bl_idname, text="Import", icon="IMPORT")
+        buttons.operator(operators.OCEAN_OT_export_parameters.bl_idname, text="Export", icon="EXPORT")
+
+
+CLASSES = (OCEAN_PT_water, OCEAN_PT_shape, OCEAN_PT_time, OCEAN_PT_foam, OCEAN_PT_mesh, OCEAN_PT_parameters)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What panels share: where they stand, rows of label and text, and texts that wrap."""
+
+import textwrap
+
+import bpy
+from bpy.app.translations import pgettext_iface as translated
+
+from ...scene.settings import OceanSettings, is_ocean, settings_of
+
+CATEGORY = "Ocean Tweak"
+_LABEL_SHARE = 0.4  # of the width, as Blender's own split layouts
+_LETTER = 7.0  # pixels, at a scale of 1
+
+
+class SidebarPanel:
+    """Stands in the tab of this extension."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = CATEGORY
+
+
+class OceanPanel(SidebarPanel):
+    """Shown for an active ocean."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An ocean is active."""
+        return is_ocean(context.active_object)
+
+
+class SubPanel(OceanPanel):
+    """Inside the sea's panel, closed at first."""
+
+    bl_parent_id = "OCEAN_PT_sea"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+def split(layout: bpy.types.UILayout, animated: bool = False) -> bpy.types.UILayout:
+    """The layout with labels on the left, as Blender's own panels.
+
+    animated : with room for the dots that set keys
+    """
+    layout.use_property_split = True
+    layout.use_property_decorate = animated
+    return layout
+
+
+def active_settings(context: bpy.types.Context) -> OceanSettings:
+    """Settings of the active ocean."""
+    return settings_of(context.active_object)
+
+
+def row(layout: bpy.types.UILayout, label: str, text: str) -> None:
+    """Draw a label and its text in line with Blender's split properties."""
+    parts = layout.split(factor=_LABEL_SHARE)
+    left = parts.row()
+    left.alignment = "RIGHT"
+    left.label(text=label)
+    parts.label(text=text, translate=False)
+
+
+def message(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, alert: bool = False) -> None:
+    """Draw a text in a box, wrapped to the region: Blender's labels do not wrap."""
+    width = context.region.width / context.preferences.system.ui_scale
+    box = layout.box().column(align=True)
+    box.alert = alert
+    box.scale_y = 0.8
+    for index, line in enumerate(textwrap.wrap(translated(text), max(int(width / _LETTER) - 9, 16))):
+        icon = ("ERROR" if alert else "INFO") if index == 0 else "BLANK1"
+        box.label(text=line, icon=icon, translate=False)
+
+
+def length_text(scene: bpy.types.Scene, metres: float) -> str:
+    """A length in the scene's system of units."""
+    system = "IMPERIAL" if scene.unit_settings.system == "IMPERIAL" else "METRIC"
+    return bpy.utils.units.to_string(system, "LENGTH", metres, precision=3)

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The first panel: the few numbers that make a sea, and what they mean right now."""
+
+import json
+from typing import Any
+
+import bpy
+from bpy.app.translations import pgettext_iface as translated
+
+from ...core import sea_scales
+from ...core.wind_profile import wind_at_10_m
+from ...scene import cache_place, refinement
+from ...scene.conversion import ocean_modifier
+from ...scene.settings import is_ocean
+from ...scene.units import metres_per_unit
+from .. import operators, preset_operators, scene_operators, sea_operators
+from .drawing import OceanPanel, SidebarPanel, active_settings, length_text, message, row, split
+
+
+class OCEAN_PT_start(SidebarPanel, bpy.types.Panel):
+    """Where to begin when no ocean is active."""
+
+    bl_idname = "OCEAN_PT_start"
+    bl_label = "Ocean Tweak"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Shown when the active object is not an ocean."""
+        return not is_ocean(context.active_object)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Offer to add one."""
+        layout = self.layout
+        layout.label(text="No ocean is active")
+        column = layout.column(align=True)
+        column.scale_y = 1.2
+        column.operator(operators.MESH_OT_ocean_tweak_add.bl_idname, text="Add Ocean", icon="MOD_OCEAN")
+        column.operator(
+            scene_operators.OCEAN_OT_add_scene.bl_idname, text="Add Ocean Scene", icon="SCENE_DATA"
+        )
+        if ocean_modifier(context.active_object) is not None:
+            layout.operator(sea_operators.OCEAN_OT_convert.bl_idname, icon="MODIFIER")
+
+
+class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
+    """The few numbers that make a sea, and what they mean."""
+
+    bl_idname = "OCEAN_PT_sea"
+    bl_label = "Sea"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the preset, the settings, what is wrong with them, and the waves that they make."""
+        layout = split(self.layout, animated=True)
+        settings = active_settings(context)
+        if settings.error:
+            message(layout, context, settings.error, alert=True)
+        _presets(layout, context)
+        for layer in settings.layers[:1]:
+            _wind(layout, layer)
+        if len(settings.layers) > 1:
+            more = len(settings.layers) - 1
+            text = "And one more layer" if more == 1 else translated("And {} more layers").format(more)
+            layout.label(text=text, icon="RENDERLAYERS")
+        layout.prop(settings, "choppiness", slider=True)
+        layout.prop(settings.water, "depth", text="Depth")
+        layout.prop(settings, "seed")
+        patch = layout.column(align=True)
+        patch.prop(settings, "domain_size", text="Domain")
+        patch.prop(settings, "viewport_resolution", text="Viewport")
+        patch.prop(settings, "resolution", text="Render")
+        layout.row().prop(settings, "source", expand=True)
+        _waves(layout, context)
+
+
+def _presets(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    buttons = layout.row(align=True)
+    if context.window_manager is not None and hasattr(context.window_manager, "ocean_tweak_preset"):
+        buttons.template_icon_view(context.window_manager, "ocean_tweak_preset", show_labels=True, scale=4.0)
+        buttons = buttons.column(align=True)
+    buttons.menu(preset_operators.OCEAN_MT_presets.bl_idname, text="Presets", icon="PRESET")
+    buttons.operator(sea_operators.OCEAN_OT_match_sea_state.bl_idname, text="Match", icon="VIEWZOOM")
+
+
+def _wind(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
+    column = layout.column(align=True)
+    if layer.definition == "WIND":
+        column.prop(layer, "wind_speed", text="Wind")
+        column.prop(layer, "wind_direction", text="Direction")
+        column.prop(layer, "fetch_km", text="Fetch (km)")
+    else:
+        column.prop(layer, "significant_wave_height", text="Height")
+        column.prop(layer, "peak_period", text="Period")
+        column.prop(layer, "wind_direction", text="Direction")
+    layout.prop(layer, "swell", slider=True)
+
+
+def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what the settings mean: the statistics that the last change left, and warnings."""
+    settings, item = active_settings(context), context.active_object
+    column = layout.box().column(align=True)
+    if refinement.is_outstanding(item):
+        column.label(text="Refining…", icon="SORTTIME")
+    elif not settings.statistics:
+        column.label(text="Not known with these settings", icon="QUESTION")
+    if not settings.statistics:
+        return
+    values: dict[str, Any] = json.loads(settings.statistics)
+    for label, text in [*_beaufort(settings, context.scene), *_rows(context.scene, values)]:
+        row(column, label, text)
+    for warning in [*values["warnings"], *_object_warnings(context)]:
+        message(layout, context, warning)
+
+
+def _beaufort(settings: Any, scene: bpy.types.Scene) -> list[tuple[str, str]]:
+    winds = [layer for layer in settings.layers if layer.definition == "WIND" and not layer.muted]
+    if not winds:
+        return []
+    metres = float(metres_per_unit(scene))
+    speed = max(wind_at_10_m(layer.wind_speed * metres, layer.wind_height) for layer in winds)
+    number = sea_scales.beaufort_number(speed)
+    return [("Beaufort", f"{number}, {translated(sea_scales.BEAUFORT_NAMES[number])}")]
+
+
+def _rows(scene: bpy.types.Scene, values: dict[str, Any]) -> list[tuple[str, str]]:
+    """Label and text of each number, in the scene's system of units."""
+    expected, seed = values["spectrum"], values["seed"]
+    rows = [
+        ("Wave Height", length_text(scene, expected["significant_wave_height"])),
+        ("This Seed", length_text(scene, seed["significant_wave_height"])),
+    ]
+    if expected["peak_period"] is not None:  # a flat sea has none
+        rows += [
+            ("Period", f"{expected['peak_period']:.1f} s"),
+            ("Wavelength", length_text(scene, expected["peak_wavelength"])),
+            ("Domain", translated("{:.1f} wavelengths").format(values["wavelengths_per_domain"])),
+        ]
+    return [*rows, ("Sample", length_text(scene, values["sample_spacing"]))]
+
+
+def _object_warnings(context: bpy.types.Context) -> list[str]:
+    item, frame = context.active_object, context.scene.frame_current
+    settings = active_settings(context)
+    warnings = []
+    if any(abs(factor - 1.0) > 1e-5 for factor in item.matrix_world.to_scale()):
+        warnings.append(
+            "The object is scaled, so its waves are too. Set its scale to 1 and change the domain size"
+        )
+    first, last = settings.sequence_first, settings.sequence_last
+    is_outside = settings.source == "SEQUENCE" and not first <= frame <= last
+    if is_outside and settings.out_of_range == "WARN":
+        flat = frame < first == last and settings.method == "DISPLACE"
+        shown = "the sea is flat" if flat else "the nearest one is held"
+        warnings.append(f"Frame {frame} has no file: {shown}")
+    if settings.source == "SEQUENCE" and cache_place.is_left_behind(item):
+        warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
+    return warnings
+
+
+def draw_add_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Draw the entry in Add > Mesh."""
+    self.layout.operator(operators.MESH_OT_ocean_tweak_add.bl_idname, icon="MOD_OCEAN")
+
+
+CLASSES = (OCEAN_PT_start, OCEAN_PT_sea)

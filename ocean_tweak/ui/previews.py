@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures in panels: the spectrum of an ocean, and thumbnails of presets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy.utils.previews
+import numpy as np
+
+from ..core import OceanParameters
+from .spectrum_picture import SIZE, spectrum_picture
+
+_THUMBNAILS = Path(__file__).parent / "thumbnails"
+_SPECTRUM = "spectrum"
+
+
+class Previews:
+    """Blender's collection of pictures, made when the first one is asked for."""
+
+    def __init__(self) -> None:
+        self._collection: bpy.utils.previews.ImagePreviewCollection | None = None
+        self._drawn: OceanParameters | None = None
+
+    @property
+    def collection(self) -> bpy.utils.previews.ImagePreviewCollection:
+        """It is Blender's until `close` gives it back."""
+        if self._collection is None:
+            self._collection = bpy.utils.previews.new()
+        return self._collection
+
+    def spectrum(self, parameters: OceanParameters) -> int:
+        """Icon of a sea's spectrum; drawn anew where it shows another sea."""
+        shown = _spectral(parameters)
+        if _SPECTRUM not in self.collection:
+            self.collection.new(_SPECTRUM)
+        picture = self.collection[_SPECTRUM]
+        if self._drawn != shown:
+            picture.image_size = (SIZE, SIZE)
+            picture.image_pixels_float.foreach_set(np.ascontiguousarray(spectrum_picture(shown)).reshape(-1))
+            self._drawn = shown
+        return int(picture.icon_id)
+
+    def thumbnail(self, key: str) -> int:
+        """Icon of a preset; 0, which is none, where it has no picture."""
+        path = _THUMBNAILS / f"{key}.jpg"
+        if key not in self.collection:
+            if not path.is_file():
+                return 0
+            self.collection.load(key, str(path), "IMAGE")
+        return int(self.collection[key].icon_id)
+
+    def close(self) -> None:
+        """Give the pictures back to Blender."""
+        if self._collection is not None:
+            bpy.utils.previews.remove(self._collection)
+        self._collection, self._drawn = None, None
+
+
+def _spectral(parameters: OceanParameters) -> OceanParameters:
+    """What the picture depends on: a seed or a choppiness gives no other one."""
+    default = OceanParameters()
+    return parameters.replace(
+        seed=0, choppiness=1.0, trough_damping=0.0, orbits="DEEP", foam=default.foam, loop_duration=None,
+        amplitudes=default.amplitudes, match_height=False, timing=default.timing,
+    )  # fmt: skip
+
+
+#: what panels show; `close` it when the extension is disabled
+PREVIEWS = Previews()
