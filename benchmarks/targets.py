@@ -67,5 +67,9 @@ TARGETS = {
     "bake memory": Target("memory of that bake", 400.0, "MB a worker"),
     "growth": Target("time per sample, 4096² against 512²", 1.6, "×"),
     "memory": Target("memory of `surface()` beyond its outputs", 24.0, "bytes a sample"),
+    "usd time": Target(
+        "a sea as USD points or clips, one thread", 1.5, "× (compute + its arrays to a plain file)"
+    ),
+    "usd size": Target("bytes of those layers", 1.02, "× those of their arrays"),
     "precision": Target("rms relative error against float64 at t = 10⁴ s, every field", 5e-7, ""),
 }  # fmt: skip
