@@ -98,7 +98,8 @@ class Sea:
         """What there is of a time; the oldest ones go where there are enough."""
         if time not in self._surfaces:
             sizes = [sum(field.nbytes for field in kept.values()) for kept in self._surfaces.values()]
-            most = min(_MOST_SURFACE_BYTES // max(sizes, default=1), _MOST_SURFACES) if sizes else 1
+            # a surface that failed for want of memory has none
+            most = min(_MOST_SURFACE_BYTES // max(*sizes, 1, 1), _MOST_SURFACES)
             while len(self._surfaces) >= max(most, 1):
                 self._spare = self._surfaces.popitem(last=False)[1]
             self._surfaces[time] = {}

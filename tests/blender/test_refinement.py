@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 
-from .conftest import SAMPLES
+from .conftest import SAMPLES, evaluated_mesh
+from .surfaces import read
 from .test_panels import draw  # noqa: F401
 
 TOLERANCE = 1e-4  # m
@@ -157,3 +158,58 @@ def test_without_a_window_all_is_done_at_once(
     sea = make_parameters(seed=3)
     np.testing.assert_allclose(evaluated(item), expected(sea, 1), atol=TOLERANCE)
     assert item.ocean_tweak.statistics == json.dumps(core.Ocean(sea).statistics().to_dict())
+
+
+def foam_of(item):
+    """(N, N) foam of the mesh, the far edges left out."""
+    return read(evaluated_mesh(item), SAMPLES + 1, SAMPLES + 1)["foam"][:-1, :-1, 0]
+
+
+def finish(refinement, item):
+    run_until(refinement, lambda: not refinement.is_outstanding(item))
+
+
+@pytest.mark.parametrize("method", ["NODES", "DISPLACE"])
+def test_foam_after_a_jump_is_that_of_the_moment_then_all(item, refinement, core, make_parameters, method):
+    item.ocean_tweak.method = method
+    finish(refinement, item)
+    parameters = make_parameters()
+    whole = core.Ocean(parameters).frame(100, {"foam", "cusp"})
+    bpy.context.scene.frame_set(100)
+    assert refinement.is_outstanding(item)
+    instant = foam_of(item)
+    # as much of the sea as foam covers, where it is squeezed most
+    covered = round(core.foam_field.foam_outlook(parameters).coverage * SAMPLES**2)
+    assert covered > 3
+    assert np.count_nonzero(instant >= 0.5) == covered
+    assert whole.cusp[instant >= 0.5].min() > whole.cusp[instant < 0.5].max()
+    finish(refinement, item)
+    np.testing.assert_allclose(foam_of(item), whole.foam, atol=1e-6)
+    assert np.abs(instant - whole.foam).max() > 0.1
+
+
+def test_foam_is_complete_where_time_goes_on(item, refinement, core, make_parameters):
+    finish(refinement, item)
+    ocean = core.Ocean(make_parameters())
+    for frame in (2, 3, 5):
+        bpy.context.scene.frame_set(frame)
+        assert not refinement.is_outstanding(item)
+        np.testing.assert_allclose(foam_of(item), ocean.frame(frame, {"foam"}).foam, atol=1e-6)
+    bpy.context.scene.frame_set(4)  # a step back is a jump
+    assert refinement.is_outstanding(item)
+
+
+def test_a_render_has_foam_with_its_history(item, refinement, core, make_parameters, rendering):
+    finish(refinement, item)
+    bpy.context.scene.frame_set(100)
+    (found,) = rendering(lambda mesh: read(mesh, SAMPLES + 1, SAMPLES + 1)["foam"][:-1, :-1, 0]).values()
+    wanted = core.Ocean(make_parameters()).frame(100, {"foam"}).foam
+    np.testing.assert_allclose(found, wanted, atol=1e-6)
+
+
+def test_foam_that_cannot_be_made_is_told(item, refinement, core, monkeypatch):
+    finish(refinement, item)
+    monkeypatch.setattr(core.foam.FoamHistory, "foam", lambda *a: (_ for _ in ()).throw(MemoryError))
+    bpy.context.scene.frame_set(100)
+    finish(refinement, item)
+    assert "memory" in item.ocean_tweak.error

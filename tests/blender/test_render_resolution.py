@@ -277,3 +277,16 @@ def test_an_edited_mesh_moves_too(add, make_parameters, expected, evaluated, emp
         [tuple(vertex.co) for vertex in found.vertices],
         expected(parameters, 4)[:-1].reshape(-1, 3), atol=TOLERANCE,
     )  # fmt: skip
+
+
+def test_foam_of_the_viewport_is_coarser_only_where_renders_have_their_own(
+    ocean_object, make_parameters, empty_scene, extension, monkeypatch
+):
+    plan = extension("scene.plan")
+    monkeypatch.setattr(plan, "VIEWPORT_FOAM", VIEWPORT)
+    settings = ocean_object.add(empty_scene, make_parameters(), viewport_resolution=24).ocean_tweak
+    for viewport, wanted in ((24, VIEWPORT), (SAMPLES, 0)):
+        settings.viewport_resolution = viewport
+        found = plan.plan_of(settings, empty_scene)
+        assert found.viewport_sea().foam.resolution == wanted
+        assert found.parameters.foam.resolution == 0
