@@ -16,7 +16,15 @@ from dataclasses import dataclass
 from . import build, real_blender, venvs
 from .project import ROOT, TOOLS, ToolError
 
-SOURCE_SUITES = ("tests/core", "tests/export", "tests/cli", "tests/farm", "tests/tools", "tests/blender")
+SOURCE_SUITES = (
+    "tests/core",
+    "tests/export",
+    "tests/cli",
+    "tests/usd",
+    "tests/farm",
+    "tests/tools",
+    "tests/blender",
+)
 INSTALLED_SUITES = ("tests/blender", "tests/extension")
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 CLOSING_LINE = re.compile(
