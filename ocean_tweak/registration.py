@@ -8,11 +8,12 @@ import atexit
 import bpy
 
 from . import cli
-from .scene import handlers
+from .scene import asset_library, handlers
 from .scene.cache_place import cache_folder, own_uid
 from .scene.settings import all_oceans
 from .scene.shots import scene_frames, shot_of
 from .ui import (
+    asset_operators,
     bake_operators,
     float_operators,
     float_panel,
@@ -30,6 +31,7 @@ from .ui import (
 CLASSES = (
     *properties.CLASSES,
     *operators.CLASSES,
+    *asset_operators.CLASSES,
     *bake_operators.CLASSES,
     *layer_operators.CLASSES,
     *preset_operators.CLASSES,
@@ -93,6 +95,7 @@ def unregister() -> None:
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
     handlers.unregister()
+    asset_library.remove()
     bpy.types.VIEW3D_MT_mesh_add.remove(scene_operators.draw_add_menu)
     bpy.types.NODE_MT_add.remove(node_operators.draw_add_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)

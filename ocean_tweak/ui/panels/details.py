@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import operators, scene_operators
+from .. import asset_operators, operators, scene_operators
 from .drawing import SubPanel, active_settings, split
 
 
@@ -98,16 +98,17 @@ class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
 
 
 class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
-    """Parameters as files."""
+    """Parameters as files, node groups as assets."""
 
     bl_idname = "OCEAN_PT_parameters"
-    bl_label = "Parameters"
+    bl_label = "Files and Assets"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the two buttons."""
+        """Draw the buttons."""
         buttons = self.layout.row(align=True)
         buttons.operator(operators.OCEAN_OT_import_parameters.bl_idname, text="Import", icon="IMPORT")
         buttons.operator(operators.OCEAN_OT_export_parameters.bl_idname, text="Export", icon="EXPORT")
+        self.layout.operator(asset_operators.OCEAN_OT_install_assets.bl_idname, icon="ASSET_MANAGER")
 
 
 CLASSES = (OCEAN_PT_water, OCEAN_PT_shape, OCEAN_PT_time, OCEAN_PT_foam, OCEAN_PT_mesh, OCEAN_PT_parameters)
