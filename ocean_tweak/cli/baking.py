@@ -9,6 +9,7 @@ import shlex
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from ..core.bake import BakedFrame
@@ -21,7 +22,7 @@ from ..export.cache.locks import Held, claimed
 from ..export.cache.records import CacheSink, Finding, remove_leftovers, unfinished
 from ..export.exr import ExrError
 from ..export.files import writable_folder
-from .checking import wanted_frames
+from .checking import known_frames, wanted_frames
 from .outcome import DONE, FAILED, UsageError, complain, message_of, remedy_of
 from .progress import Progress, duration
 from .seas import Sea
@@ -58,9 +59,11 @@ def resume(arguments: argparse.Namespace) -> int:
         job = read_job(folder)
     except CacheError as error:
         job = recovered_job(folder)
+        job = replace(job, frames=known_frames(folder, job))
         write_job(folder, job)
         complain(f"{error.args[0].partition(': run')[0]}; the job is written again from what the images tell")
     frames = wanted_frames(folder, job, arguments.frames)
+    job = replace(job, frames=known_frames(folder, job) or frames)
     job.shot.check(frames)
     return _make(arguments, folder, job, frames)
 

@@ -31,10 +31,15 @@ def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> t
     """The frames that a command is about: those given, else all that were asked for or made."""
     if frames is not None:
         return frames
-    known = tuple(sorted({*job.frames, *recorded_frames(folder), *asked_frames(folder)}))
+    known = known_frames(folder, job)
     if not known:
         raise UsageError(f"{folder}: holds no frames; say with --frames which ones are meant")
     return known
+
+
+def known_frames(folder: Path, job: Job) -> tuple[Frame, ...]:
+    """All frames that were asked for or made."""
+    return tuple(sorted({*job.frames, *recorded_frames(folder), *asked_frames(folder)}))
 
 
 def verify(arguments: argparse.Namespace, scene_oceans: SceneOceans | None = None) -> int:
@@ -55,16 +60,23 @@ def _verify_folder(arguments: argparse.Namespace, folder: Path) -> int:
     progress = Progress(job.name, arguments.json, arguments.openjd)
     progress.begin(len(frames))
     states: Counter[State] = Counter()
+    missing: list[Frame] = []
     with stop_requested() as stop:
         for frame, state, reason in verify_frames(folder, job, frames):
             states[state] += 1
-            if state is not State.WHOLE or arguments.json:
+            if state is State.MISSING and not arguments.json:
+                missing.append(frame)  # told together: often they are many
+            elif state is not State.WHOLE or arguments.json:
                 label = format_frames((frame,))
                 text = f"frame {label} is {state.value}: {reason}"
                 progress.say(text, frame=to_plain(frame), state=state.value, reason=reason)
             progress.count("verified")
             if stop.is_set() and not progress.is_complete:
                 break
+    if missing:
+        label = format_frames(missing)
+        one = len(missing) == 1
+        progress.say(f"frame {label} is missing" if one else f"frames {label} are missing")
     foreign = foreign_images(folder)
     if foreign:
         progress.remark(f"no record lists {_first(foreign)}")

@@ -51,11 +51,11 @@ def make_in_processes(
     problem: CacheError | OSError | None = None
     try:
         while running:
+            if stopped():
+                _end(running)
             try:
                 process, line = events.get(timeout=_LOOK)
             except queue.Empty:
-                if stopped():
-                    _end(running)
                 continue
             if line is not None:
                 baked = process.made(line)

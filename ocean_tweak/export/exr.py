@@ -6,14 +6,14 @@ Row 0 of an EXR image is its top row, so arrays [y, x] are written with their ro
 
 from __future__ import annotations
 
-import errno
+import contextlib
+import io
 import json
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,6 @@ from ..core.fields import SurfaceFields
 from ..core.frames import Frame, frame_label
 from ..core.parameters import OceanParameters
 from ..core.plain_data import to_plain
-from .exr_layout import is_complete
 from .files import whole_file
 
 FORMAT_VERSION = 1
@@ -30,9 +29,6 @@ METADATA_ATTRIBUTE = "oceanTweak"
 
 #: largest relative error of a stored value, by compression
 COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0, "HTJ2K": 0.0}
-
-#: what a system answers that cannot take a file
-_REFUSALS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EACCES, errno.EROFS, errno.ENOENT, errno.EIO)
 
 #: what damaged images give: wrong bytes, text that is no text, JSON that is none or too deep
 _UNREADABLE = (RuntimeError, KeyError, ValueError, TypeError, OSError, RecursionError)
@@ -150,21 +146,14 @@ def write_image(
     # OpenEXR writes arrays that are not contiguous wrongly, without a word
     rows = np.asarray(image, np.float32)[::-1]
     channels = {name: np.ascontiguousarray(rows[..., index]) for index, name in enumerate("RGB")}
+    encoded = io.BytesIO()
+    try:
+        openexr.File(header, channels).write(encoded)
+    except RuntimeError as error:
+        raise ExrError(f"{path}: {error}") from error
+    # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
     with whole_file(path) as beside:
-        try:
-            openexr.File(header, channels).write(str(beside))
-        except RuntimeError as error:
-            _raise_as_system_error(path, error)
-        if not is_complete(beside):
-            raise ExrError(f"{path}: the disk did not take all of it; perhaps it is full")
-
-
-def _raise_as_system_error(path: Path, error: RuntimeError) -> NoReturn:
-    """OpenEXR tells what the system refused as text; as an OSError its remedy can be named."""
-    for code in _REFUSALS:
-        if os.strerror(code) in str(error):
-            raise OSError(code, os.strerror(code), str(path)) from error
-    raise ExrError(f"{path}: {error}") from error
+        beside.write_bytes(encoded.getbuffer())
 
 
 def read_image(
@@ -180,12 +169,12 @@ def read_image(
     metadata, found = _header(path)
     if shape is not None and found != shape:
         raise ExrError(f"{path}: has {found[1]} x {found[0]} texels, not {shape[1]} x {shape[0]}")
-    if not is_complete(path):
-        raise ExrError(f"{path}: not a readable image of Ocean Tweak (a part of it is missing)")
     try:
-        with openexr.File(str(path), separate_channels=True) as file:
-            channels = file.channels()
-            rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
+        # OpenEXR prints its warnings, and what is printed may be read by machines
+        with path.open("rb") as stream, contextlib.redirect_stdout(io.StringIO()):
+            with openexr.File(stream, separate_channels=True) as file:
+                channels = file.channels()
+                rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
     except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
     return np.ascontiguousarray(rows[::-1], np.float32), metadata
@@ -200,7 +189,7 @@ def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
     """The metadata, and rows and columns."""
     openexr = _openexr()
     try:
-        with openexr.File(str(path), header_only=True) as file:
+        with path.open("rb") as stream, openexr.File(stream, header_only=True) as file:
             header = file.header()
             kind, (low, high) = header["type"], header["dataWindow"]
             columns, rows = (int(end) - int(start) + 1 for start, end in zip(low, high, strict=True))

@@ -38,7 +38,7 @@ def begun_file(part: Path) -> str:
 def whole_file(path: Path) -> Iterator[Path]:
     """A path beside `path` to write to; on success it is synced and takes the place of `path`.
 
-    On any error the old file stays as it was and what was written is removed.
+    On any error the old file stays as it was and what was written is removed; an OSError names `path`.
     """
     beside = _beside(path)
     try:
@@ -46,9 +46,11 @@ def whole_file(path: Path) -> Iterator[Path]:
         with beside.open("rb+") as file:
             os.fsync(file.fileno())
         _replace(beside, path)
-    except BaseException:
+    except BaseException as error:
         with contextlib.suppress(OSError):
             beside.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            error.filename = str(path)
         raise
 
 
@@ -77,6 +79,9 @@ def new_file(path: Path, text: str) -> bool:
             file.flush()
             os.fsync(file.fileno())
         return _claim(beside, path)
+    except OSError as error:
+        error.filename = str(path)
+        raise
     finally:
         with contextlib.suppress(OSError):
             beside.unlink(missing_ok=True)

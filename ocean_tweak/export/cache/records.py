@@ -208,6 +208,18 @@ def _problem(path: Path, entry: FileEntry) -> str:
     return ""
 
 
+def inspect_all(
+    folder: Path, job: Job, frames: Iterable[Frame], stopped: Callable[[], bool] = lambda: False
+) -> Iterator[Finding]:
+    """What each frame is; where most have no record, much quicker than one by one."""
+    recorded = set(recorded_frames(folder))
+    for frame in frames:
+        if frame not in recorded or stopped():
+            yield Finding(frame, State.MISSING, "it has no record")
+        else:
+            yield inspect(folder, job, frame)
+
+
 def unfinished(
     folder: Path, job: Job, frames: Iterable[Frame], stopped: Callable[[], bool] = lambda: False
 ) -> Iterator[Finding]:
@@ -215,8 +227,7 @@ def unfinished(
 
     stopped : asked before each frame; the rest then counts as missing
     """
-    for frame in frames:
-        finding = Finding(frame, State.MISSING) if stopped() else inspect(folder, job, frame)
+    for finding in inspect_all(folder, job, frames, stopped):
         if finding.state is not State.WHOLE:
             yield finding
 

@@ -17,7 +17,7 @@ from ...core.propagation import propagate
 from ...core.shot import Moment
 from ..exr import MAPS, ExrError, ExrSequence, read_image
 from .job import Job
-from .records import Finding, State, inspect
+from .records import Finding, State, inspect_all
 
 #: wave heights that are believed, as shares of that of the waves of this moment: compression and another
 #: NumPy change it by far less than a thousandth
@@ -31,8 +31,8 @@ _FLAT = 1e-6
 def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]:
     """Read each frame back: record, hashes, header, finite pixels, wave height."""
     seas = ShotSurfaces(job.shot)
-    for frame in frames:
-        finding = inspect(folder, job, frame)
+    for finding in inspect_all(folder, job, frames):
+        frame = finding.frame
         if finding.state is State.WHOLE:
             problem = _problem(job, job.sequence(folder, frame), frame, seas)
             if problem:

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever ends a bake: what is there is whole, and gone on with it becomes the same bytes."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.export.cache import records as cache_records
+from tests.batch.bakery import (
+    Watch,
+    baking,
+    children,
+    contents,
+    end,
+    leftovers,
+    only_folder,
+    records,
+    run,
+    start,
+    times,
+    times_of_change,
+    write_sea,
+)
+
+KILLS = times(10)
+FRAMES = 12 * KILLS
+
+
+@pytest.fixture(scope="module")
+def sea(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_sea(tmp_path_factory.mktemp("sea") / "sea.json")
+
+
+@pytest.fixture(scope="module")
+def undisturbed(sea: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    cache = tmp_path_factory.mktemp("undisturbed")
+    assert run(*bake(sea, cache)).returncode == 0
+    return contents(only_folder(cache))
+
+
+def bake(sea: Path, cache: Path, frames: int = FRAMES, workers: int = 1) -> list[object]:
+    return [
+        "bake", "--params", sea, "--frames", f"1-{frames}", "--maps", "disp,vel", "--out", cache,
+        "--workers", workers,
+    ]  # fmt: skip
+
+
+def all_processes(process) -> list[int]:
+    return [process.pid, *children(process)]
+
+
+def test_killed_at_any_moment(sea: Path, undisturbed: dict[str, str], tmp_path: Path) -> None:
+    chance = random.Random(5)
+    with Watch(tmp_path):
+        for kill in range(KILLS):
+            process = start(*bake(sea, tmp_path, workers=1 + 2 * (kill % 2)), "--take-over")
+            before = len(list(tmp_path.glob("*/v*/records/*.json")))
+            if chance.random() < 0.8:
+                baking(process, tmp_path, min(before + 1, FRAMES - 1))
+                time.sleep(chance.uniform(0.0, 0.15))
+            else:  # while it starts
+                time.sleep(chance.uniform(0.0, 1.0))
+            processes = all_processes(process)
+            process.kill()
+            for number in processes[1:]:  # they would end by themselves after a frame
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(number, signal.SIGKILL)
+            end(process)
+        folder = only_folder(tmp_path)
+        assert 0 < len(records(folder)) < FRAMES
+        answer = run("resume", folder, "--take-over", "--workers", 2)
+    assert answer.returncode == 0, answer.stderr
+    assert contents(folder) == undisturbed
+    assert leftovers(folder) == []
+
+
+def test_killed_workers_are_started_again(sea: Path, undisturbed: dict[str, str], tmp_path: Path) -> None:
+    chance = random.Random(7)
+    with Watch(tmp_path):
+        process = start(*bake(sea, tmp_path, workers=3))
+        for kill in range(KILLS // 2):
+            baking(process, tmp_path, 1 + kill * FRAMES // KILLS)
+            time.sleep(chance.uniform(0.0, 0.05))
+            workers = children(process)
+            if workers:  # the oldest: one that dies again and again before it makes a frame is given up
+                os.kill(min(workers), signal.SIGKILL)
+        code, _, err = end(process)
+    assert (code, err) == (0, "")
+    folder = only_folder(tmp_path)
+    assert contents(folder) == undisturbed
+    # what a killed worker had begun is removed by the next bake of its frames
+    assert run("resume", folder).returncode == 0
+    assert contents(folder) == undisturbed
+
+
+def test_the_workers_of_a_killed_process_end(sea: Path, tmp_path: Path) -> None:
+    process = start(*bake(sea, tmp_path, frames=2000, workers=2))
+    baking(process, tmp_path, 4)
+    workers = children(process)
+    assert len(workers) == 2
+    process.kill()
+    end(process)
+    until = time.monotonic() + 20.0
+    while any(Path(f"/proc/{worker}").exists() and not is_zombie(worker) for worker in workers):
+        assert time.monotonic() < until, "workers go on without anybody to tell"
+        time.sleep(0.05)
+
+
+def is_zombie(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_asked_to_stop(
+    sea: Path, undisturbed: dict[str, str], tmp_path: Path, workers: int, number: signal.Signals
+) -> None:
+    with Watch(tmp_path):
+        process = start(*bake(sea, tmp_path, workers=workers))
+        baking(process, tmp_path, 3)
+        if number is signal.SIGINT:
+            os.killpg(process.pid, number)  # as a terminal does: the workers get it too
+        else:
+            process.send_signal(number)
+        code, _, err = end(process)
+    folder = only_folder(tmp_path)
+    assert code == 1
+    assert (
+        err == f"ocean_tweak: stopped after a whole frame; whole frames stay; go on with: resume {folder}\n"
+    )
+    assert 3 <= len(records(folder)) < FRAMES
+    assert leftovers(folder) == []  # nor a lock
+    assert contents(folder).items() <= undisturbed.items()
+    assert run("resume", folder, "--workers", workers).returncode == 0
+    assert contents(folder) == undisturbed
+
+
+def test_stopped_while_it_looks_at_what_is_there(
+    copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A signal before the first frame is not lost, and costs nothing of what is there."""
+    before = times_of_change(copy)
+    look = cache_records.file_hash
+
+    def interrupted(path: Path) -> str:
+        if path.name == "sea_disp.0003.exr":
+            os.kill(os.getpid(), signal.SIGTERM)
+        return look(path)
+
+    monkeypatch.setattr(cache_records, "file_hash", interrupted)
+    assert main(["resume", str(copy), "--workers", "1"]) == 1
+    assert "stopped after a whole frame" in capsys.readouterr().err
+    assert times_of_change(copy) == before

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a bake says: a bar on a terminal, JSON for machines, a farm's lines, in any alphabet."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import subprocess
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.cli.progress import Progress
+from ocean_tweak.core.bake import BakedFrame
+from tests.batch.bakery import ROOT, SOON, command, each_json_line, images, only_folder, run, write_sea
+
+
+@pytest.fixture
+def sea(tmp_path: Path) -> Path:
+    return write_sea(tmp_path / "sea.json", resolution=16)
+
+
+def bake(sea: Path, cache: Path, *more: object) -> list[str]:
+    return [str(a) for a in ("bake", "--params", sea, "--frames", "1-5", "--out", cache, *more)]
+
+
+def on_a_terminal(arguments: list[str], columns: int) -> str:
+    """What a command writes to a terminal of its own."""
+    pty = pytest.importorskip("pty")
+    ours, its = pty.openpty()
+    with subprocess.Popen(
+        command(*arguments), cwd=ROOT, stdin=its, stdout=its, stderr=its,
+        env={**os.environ, "COLUMNS": str(columns)},
+    ) as process:  # fmt: skip
+        os.close(its)
+        said = b""
+        while True:
+            try:
+                block = os.read(ours, 4096)
+            except OSError as error:  # so Linux says that the other end is closed
+                if error.errno != errno.EIO:
+                    raise
+                break
+            if not block:
+                break
+            said += block
+        assert process.wait(SOON) == 0
+    os.close(ours)
+    return said.decode()
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_bar_on_a_terminal(sea: Path, tmp_path: Path, workers: int) -> None:
+    said = on_a_terminal(bake(sea, tmp_path / "c", "--workers", workers), 80)
+    drawn = re.findall(r"\r(\d)/5 \[(#*)(\.*)\] (\d+:\d\d) left  sea *", said)
+    assert [int(count) for count, *_ in drawn] == [1, 2, 3, 4, 5]
+    assert [len(filled) for _, filled, *_ in drawn] == [6, 12, 18, 24, 30]
+    assert all(len(filled) + len(empty) == 30 for _, filled, empty, _ in drawn)
+    assert said.endswith("\r\n")
+    assert "frame 1 (" not in said
+
+
+def test_a_narrow_terminal_has_one_line(sea: Path, tmp_path: Path) -> None:
+    """A longer one would wrap, and the next be drawn below it."""
+    said = on_a_terminal(bake(sea, tmp_path / "c", "--workers", 1, "--name", "x" * 90), 40)
+    assert {len(line.rstrip("\r\n")) for line in re.findall(r"\r(\d/5[^\r]*)", said)} == {39}
+
+
+def test_a_line_a_frame_elsewhere(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(bake(sea, tmp_path / "c", "--workers", "1")) == 0
+    out = capsys.readouterr().out
+    assert "\r" not in out
+    lines = out.splitlines()[2:]
+    assert [re.sub(r"\d\.\d\d s", "_ s", line) for line in lines] == [
+        f"sea: frame {n} ({n}/5) _ s  sea_disp.000{n}.exr" for n in range(1, 6)
+    ]
+
+
+def test_json_a_line(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cache = tmp_path / "Größe"
+    assert main(bake(sea, cache, "--workers", "1", "--json", "--name", "Ärmelkanal")) == 0
+    folder = only_folder(cache)
+    first, *rest = each_json_line(capsys.readouterr().out)
+    assert first["frames"] == first["left"] == first["missing"] == 5
+    assert Path(first["folder"]) == folder
+    assert first["bytes"] > 0
+    assert first["free"] > 0
+    assert [line["frame"] for line in rest] == [1, 2, 3, 4, 5]
+    assert all(Path(path).is_file() for line in rest for path in line["paths"])
+    (folder / "records" / "0002.json").unlink()
+    (folder / "Ärmelkanal_disp.0003.exr").write_bytes(b"")
+    assert main(["verify", str(folder), "--json"]) == 1
+    *lines, last = each_json_line(capsys.readouterr().out)
+    states = {line["frame"]: line["state"] for line in lines if "state" in line}
+    assert states == {1: "whole", 2: "missing", 3: "damaged", 4: "whole", 5: "whole"}
+    assert (last["whole"], last["missing"], last["damaged"]) == (3, 1, 1)
+    assert main(["clean", str(folder), "--json"]) == 0
+    (line,) = each_json_line(capsys.readouterr().out)
+    assert line["files"] == 4
+    assert line["left"] == []
+    assert line["foreign"] == ["Ärmelkanal_disp.0002.exr"]
+
+
+def farm_lines(text: str, kind: str) -> list[str]:
+    return re.findall(rf"^openjd_{kind}: (.*)$", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_farms_lines(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], workers: int) -> None:
+    arguments = bake(sea, tmp_path, "--workers", workers, "--openjd")
+    assert main(arguments) == 0
+    out = capsys.readouterr().out
+    assert farm_lines(out, "progress") == ["20.0", "40.0", "60.0", "80.0", "100.0"]
+    assert len(farm_lines(out, "status")) == 5
+    assert farm_lines(out, "fail") == []
+    assert main(arguments) == 0
+    assert farm_lines(capsys.readouterr().out, "progress") == ["100.0"]  # all is there
+    folder = only_folder(tmp_path)
+    (folder / "sea_disp.0003.exr").unlink()
+    assert main(["verify", str(folder), "--openjd"]) == 1
+    out = capsys.readouterr().out
+    assert farm_lines(out, "fail") == ["sea: 4 whole, 1 damaged"]
+    assert farm_lines(out, "progress")[-1] == "100.0"
+
+
+def test_a_farm_is_told_why(sea: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(bake(sea, Path("/proc/self/cache"), "--openjd")) == 1
+    captured = capsys.readouterr()
+    (reason,) = farm_lines(captured.out, "fail")
+    assert captured.err == f"ocean_tweak: {reason}\n"
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+        {"PYTHONIOENCODING": "ascii:strict", "PYTHONUTF8": "0"},
+        {"PYTHONIOENCODING": "cp1252:strict", "PYTHONUTF8": "0"},
+    ],
+    ids=["C", "ascii", "cp1252"],
+)
+def test_other_alphabets(sea: Path, tmp_path: Path, environment: dict[str, str]) -> None:
+    """Names that a terminal cannot show are written nevertheless, and nothing fails because of them."""
+    env = {**os.environ, **environment}
+    cache = tmp_path / "海 Größe"
+    for workers in (1, 2):
+        answer = run(*bake(sea, cache, "--workers", workers, "--name", "Ärmel海"), env=env, errors="replace")
+        assert (answer.returncode, answer.stderr) == (0, "")
+        (folder / "records" / "0002.json").unlink() if (
+            folder := only_folder(cache)
+        ) and workers == 1 else None
+    assert len(list(folder.glob("Ärmel海_disp.*.exr"))) == 5
+    assert run("verify", folder, env=env, errors="replace").returncode == 0
+    images(folder)[2].unlink()
+    answer = run("verify", folder, env=env, errors="replace")
+    assert answer.returncode == 1
+    assert "0003.exr is gone" in answer.stdout
+    refused = run("bake", "--frames", "1", "--out", "/proc/海", env=env, errors="replace")
+    assert refused.returncode == 1
+    assert "Traceback" not in refused.stderr
+    assert run("bake", "--help", env=env, errors="replace").returncode == 0
+
+
+def test_a_reader_that_goes_away(sea: Path, tmp_path: Path) -> None:
+    """`bake … | head -1`: it ends in a line, and what it has made is whole."""
+    with subprocess.Popen(
+        command(*bake(sea, tmp_path, "--workers", 1)),
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as process:
+        process.stdout.readline()
+        process.stdout.close()
+        err = process.stderr.read().decode()
+        assert process.wait(SOON) == 1
+    assert err.count("\n") == 1, err
+    assert "Broken pipe" in err
+    assert main(["resume", str(only_folder(tmp_path)), "--workers", "1"]) == 0
+
+
+def test_frames_are_named_as_they_were_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    progress = Progress("sea")
+    progress.begin(3)
+    for frame in (-7, Fraction(5, 4), 12345):
+        progress.frame(BakedFrame(frame, (), 0.5))
+    assert re.findall(r"frame (\S+) \(", capsys.readouterr().out) == ["-7", "1.25", "12345"]
+
+
+def test_several_seas_one_after_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where one fails, the next is not begun as if nothing had been."""
+    from ocean_tweak.cli import Sea
+    from ocean_tweak.core import OceanParameters
+    from ocean_tweak.core.shot import Shot
+
+    oceans = {name: Sea(Shot(OceanParameters(resolution=16, seed=len(name)))) for name in ("A", "BB")}
+    bad = tmp_path / "bad"
+    bad.write_text("a file")
+    assert main(["bake", "--frames", "1", "--out", str(bad)], lambda: oceans) == 1
+    assert main(["bake", "--frames", "1", "--out", str(tmp_path / "c"), "--json"], lambda: oceans) == 0
+    seas = [json.loads(line)["sea"] for line in capsys.readouterr().out.splitlines()]
+    assert seas == ["A", "A", "BB", "BB"]
