@@ -12,6 +12,7 @@ import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 
 from . import build, real_blender, venvs
 from .project import ROOT, TOOLS, ToolError
@@ -26,6 +27,7 @@ SOURCE_SUITES = (
     "tests/blender",
 )
 INSTALLED_SUITES = ("tests/blender", "tests/extension")
+WINDOW_SUITE = "tests/ui"
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 CLOSING_LINE = re.compile(
     r"^=* ?((?:no tests ran|\d+ [a-z]+(?:, \d+ [a-z]+)*) in [\d.]+s.*?)(?: =+)?$", re.MULTILINE
@@ -79,7 +81,7 @@ def run_installed_suites(blender: real_blender.RealBlender) -> list[Result]:
     """Build the zip, install it into a fresh profile as an artist would, and test it there."""
     zip_file = build.build(blender)
     env = {**test_environment("real-blender"), "OCEAN_TWEAK_ZIP": str(zip_file)}
-    build.extension(blender, "install-file", "-r", "user_default", "--enable", str(zip_file), env=env)
+    install(blender, zip_file, env)
     options = [
         "--background",
         "--python-exit-code",
@@ -88,7 +90,16 @@ def run_installed_suites(blender: real_blender.RealBlender) -> list[Result]:
         str(ROOT / "tools/pytest_in_blender.py"),
     ]
     command = [*blender.command, *options, "--", str(venvs.PYTEST_IN_BLENDER), *PYTEST, f"--rootdir={ROOT}"]
-    return [run_suite("real Blender", suite, [*command, suite], env) for suite in INSTALLED_SUITES]
+    results = [run_suite("real Blender", suite, [*command, suite], env) for suite in INSTALLED_SUITES]
+    # the hands are outside: Blender has its window to itself
+    outside = [str(venvs.python("5.2")), "-m", "pytest", *PYTEST, WINDOW_SUITE]
+    return [*results, run_suite("window", WINDOW_SUITE, outside, env)]
+
+
+def install(blender: real_blender.RealBlender, zip_file: Path, env: Mapping[str, str]) -> None:
+    """Install and enable the zip in the profile of this environment."""
+    options = ("install-file", "-r", "user_default", "--enable", str(zip_file))
+    build.extension(blender, *options, env=dict(env))
 
 
 def test_environment(place: str) -> dict[str, str]:

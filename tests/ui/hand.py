@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mouse and keyboard on a Blender window, and the eye that finds a button by what it does.
+
+A button is named by a part of what `in_blender.under_mouse` says of it: the path of its property
+("layers[0].wind_speed") or its operator's Python command ("ocean.add_scene(mood='CALM'"). Never by its place.
+"""
+
+import time
+
+from PIL import Image
+
+# a step of the search: half a button, at 100 %
+STEP = 10
+# where buttons of a row are looked for, as a share of the region's width without its tabs
+ACROSS = (0.62, 0.3, 0.9)
+TABS = 26
+# keycodes: of each F key's symbol xdotool takes one that Blender does not know
+FUNCTION_KEYS = {"F3": "69", "F12": "96"}
+DEADLINE = 60.0  # s: a software renderer on a busy machine
+
+
+class NotFound(AssertionError):
+    """No button like this is in the region."""
+
+
+class Hand:
+    def __init__(self, display, window, pictures):
+        self._display, self._window, self._pictures = display, window, pictures
+        self._hints = {}
+        self.kept = []
+
+    # --- Blender's data
+
+    def ask(self, expression):
+        """An expression's value inside Blender, after all events up to now."""
+        return self._window.ask(expression)
+
+    def settle(self, rounds=2):
+        """Let Blender go through some rounds of events and drawing."""
+        for _ in range(rounds):
+            self.ask("None")
+
+    def wait(self, expression, expected=True, seconds=DEADLINE):
+        """Wait until an expression inside Blender is what it should be; return its value.
+
+        expected : the value, or a function that accepts it
+        """
+        accepts = expected if callable(expected) else lambda value: value == expected
+        deadline = time.monotonic() + seconds
+        while not accepts(value := self.ask(expression)):
+            wanted = "as it should be" if callable(expected) else repr(expected)
+            assert time.monotonic() < deadline, f"{expression} is {value!r} after {seconds} s, not {wanted}"
+            time.sleep(0.02)
+        return value
+
+    # --- mouse and keyboard
+
+    def move(self, x, y):
+        self._display.do(f"mousemove {round(x)} {round(y)}")
+
+    def click(self, x, y):
+        self.move(x, y)
+        self.settle(1)
+        self._display.do("click 1")
+        self.settle()
+
+    def key(self, *names):
+        for name in names:
+            *modifiers, last = name.split("+")
+            self._display.do(f"key {'+'.join([*modifiers, FUNCTION_KEYS.get(last, last)])}")
+            self.settle()
+
+    def type(self, text):
+        self._display.do(f"type '{text}'")
+        self.settle()
+
+    def drag_from(self, x, y, right, down=0, steps=6):
+        """Pull with the left button, a little at a time as a hand does."""
+        self.move(x, y)
+        self.settle(1)
+        self._display.do("mousedown 1")
+        try:
+            for step in range(1, steps + 1):
+                self.move(x + right * step / steps, y + down * step / steps)
+                self.settle(1)
+        finally:
+            self._display.do("mouseup 1")
+        self.settle()
+
+    def to_viewport(self):
+        """Put the mouse where nothing but the 3D view is: keys go to what lies under it."""
+        x, y, width, height = self.ask("box('WINDOW')")
+        self.move(x + 0.3 * width, y + 0.6 * height)
+        self.settle(1)
+
+    # --- buttons
+
+    def find(self, target):
+        """Put the mouse on a button of the sidebar, scrolling where needed; return where that is.
+
+        Raises NotFound with all that was there.
+        """
+        seen = {}
+        place = self._look(target, seen)
+        if place is None:
+            self._scroll(up=True)
+            place = self._look(target, seen)
+        while place is None and self._scroll():
+            place = self._look(target, seen)
+        if place is None:
+            raise NotFound(f"no button {target!r} in the sidebar; there are {sorted(filter(None, seen))}")
+        self._hints[target] = place
+        return place
+
+    def _look(self, target, seen):
+        left, top, width, height = self.ask("box()")
+        scale = self.ask("bpy.context.preferences.system.ui_scale")
+        across = [left + share * (width - TABS * scale) for share in ACROSS]
+        rows = range(int(top + STEP * scale / 2), int(top + height), round(STEP * scale))
+        places = [(x, y) for x in across for y in rows]
+        hint = self._hints.get(target)
+        for x, y in ([hint] if hint else []) + places:
+            if self._is_at(x, y, target, seen):
+                inside = y if (x, y) == hint else y + STEP * scale / 2
+                return (x, inside) if self._is_at(x, inside, target, seen) else (x, y)
+        return None
+
+    def _is_at(self, x, y, target, seen):
+        self.move(x, y)
+        name = self.ask("under_mouse()")
+        seen[name] = (x, y)
+        return target in name
+
+    def _scroll(self, up=False):
+        """Turn the wheel over the sidebar; return whether anything moved."""
+        left, top, width, height = self.ask("box()")
+        before = self.ask("scrolled()")
+        self.move(left + 0.5 * (width - TABS), top + 0.5 * height)
+        self.settle(1)
+        self._display.do(f"click --repeat {60 if up else 4} --delay 5 {4 if up else 5}")
+        self.settle()
+        return self.ask("scrolled()") != before
+
+    def press(self, target):
+        """Click a button of the sidebar."""
+        self.click(*self.find(target))
+
+    def drag(self, target, right, steps=6):
+        """Pull a number of the sidebar to the right."""
+        self.drag_from(*self.find(target), right, steps=steps)
+
+    def enter(self, target, text):
+        """Type a number into a field of the sidebar."""
+        self.find(target)
+        self._display.do("click --repeat 2 --delay 60 1")
+        self.settle()
+        self.key("ctrl+a")
+        self.type(text)
+        self.key("Return")
+
+    def open_sidebar(self, tab="Ocean Tweak"):
+        """Show the sidebar of the 3D view, and click its tab."""
+        self.to_viewport()
+        if self.ask("box()[2]") <= 1:
+            self.key("n")
+            self.wait("box()[2] > 1")
+        left, top, width, height = self.ask("box()")
+        scale = self.ask("bpy.context.preferences.system.ui_scale")
+        self.wait("region().active_panel_category", lambda name: name != "UNSUPPORTED")
+        x = left + width - 0.5 * TABS * scale
+        rows = range(int(top + 0.7 * height), int(top), -round(2 * STEP * scale))
+        hint = self._hints.get(tab)
+        for place in ([hint] if hint else []) + [(x, y) for y in rows]:
+            if self.ask("region().active_panel_category") == tab:
+                break
+            self.click(*place)
+            self._hints[tab] = place
+        self.wait("region().active_panel_category", tab)
+
+    def widen_sidebar(self, width):
+        """Pull the sidebar's edge until it is this wide, in pixels."""
+        left, top, before, height = self.ask("box()")
+        # Blender holds on to the usual width, so first well away from it
+        for wanted in (max(width, before) + 120, width):
+            left, top, before, height = self.ask("box()")
+            self.drag_from(left, top + 0.8 * height, before - wanted)
+        self.wait("box()[2]", lambda now: abs(now - width) <= 6)
+
+    def open_panel(self, name):
+        """Open a closed panel of the sidebar: A over its header, wherever that is."""
+        if self._is_drawn(name):
+            return
+        self._scroll(up=True)
+        while True:
+            left, top, width, height = self.ask("box()")
+            for y in range(int(top + STEP), int(top + height), STEP):
+                self.move(left + 0.3 * width, y)
+                if self.ask("under_mouse()"):
+                    continue
+                self.key("a")
+                if self._is_drawn(name):
+                    return
+                self.key("a")
+            if not self._scroll():
+                raise NotFound(f"no panel {name} in the sidebar")
+
+    def _is_drawn(self, name):
+        self.ask(f"drawn.watch({name!r})")
+        self.settle(4)
+        return self.ask(f"drawn.count({name!r})") > 0
+
+    def pick(self, command, most=40):
+        """Go down an open menu to the entry with this Python command, and take it."""
+        copied = ""
+        for _ in range(most):
+            self.ask("setattr(bpy.context.window_manager, 'clipboard', '')")
+            self._display.do("key Down", "key ctrl+c")
+            self.settle(1)
+            copied = self.ask("bpy.context.window_manager.clipboard")
+            if command in copied:
+                self.key("Return")
+                return
+        raise NotFound(f"no entry {command!r} in the menu; the last one was {copied!r}")
+
+    # --- pictures
+
+    def still(self, seconds=DEADLINE):
+        """Wait until the picture does not change any more; return it."""
+        deadline = time.monotonic() + seconds
+        before = None
+        while (picture := self._display.picture()) != before and time.monotonic() < deadline:
+            before = picture
+            self.settle(3)
+        return picture
+
+    def keep(self, name):
+        """Keep what the window shows, as a picture of this name; return it."""
+        width, height, pixels = self.still()
+        picture = Image.frombuffer("RGB", (width, height), pixels, "raw", "BGRX", 0, 1)
+        picture.save(self._pictures / f"{name}.png")
+        self.kept.append(name)
+        return picture
