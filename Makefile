@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core mutate lint bench bench-smoke build docs clean
+.PHONY: help setup demo test test-core test-long mutate lint bench bench-smoke build docs clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
@@ -20,6 +20,10 @@ test: setup ## every test: in the bpy wheels of 5.2 and 4.5, and of the installe
 test-core:  ## the tests of the core alone
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m pytest -q tests/core
+
+test-long:  ## the tests of bakes, ten times as many kills, shared folders and damaged files
+	@$(PYTHON) -m tools.setup python-5.2
+	@OCEAN_TWEAK_LONG_TESTS=1 $(VENV) -m pytest -q tests/batch
 
 mutate:     ## change each physical constant by 2 % and see which test notices (minutes; not part of `test`)
 	@$(PYTHON) -m tools.setup python-5.2

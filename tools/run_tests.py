@@ -23,6 +23,7 @@ SOURCE_SUITES = (
     "tests/cli",
     "tests/usd",
     "tests/farm",
+    "tests/batch",
     "tests/tools",
     "tests/blender",
 )

@@ -171,10 +171,13 @@ def read_image(
         raise ExrError(f"{path}: has {found[1]} x {found[0]} texels, not {shape[1]} x {shape[0]}")
     try:
         # OpenEXR prints its warnings, and what is printed may be read by machines
-        with path.open("rb") as stream, contextlib.redirect_stdout(io.StringIO()):
-            with openexr.File(stream, separate_channels=True) as file:
-                channels = file.channels()
-                rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
+        with (
+            contextlib.redirect_stdout(io.StringIO()),
+            path.open("rb") as stream,
+            openexr.File(stream, separate_channels=True) as file,
+        ):
+            channels = file.channels()
+            rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
     except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
     return np.ascontiguousarray(rows[::-1], np.float32), metadata

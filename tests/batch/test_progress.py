@@ -150,10 +150,10 @@ def test_other_alphabets(sea: Path, tmp_path: Path, environment: dict[str, str])
     for workers in (1, 2):
         answer = run(*bake(sea, cache, "--workers", workers, "--name", "Ärmel海"), env=env, errors="replace")
         assert (answer.returncode, answer.stderr) == (0, "")
-        (folder / "records" / "0002.json").unlink() if (
-            folder := only_folder(cache)
-        ) and workers == 1 else None
-    assert len(list(folder.glob("Ärmel海_disp.*.exr"))) == 5
+        folder = only_folder(cache)
+        if workers == 1:
+            (folder / "records" / "0002.json").unlink()
+    assert len(images(folder)) == 5
     assert run("verify", folder, env=env, errors="replace").returncode == 0
     images(folder)[2].unlink()
     answer = run("verify", folder, env=env, errors="replace")

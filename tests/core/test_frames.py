@@ -39,7 +39,22 @@ def test_frame_ranges(text: str, expected: tuple[Frame, ...]) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "a", "1-", "4-1", "1-5x0", "1..5", "1-2000000", "1,,2", "1.1234567", "1e3", "9999999999"]
+    "text",
+    [
+        "",
+        "a",
+        "1-",
+        "4-1",
+        "1-5x0",
+        "1..5",
+        "1-2000000",
+        "1,,2",
+        "1.1234567",
+        "1e3",
+        "9999999999",
+        "9" * 5000,
+        "1-600000,1-600000",
+    ],
 )
 def test_frame_ranges_that_are_none(text: str) -> None:
     with pytest.raises(ParameterError, match="frames"):

@@ -113,6 +113,8 @@ def test_velocity_follows_the_clock_between_frames() -> None:
         ({"first_frame": 1, "samples": {"layers.0.gain": [1, float("nan")]}}, "finite"),
         ({"first_frame": 1, "samples": {"layers.0.gain": [1], "choppiness": [1, 1]}}, "as many samples"),
         ({"first_frame": 1, "samples": {"layers.0.gain": []}}, "from 1 to"),
+        ({"first_frame": 1, "samples": {"layers.0.gain": [10**400]}}, "finite"),
+        ({"first_frame": 10**400, "samples": {"layers.0.gain": [1]}}, "at most"),
         ({"first_frame": 1, "samples": {"choppiness": 3}}, "must be a list"),
         ({"first_frame": 1, "samples": {}}, "at least one"),
         ({"first_frame": 1.5, "samples": {"choppiness": [1]}}, "whole number"),

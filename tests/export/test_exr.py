@@ -73,6 +73,34 @@ def test_a_failed_write_leaves_the_old_file(
     assert [p.name for p in tmp_path.iterdir()] == ["a.exr"]
 
 
+@pytest.mark.parametrize("compression", COMPRESSION_ERROR)
+def test_bytes_that_the_disk_refuses_are_missed(tmp_path: Path, image: np.ndarray, compression: str) -> None:
+    """Wherever writing ends, also among the last bytes, which wait in a buffer."""
+    resource = pytest.importorskip("resource")
+    path = tmp_path / "a.exr"
+    write_image(path, image, {}, FPS, compression)
+    whole = path.stat().st_size
+    path.unlink()
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    for most in (0, 1, 4096, whole // 2, whole - 4096, whole - 100, whole - 1):
+        try:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, before[1]))
+            with pytest.raises(OSError, match="too large") as raised:
+                write_image(path, image, {}, FPS, compression)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        assert raised.value.filename == str(path)
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_another_shape_is_not_read(tmp_path: Path, image: np.ndarray) -> None:
+    path = tmp_path / "a.exr"
+    write_image(path, image, {}, FPS)
+    assert read_image(path, (32, 32))[0].shape == (32, 32, 3)
+    with pytest.raises(ExrError, match="32 x 32 texels, not 32 x 64"):
+        read_image(path, (64, 32))
+
+
 def test_values_that_are_not_finite_are_refused(tmp_path: Path, image: np.ndarray) -> None:
     image[3, 4, 1] = np.nan
     with pytest.raises(ExrError, match="not finite"):
