@@ -153,7 +153,7 @@ def write_image(
         raise ExrError(f"{path}: {error}") from error
     # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
     with whole_file(path) as beside:
-        beside.write_bytes(encoded.getbuffer())
+        beside.write_bytes(encoded.getvalue())
 
 
 def read_image(
