@@ -43,7 +43,7 @@ _HORIZONS = {
 #: a closed cloud's radiance over sin(elevation), brightest where it thins out at the horizon
 _OVERCAST = (
     (0.0, (0.44, 0.485, 0.52)), (0.05, (0.40, 0.45, 0.49)), (0.16, (0.31, 0.36, 0.405)),
-    (0.42, (0.235, 0.28, 0.325)), (1.0, (0.21, 0.255, 0.30)),
+    (0.42, (0.27, 0.315, 0.36)), (1.0, (0.25, 0.295, 0.34)),
 )  # fmt: skip
 _GLOW = (1.0, 0.90, 0.76)
 _OVERCAST_HAZE = (0.46, 0.50, 0.53)

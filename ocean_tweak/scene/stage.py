@@ -29,6 +29,7 @@ from .units import frame_rate, metres_per_unit
 _LENS = 35.0  # mm
 _FAR = 30e3  # m, beyond the horizon of any camera on a ship
 _FRAMES = 240
+_EEVEE_RINGS = 2  # it draws every copy anew
 _WORLD_GREY = 0.0508761  # of a new file's world
 
 
@@ -76,7 +77,8 @@ def build(
     water_material.set_air(material, chosen.visibility, chosen.sky().haze)
     water_material.assign(ocean, material)
     water_material.describe(ocean, parameters, scene)
-    add_horizon(ocean, parameters, scene, target, chosen.rings)
+    rings = chosen.rings if wishes.engine == "CYCLES" else min(chosen.rings, _EEVEE_RINGS)
+    add_horizon(ocean, parameters, scene, target, rings)
     place = camera_place(chosen, parameters)
     camera = new_camera(chosen, place, ocean, scene)
     target.objects.link(camera)
