@@ -23,12 +23,32 @@ def attribute(mesh, name):
     return values.reshape(-1, 3) if vector else values
 
 
-def place(scene, frame, instances):
-    """Every mesh that is shown at a frame, and its matrix."""
+def shown(scene, frame):
+    """Every mesh that is shown at a frame, instances where there are any, and its matrix."""
     scene.frame_set(frame)
-    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
-        if instance.object.type == "MESH" and (instance.is_instance or not instances):
-            yield np.array(instance.matrix_world), instance.object.data
+    instances = bpy.context.evaluated_depsgraph_get().object_instances
+    found = [
+        (instance.is_instance, np.array(instance.matrix_world), arrays(instance.object.data))
+        for instance in instances
+        if instance.object.type == "MESH"
+    ]
+    return [rest for is_instance, *rest in found if is_instance or not any(first for first, *_ in found)]
+
+
+def arrays(mesh):
+    """What stands at its vertices; read at once, for the next instance takes its place."""
+    found = {"points": attribute(mesh, "position").astype(np.float64)}
+    for name in ("foam", "cusp", "velocity"):
+        if name in mesh.attributes:
+            found[name] = attribute(mesh, name)
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers[0].uv.foreach_get("vector", uv)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    found["st"] = np.zeros((len(found["points"]), 2), np.float32)
+    found["st"][corners] = uv.reshape(-1, 2)
+    found["materials"] = np.array([material.name for material in mesh.materials if material])
+    return found
 
 
 def read(path):
@@ -39,20 +59,10 @@ def read(path):
         support_scene_instancing=True,
     )  # fmt: skip
     found = {"range": [scene.frame_start, scene.frame_end]}
-    has_tiles = any(scene_object.is_instancer for scene_object in scene.objects)
     for frame in map(int, FRAMES.split(",")):
-        for number, (matrix, mesh) in enumerate(place(scene, frame, has_tiles)):
-            points = attribute(mesh, "position").astype(np.float64)
-            found[f"{frame}.{number}.points"] = points @ matrix[:3, :3].T + matrix[:3, 3]
-            for name in ("foam", "cusp", "velocity"):
-                if name in mesh.attributes:
-                    found[f"{frame}.{number}.{name}"] = attribute(mesh, name)
-            uv = np.empty(2 * len(mesh.loops), np.float32)
-            mesh.uv_layers[0].uv.foreach_get("vector", uv)
-            corners = np.empty(len(mesh.loops), np.int32)
-            mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
-            found[f"{frame}.{number}.st"] = np.zeros((len(points), 2), np.float32)
-            found[f"{frame}.{number}.st"][corners] = uv.reshape(-1, 2)
+        for number, (matrix, values) in enumerate(shown(scene, frame)):
+            values["points"] = values["points"] @ matrix[:3, :3].T + matrix[:3, 3]
+            found.update({f"{frame}.{number}.{name}": value for name, value in values.items()})
     return found
 
 

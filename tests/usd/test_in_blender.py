@@ -44,6 +44,11 @@ def test_frame_range_comes_along(imported, name):
     assert tuple(imported[f"{name}.range"]) == (1001, 1004)
 
 
+@pytest.mark.parametrize("name", ASSETS)
+def test_material_comes_along(imported, name):
+    assert imported[f"{name}.1001.0.materials"].tolist() == ["water"]
+
+
 @pytest.mark.parametrize("name", ["points", "clips", "centimetres"])
 @pytest.mark.parametrize("frame", FRAMES)
 def test_moving_mesh(imported, name, frame):
@@ -73,6 +78,7 @@ def test_tiles_are_instances_that_move(imported, frame):
         offset = np.round((points - wanted).mean(axis=0) / SIZE) * SIZE
         np.testing.assert_allclose(points, wanted + offset, atol=1e-4)
         corners.add(tuple(offset.tolist()))
+    assert f"tiles.{frame}.6.points" not in imported
     assert corners == {(SIZE * column, SIZE * row, 0.0) for column in range(3) for row in range(2)}
 
 

@@ -190,29 +190,44 @@ def test_referenced_with_an_offset_and_a_scale_in_time(exported, tmp_path, form)
 
 
 @pytest.mark.parametrize("form", ANIMATED)
+def test_instanced_in_a_shot(exported, tmp_path, form):
+    stage = Usd.Stage.CreateInMemory()
+    stage.SetTimeCodesPerSecond(25)  # with another rate OpenUSD stretches the time of what is referenced
+    for name in ("/here", "/there"):
+        prim = stage.DefinePrim(name)
+        prim.GetReferences().AddReference(str(exported(form=form)))
+        prim.SetInstanceable(True)
+    assert len(stage.GetPrototypes()) == 1
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/there/geo/sea/surface"))
+    for frame in (1001, 1004):
+        close(np.array(mesh.GetPointsAttr().Get(frame)), expected(frame).points)
+
+
+@pytest.mark.parametrize("form", ANIMATED)
 def test_tiles_stand_side_by_side_and_move(exported, form):
     stage = Usd.Stage.Open(str(exported(form=form, tiles=(3, 2))))
-    tiles = stage.GetPrimAtPath("/sea/geo").GetChildren()
-    assert len(tiles) == 6
-    assert all(tile.IsInstance() for tile in tiles)
-    assert len(stage.GetPrototypes()) == 1
-    wanted = expected(1003).points
-    for tile in tiles:
-        _, column, row = tile.GetName().split("_")
-        mesh = tile.GetChild("surface")
-        close(np.array(UsdGeom.Mesh(mesh).GetPointsAttr().Get(1003)), wanted)
-        place = UsdGeom.Xformable(tile).ComputeLocalToWorldTransform(1003).ExtractTranslation()
-        assert tuple(place) == (int(column) * SIZE, int(row) * SIZE, 0.0)
-    cache = UsdGeom.BBoxCache(Usd.TimeCode(1003), ["default"])
-    box = cache.ComputeWorldBound(stage.GetDefaultPrim()).ComputeAlignedRange()
-    low, high = wanted.min(axis=0), wanted.max(axis=0) + np.array([2 * SIZE, SIZE, 0.0])
-    np.testing.assert_allclose([box.GetMin(), box.GetMax()], [low, high], atol=1e-4)
+    tiles = UsdGeom.PointInstancer(stage.GetPrimAtPath("/sea/geo/tiles"))
+    places = [
+        transform.ExtractTranslation() for transform in tiles.ComputeInstanceTransformsAtTime(1003, 1003)
+    ]
+    wanted = [(column * SIZE, row * SIZE, 0.0) for row in range(2) for column in range(3)]
+    assert [tuple(place) for place in places] == wanted
+    assert tiles.GetPrototypesRel().GetForwardedTargets() == [Sdf.Path("/sea/geo/tiles/sea")]
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/sea/geo/tiles/sea/surface"))
+    assert mesh.GetPointsAttr().ValueMightBeTimeVarying()
+    assert mesh.GetPointsAttr().GetTimeSamples() == [1001.0, 1002.0, 1003.0, 1004.0]
+    extent = value(stage, "/sea/geo/tiles.extent")
+    for frame in (1001, 1002, 1003, 1004):
+        points = np.array(mesh.GetPointsAttr().Get(frame))
+        close(points, expected(frame).points)
+        assert np.all(points >= extent[0])
+        assert np.all(points + np.array(wanted[-1]) <= extent[1] + 1e-4)
 
 
 def test_tiles_north_in_y_up(exported):
     stage = Usd.Stage.Open(str(exported(form="points", tiles=(1, 2), up_axis="Y", metres_per_unit=0.5)))
-    tile = UsdGeom.Xformable(stage.GetPrimAtPath("/sea/geo/tile_0_1"))
-    assert tuple(tile.ComputeLocalToWorldTransform(1001).ExtractTranslation()) == (0.0, 0.0, -2.0 * SIZE)
+    tiles = UsdGeom.PointInstancer(stage.GetPrimAtPath("/sea/geo/tiles"))
+    close(np.array(tiles.GetPositionsAttr().Get()), [(0.0, 0.0, 0.0), (0.0, 0.0, -2.0 * SIZE)])
 
 
 @pytest.mark.parametrize("form", FORMS)

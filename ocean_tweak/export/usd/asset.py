@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .box import Box, tile_offsets
+from .attributes import to_vt
+from .box import Box, of_tiles, tile_offsets
 from .grid import proxy_step
 from .layers import MARK, whole_layer, write_header
 from .library import pxr
@@ -17,7 +18,7 @@ from .material import MATERIAL, SCOPE
 from .mesh import ROOT
 from .package import Package
 
-GEOMETRY = "geo"
+GEOMETRY, TILES = "geo", "tiles"
 VARIANT_SET = "resolution"
 _KIND = "component"
 
@@ -27,10 +28,11 @@ def prim_name(package: Package) -> str:
     return str(pxr().Tf.MakeValidIdentifier(package.name))
 
 
-def write_payload(path: Path, package: Package, geometry: str, material: str) -> None:
+def write_payload(path: Path, package: Package, geometry: str, material: str, box: Box) -> None:
     """Write payload.usd: geometry and material under the asset's own prim.
 
     geometry, material : names of the layers beside it
+    box : around one tile in all frames
     """
     modules = pxr()
     root = f"/{prim_name(package)}"
@@ -41,32 +43,43 @@ def write_payload(path: Path, package: Package, geometry: str, material: str) ->
         scope = modules.UsdGeom.Scope.Define(stage, f"{root}/{GEOMETRY}").GetPrim()
         looks = modules.UsdGeom.Scope.Define(stage, f"{root}/{SCOPE}").GetPrim()
         looks.GetReferences().AddReference(f"./{material}")
-        _add_tiles(stage, scope, package, geometry)
-        # bound above the tiles, so that all instances share it
+        _add_sea(stage, scope, package, geometry, box)
         binding = modules.UsdShade.MaterialBindingAPI.Apply(scope)
         water = modules.UsdShade.Material(stage.GetPrimAtPath(f"{root}/{SCOPE}/{MATERIAL}"))
         binding.Bind(water)
         del stage
 
 
-def _add_tiles(stage: Any, scope: Any, package: Package, geometry: str) -> None:
+def _add_sea(stage: Any, scope: Any, package: Package, geometry: str, box: Box) -> None:
+    """The sea itself, or a point instancer that shows it at each tile's place.
+
+    Not instanceable prims: through these, OpenUSD does not tell that clips move (as of 26.11), and Blender
+    loses what material they inherit.
+    """
     modules = pxr()
+    path = scope.GetPath()
     offsets = tile_offsets(package)
-    for name, offset in offsets.items():
-        several = len(offsets) > 1
-        path = scope.GetPath().AppendChild(name if several else ROOT)
-        tile = modules.UsdGeom.Xform.Define(stage, path)
-        tile.GetPrim().GetReferences().AddReference(f"./{geometry}")
-        if several:
-            tile.AddTranslateOp().Set(modules.Gf.Vec3d(*offset.tolist()))
-            tile.GetPrim().SetInstanceable(True)
+    if len(offsets) > 1:
+        path = path.AppendChild(TILES)
+        tiles = modules.UsdGeom.PointInstancer.Define(stage, path)
+        tiles.CreatePositionsAttr(to_vt(modules.Vt, offsets))
+        tiles.CreateProtoIndicesAttr(modules.Vt.IntArray(len(offsets)))
+        tiles.CreateExtentAttr(to_vt(modules.Vt, np.stack(of_tiles(package, box))))
+        tiles.CreatePrototypesRel().SetTargets([path.AppendChild(ROOT)])
+    sea = modules.UsdGeom.Xform.Define(stage, path.AppendChild(ROOT))
+    sea.GetPrim().GetReferences().AddReference(f"./{geometry}")
+
+
+def sea_path(package: Package, prim: str) -> str:
+    """The prim of the sea, above its meshes, in the asset at `prim`."""
+    return f"{prim}/{GEOMETRY}/{TILES}/{ROOT}" if package.tiles != (1, 1) else f"{prim}/{GEOMETRY}/{ROOT}"
 
 
 def write_asset(path: Path, package: Package, payloads: Mapping[int, str], box: Box) -> None:
     """Write the asset's layer, last of all: it makes the rest visible.
 
     payloads : by resolution, relative to the layer
-    box : around all that the asset shows, in any frame
+    box : around one tile in all frames
     """
     modules = pxr()
     with whole_layer(path, text=True) as layer:
@@ -78,7 +91,7 @@ def write_asset(path: Path, package: Package, payloads: Mapping[int, str], box: 
         model.SetAssetName(package.name)
         model.SetAssetIdentifier(modules.Sdf.AssetPath(f"./{path.name}"))
         model.SetAssetVersion(package.fingerprint[:8])
-        hint = modules.Vt.Vec3fArray.FromNumpy(_extents_hint(package, box))
+        hint = modules.Vt.Vec3fArray.FromNumpy(_extents_hint(package, of_tiles(package, box)))
         modules.UsdGeom.ModelAPI.Apply(prim).SetExtentsHint(hint)
         prim.SetCustomDataByKey(MARK, package.record())
         if package.variants:

@@ -23,10 +23,6 @@ class Box(NamedTuple):
     def __or__(self, other: Box) -> Box:
         return Box(np.minimum(self.least, other.least), np.maximum(self.greatest, other.greatest))
 
-    def moved(self, by: Corner) -> Box:
-        """The box elsewhere."""
-        return Box(self.least + by, self.greatest + by)
-
 
 def union(boxes: Iterable[Box]) -> Box:
     """Around all of them, of which there must be one."""
@@ -36,19 +32,16 @@ def union(boxes: Iterable[Box]) -> Box:
     return first
 
 
-def tile_offsets(package: Package) -> dict[str, Corner]:
-    """Where each tile stands, by its prim's name; the first one is the sea's own place."""
+def tile_offsets(package: Package) -> Corner:
+    """(tiles, 3): where each tile stands, rows from south to north; the first is the sea's own place."""
     size = package.shot.parameters.domain_size * package.scale
-    north = np.array([0.0, 0.0, -size] if package.up_axis == "Y" else [0.0, size, 0.0])
-    east = np.array([size, 0.0, 0.0])
     across, along = package.tiles
-    return {
-        f"tile_{column}_{row}": column * east + row * north
-        for row in range(along)
-        for column in range(across)
-    }
+    column, row = (part.reshape(-1) * size for part in np.meshgrid(np.arange(across), np.arange(along)))
+    nothing = np.zeros(len(column))
+    return np.stack([column, nothing, -row] if package.up_axis == "Y" else [column, row, nothing], axis=-1)
 
 
 def of_tiles(package: Package, box: Box) -> Box:
     """Around all tiles of a patch with this box."""
-    return union(box.moved(offset) for offset in tile_offsets(package).values())
+    offsets = tile_offsets(package)
+    return Box(box.least + offsets.min(axis=0), box.greatest + offsets.max(axis=0))

@@ -7,8 +7,9 @@ would win over them and nothing would move.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...core.fields import SurfaceFields
@@ -23,10 +24,15 @@ from .package import clip_name
 
 @dataclass(frozen=True)
 class ClipSink:
-    """A sink for frames: clips/NAME.####.usdc in an edition's folder."""
+    """A sink for frames: clips/NAME.####.usdc in an edition's folder.
+
+    Several threads may bring frames, but OpenUSD is asked by one at a time: its plugins load when they are
+    first needed, and two threads that need one at once can wait for each other for ever.
+    """
 
     folder: Path
     edition: Edition
+    _alone: threading.Lock = field(default_factory=threading.Lock, compare=False, repr=False)
 
     @property
     def outputs(self) -> frozenset[str]:
@@ -40,7 +46,7 @@ class ClipSink:
     def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Write a frame's clip. Returns its path. Raises UsdError."""
         path, package = self.path(frame), self.edition.package
-        with whole_layer(path) as layer:
+        with whole_layer(path, alone=self._alone) as layer:
             write_header(layer, package, (frame,), ROOT, self._mark(frame))
             declare(layer, self.edition)
             try:
@@ -92,7 +98,7 @@ def write_stitch(path: Path, edition: Edition, topology: str, manifest: str) -> 
     with whole_layer(path, text=True) as layer:
         write_header(layer, package, package.frames, ROOT, {"clips": format_frames(package.frames)})
         layer.subLayerPaths.append(f"./{topology}")
-        # on the meshes, not on the prim above: of a prim that is instanced itself, clips are not read
+        # on the meshes, not on the prim above: where a shot makes that an instance, clips on it are not read
         for mesh, _ in edition.meshes():
             prim = sdf.CreatePrimInLayer(layer, mesh)
             prim.SetInfo("clips", {"default": _clip_set(package.name, mesh, package.frames, manifest)})

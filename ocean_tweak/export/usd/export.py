@@ -17,7 +17,7 @@ from ..cache.job import Job, read_job
 from ..files import sync_folder, writable_folder
 from . import textures
 from .asset import prim_name, write_asset, write_payload
-from .box import Box, of_tiles, union
+from .box import Box, union
 from .clips import ClipSink, write_manifest, write_stitch, write_topology_layer
 from .layers import refuse_foreign, remove_leftovers, whole_layer, write_header
 from .library import UsdError, pxr
@@ -114,13 +114,14 @@ class Export:
         boxes, payloads = [], {}
         for folder, edition in self.editions:
             folder.mkdir(exist_ok=True)
-            boxes.append(_FINISHERS[package.form](self, folder, edition))
+            box = _FINISHERS[package.form](self, folder, edition)
+            boxes.append(box)
             material = folder / MATERIAL
             write_material(material, package, self._relative_images(material))
-            write_payload(folder / PAYLOAD, package, _GEOMETRY[package.form][0], MATERIAL)
+            write_payload(folder / PAYLOAD, package, _GEOMETRY[package.form][0], MATERIAL, box)
             sync_folder(folder)
             payloads[edition.resolution] = f"./{(folder / PAYLOAD).relative_to(self.top.parent).as_posix()}"
-        write_asset(self.top, package, payloads, of_tiles(package, union(boxes)))
+        write_asset(self.top, package, payloads, union(boxes))
         sync_folder(self.top.parent)
         self._clean()
 

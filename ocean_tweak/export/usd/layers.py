@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterable, Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -18,31 +19,39 @@ MARK = "ocean_tweak"
 
 
 @contextlib.contextmanager
-def whole_layer(path: Path, text: bool = False) -> Iterator[Any]:
+def whole_layer(
+    path: Path, text: bool = False, alone: AbstractContextManager[Any] | None = None
+) -> Iterator[Any]:
     """A new layer to fill, an `Sdf.Layer`; at the end it is saved, synced and takes the place of `path`.
 
     text : readable rather than binary, for a layer named .usd
+    alone : held while OpenUSD is at work; syncing goes on beside others
 
     Raises UsdError where it cannot be written; then the old file is as it was.
     """
-    sdf, tf = pxr().Sdf, pxr().Tf
-    with whole_file(path) as beside:
+    with whole_file(path) as beside, alone or contextlib.nullcontext():
         # OpenUSD chooses the format by the ending
         draft = beside.with_name(beside.name + path.suffix)
         try:
-            with _errors_named(tf, path):
-                layer = sdf.Layer.CreateNew(str(draft), args=_format(path, text))
-                try:
-                    yield layer
-                    save(layer, path)
-                finally:
-                    del layer  # or the next one to open this path would get this one
-                if sdf.Layer.OpenAsAnonymous(str(draft), metadataOnly=True) is None:
-                    raise UsdError(f"{path}: what was written cannot be read back")
+            with _errors_named(pxr().Tf, path):
+                yield from _filled(draft, path, text)
             draft.replace(beside)
         finally:
             with contextlib.suppress(OSError):
                 draft.unlink(missing_ok=True)
+
+
+def _filled(draft: Path, path: Path, text: bool) -> Iterator[Any]:
+    """Give a layer, save it, and see that it can be opened."""
+    sdf = pxr().Sdf
+    layer = sdf.Layer.CreateNew(str(draft), args=_format(path, text))
+    try:
+        yield layer
+        save(layer, path)
+    finally:
+        del layer  # or the next one to open this path would get this one
+    if sdf.Layer.OpenAsAnonymous(str(draft), metadataOnly=True) is None:
+        raise UsdError(f"{path}: what was written cannot be read back")
 
 
 def remove_leftovers(path: Path) -> None:

@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from ...core.bake import ShotSurfaces
 from ...core.frames import Frame, format_frames
 from ..exr import COMPRESSION_ERROR, ExrError, read_image
-from .asset import GEOMETRY, VARIANT_SET
+from .asset import VARIANT_SET, sea_path
 from .attributes import POINTS, Attribute
-from .box import tile_offsets
 from .layers import mark_of, reason
 from .library import UsdError, pxr
 from .material import MATERIAL, SCOPE
-from .mesh import ROOT, SURFACE, Edition
+from .mesh import SURFACE, Edition
 from .package import Package
 from .reading import read_package
 
@@ -49,14 +48,13 @@ class _Opened:
     def package(self) -> Package:
         return self.edition.package
 
-    def tile(self) -> str:
-        """The prim of the first tile."""
-        offsets = tile_offsets(self.package)
-        name = next(iter(offsets)) if len(offsets) > 1 else ROOT
-        return f"{self.prim}/{GEOMETRY}/{name}"
+    @property
+    def sea(self) -> str:
+        """The prim above the meshes."""
+        return sea_path(self.package, self.prim)
 
     def attribute(self, name: str, mesh: str = SURFACE) -> Any:
-        return self.stage.GetAttributeAtPath(f"{self.tile()}/{mesh}.{name}")
+        return self.stage.GetAttributeAtPath(f"{self.sea}/{mesh}.{name}")
 
 
 def checked_frames(package: Package) -> tuple[Frame, ...]:
@@ -122,7 +120,7 @@ def _stage_problems(opened: _Opened) -> Iterator[Problem]:
         if found != wanted:
             yield Problem(None, f"{name} is {found}, and the sea was exported with {wanted}")
     if not opened.attribute(POINTS.name):
-        yield Problem(None, f"{opened.tile()}/{SURFACE} has no points: a layer is missing or was moved")
+        yield Problem(None, f"{opened.sea}/{SURFACE} has no points: a layer is missing or was moved")
 
 
 def _gaps(opened: _Opened) -> Iterator[Problem]:
@@ -173,9 +171,7 @@ def _missing_clips(opened: _Opened) -> Iterator[Problem]:
 def _listed_clips(opened: _Opened) -> dict[Frame, Path]:
     """The clip that is active at each frame, as the surface's strongest layer with clips lists them."""
     modules = pxr()
-    mesh = opened.stage.GetPrimAtPath(f"{opened.tile()}/{SURFACE}")
-    source = mesh.GetPrimInPrototype() if mesh.IsInstanceProxy() else mesh
-    for spec in source.GetPrimStack():
+    for spec in opened.stage.GetPrimAtPath(f"{opened.sea}/{SURFACE}").GetPrimStack():
         if spec.HasInfo("clips"):
             clips = spec.GetInfo("clips")["default"]
             paths = [
@@ -285,7 +281,7 @@ def _still_grid(opened: _Opened) -> Iterator[Problem]:
     _, patch = next(iter(opened.edition.meshes()))
     points = opened.attribute(POINTS.name).Get()
     if points is None or not np.allclose(np.array(points), patch.positions(None), atol=_SINGLE):
-        yield Problem(None, f"{opened.tile()}/{SURFACE} is not the flat grid that the images displace")
+        yield Problem(None, f"{opened.sea}/{SURFACE} is not the flat grid that the images displace")
 
 
 _CHECKS: dict[str, Callable[[_Opened, Sequence[Frame]], Iterator[Problem]]] = {
