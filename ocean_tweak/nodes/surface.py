@@ -29,20 +29,17 @@ _COLUMNS = Plug("Columns", "NodeSocketInt", 2, "Vertices along x")
 _ROWS = Plug("Rows", "NodeSocketInt", 2, "Vertices along y")
 
 
+_GRID_OUTPUTS = (
+    Plug("Geometry", "NodeSocketGeometry", None, "The same mesh, or nothing where it is no ocean's"),
+    Plug("Corner", "NodeSocketVector", None, "First vertex at rest; 0 where the mesh is no ocean's"),
+    Plug("Spacing", "NodeSocketVector", None, "Size of a cell; (1, 1, 1) where the mesh is no ocean's"),
+    _COLUMNS,
+    _ROWS,
+)
+
+
 def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
-    build = Builder(
-        tree,
-        (_GEOMETRY,),
-        (
-            Plug("Geometry", "NodeSocketGeometry", None, "The same mesh, or nothing where it is no ocean's"),
-            Plug("Corner", "NodeSocketVector", None, "First vertex at rest; 0 where the mesh is no ocean's"),
-            Plug(
-                "Spacing", "NodeSocketVector", None, "Size of a cell; (1, 1, 1) where the mesh is no ocean's"
-            ),
-            _COLUMNS,
-            _ROWS,
-        ),
-    )
+    build = Builder(tree, (_GEOMETRY,), _GRID_OUTPUTS)
     geometry = build.given("Geometry")
     displacement = named_attribute(build, DISPLACEMENT, "FLOAT_VECTOR")
     position = output(build.add("GeometryNodeInputPosition"), "Position")
@@ -76,10 +73,7 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
         (columns, combined(build, 0.0, step_y)),
     ):
         off = build.vector("SUBTRACT", at_rest(index), build.vector("ADD", first, offset))
-        near = build.compare(
-            "LESS_THAN", alone(build, "LENGTH", off), build.math("MULTIPLY", step, 0.1), "FLOAT"
-        )
-        usable = build.logic("AND", usable, near)
+        usable = build.logic("AND", usable, _is_short(build, off, step))
     nothing = build.add("GeometryNodeJoinGeometry").outputs[0]
     build.finish_with(
         {
@@ -90,6 +84,11 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
             "Rows": rows,
         }
     )
+
+
+def _is_short(build: Builder, off: Socket, step: Socket) -> Socket:
+    """Whether a vertex is no more than rounding away from where a grid of this step has it."""
+    return build.compare("LESS_THAN", alone(build, "LENGTH", off), build.math("MULTIPLY", step, 0.1), "FLOAT")
 
 
 def _build_cell(tree: bpy.types.NodeTree) -> None:
