@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 from pxr import Usd, UsdValidation
+from usd_validation_nvidia import ValidationEngine
 
 OPTIONS = [
     {"form": "points"},
@@ -39,8 +40,7 @@ def test_pixars_validators(exported, options):
 
 @pytest.mark.parametrize("options", OPTIONS, ids=lambda options: " ".join(map(str, options.values())))
 def test_nvidias_validator(exported, options):
-    nvidia = pytest.importorskip("usd_validation_nvidia")
-    issues = nvidia.ValidationEngine().validate(str(exported(**options))).issues()
+    issues = ValidationEngine().validate(str(exported(**options))).issues()
     left = [
         (issue.rule.__name__, issue.message)
         for issue in issues
