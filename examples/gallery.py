@@ -86,6 +86,7 @@ def save_jpeg(picture: Path, path: Path) -> None:
     """The picture as the best JPEG below 200 kB. Raises RuntimeError if there is none."""
     path.parent.mkdir(parents=True, exist_ok=True)
     image = bpy.data.images.load(str(picture))
+    image.pixels[0] = image.pixels[0]  # or Blender copies the file as it is
     image.file_format = "JPEG"
     for quality in range(94, 40, -3):
         image.save(filepath=str(path), quality=quality)
