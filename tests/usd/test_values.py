@@ -103,6 +103,7 @@ def test_layer_tree(exported, form):
     for layer in stage.GetUsedLayers():
         if layer.anonymous:
             continue
+        assert layer.HasTimeCodesPerSecond()  # it would be that of the frames anyhow, and is read by some
         assert layer.timeCodesPerSecond == layer.framesPerSecond == 25.0
         for other in layer.GetCompositionAssetDependencies():
             assert other.startswith("./")
