@@ -25,6 +25,7 @@ def saved(empty_scene, tmp_path, monkeypatch):
 def ocean(saved, ocean_object, make_parameters):
     item = ocean_object.add(saved, make_parameters())
     bpy.context.view_layer.objects.active = item
+    item.ocean_tweak.use_foam = False  # it looks back over many surfaces
     return item
 
 
@@ -35,6 +36,7 @@ def bakes(folder):
 def test_a_bake_lies_beside_the_file_and_moves_the_ocean(
     ocean, make_parameters, expected, evaluated, saved, tmp_path
 ):
+    ocean.ocean_tweak.use_foam = True
     assert bpy.ops.ocean.bake() == {"FINISHED"}
     (folder,) = bakes(tmp_path)
     assert folder.parent.name == f"Ocean-{ocean.ocean_tweak.uid}"
@@ -64,7 +66,7 @@ def test_a_bake_goes_on(ocean, tmp_path):
     for path in folder.glob("*.0003.exr"):
         path.unlink()
     assert bpy.ops.ocean.bake() == {"FINISHED"}
-    assert len(list(folder.glob("*.exr"))) == 16
+    assert len(list(folder.glob("*.exr"))) == 4 * 3
     assert {name: (folder / name).stat().st_mtime_ns for name in kept} == kept
 
 
@@ -180,10 +182,11 @@ def test_the_window_is_free_while_it_bakes(ocean, extension, saved):
     assert not bake.is_complete
     process.forget(bake)
     assert process.running(ocean) is None
-    made = len(list(bake.folder.glob("records/*.json")))
-    assert 3 <= made < 199
-    again = process.start(ocean, shots.shot_of(ocean, saved, frames), frames[: made + 1])
+    made = sorted(int(path.stem) for path in bake.folder.glob("records/*.json"))
+    assert 3 <= len(made) < 199
+    missing = next(frame for frame in frames if frame not in made)
+    again = process.start(ocean, shots.shot_of(ocean, saved, frames), (*made, missing))
     again.wait()
     process.forget(again)
     assert again.is_complete, again.error
-    assert again.left < made
+    assert again.left == 1
