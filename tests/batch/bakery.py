@@ -136,9 +136,9 @@ class Watch:
         assert self.looks > 0, "nothing was seen at all"
 
     def _look(self) -> None:
-        while not self._ended.wait(0.01):
-            for path in (*self.cache.glob("*/v*/*.exr"), *self.cache.glob("*/v*/records/*.json")):
-                if not path.name.startswith(".") and self._is_new(path):
+        while not self._ended.wait(0.025):
+            for path in self._visible():
+                if self._is_new(path):
                     self.looks += 1
                     try:
                         (_read_image if path.suffix == ".exr" else _read_record)(path)
@@ -147,6 +147,12 @@ class Watch:
                     except Exception as error:  # noqa: BLE001 - whatever it is, the file was not whole
                         if path.exists():
                             self.problems.append(f"{path.name}: {error!r}")
+
+    def _visible(self) -> Iterator[Path]:
+        for folder in (*self.cache.glob("*/v*"), *self.cache.glob("*/v*/records")):
+            for path in folder.iterdir():
+                if path.suffix in (".exr", ".json") and not path.name.startswith((".", "bake")):
+                    yield path
 
     def _is_new(self, path: Path) -> bool:
         try:

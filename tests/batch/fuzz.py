@@ -22,16 +22,17 @@ from ocean_tweak.export.cache.job import sealed
 from ocean_tweak.export.cache.records import file_hash
 
 MEMORY = 1_500 * 2**20
-SECONDS = 30
+#: of the processor; whoever started this limits the time that passes
+SECONDS = 20
 WORDS = (
     b"nan", b"1e999", b"-1", b"null", b"[]", b"{}", b'"', b"1e999999999", b"9" * 400, b"9" * 5000, b"true",
     b"[" * 100_000, b'{"a":' * 5000, b"\xff\xfe", b"\x00" * 40, b"../../x", b"\\ud800", b"0.1e-400",
-    b"1-1000000", b"4294967295", b"\xff\xff\xff\x7f",
+    b"1-20000", b"4294967295", b"\xff\xff\xff\x7f",
 )  # fmt: skip
 
 VALUES = (
     None, -1, 0, 10**400, 1e300, 5e-324, True, "", "x" * 1000, [], {}, "\ud800", "1e99999999", float("nan"),
-    "1-1000000", ["disp"] * 3, {"a": 1},
+    "1-20000", ["disp"] * 3, {"a": 1},
 )  # fmt: skip
 
 
@@ -133,9 +134,9 @@ def run(pristine: Path, scratch: Path, seeds: range) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     for seed in seeds:
         print(seed, flush=True)
-        signal.alarm(SECONDS)  # ends the process where a command hangs
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)  # ends the process where a command goes on and on
         attempt(pristine, scratch, seed)
-    signal.alarm(0)
+    signal.setitimer(signal.ITIMER_PROF, 0)
     print("done", flush=True)
 
 

@@ -24,7 +24,6 @@ from tests.batch.bakery import (
     leftovers,
     only_folder,
     records,
-    run,
     start,
     times,
     write_sea,
@@ -83,35 +82,37 @@ def beating(copy: Path) -> Iterator[Path]:
     thread.join()
 
 
-def test_the_life_of_a_lock(sea: Path, tmp_path: Path) -> None:
+def test_the_life_of_a_lock(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Held, refused by name, never taken from the living, refused after its death, taken when asked."""
-    arguments = bake(sea, tmp_path, "1-2000", "--workers", 1)
-    first = start(*arguments)
+
+    def attempt(frames: str, *more: str) -> tuple[int, str]:
+        code = main(bake(sea, tmp_path, frames, "--workers", 1, *more))
+        return code, capsys.readouterr().err
+
+    first = start(*bake(sea, tmp_path, "1-2000", "--workers", 1))
     baking(first, tmp_path, 1)
     folder = only_folder(tmp_path)
     holder = f"are being baked by process {first.pid} on {HOST}"
 
     for more in ([], ["--take-over"]):
-        second = run(*bake(sea, tmp_path, "1-2000", "--only", "7-9", "--workers", 1, *more))
-        assert second.returncode == 1
-        assert f"frames 7-9 {holder}" in second.stderr
-        assert second.stderr.count("\n") == 1
-    assert "is alive" in second.stderr
-    refused = run("clean", folder)
-    assert refused.returncode == 1
-    assert holder in refused.stderr
+        code, err = attempt("1-2000", "--only", "7-9", *more)
+        assert code == 1
+        assert f"frames 7-9 {holder}" in err
+        assert err.count("\n") == 1
+    assert "is alive" in err
+    assert main(["clean", str(folder)]) == 1
+    assert holder in capsys.readouterr().err
     assert first.poll() is None
-    # other frames of the same folder are free
-    assert run(*bake(sea, tmp_path, "3000-3001", "--workers", 1)).returncode == 0
+    assert attempt("3000-3001") == (0, "")  # other frames of the same folder are free
 
     first.kill()
     end(first)
     for more in ([], ["--wait"]):
-        third = run(*bake(sea, tmp_path, "1-2000", "--only", "1-3", "--workers", 1, *more))
-        assert third.returncode == 1
-        assert f"{holder}, which has died: take its lock over with --take-over" in third.stderr
-    assert run(*bake(sea, tmp_path, "1-3", "--workers", 1, "--take-over")).returncode == 0
-    assert leftovers(folder) == [] or all(".part" in name for name in leftovers(folder))
+        code, err = attempt("1-2000", "--only", "1-3", *more)
+        assert code == 1
+        assert f"{holder}, which has died: take its lock over with --take-over" in err
+    assert attempt("1-3", "--take-over") == (0, "")
+    assert all(".part" in name for name in leftovers(folder))
 
 
 def test_of_two_that_come_at_once_one_refuses(sea: Path, tmp_path: Path) -> None:

@@ -11,8 +11,8 @@ import pytest
 from ocean_tweak.cli import main
 from tests.batch.bakery import end, image_contents, only_folder, run, start, times, write_sea
 
-FRAMES = 6
-MAPS = "foam,disp,vel,normal"
+FRAMES = 4
+MAPS = "foam,disp,vel"
 GUSTS = {
     "first_frame": 0,
     "samples": {
@@ -41,7 +41,7 @@ def in_one_go(sea: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, 
     cache = tmp_path_factory.mktemp("whole")
     assert main(bake(sea, cache, "--workers", 1)) == 0
     hashes = image_contents(only_folder(cache))
-    assert len(set(hashes.values())) == len(hashes) == 4 * FRAMES
+    assert len(set(hashes.values())) == len(hashes) == 3 * FRAMES
     return hashes
 
 
@@ -66,7 +66,7 @@ def test_four_workers(sea: Path, in_one_go: dict[str, str], tmp_path: Path) -> N
 
 def test_processes_that_share_a_folder(sea: Path, in_one_go: dict[str, str], tmp_path: Path) -> None:
     """Two have chunks of their own, two others the same frames again: these wait and find them made."""
-    chunks = [["--only", "1-4"], ["--only", f"5-{FRAMES}"], ["--only", f"3-{FRAMES}"], []]
+    chunks = [["--only", "1-2"], ["--only", f"3-{FRAMES}"], ["--only", f"2-{FRAMES}"], []]
     processes = [start(*bake(sea, tmp_path, *chunk, "--wait", "--workers", 1)) for chunk in chunks]
     for process in processes:
         code, _, err = end(process)
@@ -76,7 +76,7 @@ def test_processes_that_share_a_folder(sea: Path, in_one_go: dict[str, str], tmp
 
 def test_maps_in_another_order_are_the_same_job(sea: Path, in_one_go: dict[str, str], tmp_path: Path) -> None:
     assert main(bake(sea, tmp_path, "--only", "1", "--workers", 1)) == 0
-    other = [part.replace(MAPS, "normal,vel,disp,foam") for part in bake(sea, tmp_path)]
+    other = [part.replace(MAPS, "vel,disp,foam") for part in bake(sea, tmp_path)]
     assert main([*other, "--only", "2", "--workers", "1"]) == 0
     assert image_contents(only_folder(tmp_path)).items() <= in_one_go.items()
 
