@@ -239,13 +239,3 @@ def _written(build: Builder, geometry: Socket, surface: _Surface) -> Socket:
         "GeometryNodeSetMeshNormal", smooth, {"Custom Normal": surface.normal}, mode="FREE", domain="POINT"
     )
     return build.switch("GEOMETRY", surface.has_normal, result, shaded)
-
-
-#: every kind of group that an ocean's modifiers can hold
-KINDS = (
-    GRID,
-    SHOWN_FRAME,
-    PATCH,
-    WARNINGS,
-    *(ocean_group(patches) for patches in range(1, MOST_PATCHES + 1)),
-)

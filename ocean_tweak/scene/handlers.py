@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import bpy
 from bpy.app.handlers import persistent
 
-from ..nodes.ocean import KINDS
+from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
 from . import bake_process, evaluation, live_image, refinement
 from .animated import is_animated, shown_settings
@@ -65,7 +65,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     bake_process.stop_all()
     _forget_all()
     _subscribe()
-    renew_groups(KINDS)
+    renew_groups(ALL_KINDS)
     refresh_live_oceans()
 
 

@@ -2,6 +2,8 @@
 """A file with node groups of another version gets the present ones, and keeps what was set on them."""
 
 import dataclasses
+import importlib
+import pkgutil
 
 import bpy
 import pytest
@@ -104,3 +106,18 @@ def test_a_node_in_another_group_keeps_links_and_values(
     assert node.inputs["Geometry"].links[0].from_node.bl_idname == "NodeGroupInput"
     assert node.outputs["Geometry"].links[0].to_node.bl_idname == "NodeGroupOutput"
     assert node.inputs["Repeats X"].default_value == 1
+
+
+def test_every_kind_is_renewed(extension, package):
+    """A kind that is forgotten would stay at its old version in old files."""
+    nodes = extension("nodes")
+    kind_of_group = extension("nodes.versioned").GroupKind
+    known = extension("nodes.kinds").ALL_KINDS
+    names = [module.name for module in pkgutil.iter_modules(nodes.__path__)]
+    modules = [importlib.import_module(f"{nodes.__name__}.{name}") for name in names]
+    made = {
+        value for module in modules for value in vars(module).values() if isinstance(value, kind_of_group)
+    }
+    assert len(made) > 10
+    assert made <= set(known)
+    assert {extension("nodes.ocean").ocean_group(count) for count in (1, 2, 8)} <= set(known)

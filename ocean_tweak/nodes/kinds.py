@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All node groups that the extension can build, those inside of others first."""
+
+from __future__ import annotations
+
+from . import floating, frame_warnings, grid, horizon, ocean, patch, sample, shown_frame, surface, water
+
+ALL_KINDS = (
+    grid.GRID,
+    shown_frame.SHOWN_FRAME,
+    patch.PATCH,
+    frame_warnings.WARNINGS,
+    *(ocean.ocean_group(patches) for patches in range(1, ocean.MOST_PATCHES + 1)),
+    surface.GRID_FACTS,
+    surface.CELL,
+    surface.SURFACE,
+    sample.SAMPLE,
+    floating.STENCIL,
+    floating.RIDE,
+    floating.FLOAT,
+    floating.CARRIER,
+    horizon.HORIZON,
+    water.WATER,
+)
