@@ -16,13 +16,19 @@ _kept: list[tuple[str, str, str, int, int]] = []
 def _items(_owner: object, context: bpy.types.Context | None) -> list[tuple[str, str, str, int, int]]:
     # enumerations must not be made while Blender only collects its properties' documentation
     if context is None:
-        return [(*_NONE, 0, 0)]
+        return [(*_NONE, _custom_icon(), 0)]
     presets = user_presets.all_presets()
-    _kept[:] = [(*_NONE, 0, 0)] + [
+    _kept[:] = [(*_NONE, _custom_icon(), 0)] + [
         (key, preset.title, preset.description, PREVIEWS.thumbnail(key), number)
         for number, (key, preset) in enumerate(presets.items(), start=1)
     ]
     return _kept
+
+
+def _custom_icon() -> int:
+    """Blender's own picture of an ocean."""
+    icons = bpy.types.UILayout.bl_rna.functions["prop"].parameters["icon"].enum_items
+    return int(icons["MOD_OCEAN"].value)
 
 
 def _chosen(_owner: object) -> int:
