@@ -17,6 +17,7 @@ from tools.project import BUILD
 
 SIZE = (1280, 800)
 PICTURES = BUILD / "window"
+FAILED = pytest.StashKey()
 SCRIPT = Path(__file__).with_name("in_blender.py")
 
 
@@ -54,7 +55,7 @@ def session_hand(blender, environment):
 
 
 @pytest.fixture
-def hand(session_hand):
+def hand(session_hand, request):
     """Mouse and keyboard on a new file, with the tab of the extension open."""
     hand = session_hand
     hand.key("Escape")
@@ -62,4 +63,15 @@ def hand(session_hand):
     hand.ask("new_file()")
     hand.wait("len(oceans())", 0)
     hand.open_sidebar()
-    return hand
+    yield hand
+    if request.node.stash.get(FAILED, False):
+        hand.keep(f"failed-{request.node.name}", moving=True)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    """Remember a failure, for a last picture of the window."""
+    report = yield
+    if call.when == "call" and report.failed:
+        item.stash[FAILED] = True
+    return report

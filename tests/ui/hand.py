@@ -12,7 +12,7 @@ from PIL import Image
 # a step of the search: half a button, at 100 %
 STEP = 10
 # where buttons of a row are looked for, as a share of the region's width without its tabs
-ACROSS = (0.62, 0.3, 0.9)
+ACROSS = (0.62, 0.3, 0.9, 0.18)
 TABS = 26
 # keycodes: of each F key's symbol xdotool takes one that Blender does not know
 FUNCTION_KEYS = {"F3": "69", "F12": "96"}
@@ -75,13 +75,20 @@ class Hand:
         self.settle()
 
     def drag_from(self, x, y, right, down=0, steps=6):
-        """Pull with the left button, a little at a time as a hand does."""
+        """Pull with the left button, a little at a time as a hand does.
+
+        A number takes hold of the pointer and moves it, so that only steps count and not places.
+        """
         self.move(x, y)
         self.settle(1)
         self._display.do("mousedown 1")
+        self.settle(1)
+        done = (0, 0)
         try:
             for step in range(1, steps + 1):
-                self.move(x + right * step / steps, y + down * step / steps)
+                due = (round(right * step / steps), round(down * step / steps))
+                self._display.do(f"mousemove_relative -- {due[0] - done[0]} {due[1] - done[1]}")
+                done = due
                 self.settle(1)
         finally:
             self._display.do("mouseup 1")
@@ -101,15 +108,25 @@ class Hand:
         Raises NotFound with all that was there.
         """
         seen = {}
+        deadline = time.monotonic() + DEADLINE
+        while time.monotonic() < deadline:
+            place = self._search(target, seen)
+            if place is None:
+                break
+            # pictures and statistics may come late, and move all that is below them
+            self.still()
+            if self._is_at(*place, target, seen):
+                self._hints[target] = place
+                return place
+        raise NotFound(f"no button {target!r} in the sidebar; there are {sorted(filter(None, seen))}")
+
+    def _search(self, target, seen):
         place = self._look(target, seen)
         if place is None:
             self._scroll(up=True)
             place = self._look(target, seen)
         while place is None and self._scroll():
             place = self._look(target, seen)
-        if place is None:
-            raise NotFound(f"no button {target!r} in the sidebar; there are {sorted(filter(None, seen))}")
-        self._hints[target] = place
         return place
 
     def _look(self, target, seen):
@@ -186,28 +203,43 @@ class Hand:
             self.drag_from(left, top + 0.8 * height, before - wanted)
         self.wait("box()[2]", lambda now: abs(now - width) <= 6)
 
-    def open_panel(self, name):
-        """Open a closed panel of the sidebar: A over its header, wherever that is."""
-        if self._is_drawn(name):
-            return
-        self._scroll(up=True)
-        while True:
-            left, top, width, height = self.ask("box()")
-            for y in range(int(top + STEP), int(top + height), STEP):
-                self.move(left + 0.3 * width, y)
+    def open_panel(self, switch, name):
+        """Open a closed panel whose header has a switch, with A over the header."""
+        _, y = self.find(switch)
+        left, _, width, _ = self.ask("box()")
+        self.move(left + 0.5 * width, y)
+        self.settle()
+        self.key("a")
+        self.ask(f"drawn.watch({name!r})")
+        self.settle()
+        self.wait(f"drawn.count({name!r}) > 0")
+
+    def choose(self, target, expression, value):
+        """Click along a row of choices until this one is chosen."""
+        _, y = self.find(target)
+        left, _, width, _ = self.ask("box()")
+        places = [x for x in range(int(left), int(left + width), STEP) if self._is_at(x, y, target, {})]
+        # the ends of the row and its middle; a click on what is chosen already does nothing
+        for x in (places[1], places[-2], places[len(places) // 2]) if len(places) > 2 else places:
+            self.click(x, y)
+            self.still()
+            if self.ask(expression) == value:
+                return
+        raise NotFound(f"{target!r} has no choice that makes {expression} {value!r}")
+
+    def open_menu(self, name, beside):
+        """Click the button of a menu, of which Blender tells nothing, in the rows around another button."""
+        x, middle = self.find(beside)
+        self.ask(f"drawn.watch({name!r})")
+        for distance in range(STEP, 4 * STEP, STEP):
+            for y in (middle - distance, middle + distance):
+                self.move(x, y)
                 if self.ask("under_mouse()"):
                     continue
-                self.key("a")
-                if self._is_drawn(name):
+                self.click(x, y)
+                if self.ask(f"drawn.count({name!r})"):
                     return
-                self.key("a")
-            if not self._scroll():
-                raise NotFound(f"no panel {name} in the sidebar")
-
-    def _is_drawn(self, name):
-        self.ask(f"drawn.watch({name!r})")
-        self.settle(4)
-        return self.ask(f"drawn.count({name!r})") > 0
+        raise NotFound(f"no menu {name} beside {beside!r}")
 
     def pick(self, command, most=40):
         """Go down an open menu to the entry with this Python command, and take it."""
@@ -233,9 +265,14 @@ class Hand:
             self.settle(3)
         return picture
 
-    def keep(self, name):
-        """Keep what the window shows, as a picture of this name; return it."""
-        width, height, pixels = self.still()
+    def keep(self, name, moving=False):
+        """Keep what the window shows as a picture of this name; return it.
+
+        moving : take it now; otherwise when the sea is complete and the picture stands still
+        """
+        if not moving:
+            self.wait("is_refining()", False)
+        width, height, pixels = self._display.picture() if moving else self.still()
         picture = Image.frombuffer("RGB", (width, height), pixels, "raw", "BGRX", 0, 1)
         picture.save(self._pictures / f"{name}.png")
         self.kept.append(name)

@@ -132,6 +132,12 @@ def new_file():
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_splash=False, use_empty=False)
 
 
+def save(path):
+    """Save the file as."""
+    with over("WINDOW"):
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
 def window():
     return bpy.context.window_manager.windows[0]
 
@@ -192,6 +198,11 @@ def ocean():
     return settings
 
 
+def is_refining():
+    """Whether the extension has something left to do when there is time."""
+    return bpy.app.timers.is_registered(extension("scene.refinement").go_on)
+
+
 def evaluated_ocean():
     """The mesh of the one ocean, as the viewport has it."""
     item = next(item for item in bpy.data.objects if item.ocean_tweak.is_ocean)
@@ -206,10 +217,10 @@ def highest():
     return float(places[2::3].max())
 
 
-def open_menu(name):
-    """Open a menu under the mouse, as a key that is bound to it does."""
-    with over("WINDOW"):
-        bpy.ops.wm.call_menu("INVOKE_DEFAULT", name=name)
+def baking():
+    """The bake of the one ocean, None where there is none."""
+    item = next(item for item in bpy.data.objects if item.ocean_tweak.is_ocean)
+    return extension("scene.bake_process").running(item)
 
 
 # each sample of the viewport's anti-aliasing is a drawing of its own

@@ -10,14 +10,14 @@ from PIL import Image
 # Debian's Blender has no denoiser
 QUICK = (
     "scene = bpy.context.scene; scene.cycles.samples = 2; scene.cycles.use_denoising = False; "
-    "scene.render.resolution_percentage = 15; "
+    "scene.render.resolution_percentage = 10; ocean().resolution = ocean().viewport_resolution = 128; "
 )
 
 
 @pytest.fixture
 def scene(hand):
     """The scene of one click, quick to render."""
-    hand.press("ocean.add_scene(mood='FRESH_BREEZE'")
+    hand.press("ocean.add_scene(")
     hand.wait("len(oceans())", 1)
     hand.keep("ocean-scene")
     hand.ask(f"run({QUICK!r})")
@@ -50,7 +50,7 @@ def test_ocean_scene_renders_from_the_window(scene, tmp_path):
 
 def test_animation_renders_from_the_window(scene, tmp_path):
     hand = scene
-    wishes = f"scene.frame_start, scene.frame_end = 1, 3; scene.render.filepath = {str(tmp_path / 'frame')!r}"
+    wishes = f"scene.frame_start, scene.frame_end = 1, 2; scene.render.filepath = {str(tmp_path / 'frame')!r}"
     hand.ask(f"run({'scene = bpy.context.scene; ' + wishes!r})")
     hand.to_viewport()
     hand.key("ctrl+F12")
@@ -58,5 +58,5 @@ def test_animation_renders_from_the_window(scene, tmp_path):
     # the sea of each frame is made on the render's thread, and no two frames are alike
     assert ["frame_change_pre", False, True] in seen
     pictures = [np.asarray(Image.open(file).convert("RGB"), float) for file in sorted(tmp_path.glob("*.png"))]
-    assert len(pictures) == 3
+    assert len(pictures) == 2
     assert all(abs(first - second).max() > 10 for first, second in itertools.pairwise(pictures))

@@ -15,10 +15,9 @@ def test_nothing_blocks_the_window_while_a_value_is_dragged(hand):
     before = hand.ask("ocean().layers[0].wind_speed")
 
     hand.ask("clock.start()")
-    hand.drag("layers[0].wind_speed", right=9, steps=9)
+    hand.drag("layers[0].wind_speed", right=90, steps=9)
     # until the sea of all samples, its foam and its statistics are there
-    hand.wait("bool(ocean().statistics)")
-    hand.wait("bpy.app.timers.is_registered(extension('scene.refinement').go_on)", False)
+    hand.wait("is_refining()", False)
     stays, gap = hand.ask("clock.stop()")
 
     assert hand.ask("ocean().layers[0].wind_speed") != before
