@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Patterns for what is finer than any grid: ripples and the lace of foam, both square and repeating.
+"""Patterns for what no grid holds: ripples, the lace of foam and gusts, all square and repeating.
 
 They are of unit size: a shader gives them their length in metres and their strength.
 """
@@ -46,9 +46,19 @@ def foam_lace(resolution: int, seed: int = 1) -> Array:
     height = 0.05 * _smooth_noise(resolution, seed + 12)
     for number, (cells, weight) in enumerate(_LACE):
         height += weight * _wall_distance(x + bend_x, y + bend_y, cells, seed + number)
-    order = np.empty(height.size)
-    order[np.argsort(height, axis=None, kind="stable")] = np.arange(height.size) + 0.5
-    return order.reshape(height.shape) / height.size
+    return _evened(height)
+
+
+def gusts(resolution: int, seed: int = 2) -> Array:
+    """(N, N) in 0…1, evenly distributed: smooth bumps of an eighth to a third of the pattern."""
+    return _evened(_smooth_noise(resolution, seed))
+
+
+def _evened(field: Array) -> Array:
+    """Each value's rank, 0…1."""
+    order = np.empty(field.size)
+    order[np.argsort(field, axis=None, kind="stable")] = np.arange(field.size) + 0.5
+    return order.reshape(field.shape) / field.size
 
 
 def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:

@@ -123,13 +123,10 @@ class Shading:
         """A number from an attribute."""
         return self.attribute(name, of).outputs[2]
 
-    def noise(self, position: Socket, scale: Value, w: Socket | None = None, **inputs: Value) -> Socket:
-        """Fractal noise around 0.5, over three dimensions or, with w, four."""
+    def noise(self, position: Socket, scale: Value, **inputs: Value) -> Socket:
+        """Fractal noise around 0.5."""
         values = {"Vector": position, "Scale": scale, **inputs}
-        dimensions = "3D"
-        if w is not None:
-            values["W"], dimensions = w, "4D"
-        return self.node("ShaderNodeTexNoise", values, noise_dimensions=dimensions).outputs[0]
+        return self.node("ShaderNodeTexNoise", values, noise_dimensions="3D").outputs[0]
 
     def ramp(self, factor: Socket, stops: Sequence[tuple[float, tuple[float, float, float]]]) -> Socket:
         """Colour of a ramp; `stops` are positions 0…1 with linear colours."""

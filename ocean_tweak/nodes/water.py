@@ -20,13 +20,14 @@ from .names import CUSP, FOAM
 from .shading import Shading
 from .versioned import GroupKind
 from .water_foam import foam_cover, foam_shader
-from .water_pattern import DEPTH, SLOPES, Place, periodic_noise, place, slopes, tile
+from .water_pattern import DEPTH, SLOPES, Place, gust, place, slopes, tile
 
 _THROWN_BACK = 0.47
 _SURFACE_FACTOR = 0.33
 
 #: ripples: size of their tile in samples of the mesh, turn in rad, share of the slope variance
 _RIPPLES = ((16.0, 0.0, 0.36), (8.3, 0.42, 0.27), (3.1, -0.35, 0.17))
+_GUST_SIZE = 240.0  # m
 #: their wavelengths as a share of the tile, where their speed is taken
 _TYPICAL_WAVE = 1.0 / 24.0
 
@@ -102,28 +103,14 @@ def _build(tree: bpy.types.NodeTree) -> None:
     foam = shade.math("MAXIMUM", foam, given["Foam Map"], clamp=True)
     normal, roughness = _surface(shade, given, at)
     absorption, backscatter = _coefficients(shade, given, foam)
-    water = shade.node(
-        "ShaderNodeBsdfPrincipled",
-        {
-            "Base Color": _body(shade, given, absorption, backscatter),
-            "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
-        },
-        distribution="GGX",
-    ).outputs[0]  # fmt: skip
-    clear = shade.node(
-        "ShaderNodeBsdfPrincipled",
-        {
-            "Base Color": (1.0, 1.0, 1.0, 1.0), "Transmission Weight": 1.0,
-            "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
-        },
-        distribution="GGX",
-    ).outputs[0]  # fmt: skip
+    through = given["Transmission"]
+    inputs = {
+        "Base Color": shade.mix_vectors(through, _body(shade, given, absorption, backscatter), (1.0,) * 3),
+        "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
+    }  # fmt: skip
+    water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     cover = foam_cover(shade, given, at, foam)
-    shown = shade.mix_shaders(
-        cover.amount,
-        shade.mix_shaders(given["Transmission"], water, clear),
-        foam_shader(shade, given, at, cover, normal),
-    )
+    shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, cover, normal))
     hazy = _in_haze(shade, given, at, shown)
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
 
@@ -131,7 +118,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 def _surface(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket, Socket]:
     """The normal with the ripples near the camera, and the roughness of those that are not drawn."""
     variance = shade.math("MULTIPLY", shade.value(SLOPES, "OBJECT"), given["Slopes"])
-    uneven = shade.smooth(periodic_noise(shade, at, 45.0, 2.0), 0.36, 0.64, 0.25, 1.75)
+    uneven = shade.smooth(gust(shade, at, _GUST_SIZE), 0.0, 1.0, 0.25, 1.75)
     variance = shade.math("MULTIPLY", variance, shade.mix(given["Gusts"], 1.0, uneven))
     total, drawn = None, 0.0
     for samples, turn, share in _RIPPLES:

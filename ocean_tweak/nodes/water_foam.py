@@ -16,7 +16,6 @@ from .water_pattern import Place, tile
 _STREAK_LENGTH = 70.0  # m
 _STREAK_NARROWER = 5.0
 _SPREAD = 1.5
-_THICKNESS = 0.05  # m, of the height that shading shows
 
 
 class Cover(NamedTuple):
@@ -52,15 +51,10 @@ def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Socket
     return Cover(cover, shade.smooth(above, -0.05, 0.65))
 
 
-def foam_shader(shade: Shading, given: dict[str, Socket], at: Place, cover: Cover, normal: Socket) -> Socket:
+def foam_shader(shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket) -> Socket:
     """Bubbles scatter all light that meets them; thin foam lets some of it through to the water."""
     colour = shade.scale(given["Foam Color"], shade.mix(cover.thickness, 0.72, 1.0))
-    unit = shade.math("DIVIDE", _THICKNESS, at.metres)
-    relief = shade.node(
-        "ShaderNodeBump",
-        {"Strength": 0.6, "Distance": unit, "Height": cover.thickness, "Normal": normal},
-    ).outputs[0]
     inputs = {
-        "Base Color": colour, "Roughness": given["Foam Roughness"], "IOR": given["IOR"], "Normal": relief,
+        "Base Color": colour, "Roughness": given["Foam Roughness"], "IOR": given["IOR"], "Normal": normal,
     }  # fmt: skip
     return shade.node("ShaderNodeBsdfPrincipled", inputs).outputs[0]

@@ -8,11 +8,12 @@ the domain repeats.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
+import bpy
+
 from .building import Socket
-from .detail_image import detail_image
+from .detail_image import detail_image, gust_image
 from .names import TEXTURE_COORDINATES
 from .shading import Shading
 
@@ -80,9 +81,13 @@ def place(shade: Shading) -> Place:
 
 
 def tile(
-    shade: Shading, at: Place, size: Socket | float, turn: float, travel: Socket | float = 0.0,
+    shade: Shading,
+    at: Place,
+    size: Socket | float,
+    turn: float,
+    travel: Socket | float = 0.0,
     stretch: float = 1.0,
-) -> Tile:  # fmt: skip
+) -> Tile:
     """The detail image laid over the water.
 
     size : of the tile along the wind, m, as near as whole numbers come
@@ -90,6 +95,22 @@ def tile(
     travel : m that the pattern has gone along its x axis
     stretch : whole number, by which the tile is narrower across
     """
+    axis, (u, v) = _laid(shade, at, size, turn)
+    u = shade.math("SUBTRACT", u, shade.math("DIVIDE", travel, size))
+    colour = _read(shade, detail_image(), u, shade.math("MULTIPLY", v, stretch))
+    return Tile(colour, shade.separate(colour)[2], shade.vector("NORMALIZE", axis))
+
+
+def gust(shade: Shading, at: Place, size: float) -> Socket:
+    """How much of a gust there is, 0…1; the pattern's bumps are an eighth to a third of `size` m."""
+    _, (u, v) = _laid(shade, at, size, 0.9)
+    return shade.separate(_read(shade, gust_image(), u, v))[0]
+
+
+def _laid(
+    shade: Shading, at: Place, size: Socket | float, turn: float
+) -> tuple[Socket, tuple[Socket, Socket]]:
+    """A tile's x axis in periods of the domain, and the point in tiles."""
     periods = shade.math("MAXIMUM", shade.math("DIVIDE", at.domain, size), 1.0)
     angle = shade.math("ADD", at.wind, turn)
     a, b = (
@@ -97,14 +118,16 @@ def tile(
         for name in ("COSINE", "SINE")
     )
     axis, across = shade.combine(a, b), shade.combine(shade.math("MULTIPLY", b, -1.0), a)
-    u = shade.math("SUBTRACT", shade.number("DOT_PRODUCT", at.rest, axis), shade.math("DIVIDE", travel, size))
-    v = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", at.rest, across), stretch)
-    texture = shade.node(
-        "ShaderNodeTexImage", {"Vector": shade.combine(u, v)},
-        image=detail_image(), interpolation="Linear", extension="REPEAT",
-    )  # fmt: skip
-    _, _, lace = shade.separate(texture.outputs[0])
-    return Tile(texture.outputs[0], lace, shade.vector("NORMALIZE", axis))
+    return axis, (
+        shade.number("DOT_PRODUCT", at.rest, axis),
+        shade.number("DOT_PRODUCT", at.rest, across),
+    )
+
+
+def _read(shade: Shading, image: bpy.types.Image, u: Socket, v: Socket) -> Socket:
+    inputs = {"Vector": shade.combine(u, v)}
+    settings = {"image": image, "interpolation": "Linear", "extension": "REPEAT"}
+    return shade.node("ShaderNodeTexImage", inputs, **settings).outputs[0]
 
 
 def slopes(shade: Shading, of: Tile, strength: Socket) -> Socket:
@@ -114,18 +137,3 @@ def slopes(shade: Shading, of: Tile, strength: Socket) -> Socket:
     side = shade.combine(shade.math("MULTIPLY", y, -1.0), x)
     both = shade.vector("ADD", shade.scale(of.along, along), shade.scale(side, across))
     return shade.scale(both, strength)
-
-
-def periodic_noise(shade: Shading, at: Place, size: float, detail: float = 1.0) -> Socket:
-    """Noise around 0.5 with bumps of about `size` m, which repeats with the domain.
-
-    The plane is rolled up to a torus in four dimensions, where it keeps all lengths.
-    """
-    turns = shade.separate(shade.scale(at.rest, 2.0 * math.pi))
-    radius = shade.math("DIVIDE", at.domain, 2.0 * math.pi * size)
-    x, y, z, w = (
-        shade.math("MULTIPLY", radius, shade.math(name, angle))
-        for angle in turns[:2]
-        for name in ("COSINE", "SINE")
-    )
-    return shade.noise(shade.combine(x, y, z), 1.0, w, Detail=detail)
