@@ -38,6 +38,6 @@ def test_a_share_of_the_values_lies_below_that_share(pattern):
 @pytest.mark.parametrize("pattern", [foam_lace, gusts])
 def test_edges_meet(pattern):
     values = pattern(256)
-    inside = np.abs(np.diff(values, axis=0)).mean(), np.abs(np.diff(values, axis=1)).mean()
-    assert np.abs(values[0] - values[-1]).mean() < 1.5 * inside[0]
-    assert np.abs(values[:, 0] - values[:, -1]).mean() < 1.5 * inside[1]
+    for rows in (values, values.T):
+        steps = np.abs(np.diff(rows, axis=0)).mean(axis=1)
+        assert np.abs(rows[0] - rows[-1]).mean() < 1.2 * steps.max()
