@@ -33,7 +33,7 @@ def test_empty_suite_fails_like_a_failing_one(tmp_path, source, passed):
 @pytest.fixture
 def source_suites(monkeypatch):
     good = run_tests.Result("bpy", "tests/core", True, "1 passed in 1s")
-    monkeypatch.setattr(run_tests, "run_source_suites", lambda blender: [good])
+    monkeypatch.setattr(run_tests, "run_source_suites", lambda blender, suites: [good])
 
 
 @pytest.mark.parametrize(("required", "code"), [("1", 1), ("0", 0)])
