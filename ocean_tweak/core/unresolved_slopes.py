@@ -24,7 +24,7 @@ from .sea_spectrum import SeaSpectrum
 
 Array = NDArray[np.float64]
 
-_RADIAL_NODES = 2048
+_RADIAL_NODES = 512
 _RING_NODES = 24
 _ARC_NODES = 16
 

@@ -22,6 +22,8 @@ from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND
 from .units import metres_per_unit
 
 _KEY = "ocean_tweak_material"
+# marks flat water that stands for the ocean it is a child of
+_FAR = "ocean_tweak_is_far"
 NAME = "Ocean Tweak Water"
 
 #: inputs of the group for waters of some kinds; absorption and backscatter per metre in red, green and blue
@@ -46,29 +48,38 @@ def describe(
 ) -> None:
     """Tell the material about an ocean, by custom properties; those that hold their value stay untouched.
 
+    The ocean's horizon goes along. A linked object keeps what it has: Blender drops changes to it.
+
     parameters : of the render
     scene : whose units hold, by default the first one that the object is in
     """
-    wind = foam_wind(parameters)
-    _set_properties(
-        item,
-        {
-            DOMAIN: parameters.domain_size,
-            SPACING: parameters.domain_size / parameters.resolution,
-            SLOPES: unresolved_slope_variance(parameters),
-            WIND: wind.direction if wind is not None else 0.0,
-            DEPTH: parameters.water.depth,
-            METRES: _metres(item, scene),
-        },
-    )
+    values = _values(item, parameters, scene)
+    if _set_properties(item, values):
+        for child in item.children:
+            if _FAR in child:
+                _set_properties(child, {**values, SLOPES: total_slope_variance(parameters)})
 
 
 def describe_far(
     item: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene | None = None
 ) -> None:
     """Tell the material about flat water that stands for an ocean far away: all waves are roughness."""
-    describe(item, parameters, scene)
-    _set_properties(item, {SLOPES: total_slope_variance(parameters)})
+    slopes = total_slope_variance(parameters)
+    _set_properties(item, {**_values(item, parameters, scene), SLOPES: slopes, _FAR: 1.0})
+
+
+def _values(
+    item: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene | None
+) -> dict[str, float]:
+    wind = foam_wind(parameters)
+    return {
+        DOMAIN: parameters.domain_size,
+        SPACING: parameters.domain_size / parameters.resolution,
+        SLOPES: unresolved_slope_variance(parameters),
+        WIND: wind.direction if wind is not None else 0.0,
+        DEPTH: parameters.water.depth,
+        METRES: _metres(item, scene),
+    }
 
 
 def _metres(item: bpy.types.Object, scene: bpy.types.Scene | None) -> float:
@@ -76,10 +87,14 @@ def _metres(item: bpy.types.Object, scene: bpy.types.Scene | None) -> float:
     return float(metres_per_unit(scenes[0])) if scenes else 1.0
 
 
-def _set_properties(item: bpy.types.Object, values: Mapping[str, float]) -> None:
-    for name, value in values.items():
-        if item.get(name) != value:
-            item[name] = value
+def _set_properties(item: bpy.types.Object, values: Mapping[str, float]) -> bool:
+    """Set what differs; returns whether anything did."""
+    if item.library is not None:
+        return False
+    changed = {name: value for name, value in values.items() if item.get(name) != value}
+    for name, value in changed.items():
+        item[name] = value
+    return bool(changed)
 
 
 def water_material(water: str = "OCEANIC") -> bpy.types.Material:

@@ -79,6 +79,19 @@ def test_copies_and_flat_water_reach_the_horizon(quick, empty_scene):
     assert used == {ocean.active_material.name}
 
 
+def test_the_horizon_follows_the_ocean(extension, quick, empty_scene):
+    """It has all the waves as roughness, the ocean only those that its mesh cannot hold."""
+    bpy.ops.ocean.add_scene(mood="FRESH_BREEZE", use_buoy=False)
+    horizon, ocean = by_name(empty_scene, "Ocean Horizon"), ocean_of(empty_scene)
+    assert horizon["ocean_tweak_slope_variance"] > ocean["ocean_tweak_slope_variance"]
+    before = horizon["ocean_tweak_slope_variance"]
+    sea = ocean.ocean_tweak.to_parameters(empty_scene)
+    calmer = sea.replace(layers=(extension("core").WaveLayer(wind_speed=4.0),), domain_size=300.0)
+    extension("scene.water_material").describe(ocean, calmer, empty_scene)
+    assert horizon["ocean_tweak_slope_variance"] < before
+    assert horizon["ocean_tweak_domain_size"] == ocean["ocean_tweak_domain_size"] == 300.0
+
+
 def test_what_a_scene_has_stays(quick, empty_scene):
     camera = bpy.data.objects.new("Mine", bpy.data.cameras.new("Mine"))
     empty_scene.collection.objects.link(camera)
