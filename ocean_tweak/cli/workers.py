@@ -26,6 +26,7 @@ from ..core.frames import Frame, format_frames, parse_frames
 from ..export.cache.job import CacheError, Job, read_job
 from ..export.cache.records import CacheSink
 from ..export.exr import ExrError
+from ..export.python_process import environment, module_command
 from .outcome import DONE, FAILED, message_of
 
 #: how often a process may die before its first frame
@@ -100,9 +101,9 @@ class _Process:
         self._events = events
         self._deaths = deaths
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "ocean_tweak.cli.workers", str(folder)],
+            [*module_command("cli.workers"), str(folder)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            env=_environment(), text=True, encoding="utf-8", errors="replace",
+            env=environment(), text=True, encoding="utf-8", errors="replace",
         )  # fmt: skip
         self._said: list[str] = []
         self._problem: CacheError | OSError | None = None
@@ -184,15 +185,6 @@ def _lines(stream: IO[str] | None) -> Iterator[str]:
     if stream is not None:
         with stream:
             yield from stream
-
-
-def _environment() -> dict[str, str]:
-    """What lets a new Python find this package and what it needs, also from inside Blender."""
-    package = Path(__file__).resolve().parents[2]
-    path = os.pathsep.join([str(package), *(entry for entry in sys.path if entry)])
-    # a process is a worker: threads of its own would only fight with the others'
-    own = {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    return {**os.environ, **own, "PYTHONIOENCODING": "utf-8:backslashreplace"}
 
 
 def main(argv: Sequence[str]) -> int:
