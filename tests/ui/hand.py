@@ -9,10 +9,11 @@ import time
 
 from PIL import Image
 
-# a step of the search: half a button, at 100 %
-STEP = 10
+# pixels at 100 %: half a button; a button; how far apart rows are looked at, so that none is missed
+STEP, BUTTON, ROW = 10, 20, 14
 # where buttons of a row are looked for, as a share of the region's width without its tabs
-ACROSS = (0.62, 0.3, 0.9, 0.18)
+ACROSS = (0.62, 0.3, 0.9)
+SWITCH = 0.18  # and the one in a panel's header
 TABS = 26
 # keycodes: of each F key's symbol xdotool takes one that Blender does not know
 FUNCTION_KEYS = {"F3": "69", "F12": "96"}
@@ -102,7 +103,7 @@ class Hand:
 
     # --- buttons
 
-    def find(self, target):
+    def find(self, target, across=ACROSS):
         """Put the mouse on a button of the sidebar, scrolling where needed; return where that is.
 
         Raises NotFound with all that was there.
@@ -110,7 +111,7 @@ class Hand:
         seen = {}
         deadline = time.monotonic() + DEADLINE
         while time.monotonic() < deadline:
-            place = self._search(target, seen)
+            place = self._search(target, across, seen)
             if place is None:
                 break
             # pictures and statistics may come late, and move all that is below them
@@ -120,25 +121,29 @@ class Hand:
                 return place
         raise NotFound(f"no button {target!r} in the sidebar; there are {sorted(filter(None, seen))}")
 
-    def _search(self, target, seen):
-        place = self._look(target, seen)
-        if place is None:
-            self._scroll(up=True)
-            place = self._look(target, seen)
-        while place is None and self._scroll():
-            place = self._look(target, seen)
-        return place
+    def _search(self, target, across, seen):
+        hint = self._hints.get(target)
+        if hint and self._is_at(*hint, target, seen):
+            return hint
+        # nearly all buttons are in the first column, so it is looked through as a whole before the next
+        for share in across:
+            place = self._look(target, share, seen)
+            if place is None:
+                self._scroll(up=True)
+                place = self._look(target, share, seen)
+            while place is None and self._scroll():
+                place = self._look(target, share, seen)
+            if place is not None:
+                return place
+        return None
 
-    def _look(self, target, seen):
+    def _look(self, target, share, seen):
         left, top, width, height = self.ask("box()")
         scale = self.ask("bpy.context.preferences.system.ui_scale")
-        across = [left + share * (width - TABS * scale) for share in ACROSS]
-        rows = range(int(top + STEP * scale / 2), int(top + height), round(STEP * scale))
-        places = [(x, y) for x in across for y in rows]
-        hint = self._hints.get(target)
-        for x, y in ([hint] if hint else []) + places:
+        x = left + share * (width - TABS * scale)
+        for y in range(int(top + STEP * scale / 2), int(top + height), round(ROW * scale)):
             if self._is_at(x, y, target, seen):
-                inside = y if (x, y) == hint else y + STEP * scale / 2
+                inside = y + (BUTTON - ROW) / 2 * scale
                 return (x, inside) if self._is_at(x, inside, target, seen) else (x, y)
         return None
 
@@ -205,7 +210,7 @@ class Hand:
 
     def open_panel(self, switch, name):
         """Open a closed panel whose header has a switch, with A over the header."""
-        _, y = self.find(switch)
+        _, y = self.find(switch, across=(SWITCH,))
         left, _, width, _ = self.ask("box()")
         self.move(left + 0.5 * width, y)
         self.settle()
