@@ -2,10 +2,10 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core test-long mutate lint bench bench-smoke build docs clean
+.PHONY: help setup demo test test-core test-long test-window mutate lint bench bench-smoke build docs clean
 
 help:       ## this list
-	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
+	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
 
 setup:      ## everything the other targets need, into .tools/ (made once)
 	@$(PYTHON) -m tools.setup
@@ -24,6 +24,10 @@ test-core:  ## the tests of the core alone
 test-long:  ## the tests of bakes, ten times as many kills, shared folders and damaged files
 	@$(PYTHON) -m tools.setup python-5.2
 	@OCEAN_TWEAK_LONG_TESTS=1 $(VENV) -m pytest -q tests/batch
+
+test-window: ## the tests in a real Blender's window, by mouse and keyboard; wants a machine that is quiet
+	@$(PYTHON) -m tools.setup
+	@$(VENV) -m pytest -q tests/ui
 
 mutate:     ## change each physical constant by 2 % and see which test notices (minutes; not part of `test`)
 	@$(PYTHON) -m tools.setup python-5.2

@@ -28,7 +28,6 @@ SOURCE_SUITES = (
 # of files, processes and farms' programs, which are the same whatever Blender there is
 ONCE = ("tests/farm", "tests/batch")
 INSTALLED_SUITES = ("tests/blender", "tests/extension")
-WINDOW_SUITE = "tests/ui"
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 CLOSING_LINE = re.compile(
     r"^=* ?((?:no tests ran|\d+ [a-z]+(?:, \d+ [a-z]+)*) in [\d.]+s.*?)(?: =+)?$", re.MULTILINE
@@ -99,10 +98,7 @@ def run_installed_suites(blender: real_blender.RealBlender) -> list[Result]:
         str(ROOT / "tools/pytest_in_blender.py"),
     ]
     command = [*blender.command, *options, "--", str(venvs.PYTEST_IN_BLENDER), *PYTEST, f"--rootdir={ROOT}"]
-    results = [run_suite("real Blender", suite, [*command, suite], env) for suite in INSTALLED_SUITES]
-    # the hands are outside: Blender has its window to itself
-    outside = [str(venvs.python("5.2")), "-m", "pytest", *PYTEST, WINDOW_SUITE]
-    return [*results, run_suite("window", WINDOW_SUITE, outside, env)]
+    return [run_suite("real Blender", suite, [*command, suite], env) for suite in INSTALLED_SUITES]
 
 
 def install(blender: real_blender.RealBlender, zip_file: Path, env: Mapping[str, str]) -> None:
