@@ -17,7 +17,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from extension import enable
+from extension import Extension, enable
 
 LARGEST = 200_000  # bytes
 MOODS = ("CALM", "FRESH_BREEZE", "STORM")
@@ -27,10 +27,10 @@ ENGINES = ("CYCLES", "EEVEE")
 def main() -> None:
     """Render as the command line says."""
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
-    enable()
+    extension = enable()
     for mood in arguments.moods:
         for engine in arguments.engines:
-            build(mood, engine, arguments)
+            build(extension, mood, engine, arguments)
             picture = arguments.out.resolve() / f"{mood.lower().replace('_', '-')}-{engine.lower()}.png"
             render(bpy.context.scene, arguments.frame, picture)
             if arguments.jpeg:
@@ -48,17 +48,21 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--frame", type=int, default=1)
     parser.add_argument("--resolution", type=int, help="samples along a side, instead of the mood's")
+    parser.add_argument("--rings", type=int, help="of copies around the ocean, instead of the scene's")
     parser.add_argument("--still", action="store_true", help="without motion blur")
     return parser.parse_args(argv)
 
 
-def build(mood: str, engine: str, arguments: argparse.Namespace) -> None:
+def build(extension: Extension, mood: str, engine: str, arguments: argparse.Namespace) -> None:
     """A new file with the scene of a mood, ready to render."""
     bpy.ops.wm.read_homefile(use_empty=True)
     bpy.ops.ocean.add_scene(mood=mood, engine=engine)
     scene = bpy.context.scene
     if arguments.resolution:
         bpy.data.objects["Ocean"].ocean_tweak.resolution = arguments.resolution
+    if arguments.rings is not None:
+        modifier = bpy.data.objects["Ocean Horizon"].modifiers[0]
+        extension.module("nodes.modifier_inputs").set_input(modifier, "Rings", arguments.rings)
     scene.render.use_motion_blur = not arguments.still
     scene.render.resolution_x, scene.render.resolution_y = arguments.width, arguments.width * 27 // 64
     scene.cycles.device = "CPU"
