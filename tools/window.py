@@ -19,9 +19,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from .project import ToolError
+from .project import TOOLS, ToolError
 from .real_blender import DEBIAN_ROOT, RealBlender
 
+SHADERS = TOOLS / "shaders"
 # s; a software renderer on a busy machine needs some
 START_TIMEOUT = 90.0
 ANSWER_TIMEOUT = 120.0
@@ -113,9 +114,11 @@ class BlenderWindow:
             "--window-geometry", "0", "0", str(width), str(height),
             "--python-exit-code", "1", "--python", str(script),
         ]  # fmt: skip
-        self._env = dict(env)
+        # Mesa of another version cuts a shared cache's index while it is in use, and then Blender crashes
+        self._env = {**env, "MESA_SHADER_CACHE_DIR": str(SHADERS)}
 
     def __enter__(self) -> BlenderWindow:
+        SHADERS.mkdir(parents=True, exist_ok=True)
         address = self._folder / "answers"
         self._log = (self._folder / "blender.log").open("wb")
         with socket.socket(socket.AF_UNIX) as door:

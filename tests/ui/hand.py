@@ -66,10 +66,19 @@ class Hand:
         self.settle()
 
     def key(self, *names):
+        """Press keys one after another, with their modifiers: "ctrl+a"."""
         for name in names:
             *modifiers, last = name.split("+")
-            self._display.do(f"key {'+'.join([*modifiers, FUNCTION_KEYS.get(last, last)])}")
-            self.settle()
+            # Blender asks which modifiers are down when it comes to the key: they are held until it has
+            for modifier in modifiers:
+                self._display.do(f"keydown {modifier}")
+            try:
+                self._display.do(f"key {FUNCTION_KEYS.get(last, last)}")
+                self.settle()
+            finally:
+                for modifier in reversed(modifiers):
+                    self._display.do(f"keyup {modifier}")
+            self.settle(1)
 
     def type(self, text):
         self._display.do(f"type '{text}'")
@@ -251,8 +260,7 @@ class Hand:
         copied = ""
         for _ in range(most):
             self.ask("setattr(bpy.context.window_manager, 'clipboard', '')")
-            self._display.do("key Down", "key ctrl+c")
-            self.settle(1)
+            self.key("Down", "ctrl+c")
             copied = self.ask("bpy.context.window_manager.clipboard")
             if command in copied:
                 self.key("Return")

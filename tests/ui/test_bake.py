@@ -3,7 +3,7 @@
 
 import pytest
 
-FRAMES = 200
+FRAMES = 120
 SOURCE = "ocean().source"
 
 
