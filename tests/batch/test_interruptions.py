@@ -31,7 +31,7 @@ from tests.batch.bakery import (
 )
 
 KILLS = times(10)
-FRAMES = 8 * KILLS
+FRAMES = 30 * KILLS  # more than three fast workers make between the kills
 
 
 @pytest.fixture(scope="module")
@@ -63,10 +63,10 @@ def test_killed_at_any_moment(sea: Path, undisturbed: dict[str, str], tmp_path: 
             process = start(*bake(sea, tmp_path, workers=1 + 2 * (kill % 2)), "--take-over")
             before = len(list(tmp_path.glob("*/v*/records/*.json")))
             if chance.random() < 0.8:
-                baking(process, tmp_path, min(before + 1, FRAMES - 1))
-                time.sleep(chance.uniform(0.0, 0.15))
+                baking(process, tmp_path, before + 1)
+                time.sleep(chance.uniform(0.0, 0.05))
             else:  # while it starts
-                time.sleep(chance.uniform(0.0, 1.0))
+                time.sleep(chance.uniform(0.0, 0.4))
             processes = all_processes(process)
             process.kill()
             for number in processes[1:]:  # they would end by themselves after a frame
