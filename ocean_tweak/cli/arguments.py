@@ -8,9 +8,9 @@ import re
 from pathlib import Path
 
 from .. import __version__
+from ..core.errors import ParameterError
 from ..core.frames import Frame, parse_frames
 from ..core.presets import built_in
-from ..core.validation import ParameterError
 from ..export.exr import COMPRESSION_ERROR, MAPS
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.package import FORMS, UP_AXES

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from fractions import Fraction
 
-from .validation import ParameterError
+from .errors import ParameterError
 
 #: a whole frame is an int; a frame between two, for motion blur, is a Fraction that a decimal can write
 Frame = int | Fraction

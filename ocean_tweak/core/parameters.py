@@ -14,8 +14,9 @@ from fractions import Fraction
 from typing import Any
 
 from . import constants
+from .errors import ParameterError
 from .plain_data import from_plain, parse_json, to_plain
-from .validation import ParameterError, Validated, choice, integer, nested, number, rational, switch
+from .validation import Validated, choice, integer, nested, number, rational, switch
 
 __all__ = ["Foam", "OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer", "parse_json"]
 
@@ -287,9 +288,12 @@ class OceanParameters(Validated):
         """A copy with some fields changed, validated anew."""
         return dataclasses.replace(self, **changes)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain dictionaries, lists and numbers, as they stand in a JSON file."""
-        return to_plain(self)
+    def to_dict(self, brief: bool = False) -> dict[str, Any]:
+        """Plain dictionaries, lists and numbers, as they stand in a JSON file.
+
+        brief : of pictures only name, shape and hash: for headers; they cannot be read back
+        """
+        return to_plain(self, brief)
 
     def to_json(self, indent: int | None = 2) -> str:
         """JSON text that `from_json` reads back to equal parameters."""

@@ -9,7 +9,8 @@ import json
 from fractions import Fraction
 from typing import Any
 
-from .validation import ParameterError
+from .errors import ParameterError
+from .raster import Raster
 
 
 def parse_json(text: str) -> Any:
@@ -36,12 +37,17 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return result
 
 
-def to_plain(value: Any) -> Any:
-    """Dictionaries, lists and numbers of a dataclass; a fraction that is no short decimal is text."""
+def to_plain(value: Any, brief: bool = False) -> Any:
+    """Dictionaries, lists and numbers of a dataclass; a fraction that is no short decimal is text.
+
+    brief : of rasters only name, shape and hash, which cannot be read back
+    """
     if dataclasses.is_dataclass(value):
-        return {f.name: to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        return {f.name: to_plain(getattr(value, f.name), brief) for f in dataclasses.fields(value)}
     if isinstance(value, tuple):
-        return [to_plain(item) for item in value]
+        return [to_plain(item, brief) for item in value]
+    if isinstance(value, Raster):
+        return value.brief() if brief else value.to_plain()
     if isinstance(value, Fraction):
         decimal = int(value) if value.denominator == 1 else float(value)
         return decimal if Fraction(str(decimal)) == value else str(value)
@@ -51,7 +57,8 @@ def to_plain(value: Any) -> Any:
 def from_plain(cls: type, data: object) -> Any:
     """An instance of a dataclass from plain data; what is missing keeps its default.
 
-    A field whose metadata has "nested" is a dataclass of its own, with "many" a list of them.
+    A field whose metadata has "nested" is a dataclass of its own, with "many" a list of them; one of the kind
+    Raster is what `Raster.from_plain` reads.
     Raises ParameterError with the path of what is wrong.
     """
     if not isinstance(data, dict):
@@ -70,6 +77,8 @@ def from_plain(cls: type, data: object) -> Any:
 
 def _nested_value(field: dataclasses.Field[Any], value: object) -> object:
     nested = field.metadata.get("nested")
+    if field.metadata.get("kind") is Raster and value is not None:
+        return Raster.from_plain(value)
     if nested is None:
         return value
     if not field.metadata.get("many"):

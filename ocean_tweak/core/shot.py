@@ -15,10 +15,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from .errors import ParameterError
 from .frames import LARGEST_FRAME, Frame
 from .parameters import OceanParameters, parse_json
 from .plain_data import to_plain
-from .validation import ParameterError
 
 #: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer
 ANIMATED = (

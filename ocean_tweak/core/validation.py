@@ -9,24 +9,8 @@ import re
 from fractions import Fraction
 from typing import Any
 
-
-class ParameterError(ValueError):
-    """A parameter that cannot be used: names the field, its value and what is allowed."""
-
-    def __init__(self, field: str, value: object, reason: str) -> None:
-        self.field = field
-        self.value = value
-        self.reason = reason
-        super().__init__(f"{field} = {_shown(value)}: {reason}")
-
-    def inside(self, container: str) -> ParameterError:
-        """The same error with the field's path lengthened at the front."""
-        return ParameterError(f"{container}.{self.field}", self.value, self.reason)
-
-
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else text[:77] + "..."
+from .errors import ParameterError
+from .raster import Raster
 
 
 def number(default: float, minimum: float, maximum: float, unit: str, description: str, why: str = "") -> Any:
@@ -61,6 +45,12 @@ def choice(default: str, choices: tuple[str, ...], description: str) -> Any:
 def switch(default: bool, description: str) -> Any:
     """A dataclass field that is on or off."""
     return dataclasses.field(default=default, metadata={"kind": bool, "description": description})
+
+
+def raster(description: str, channels: int, optional: bool = True) -> Any:
+    """A dataclass field that is a picture or a grid of vectors with so many channels."""
+    metadata = {"kind": Raster, "channels": channels, "optional": optional, "description": description}
+    return dataclasses.field(default=None, metadata=metadata)
 
 
 def rational(
@@ -150,15 +140,29 @@ def _checked(field: dataclasses.Field[Any], value: object) -> object:
         return _checked_integer(field.name, value, meta)
     if kind is str and value not in meta["choices"]:
         raise ParameterError(field.name, value, "must be one of " + ", ".join(meta["choices"]))
+    if kind is Raster:
+        return _checked_raster(field.name, value, meta)
     if kind is bool and not isinstance(value, bool):
         raise ParameterError(field.name, value, "must be true or false")
     return value
 
 
-def nested(kind: type, many: bool = False) -> Any:
-    """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them."""
-    default = (kind(),) if many else kind()
-    return dataclasses.field(default=default, metadata={"nested": kind, "many": many})
+def _checked_raster(name: str, value: object, meta: Any) -> Raster:
+    if not isinstance(value, Raster):
+        raise ParameterError(name, value, "must be a Raster")
+    if value.shape[2] != meta["channels"]:
+        what = f"{name} ({value.name})" if value.name else name
+        raise ParameterError(what, f"{value.shape[2]} channels", f"must have {meta['channels']}")
+    return value
+
+
+def nested(kind: type, many: bool = False, empty: bool = False) -> Any:
+    """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them.
+
+    empty : the tuple may be empty, and is by default
+    """
+    default: object = kind() if not many else () if empty else (kind(),)
+    return dataclasses.field(default=default, metadata={"nested": kind, "many": many, "empty": empty})
 
 
 def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
@@ -169,8 +173,9 @@ def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
         return value
     if not isinstance(value, (tuple, list)) or not all(isinstance(v, kind) for v in value):
         raise ParameterError(field.name, value, f"must be a sequence of {kind.__name__}")
-    if not 1 <= len(value) <= 64:
-        raise ParameterError(field.name, f"{len(value)} entries", "must have from 1 to 64 entries")
+    fewest = 0 if field.metadata["empty"] else 1
+    if not fewest <= len(value) <= 64:
+        raise ParameterError(field.name, f"{len(value)} entries", f"must have from {fewest} to 64 entries")
     return tuple(value)
 
 

@@ -116,7 +116,7 @@ class ExrSequence:
             "time": fields.time,
             "domain_size": self.parameters.domain_size,
             "compression": self.compression,
-            "parameters": self.parameters.to_dict(),
+            "parameters": self.parameters.to_dict(brief=True),
         }
         write_image(path, MAPS[name].image(fields), metadata, self.parameters.timing.fps, self.compression)
         return path

@@ -13,8 +13,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ..errors import ParameterError
 from ..parameters import OceanParameters, parse_json
-from ..validation import ParameterError
 
 #: bytes; far beyond any preset, so that a file chosen by mistake does not fill the memory
 LARGEST = 200_000

@@ -21,10 +21,10 @@ from typing import Any
 
 import numpy as np
 
+from ...core.errors import ParameterError
 from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.shot import Shot
-from ...core.validation import ParameterError
 from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
 from ..files import alone, new_file, sync_folder, whole_file
 

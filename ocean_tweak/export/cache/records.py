@@ -16,10 +16,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ...core.errors import ParameterError
 from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
-from ...core.validation import ParameterError
 from ..files import PART, begun_file, sync_folder, whole_file
 from .job import FORMAT, RECORDS, Job, check_seal, made_with, record_path, sealed
 

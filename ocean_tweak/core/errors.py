@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is said of parameters that cannot be used."""
+
+from __future__ import annotations
+
+
+class ParameterError(ValueError):
+    """A parameter that cannot be used: names the field, its value and what is allowed."""
+
+    def __init__(self, field: str, value: object, reason: str) -> None:
+        self.field = field
+        self.value = value
+        self.reason = reason
+        super().__init__(f"{field} = {_shown(value)}: {reason}")
+
+    def inside(self, container: str) -> ParameterError:
+        """The same error with the field's path lengthened at the front."""
+        return ParameterError(f"{container}.{self.field}", self.value, self.reason)
+
+
+def _shown(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures and grids of vectors as values: immutable, compared by their numbers, and text in JSON.
+
+Parameters that hold one stay what parameters are: equal where the sea is equal, and complete by themselves,
+so that a bake on another machine needs no file beside them.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+import zlib
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import ParameterError
+
+#: samples along a side, and channels of a sample
+LARGEST_SIDE, MOST_CHANNELS = 4096, 4
+
+#: how numbers are written, smallest first, and the factor by which they are multiplied before
+_ENCODINGS: dict[str, tuple[np.dtype[Any], float]] = {
+    "uint8": (np.dtype("<u1"), 255.0),
+    "uint16": (np.dtype("<u2"), 65535.0),
+    "float16": (np.dtype("<f2"), 1.0),
+    "float32": (np.dtype("<f4"), 1.0),
+}
+
+
+class Raster:
+    """Samples [row, column, channel] in float32 that cannot be changed; the first row has the smallest y.
+
+    values : (rows, columns) or (rows, columns, channels), 1 to 4096 a side, 1 to 4 channels
+    name : what it is called in messages, such as its file's name; it does not make two rasters differ
+
+    Raises ParameterError, naming it, for another shape or numbers that are not finite in float32.
+    """
+
+    def __init__(self, values: ArrayLike, name: str = "") -> None:
+        self.name = str(name)
+        self.values = _checked_values(values, self.name)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Rows, columns and channels."""
+        rows, columns, channels = self.values.shape
+        return rows, columns, channels
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of shape and numbers, 64 hexadecimal digits, the same on every platform."""
+        head = "x".join(map(str, self.shape)).encode()
+        return hashlib.sha256(head + b":" + self.values.astype("<f4").tobytes()).hexdigest()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Raster) and self.sha256 == other.sha256
+
+    def __hash__(self) -> int:
+        return hash(self.sha256)
+
+    def __repr__(self) -> str:
+        rows, columns, channels = self.shape
+        return f"Raster({self.name!r}, {rows} x {columns} x {channels}, {self.sha256[:8]})"
+
+    def brief(self) -> dict[str, Any]:
+        """What tells it from others, without its numbers: for headers, where these would be too long."""
+        return {"name": self.name, "shape": list(self.shape), "sha256": self.sha256}
+
+    def to_plain(self) -> dict[str, Any]:
+        """Its numbers as compressed text, exact, in the smallest encoding that holds them."""
+        encoding, packed = self._smallest()
+        text = base64.b64encode(zlib.compress(packed.tobytes(), 9)).decode()
+        return {"name": self.name, "shape": list(self.shape), "encoding": encoding, "data": text}
+
+    def _smallest(self) -> tuple[str, NDArray[Any]]:
+        for encoding in ("uint8", "uint16", "float16"):
+            dtype, factor = _ENCODINGS[encoding]
+            packed = _packed(self.values, dtype, factor)
+            if np.array_equal(_unpacked(packed, factor), self.values):
+                return encoding, packed
+        return "float32", _packed(self.values, *_ENCODINGS["float32"])
+
+    @classmethod
+    def from_plain(cls, data: object) -> Raster:
+        """From what `to_plain` gives, or {"values": rows of numbers or of lists of numbers, "name": …}.
+
+        Raises ParameterError for anything else.
+        """
+        if not isinstance(data, dict):
+            raise ParameterError("raster", data, "must be a JSON object with values, or with shape and data")
+        name = data.get("name", "")
+        if not isinstance(name, str):
+            raise ParameterError("name", name, "must be text")
+        if set(data) <= {"name", "values"} and "values" in data:
+            return cls(data["values"], name)
+        if set(data) == {"name", "shape", "sha256"}:
+            raise ParameterError(
+                "sha256", data["sha256"], f"tells which raster {name!r} is, but not its numbers"
+            )
+        if set(data) - {"name"} != {"shape", "encoding", "data"}:
+            known = "name, values; or name, shape, encoding, data"
+            raise ParameterError("raster", ", ".join(map(str, data)), f"must have the keys {known}")
+        return cls(_decoded(data["shape"], data["encoding"], data["data"]), name)
+
+
+def _checked_values(values: ArrayLike, name: str) -> NDArray[np.float32]:
+    what = f"raster {name!r}" if name else "raster"
+    try:
+        with np.errstate(over="ignore"):
+            array = np.array(values, dtype=np.float32, order="C")
+    except (TypeError, ValueError):
+        raise ParameterError(what, values, "must be rows of the same number of numbers") from None
+    if array.ndim == 2:
+        array = array[..., np.newaxis]
+    fits = array.ndim == 3 and all(1 <= side <= LARGEST_SIDE for side in array.shape[:2])
+    if not fits or not 1 <= array.shape[2] <= MOST_CHANNELS:
+        limits = f"must have from 1 to {LARGEST_SIDE} rows and columns and from 1 to {MOST_CHANNELS} channels"
+        raise ParameterError(what, f"shape {array.shape}", limits)
+    if not np.isfinite(array).all():
+        row, column = (int(index) for index in np.argwhere(~np.isfinite(array))[0][:2])
+        raise ParameterError(
+            what, float(array[row, column][~np.isfinite(array[row, column])][0]),
+            f"must be finite everywhere, but is not in row {row}, column {column}",
+        )  # fmt: skip
+    array += np.float32(0.0)  # -0.0 and 0.0 are the same sea
+    array.flags.writeable = False
+    return array
+
+
+def _packed(values: NDArray[np.float32], dtype: np.dtype[Any], factor: float) -> NDArray[Any]:
+    if dtype.kind == "f":
+        with np.errstate(over="ignore"):
+            return values.astype(dtype)
+    scaled = np.rint(values.astype(np.float64) * factor)
+    return np.clip(scaled, 0, factor).astype(dtype)
+
+
+def _unpacked(packed: NDArray[Any], factor: float) -> NDArray[np.float32]:
+    if factor == 1.0:
+        return packed.astype(np.float32)
+    return (packed.astype(np.float64) / factor).astype(np.float32)
+
+
+def _decoded(shape: object, encoding: object, text: object) -> NDArray[np.float32]:
+    whole = isinstance(shape, list) and len(shape) == 3 and all(type(side) is int for side in shape)
+    sides = [int(side) for side in shape] if isinstance(shape, list) and whole else []
+    if (
+        not sides
+        or not all(1 <= side <= LARGEST_SIDE for side in sides[:2])
+        or not 1 <= sides[2] <= MOST_CHANNELS
+    ):
+        raise ParameterError(
+            "shape", shape, f"must be [rows, columns, channels], up to {LARGEST_SIDE} a side"
+        )
+    if not isinstance(encoding, str) or encoding not in _ENCODINGS:
+        raise ParameterError("encoding", encoding, "must be one of " + ", ".join(_ENCODINGS))
+    if not isinstance(text, str):
+        raise ParameterError("data", text, "must be text")
+    dtype, factor = _ENCODINGS[encoding]
+    size = int(np.prod(sides)) * dtype.itemsize
+    try:
+        unpacker = zlib.decompressobj()
+        content = unpacker.decompress(base64.b64decode(text, validate=True), size + 1)
+    except (binascii.Error, ValueError, zlib.error) as error:
+        raise ParameterError("data", text, f"is not compressed numbers in base64: {error}") from None
+    if len(content) != size:
+        raise ParameterError("data", text, f"must hold {size} bytes for shape {sides} in {encoding}")
+    return _unpacked(np.frombuffer(content, dtype).reshape(sides), factor)
