@@ -41,7 +41,8 @@ class ExrError(RuntimeError):
     """An image that cannot be written or read, with its path and the reason."""
 
 
-def _openexr() -> Any:
+def load_openexr() -> Any:
+    """The OpenEXR package. Raises ExrError, with the remedy, where there is none."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -133,7 +134,7 @@ def write_image(
 
     Raises ExrError for a value that is not finite and OSError for what the disk refuses.
     """
-    openexr = _openexr()
+    openexr = load_openexr()
     if not np.all(np.isfinite(image)):
         raise ExrError(f"{path}: the image holds values that are not finite")
     header = {
@@ -165,7 +166,7 @@ def read_image(
 
     Raises ExrError for a file that is damaged, not one of ours or of another shape.
     """
-    openexr = _openexr()
+    openexr = load_openexr()
     metadata, found = _header(path)
     if shape is not None and found != shape:
         raise ExrError(f"{path}: has {found[1]} x {found[0]} texels, not {shape[1]} x {shape[0]}")
@@ -190,7 +191,7 @@ def read_header(path: Path) -> dict[str, Any]:
 
 def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
     """The metadata, and rows and columns."""
-    openexr = _openexr()
+    openexr = load_openexr()
     try:
         with path.open("rb") as stream, openexr.File(stream, header_only=True) as file:
             header = file.header()
