@@ -60,3 +60,10 @@ TROUGH_FILTER = 3.0
 # Whitecaps, Monahan & O'Muircheartaigh (1980): share of the sea, wind at 10 m in m/s
 WHITECAP_FACTOR = 3.84e-6
 WHITECAP_EXPONENT = 3.41
+
+# Modified Pierson-Moskowitz filter, Mastin, Watterberg & Mareda (1987), eq. 2 and 5
+MASTIN_PEAK = 0.13  # f_m U / g, U at 10 m
+MASTIN_SHAPE = 9.77
+MASTIN_BELOW_EXPONENT = 4.06
+MASTIN_ABOVE_EXPONENT = -2.34
+DOMINANT_SHARE = 2.0 / 3.0  # of the peak's energy, from which waves belong to the dominant band

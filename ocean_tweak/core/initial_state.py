@@ -35,6 +35,8 @@ class InitialState:
     expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²
     loop_duration : T in s, or None
     orbit_depth : depth in m that widens the water's orbits; infinite for those of deep water
+    mirrored : whether ω is even in ky, which halves the work; where it is not, it still is even in k
+    others : states on the same grid whose waves add to these, with frequencies of their own
     """
 
     grid: WaveVectorGrid
@@ -45,6 +47,13 @@ class InitialState:
     expected_minus: RealArray
     loop_duration: Fraction | None = None
     orbit_depth: float = float("inf")
+    mirrored: bool = True
+    others: tuple[InitialState, ...] = ()
+
+    @property
+    def parts(self) -> tuple[InitialState, ...]:
+        """This state and the others, each with frequencies of its own."""
+        return self, *self.others
 
     @cached_property
     def potential_factor(self) -> ComplexArray:

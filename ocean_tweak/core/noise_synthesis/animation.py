@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How fast the phase of each wave of a picture turns: the three animations of Mastin et al. (1987)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import constants, dispersion
+from ..grid import WaveVectorGrid
+from ..parameters import Water
+from .filters import POWERS, peak_frequency, pierson_moskowitz
+from .parameters import PictureLayer
+
+Array = NDArray[np.float64]
+
+
+def runs_along(layer: PictureLayer, grid: WaveVectorGrid) -> NDArray[np.bool_]:
+    """(N, N//2+1): whether a wave runs along its wave vector k ≥ 0, not against it: the one with the wind.
+
+    Of waves square to the wind, one of both is taken, so that k and -k always run the same way.
+    """
+    towards = grid.kx * math.cos(layer.wind_direction) + grid.ky * math.sin(layer.wind_direction)
+    return (towards > 0.0) | ((towards == 0.0) & ((grid.kx > 0.0) | (grid.ky > 0.0)))
+
+
+def dominant_band(
+    layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water
+) -> NDArray[np.bool_]:
+    """(N, N//2+1): wavelengths of which the filter leaves over two thirds of what it leaves of its favourite.
+
+    Of the modified Pierson-Moskowitz filter the frequencies count, as eq. 1 has them; a fractal's favourite
+    is the longest wave of the patch.
+    """
+    if layer.filter == "MODIFIED_PIERSON_MOSKOWITZ":
+        f = dispersion.angular_frequency(grid.k, relation, water) / (2.0 * np.pi)
+        U, g = layer.wind_speed, water.gravity
+        power = pierson_moskowitz(f, U, g) / pierson_moskowitz(peak_frequency(U, g), U, g)
+    else:
+        power = POWERS[layer.filter](layer, grid, relation, water)
+    return power >= constants.DOMINANT_SHARE
+
+
+def _dispersion(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+    """Each wave at its own speed, after a dispersion relation; the paper takes deep water's (eq. 10)."""
+    return dispersion.angular_frequency(grid.k, relation, water)
+
+
+def _dominant_band(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+    """One rate for the phases of the dominant waves and another for those of all others."""
+    band = dominant_band(layer, grid, relation, water)
+    return np.where(band, layer.dominant_rate, layer.surrounding_rate)
+
+
+def _translation(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+    """abs(k·v) for the velocity v along the wind: the picture moves as it is (eq. 9)."""
+    vx, vy = (layer.translation_speed * part(layer.wind_direction) for part in (math.cos, math.sin))
+    return np.abs(grid.kx * vx + grid.ky * vy)
+
+
+RATES: dict[str, Callable[[PictureLayer, WaveVectorGrid, str, Water], Array]] = {
+    "DISPERSION": _dispersion,
+    "DOMINANT_BAND": _dominant_band,
+    "TRANSLATION": _translation,
+}
+
+
+def angular_frequency(
+    layer: PictureLayer,
+    grid: WaveVectorGrid,
+    relation: str,
+    water: Water,
+    loop_duration: Fraction | None = None,
+) -> Array:
+    """ω(k) ≥ 0 in rad/s, (N, N//2+1), the same for k and -k.
+
+    In a loop of duration T the nearest multiple of 2π/T, at least one for what moves at all. A translation's
+    are multiples of it: others were refused with the parameters.
+    """
+    omega = RATES[layer.animation](layer, grid, relation, water)
+    if loop_duration is None:
+        return omega
+    fundamental = 2.0 * np.pi / float(loop_duration)
+    turns = np.rint(omega / fundamental)
+    if layer.animation != "TRANSLATION":
+        turns = np.where(omega > 0.0, np.maximum(1.0, turns), 0.0)
+    return fundamental * turns

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture behind the waves, and its Fourier coefficients."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import random
+from ..raster import Raster
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+_Modes = TypeVar("_Modes", NDArray[np.complex128], NDArray[np.float64])
+
+#: the noise lies this far around its mean, evenly, in whole grey levels
+NOISE_REACH, NOISE_MEAN = 127, 128
+
+#: samples a side of what larger pictures are resampled to
+LARGEST_SIDE = 2048
+
+
+def white_noise(resolution: int, seed: int) -> Array:
+    """(N, N) whole grey levels from 1 to 255, uniform and independent: -127 … 127 around 128.
+
+    Mastin, Watterberg & Mareda (1987), fig. 5.
+    """
+    place = np.arange(resolution, dtype=np.float64)  # not wave vectors here, but a sample's whole numbers
+    share = random.uniform(random.hash_wave_vectors(place, place[:, np.newaxis], seed), 0)
+    levels = 2 * NOISE_REACH + 1
+    return np.minimum(np.floor(levels * share), levels - 1.0) - NOISE_REACH + NOISE_MEAN
+
+
+def noise_variance() -> float:
+    """Variance of the white noise's grey levels, by its distribution."""
+    return ((2 * NOISE_REACH + 1) ** 2 - 1) / 12.0
+
+
+@lru_cache(maxsize=4)
+def noise_coefficients(resolution: int, seed: int) -> ComplexArray:
+    """(N, N//2+1) of the white noise without its mean, over its standard deviation; read-only."""
+    noise = white_noise(resolution, seed) / np.sqrt(noise_variance())
+    return _frozen(_transformed(noise, resolution))
+
+
+@lru_cache(maxsize=4)
+def picture_coefficients(picture: Raster) -> ComplexArray:
+    """(S, S//2+1) of a picture without its mean, S even and at least its longer side; read-only.
+
+    The picture counts as periodic and is stretched to a square, band-limited: its first sample stays the
+    first, and what is finer than S/2 waves a side is left out.
+    """
+    longest = max(picture.shape[:2])
+    side = min(LARGEST_SIDE, longest + longest % 2)
+    return _frozen(_transformed(picture.values[..., 0].astype(np.float64), max(side, 2)))
+
+
+def fitted(coefficients: _Modes, resolution: int) -> _Modes:
+    """(N, N//2+1) of the same modes on a grid with more or fewer samples; those at Nyquist are 0."""
+    side = len(coefficients)
+    return coefficients if side == resolution else _placed(coefficients, (side, side), resolution)
+
+
+def _transformed(values: Array, resolution: int) -> ComplexArray:
+    """Coefficients c of Σ c exp(2πi(jx + iy)), x and y from 0 to 1: Σ|c|² is the variance of what is held."""
+    coefficients = np.fft.rfft2(values - np.mean(values)) / values.size
+    return _placed(coefficients, values.shape, resolution)
+
+
+def _placed(coefficients: _Modes, shape: tuple[int, ...], resolution: int) -> _Modes:
+    """Coefficients of samples of some shape on a square grid: those below Nyquist of both."""
+    result = np.zeros((resolution, resolution // 2 + 1), coefficients.dtype)
+    rows, columns = ((min(size, resolution) + 1) // 2 for size in shape)  # modes from 0 on, without Nyquist
+    result[:rows, :columns] = coefficients[:rows, :columns]
+    if rows > 1:
+        result[1 - rows :, :columns] = coefficients[1 - rows :, :columns]
+    result[0, 0] = 0.0
+    return result
+
+
+def _frozen(array: ComplexArray) -> ComplexArray:
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a picture to the coefficients of its waves: what the sea's initial state is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import random
+from ..grid import WaveVectorGrid
+from ..parameters import Water
+from .animation import angular_frequency, runs_along
+from .filters import filter_power, total_energy
+from .parameters import PictureLayer
+from .source import fitted, noise_coefficients, picture_coefficients
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+RealArray = NDArray[np.floating]
+
+
+@dataclass(frozen=True)
+class Filtered:
+    """A picture after its filter, on a grid of its own or of the sea.
+
+    grid : its modes
+    coefficients : (N, N//2+1) m, of the elevation at time 0
+    expected : (N, N//2+1) m², mean over all seeds of their squares; of an artist's picture the squares
+    """
+
+    grid: WaveVectorGrid
+    coefficients: ComplexArray
+    expected: Array
+
+    @property
+    def m0(self) -> float:
+        """Expected variance of the elevation, m²."""
+        return float(np.sum(self.expected * self.grid.multiplicity))
+
+
+@dataclass(frozen=True)
+class PictureWaves:
+    """Waves of a picture, arrays as those of the sea's initial state, transposed in memory.
+
+    h_plus, h_minus : waves that run along k and against it, m
+    omega : rad/s, ≥ 0, the same for k and -k
+    expected_plus, expected_minus : m²
+    """
+
+    h_plus: NDArray[np.complexfloating]
+    h_minus: NDArray[np.complexfloating]
+    omega: Array
+    expected_plus: RealArray
+    expected_minus: RealArray
+
+
+def noise_seed(layer: PictureLayer, sea_seed: int) -> int:
+    """The seed of a layer's noise: its own, or one that follows from the sea's and the layer's id."""
+    return layer.seed if layer.seed >= 0 else random.combine(sea_seed, layer.id, 0x71C)
+
+
+def filtered(
+    layer: PictureLayer,
+    domain_size: float,
+    resolution: int | None,
+    relation: str,
+    water: Water,
+    sea_seed: int = 0,
+) -> Filtered:
+    """The elevation that a picture and its filter make at time 0.
+
+    resolution : of the sea; None for all that the picture holds
+
+    Noise through the physical filter has, over all seeds, the variance of the wind's spectrum. All other
+    elevations have theirs exactly, in all modes of the picture: more resolution of the sea shows more of
+    them, and changes none.
+    """
+    noise = layer.picture is None
+    if layer.picture is None:
+        source = noise_coefficients(layer.noise_resolution, noise_seed(layer, sea_seed))
+    else:
+        source = picture_coefficients(layer.picture)
+    side = len(source)
+    if noise and layer.is_physical:
+        return _wind_driven(layer, domain_size, resolution or side, relation, water, source)
+    whole = WaveVectorGrid(side, domain_size)
+    power = filter_power(layer, whole, relation, water)
+    wanted = layer.gain**2 * (
+        total_energy(layer.wind_speed, water.gravity)
+        if layer.is_physical
+        else (layer.significant_wave_height / 4.0) ** 2
+    )
+    coefficients = source * np.sqrt(power)
+    energy = power if noise else np.abs(coefficients) ** 2
+    expected = _scaled_to(energy, whole, wanted)
+    coefficients = coefficients * np.sqrt(_factor(np.abs(coefficients) ** 2, whole, wanted))
+    result = Filtered(whole, coefficients, expected)
+    return result if resolution is None else _on_grid(result, resolution)
+
+
+def _wind_driven(
+    layer: PictureLayer,
+    domain_size: float,
+    resolution: int,
+    relation: str,
+    water: Water,
+    source: ComplexArray,
+) -> Filtered:
+    """h = c √(ΨΔkxΔky), with c the noise's coefficients over their expected size 1/N."""
+    grid = WaveVectorGrid(resolution, domain_size)
+    side = len(source)
+    expected = filter_power(layer, grid, relation, water) * (layer.gain**2 * grid.cell_area)
+    limit = (min(side, resolution) // 2 - 0.5) * grid.spacing
+    expected[(grid.kx > limit) | (np.abs(grid.ky) > limit)] = 0.0  # beyond what the noise holds
+    return Filtered(grid, side * fitted(source, resolution) * np.sqrt(expected), expected)
+
+
+def _on_grid(whole: Filtered, resolution: int) -> Filtered:
+    grid = WaveVectorGrid(resolution, whole.grid.domain_size)
+    return Filtered(grid, fitted(whole.coefficients, resolution), fitted(whole.expected, resolution))
+
+
+def _factor(energy: Array, grid: WaveVectorGrid, wanted: float) -> float:
+    """By which energies become the wanted variance in m²; 0 where a filter leaves nothing."""
+    total = float(np.sum(energy * grid.multiplicity))
+    return wanted / total if total > 0.0 else 0.0
+
+
+def _scaled_to(energy: Array, grid: WaveVectorGrid, wanted: float) -> Array:
+    return energy * _factor(energy, grid, wanted)
+
+
+def picture_waves(
+    layer: PictureLayer,
+    grid: WaveVectorGrid,
+    relation: str,
+    water: Water,
+    sea_seed: int,
+    loop_duration: Fraction | None,
+    match_height: bool,
+    dtype: type = np.complex128,
+) -> PictureWaves:
+    """Coefficients of a picture's waves on the sea's grid.
+
+    match_height : whether this seed is to have the expected variance
+    """
+    made = filtered(layer, grid.domain_size, grid.resolution, relation, water, sea_seed)
+    if match_height:
+        made = replace(
+            made,
+            coefficients=made.coefficients * np.sqrt(_factor(np.abs(made.coefficients) ** 2, grid, made.m0)),
+        )
+    along = runs_along(layer, grid)
+    real = np.float32 if dtype is np.complex64 else np.float64
+    return PictureWaves(
+        h_plus=_transposed(made.coefficients, along, dtype),
+        h_minus=_transposed(made.coefficients, ~along, dtype),
+        omega=np.asfortranarray(angular_frequency(layer, grid, relation, water, loop_duration)),
+        expected_plus=_transposed(made.expected, along, real),
+        expected_minus=_transposed(made.expected, ~along, real),
+    )
+
+
+def _transposed(values: NDArray[Any], where: NDArray[np.bool_], dtype: type) -> NDArray[Any]:
+    """The values in some places, 0 elsewhere; transposed in memory."""
+    return np.asfortranarray(np.where(where, values, 0.0).astype(dtype, copy=False))
