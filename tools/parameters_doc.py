@@ -9,7 +9,8 @@ import sys
 from fractions import Fraction
 from typing import Any
 
-from ocean_tweak.core.parameters import OceanParameters, Timing, Water, WaveLayer
+from ocean_tweak.core.parameters import OceanParameters, Timing, Water, WaveLayer, WindFieldLayer, WindKey
+from ocean_tweak.core.raster import Raster
 
 from .project import ROOT
 
@@ -22,6 +23,8 @@ CLASSES = {
     OceanParameters: "at the top",
     Water: "in `water`",
     WaveLayer: "in each entry of the list `layers`",
+    WindFieldLayer: "in each entry of the list `wind_fields`",
+    WindKey: "in each entry of a wind field's list `keys`",
     Timing: "in `timing`",
 }
 
@@ -58,7 +61,7 @@ def _row(field: dataclasses.Field[Any]) -> str:
     cells = [
         f"`{field.name}`",
         meta.get("unit", ""),
-        _shown(field.default),
+        "" if meta["kind"] is Raster and not meta["optional"] else _shown(field.default),
         _allowed(meta),
         meta.get("why", ""),
         meta["description"],
@@ -71,6 +74,9 @@ def _allowed(meta: Any) -> str:
         return ", ".join(f"`{choice}`" for choice in meta["choices"])
     if meta["kind"] is bool:
         return "`true`, `false`"
+    if meta["kind"] is Raster:
+        samples = f"{meta['channels']} numbers a sample"
+        return f"{samples}, or `null`" if meta["optional"] else samples
     span = f"{_shown(meta['minimum'])} … {_shown(meta['maximum'])}"
     return f"{span}, or `null`" if meta.get("optional") else span
 

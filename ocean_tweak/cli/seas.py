@@ -13,6 +13,7 @@ from ..core.frames import Frame
 from ..core.parameters import parse_json
 from ..core.presets import built_in
 from ..core.shot import Shot
+from ..export.pictures import with_pictures
 from ..export.usd import reading
 from .outcome import UsageError
 
@@ -65,7 +66,7 @@ def _file_shot(path: Path | None) -> Shot:
         raise ParameterError("params", str(path), f"is not UTF-8 text ({error.reason})") from None
     except OSError as error:
         raise UsageError(f"--params {path}: {error.strerror}") from None
-    return Shot.from_json(text)
+    return Shot.from_dict(with_pictures(OceanParameters, parse_json(text), path.parent))
 
 
 def _chosen(oceans: Mapping[str, Sea], name: str | None) -> dict[str, Sea]:

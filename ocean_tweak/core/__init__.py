@@ -2,7 +2,17 @@
 """The sea itself: NumPy and the standard library, nothing else."""
 
 from .ocean import Ocean
-from .parameters import Foam, OceanParameters, ParameterError, Timing, Water, WaveLayer
+from .parameters import (
+    Foam,
+    OceanParameters,
+    ParameterError,
+    Timing,
+    Water,
+    WaveLayer,
+    WindFieldLayer,
+    WindKey,
+)
+from .raster import Raster
 from .sea_state_match import layer_for_sea_state
 
 __all__ = [
@@ -10,8 +20,11 @@ __all__ = [
     "Ocean",
     "OceanParameters",
     "ParameterError",
+    "Raster",
     "Timing",
     "Water",
     "WaveLayer",
+    "WindFieldLayer",
+    "WindKey",
     "layer_for_sea_state",
 ]

@@ -11,14 +11,25 @@ import dataclasses
 import json
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 from . import constants
 from .errors import ParameterError
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import Validated, choice, integer, nested, number, rational, switch
+from .wave_particles.parameters import WindFieldLayer, WindKey
 
-__all__ = ["Foam", "OceanParameters", "ParameterError", "Timing", "Water", "WaveLayer", "parse_json"]
+__all__ = [
+    "Foam",
+    "OceanParameters",
+    "ParameterError",
+    "Timing",
+    "Water",
+    "WaveLayer",
+    "WindFieldLayer",
+    "WindKey",
+    "parse_json",
+]
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
@@ -269,6 +280,7 @@ class OceanParameters(Validated):
     )
     water: Water = nested(Water)
     layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
+    wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
@@ -276,13 +288,20 @@ class OceanParameters(Validated):
         super().__post_init__()
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
-        object.__setattr__(self, "layers", _identified(self.layers))
+        object.__setattr__(self, "layers", _identified("layers", self.layers))
+        object.__setattr__(self, "wind_fields", _identified("wind_fields", self.wind_fields))
         _check_loop(self.loop_duration, self.timing)
+        _check_wind_fields(self)
 
     @property
     def active_layers(self) -> tuple[WaveLayer, ...]:
         """The layers that are not muted."""
         return tuple(layer for layer in self.layers if not layer.muted)
+
+    @property
+    def active_wind_fields(self) -> tuple[WindFieldLayer, ...]:
+        """The wind fields that are not muted."""
+        return tuple(layer for layer in self.wind_fields if not layer.muted)
 
     def replace(self, **changes: Any) -> OceanParameters:
         """A copy with some fields changed, validated anew."""
@@ -310,15 +329,40 @@ class OceanParameters(Validated):
         return cls.from_dict(parse_json(text))
 
 
-def _identified(layers: tuple[WaveLayer, ...]) -> tuple[WaveLayer, ...]:
+_Layer = TypeVar("_Layer", WaveLayer, WindFieldLayer)
+
+
+def _identified(name: str, layers: tuple[_Layer, ...]) -> tuple[_Layer, ...]:
     """Layers with distinct ids; those without one take the first numbers that are free."""
     taken: set[int] = set()
     for index, layer in enumerate(layers):
         if layer.id >= 0 and layer.id in taken:
-            raise ParameterError(f"layers.{index}.id", layer.id, "is the id of another layer too")
+            raise ParameterError(f"{name}.{index}.id", layer.id, "is the id of another layer too")
         taken.add(layer.id)
     free = (number for number in range(len(layers) + len(taken)) if number not in taken)
     return tuple(layer if layer.id >= 0 else dataclasses.replace(layer, id=next(free)) for layer in layers)
+
+
+def _check_wind_fields(parameters: OceanParameters) -> None:
+    """Waves of a wind field do not repeat in time, and must find room in the patch."""
+    size = parameters.domain_size
+    for index, layer in enumerate(parameters.wind_fields):
+        if layer.muted:
+            continue
+        if parameters.loop_duration is not None:
+            raise ParameterError(
+                "loop_duration", to_plain(parameters.loop_duration),
+                f"wind_fields.{index} raises waves that do not repeat: mute it, or take away the loop",
+            )  # fmt: skip
+        speed = layer.greatest_speed
+        longest = speed**2 / parameters.water.gravity
+        if longest > size:
+            fitting = (size * parameters.water.gravity) ** 0.5
+            raise ParameterError(
+                f"wind_fields.{index}", f"{speed:g} m/s",
+                f"this wind's waves are {longest:.4g} m long and the domain {size:g} m: make the domain "
+                f"larger, or the wind at most {fitting:.4g} m/s, by its strength for one",
+            )  # fmt: skip
 
 
 def _check_loop(duration: Fraction | None, timing: Timing) -> None:

@@ -43,7 +43,8 @@ def to_plain(value: Any, brief: bool = False) -> Any:
     brief : of rasters only name, shape and hash, which cannot be read back
     """
     if dataclasses.is_dataclass(value):
-        return {f.name: to_plain(getattr(value, f.name), brief) for f in dataclasses.fields(value)}
+        fields = [f for f in dataclasses.fields(value) if not _is_unused(f, getattr(value, f.name))]
+        return {f.name: to_plain(getattr(value, f.name), brief) for f in fields}
     if isinstance(value, tuple):
         return [to_plain(item, brief) for item in value]
     if isinstance(value, Raster):
@@ -54,13 +55,21 @@ def to_plain(value: Any, brief: bool = False) -> Any:
     return value
 
 
+def _is_unused(field: dataclasses.Field[Any], value: object) -> bool:
+    """An empty list that may be empty is left out: the JSON of a sea without it, and so the fingerprint of
+    its frames, stays what it was before there was such a list."""
+    return bool(field.metadata.get("empty")) and value == ()
+
+
 def from_plain(cls: type, data: object) -> Any:
-    """An instance of a dataclass from plain data; what is missing keeps its default.
+    """An instance of a dataclass from plain data; what is missing keeps its default, an instance is itself.
 
     A field whose metadata has "nested" is a dataclass of its own, with "many" a list of them; one of the kind
     Raster is what `Raster.from_plain` reads.
     Raises ParameterError with the path of what is wrong.
     """
+    if isinstance(data, cls):
+        return data
     if not isinstance(data, dict):
         raise ParameterError(cls.__name__, data, "must be a JSON object")
     fields = {f.name: f for f in dataclasses.fields(cls)}

@@ -72,9 +72,14 @@ class Raster:
 
     def to_plain(self) -> dict[str, Any]:
         """Its numbers as compressed text, exact, in the smallest encoding that holds them."""
-        encoding, packed = self._smallest()
-        text = base64.b64encode(zlib.compress(packed.tobytes(), 9)).decode()
+        encoding, text = self._as_text
         return {"name": self.name, "shape": list(self.shape), "encoding": encoding, "data": text}
+
+    @cached_property
+    def _as_text(self) -> tuple[str, str]:
+        """Made once: each frame's fingerprint asks for it."""
+        encoding, packed = self._smallest()
+        return encoding, base64.b64encode(zlib.compress(packed.tobytes(), 9)).decode()
 
     def _smallest(self) -> tuple[str, NDArray[Any]]:
         for encoding in ("uint8", "uint16", "float16"):

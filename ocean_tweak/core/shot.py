@@ -39,6 +39,7 @@ _CONSTANT = {
     "resolution": "a sequence of images has one size",
     "seed": "another seed is another sea",
     "amplitudes": "other amplitudes are another sea",
+    "wind_fields": "a wave keeps the wind of its birth; give the wind keys at several times instead",
     "timing": "frames become seconds in one way; animate ocean_time instead",
 }
 _MOST_SAMPLES = 1_000_000
@@ -174,6 +175,7 @@ class Shot:
 
     def _with(self, values: Mapping[str, float]) -> OceanParameters:
         data = {**self._plain, "layers": [dict(layer) for layer in self._plain["layers"]]}
+        data["wind_fields"] = list(self.parameters.wind_fields)  # as they are: their pictures may be large
         for path, value in values.items():
             layer, _, name = path.removeprefix("layers.").partition(".")
             if path == OCEAN_TIME:

@@ -156,13 +156,16 @@ def _checked_raster(name: str, value: object, meta: Any) -> Raster:
     return value
 
 
-def nested(kind: type, many: bool = False, empty: bool = False) -> Any:
+def nested(kind: type, many: bool = False, empty: bool = False, most: int = 64) -> Any:
     """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them.
 
     empty : the tuple may be empty, and is by default
+    most : how many it may hold
     """
     default: object = kind() if not many else () if empty else (kind(),)
-    return dataclasses.field(default=default, metadata={"nested": kind, "many": many, "empty": empty})
+    return dataclasses.field(
+        default=default, metadata={"nested": kind, "many": many, "empty": empty, "most": most}
+    )
 
 
 def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
@@ -174,8 +177,11 @@ def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
     if not isinstance(value, (tuple, list)) or not all(isinstance(v, kind) for v in value):
         raise ParameterError(field.name, value, f"must be a sequence of {kind.__name__}")
     fewest = 0 if field.metadata["empty"] else 1
-    if not fewest <= len(value) <= 64:
-        raise ParameterError(field.name, f"{len(value)} entries", f"must have from {fewest} to 64 entries")
+    most = field.metadata["most"]
+    if not fewest <= len(value) <= most:
+        raise ParameterError(
+            field.name, f"{len(value)} entries", f"must have from {fewest} to {most} entries"
+        )
     return tuple(value)
 
 

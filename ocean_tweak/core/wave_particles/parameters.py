@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a layer of waves from a wind field is: the wind, where waves are born, what they are like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..raster import Raster
+from ..validation import Validated, choice, integer, nested, number, raster, switch
+
+FRONTS = ("ARC", "PARALLEL")
+HEIGHTS = ("STEEPNESS", "WIND_SPEED")
+
+#: times at which a wind may be given
+MOST_KEYS = 1024
+
+
+@dataclass(frozen=True)
+class WindKey(Validated):
+    """The wind over the patch at one time."""
+
+    time: float = number(
+        0.0, -1e6, 1e6, "s", "Ocean time at which the wind is this; linear between two, held outside",
+        "more than a week either way",
+    )  # fmt: skip
+    vectors: Raster | None = raster(
+        "Wind in m/s along x and y, towards which it blows: sample (i, j) of R rows and C columns is at "
+        "y = i·size/R, x = j·size/C; bilinear between them, and around the edges",
+        channels=2,
+        optional=False,
+    )
+
+
+@dataclass(frozen=True)
+class WindFieldLayer(Validated):
+    """Waves that follow a wind field. Each keeps the wind of the place and time of its birth.
+
+    A wave of wind V has the length λ = V²/g, the period T = √(2π)·V/g and the speed V/√(2π).
+    """
+
+    wind_speed: float = number(
+        12.0, 0.0, 100.0, "m/s", "Speed of the wind where it is the same everywhere: without keys",
+        "from calm to beyond the strongest hurricane",
+    )  # fmt: skip
+    wind_direction: float = number(
+        0.0, -1e6, 1e6, "rad", "Direction towards which it blows, counter-clockwise from +x",
+        "any number of turns that a float tells apart",
+    )  # fmt: skip
+    keys: tuple[WindKey, ...] = nested(WindKey, many=True, empty=True, most=MOST_KEYS)
+    strength: float = number(1.0, 0.0, 100.0, "", "Multiplies the wind", "an artist's gain")
+    start_time: float = number(
+        -120.0, -1e6, 1e6, "s", "Ocean time at which the wind begins to raise waves; earlier there are none",
+        "more than a week either way",
+    )  # fmt: skip
+    calm: float = number(
+        2.0, 0.1, 100.0, "m/s", "Wind below which no wave is born", "waves of a millimetre, to none at all"
+    )
+    columns: int = integer(16, 1, 512, "Cells along x, each with as many origins of waves", "a cell a metre")
+    rows: int = integer(16, 1, 512, "Cells along y", "a cell a metre")
+    origins: int = integer(1, 1, 16, "Places in each cell from which waves come", "else take more cells")
+    jitter: float = number(
+        1.0, 0.0, 1.0, "", "How far origins lie from the middle of their cell: 1 is anywhere in it", "a share"
+    )
+    phase_jitter: float = number(
+        1.0, 0.0, 1.0, "", "How far origins are out of step: 0 is all at once, 1 at any part of the period",
+        "a share",
+    )  # fmt: skip
+    front: str = choice("ARC", FRONTS, "How a wave begins: as an arc that widens, or straight and parallel")
+    particles: int = integer(5, 1, 99, "Particles of a wave at its birth, side by side", "a half circle")
+    split_angle: float = number(
+        0.1,
+        0.0,
+        1.0,
+        "rad",
+        "Angle between neighbouring particles of an arc",
+        "as far as a wave holds together",
+    )
+    splitting: bool = switch(
+        True, "Divide particles in three where neighbours are half a radius apart; without, arcs break up"
+    )
+    life: float = number(
+        8.0, 0.5, 100.0, "wavelengths", "How far a wave runs until it is gone", "a long swell"
+    )
+    height: str = choice("STEEPNESS", HEIGHTS, "What gives a particle's height")
+    steepness: float = number(
+        0.2, 0.0, 2.0, "", "s of the height s·λ/2π of a particle, to which its neighbours add theirs",
+        "waves break near 0.44",
+    )  # fmt: skip
+    height_per_speed: float = number(
+        0.05, 0.0, 10.0, "s", "k of the height k·V of a particle, V the wind's speed", "an artist's gain"
+    )
+    gain: float = number(1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's gain")
+    muted: bool = switch(False, "Leave the layer out; no other layer changes")
+    id: int = integer(
+        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free one",
+        "Blender's whole numbers",
+    )  # fmt: skip
+    seed: int = integer(
+        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
+        "Blender's whole numbers",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        times = [key.time for key in self.keys]
+        for index in range(1, len(times)):
+            if times[index] <= times[index - 1]:
+                raise ParameterError(
+                    f"keys.{index}.time",
+                    times[index],
+                    f"must be above that before it, {times[index - 1]:g} s",
+                )
+
+    @cached_property
+    def greatest_speed(self) -> float:
+        """The strongest wind anywhere and at any time, m/s; between samples it is never stronger."""
+        speeds = [float(np.hypot(*np.moveaxis(raster.values, -1, 0)).max()) for raster in self.rasters]
+        return self.strength * max(speeds, default=self.wind_speed)
+
+    @property
+    def rasters(self) -> tuple[Raster, ...]:
+        """The vectors of all keys, in the order of their times."""
+        return tuple(key.vectors for key in self.keys if key.vectors is not None)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layers of waves from a wind field as parameters: JSON both ways, what is refused, what stays as it was."""
+
+from __future__ import annotations
+
+import dataclasses
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import OceanParameters, ParameterError, Raster, WindFieldLayer, WindKey
+from ocean_tweak.core.fingerprint import frame_fingerprint
+from ocean_tweak.core.shot import Animation, Shot
+
+CALM = np.zeros((1, 1, 2))
+
+
+def sea(**layer: Any) -> OceanParameters:
+    return OceanParameters(wind_fields=(WindFieldLayer(**layer),))
+
+
+def test_a_keyed_wind_survives_json() -> None:
+    winds = np.random.default_rng(3).normal(0.0, 5.0, (3, 4, 2))
+    parameters = sea(keys=(WindKey(0.0, Raster(winds)), WindKey(2.5, Raster(CALM))), front="PARALLEL")
+    back = OceanParameters.from_json(parameters.to_json())
+    assert back == parameters
+    assert back.wind_fields[0].id == 0
+    np.testing.assert_array_equal(back.wind_fields[0].rasters[0].values, winds.astype(np.float32))
+    written = OceanParameters.from_dict({"wind_fields": [{"keys": [{"vectors": {"values": [[[3, 4]]]}}]}]})
+    assert written.wind_fields[0].greatest_speed == 5.0
+    brief = parameters.to_dict(brief=True)["wind_fields"][0]["keys"][0]["vectors"]
+    assert set(brief) == {"name", "shape", "sha256"}
+
+
+def test_a_sea_without_wind_fields_is_written_as_before_there_were_any() -> None:
+    assert "wind_fields" not in OceanParameters().to_dict()
+    assert OceanParameters.from_dict({"wind_fields": []}) == OceanParameters()
+    muted = OceanParameters().replace(wind_fields=(WindFieldLayer(muted=True),))
+    assert muted.to_dict()["wind_fields"][0]["muted"] is True
+    assert not muted.active_wind_fields
+
+
+@pytest.mark.parametrize(
+    ("layer", "where", "reason"),
+    [
+        ({"keys": [{"time": 0.0}]}, "wind_fields.0.keys.0.vectors", "must be a Raster"),
+        ({"keys": [{"vectors": {"values": [[1.0]]}}]}, "wind_fields.0.keys.0.vectors", "must have 2"),
+        ({"keys": [{"vectors": {"values": [[[1.0, float("nan")]]]}}]}, "wind_fields.0.keys.0.vectors.raster",
+         "row 0, column 0"),
+        ({"keys": [{"vectors": {"values": [[[1, 0]]]}}] * 2}, "wind_fields.0.keys.1.time", "above that"),
+        ({"keys": [{"vectors": {"values": [[[1e30, 0]]]}}]}, "wind_fields.0", "at most 62.64 m/s"),
+        ({"wind_speed": 63.0}, "wind_fields.0", "waves are 404"),
+        ({"wind_speed": 50.0, "strength": 2.0}, "wind_fields.0", "100 m/s"),
+        ({"particles": 0}, "wind_fields.0.particles", "from 1 to 99"),
+        ({"front": "ROUND"}, "wind_fields.0.front", "ARC, PARALLEL"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_by_name(layer: dict[str, Any], where: str, reason: str) -> None:
+    with pytest.raises(ParameterError) as caught:
+        OceanParameters.from_dict({"wind_fields": [layer]})
+    assert caught.value.field == where
+    assert reason in str(caught.value)
+
+
+def test_a_loop_is_refused_until_the_layer_is_muted() -> None:
+    looped = OceanParameters(loop_duration=Fraction(10))
+    with pytest.raises(ParameterError, match="do not repeat: mute it"):
+        looped.replace(wind_fields=(WindFieldLayer(),))
+    looped.replace(wind_fields=(WindFieldLayer(muted=True),))
+
+
+def test_layers_have_ids_of_their_own() -> None:
+    twice = OceanParameters(wind_fields=(WindFieldLayer(), WindFieldLayer(id=0)))
+    assert [layer.id for layer in twice.wind_fields] == [1, 0]
+    with pytest.raises(ParameterError, match=r"wind_fields\.1\.id"):
+        OceanParameters(wind_fields=(WindFieldLayer(id=4), WindFieldLayer(id=4)))
+
+
+def test_an_animated_shot_keeps_the_wind_and_says_that_it_cannot_be_animated() -> None:
+    parameters = sea(keys=(WindKey(0.0, Raster(np.ones((2, 2, 2)))),))
+    shot = Shot(parameters, Animation(1, (("choppiness", (0.5, 1.0)),)))
+    assert shot.at(1).parameters == parameters.replace(choppiness=0.5)
+    assert Shot.from_json(shot.to_json()) == shot
+    with pytest.raises(ParameterError, match="keeps the wind of its birth"):
+        Animation(1, (("wind_fields.0.strength", (1.0, 2.0)),))
+
+
+def test_another_wind_is_another_frame() -> None:
+    prints = {
+        frame_fingerprint(Shot(dataclasses.replace(sea(), wind_fields=fields)), 1)
+        for fields in (
+            (),
+            (WindFieldLayer(),),
+            (WindFieldLayer(keys=(WindKey(0.0, Raster(CALM)),)),),
+            (WindFieldLayer(keys=(WindKey(1.0, Raster(CALM)),)),),
+        )
+    }
+    assert len(prints) == 4
