@@ -26,6 +26,7 @@ from .ui import (
     properties,
     scene_operators,
     sea_operators,
+    usd_operators,
 )
 
 CLASSES = (
@@ -33,6 +34,7 @@ CLASSES = (
     *operators.CLASSES,
     *asset_operators.CLASSES,
     *bake_operators.CLASSES,
+    *usd_operators.CLASSES,
     *layer_operators.CLASSES,
     *preset_operators.CLASSES,
     *sea_operators.CLASSES,
@@ -85,6 +87,8 @@ def register(package: str | None = None) -> None:
     bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
     bpy.types.NODE_MT_add.append(node_operators.draw_add_menu)
     bpy.types.VIEW3D_MT_mesh_add.append(scene_operators.draw_add_menu)
+    bpy.types.TOPBAR_MT_file_export.append(usd_operators.draw_export_menu)
+    bpy.types.TOPBAR_MT_file_import.append(usd_operators.draw_import_menu)
     handlers.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
@@ -96,6 +100,8 @@ def unregister() -> None:
         bpy.utils.unregister_cli_command(_commands.pop())
     handlers.unregister()
     asset_library.remove()
+    bpy.types.TOPBAR_MT_file_import.remove(usd_operators.draw_import_menu)
+    bpy.types.TOPBAR_MT_file_export.remove(usd_operators.draw_export_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(scene_operators.draw_add_menu)
     bpy.types.NODE_MT_add.remove(node_operators.draw_add_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import re
 from pathlib import Path
+from typing import Any
 
 from .. import __version__
 from ..core.errors import ParameterError
@@ -13,6 +14,7 @@ from ..core.frames import Frame, parse_frames
 from ..core.presets import built_in
 from ..export.exr import COMPRESSION_ERROR, MAPS
 from ..export.usd.attributes import ATTRIBUTES
+from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS, written
 from ..export.usd.package import FORMS, UP_AXES
 from . import baking, checking, info, job, usd
 from .seas import chosen_seas
@@ -201,12 +203,15 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
     parser.add_argument(
         "--frames", type=_frames, metavar="RANGE", help="1-48, 1001-1010x0.5; with --bake by default all"
     )
-    parser.add_argument("--form", choices=FORMS, required=True, help="what moves the mesh; see docs/usd.md")
+    parser.add_argument(
+        "--form", choices=FORMS, required=True,
+        help="; ".join(f"{form}: {option.text}" for form, option in FORM_OPTIONS.items()),
+    )  # fmt: skip
     parser.add_argument(
         "--out", type=Path, required=True, metavar="FILE.usd", help="the asset; its other layers go beside it"
     )
     parser.add_argument("--name", help="of the asset, by default that of the file")
-    parser.add_argument("--force", action="store_true", help="replace files that are there, also of others")
+    parser.add_argument("--force", action="store_true", help=OPTIONS["force"].text)
     parser.add_argument(
         "--workers", type=_workers, metavar="N", help="threads that make frames; by default two"
     )
@@ -224,33 +229,21 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
 
 
 def _add_usd_content(parser: _Arguments) -> None:
-    parser.add_argument("--up-axis", choices=UP_AXES, default="Z", help="Z by default")
-    parser.add_argument(
-        "--metres-per-unit", type=float, default=1.0, metavar="M", help="1 by default; 0.01 for centimetres"
-    )
-    parser.add_argument(
-        "--subframes",
-        type=_count,
-        default=1,
-        metavar="N",
-        help="samples a frame, for motion blur; 1 by default",
-    )
-    parser.add_argument(
-        "--attributes", type=_attributes, metavar="LIST", default=tuple(ATTRIBUTES),
-        help=f"beside points and extent, of {','.join(ATTRIBUTES)}; all by default",
-    )  # fmt: skip
-    parser.add_argument("--half", action="store_true", help="foam and cusp in 16 bits")
-    parser.add_argument(
-        "--tiles", type=_tiles, default=(1, 1), metavar="3x3", help="patches side by side, as instances"
-    )
-    parser.add_argument(
-        "--proxy", type=int, default=64, metavar="N",
-        help="quads along a side of the coarse mesh for viewports; 64 by default, 0 for none",
-    )  # fmt: skip
-    parser.add_argument(
-        "--variants", type=_resolutions, default=(), metavar="512,256",
-        help="resolutions to choose from, the first one by default",
-    )  # fmt: skip
+    def add(name: str, more: str = "", **kind: Any) -> None:
+        text, default = OPTIONS[name].text, written(name, DEFAULTS[name])
+        if "action" not in kind:
+            kind["default"] = DEFAULTS[name]
+            text += more or (f"; {default} by default" if default else "")
+        parser.add_argument(f"--{name.replace('_', '-')}", help=text, **kind)
+
+    add("up_axis", choices=UP_AXES)
+    add("metres_per_unit", type=float, metavar="M")
+    add("subframes", type=_count, metavar="N")
+    add("attributes", f", of {','.join(ATTRIBUTES)}; all by default", type=_attributes, metavar="LIST")
+    add("half", action="store_true")
+    add("tiles", type=_tiles, metavar="3x3")
+    add("proxy", type=int, metavar="N")
+    add("variants", type=_resolutions, metavar="512,256")
 
 
 def _add_usd_verify(commands: _Commands) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 from ..core.frames import Frame, format_frames
 from ..core.plain_data import to_plain
 from ..core.shot import Shot
+from ..export.cache.estimate import readable_bytes
 from ..export.cache.job import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.export import Export
@@ -64,10 +65,12 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
         )
         return DONE
     export.finish()
+    size = export.written_bytes()
     progress.say(
         f"{arguments.out}\n  {len(package.frames)} frames, {format_frames(package.frames)}, as "
-        f"{package.form}; check it with: usd-verify {shlex.quote(str(arguments.out))}",
-        path=str(arguments.out), frames=format_frames(package.frames), form=package.form,
+        f"{package.form}, {readable_bytes(size)}; check it with: usd-verify "
+        f"{shlex.quote(str(arguments.out))}",
+        path=str(arguments.out), frames=format_frames(package.frames), form=package.form, bytes=size,
     )  # fmt: skip
     return DONE
 
@@ -79,7 +82,9 @@ def _make(
     progress: Progress,
     stopped: Callable[[], bool],
 ) -> None:
-    progress.begin(export.left(frames))
+    left = export.left(frames)
+    progress.say(f"{left} of {len(frames) * export.rounds} frames to make", left=left)
+    progress.begin(left)
     workers = arguments.workers or min(_THREADS, os.cpu_count() or 1)
     try:
         with closing(export.make(frames, workers)) as making:

@@ -11,7 +11,7 @@ from bpy.app.handlers import persistent
 
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
-from . import bake_process, evaluation, live_image, refinement
+from . import bake_process, evaluation, live_image, refinement, usd_process
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, refresh_and_tell, refresh_render
@@ -63,6 +63,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels. Its node
     groups may be of another version."""
     bake_process.stop_all()
+    usd_process.stop_all()
     _forget_all()
     _subscribe()
     renew_groups(ALL_KINDS)
@@ -134,6 +135,7 @@ def unregister() -> None:
     bpy.msgbus.clear_by_owner(_OWNER)
     _detach()
     bake_process.stop_all()
+    usd_process.stop_all()
     _forget_all()
 
 

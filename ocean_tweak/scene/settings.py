@@ -46,6 +46,22 @@ class MapImages(Protocol):
     vel: bpy.types.Image | None
 
 
+class UsdSettings(Protocol):
+    """How an ocean becomes USD layers; the rest is told by export.usd.options.
+
+    file : the asset's own layer, "" for the usual place
+    use_bake : displace by the images that the ocean reads
+    variants : resolutions, between commas
+    """
+
+    file: str
+    form: str
+    use_bake: bool
+    metres_per_unit: float
+    attributes: set[str]
+    variants: str
+
+
 class OceanSettings(Protocol):
     """The part of `object.ocean_tweak` that the scene layer reads and writes.
 
@@ -56,6 +72,7 @@ class OceanSettings(Protocol):
     error : why the ocean cannot be shown, "" when all is well
     missing_file : the file that the present frame of a sequence should show and that is not there, or ""
     statistics : JSON of the sea's statistics, "" when there are none
+    usd : how it becomes USD layers
     use_foam, use_normals, use_velocity : whether these maps are made and shown
     repeats_x, repeats_y : patches side by side
     sequence_first, sequence_last, sequence_samples : file numbers, and texels along each side
@@ -94,6 +111,7 @@ class OceanSettings(Protocol):
     error: str
     missing_file: str
     statistics: str
+    usd: UsdSettings
     id_data: bpy.types.Object
 
     def to_parameters(self, scene: bpy.types.Scene) -> OceanParameters:

@@ -4,18 +4,16 @@
 import bpy
 from bpy.props import BoolProperty
 
-from ..core import ParameterError
 from ..scene import bake_process, cache_place, ocean_object
 from ..scene.bake_process import BakeProcess
 from ..scene.image_sequence import find_sequence
-from ..scene.settings import OceanObjectError, settings_of
+from ..scene.settings import settings_of
 from ..scene.shots import scene_frames, shot_of
 from .active_ocean import OfActiveOcean, refuse
+from .beside_window import BesideWindow, StopsProcess
 
-_LOOK = 0.1  # s
 
-
-class OCEAN_OT_bake(OfActiveOcean, bpy.types.Operator):
+class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
     """Bake the active ocean over the scene's frames."""
 
     bl_idname = "ocean.bake"
@@ -25,6 +23,9 @@ class OCEAN_OT_bake(OfActiveOcean, bpy.types.Operator):
     )
     bl_label = "Bake"
     bl_options = {"REGISTER"}
+    processes = bake_process
+    doing = "Baking"
+    busy = "This ocean is being baked: wait, or stop it with Esc"
 
     use_result: BoolProperty(
         name="Use the Result",
@@ -32,67 +33,14 @@ class OCEAN_OT_bake(OfActiveOcean, bpy.types.Operator):
         description="Let the baked frames move the ocean when all are there",
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """An ocean of this file that is not being baked."""
-        if not super().poll(context):
-            return False
-        if bake_process.running(context.active_object):
-            cls.poll_message_set("This ocean is being baked: wait, or stop it with Esc")
-            return False
-        return True
+    def begin(self, context: bpy.types.Context) -> BakeProcess:
+        """Bake the scene's frames."""
+        item, frames = context.active_object, scene_frames(context.scene)
+        return bake_process.start(item, shot_of(item, context.scene, frames), frames)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Start, and look at it from time to time."""
-        if not self._start(context):
-            return {"CANCELLED"}
-        self._timer = context.window_manager.event_timer_add(_LOOK, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        self._tell(context)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the progress; Esc stops."""
-        if event.type == "ESC" and event.value == "PRESS" and not self._bake.is_stopped:
-            self._bake.stop()
-            return {"RUNNING_MODAL"}
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        if not self._bake.has_ended():
-            self._tell(context)
-            return {"PASS_THROUGH"}
-        context.window_manager.event_timer_remove(self._timer)
-        context.workspace.status_text_set(None)
-        return self._finish(context)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Bake, and wait for it."""
-        if not self._start(context):
-            return {"CANCELLED"}
-        self._bake.wait()
-        return self._finish(context)
-
-    def _start(self, context: bpy.types.Context) -> bool:
-        item, scene = context.active_object, context.scene
-        frames = scene_frames(scene)
-        try:
-            self._bake = bake_process.start(item, shot_of(item, scene, frames), frames)
-        except (ParameterError, OceanObjectError, OSError) as error:
-            refuse(self, error)
-            return False
-        self._item, self._scene = item.name, scene.name
-        return True
-
-    def _tell(self, context: bpy.types.Context) -> None:
-        bake = self._bake
-        doing = "Finishing the frame" if bake.is_stopped else f"Baking {bake.name}"
-        context.workspace.status_text_set(f"{doing}: {bake.done} of {bake.left or '…'}   |   Esc: stop")
-        _redraw(context)
-
-    def _finish(self, context: bpy.types.Context) -> set[str]:
-        bake: BakeProcess = self._bake
-        bake_process.forget(bake)
-        _redraw(context)
+    def conclude(self, _context: bpy.types.Context) -> set[str]:
+        """Note how far it came, and use the frames."""
+        bake: BakeProcess = self._process
         item, scene = bpy.data.objects.get(self._item), bpy.data.scenes.get(self._scene)
         if item is None or scene is None:
             return refuse(self, f"{bake.name} is gone; its frames are in {bake.folder}")
@@ -104,7 +52,7 @@ class OCEAN_OT_bake(OfActiveOcean, bpy.types.Operator):
                 self.report({"INFO"}, f"Stopped after {bake.done} frames: bake again to go on")
                 return {"CANCELLED"}
             settings.bake_done = min(settings.bake_done, settings.bake_total - 1)
-            return refuse(self, bake.error or "The bake failed without a word")
+            return self.failed()
         if self.use_result and bake.folder is not None:
             try:
                 ocean_object.use_sequence(item, scene, find_sequence(bake.folder))
@@ -116,27 +64,15 @@ class OCEAN_OT_bake(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class OCEAN_OT_stop_bake(bpy.types.Operator):
+class OCEAN_OT_stop_bake(StopsProcess, bpy.types.Operator):
     """Stop baking the active ocean."""
 
     bl_idname = "ocean.stop_bake"
     bl_description = "Stop after the frames that are under way; a later bake goes on from there"
     bl_label = "Stop"
     bl_options = {"INTERNAL"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """It is being baked."""
-        item = context.active_object
-        if item is None or bake_process.running(item) is None:
-            cls.poll_message_set("The active object is not being baked")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Ask for the end; the running operator sees it."""
-        bake_process.running(context.active_object).stop()
-        return {"FINISHED"}
+    processes = bake_process
+    idle = "The active object is not being baked"
 
 
 class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
@@ -166,13 +102,6 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
             return refuse(self, error)
         self.report({"INFO"}, f"The bake is in {cache_place.shown_bake(item)}")
         return {"FINISHED"}
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 CLASSES = (OCEAN_OT_bake, OCEAN_OT_stop_bake, OCEAN_OT_take_cache_along)

@@ -36,6 +36,9 @@ _ACRONYMS = {"TMA", "JONSWAP"}
 #: what sliders offer, where the allowed range is much wider than the useful one
 _SOFT_RANGES = {"swell": (0.0, 1.0), "choppiness": (0.0, 1.5), "gain": (0.0, 2.0), "wind_speed": (0.5, 50.0)}
 
+#: hundredths that a number moves a pixel while it is dragged; Blender has no more than 100
+_STEPS = {"m": 100, "m/s": 10}
+
 
 def annotations(
     kind: type, update: Callable[[Any, bpy.types.Context], None], without: tuple[str, ...] = ()
@@ -111,6 +114,7 @@ def _float_property(field: _Field, common: dict[str, Any]) -> Any:
     return bpy.props.FloatProperty(
         description=f"{meta['description']} ({low:g} to {high:g} {meta['unit']})".replace(" )", ")"),
         precision=3 if _is_length(field) else 2,
+        step=_STEPS.get(meta["unit"], 3),
         **limits,
         **common,
     )

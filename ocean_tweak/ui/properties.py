@@ -22,6 +22,7 @@ from ..scene.refinement import show
 from ..scene.settings import METHODS, OUT_OF_RANGE, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
 from ..scene.units import frame_rate, metres_per_unit
 from . import parameter_properties
+from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
 _FROM_SCENE = ("fps",)
@@ -213,6 +214,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "error": StringProperty(**_HIDDEN),
         "missing_file": StringProperty(**_HIDDEN),
         "statistics": StringProperty(**_HIDDEN),
+        "usd": PointerProperty(type=OCEAN_PG_usd, **_OVERRIDE),
     }  # fmt: skip
 
     @contextmanager
@@ -265,4 +267,12 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         _changed(self, bpy.context)
 
 
-CLASSES = (OCEAN_PG_water, OCEAN_PG_layer, OCEAN_PG_foam, OCEAN_PG_timing, OCEAN_PG_maps, OCEAN_PG_ocean)
+CLASSES = (
+    OCEAN_PG_water,
+    OCEAN_PG_layer,
+    OCEAN_PG_foam,
+    OCEAN_PG_timing,
+    OCEAN_PG_maps,
+    OCEAN_PG_usd,
+    OCEAN_PG_ocean,
+)

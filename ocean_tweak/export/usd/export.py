@@ -100,7 +100,19 @@ class Export:
             return sum(len(self._todo(sink, frames)) for _, _, sink in self._clips())
         if self.package.form == "displacement":
             return sum(1 for _ in textures.unfinished(self.bake_folder, self.job, frames))
-        return len(frames) * len(self.editions)
+        return len(frames) * self.rounds
+
+    @property
+    def rounds(self) -> int:
+        """How often each frame is made: once a resolution, but images only once."""
+        return 1 if self.package.form == "displacement" else len(self.editions)
+
+    def written_bytes(self) -> int:
+        """What the asset takes on disk, without the images of a bake that somebody else made."""
+        clips = [sink.path(frame) for _, _, sink in self._clips() for frame in self.package.frames]
+        own = self.package.form == "displacement" and self.bake is None
+        images = self.images.values() if own else ()
+        return sum(path.stat().st_size for path in (*self.paths(), *clips, *images))
 
     def make(self, frames: Sequence[Frame], workers: int = 1) -> Iterator[BakedFrame]:
         """Make frames; yields each when it is written. Those of points appear together at the end."""

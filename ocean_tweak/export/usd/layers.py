@@ -16,6 +16,7 @@ from .package import FORMAT, Package
 
 #: key of customData and customLayerData
 MARK = "ocean_tweak"
+_REPLACE = "replace it with --force (in Blender: Overwrite)"
 
 
 @contextlib.contextmanager
@@ -129,10 +130,9 @@ def refuse_foreign(paths: Iterable[Path], package: Package) -> None:
         if owner is None:
             raise UsdError(
                 f"{path} is there already and was not written by Ocean Tweak, or is damaged: "
-                "choose another folder, or replace it with --force"
+                f"choose another folder, or {_REPLACE}"
             )
         if owner != package.name:
             raise UsdError(
-                f"{path} belongs to the asset {owner!r}: give each asset a folder of its own, "
-                "or replace it with --force"
+                f"{path} belongs to the asset {owner!r}: give each asset a folder of its own, or {_REPLACE}"
             )

@@ -4,10 +4,16 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from types import ModuleType
 from typing import Any
 
 _MODULES = ("Gf", "Kind", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "Vt")
+
+
+_INSTALL = "install it with 'pip install usd-core', or use a Blender from blender.org, which brings it along"
+#: for whoever wants to press a button in a Blender without OpenUSD
+MISSING_IN_BLENDER = f"The Python of this Blender, which would do the work, has no OpenUSD: {_INSTALL}"
 
 
 class UsdError(RuntimeError):
@@ -21,8 +27,10 @@ def pxr() -> Any:
         for name in _MODULES:
             importlib.import_module(f"pxr.{name}")
     except ImportError as error:
-        raise UsdError(
-            f"OpenUSD cannot be loaded ({error}): install it with 'pip install usd-core', or use a Blender "
-            "from blender.org, which brings it along"
-        ) from error
+        raise UsdError(f"OpenUSD cannot be loaded ({error}): {_INSTALL}") from error
     return package
+
+
+def is_installed() -> bool:
+    """Whether there is a package `pxr`; it is not loaded."""
+    return importlib.util.find_spec("pxr") is not None

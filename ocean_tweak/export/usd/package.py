@@ -23,8 +23,8 @@ FORMS = ("points", "clips", "displacement")
 UP_AXES = ("Z", "Y")
 #: names of the layers beside the asset's own
 LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest")
-_MOST_TILES = 64
-_UNITS = (1e-6, 1e6)
+#: limits of tiles along a side, and of metres in a unit
+MOST_TILES, UNITS = 64, (1e-6, 1e6)
 
 
 @dataclass(frozen=True)
@@ -61,11 +61,11 @@ class Package:
         _check_choice("up_axis", self.up_axis, UP_AXES)
         for name in self.attributes:
             _check_choice("attributes", name, tuple(ATTRIBUTES))
-        low, high = _UNITS
+        low, high = UNITS
         if not (math.isfinite(self.metres_per_unit) and low <= self.metres_per_unit <= high):
             raise ParameterError("metres_per_unit", self.metres_per_unit, f"must be from {low:g} to {high:g}")
-        if not all(1 <= count <= _MOST_TILES for count in self.tiles):
-            raise ParameterError("tiles", self.tiles, f"must be from 1 to {_MOST_TILES} along each side")
+        if not all(1 <= count <= MOST_TILES for count in self.tiles):
+            raise ParameterError("tiles", self.tiles, f"must be from 1 to {MOST_TILES} along each side")
         if self.proxy < 0:
             raise ParameterError("proxy", self.proxy, "must be 0 or more")
         if len(set(self.variants)) < len(self.variants):

@@ -6,6 +6,7 @@ import textwrap
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ...scene.command_process import CommandProcess
 from ...scene.settings import OceanSettings, is_ocean, settings_of
 
 CATEGORY = "Ocean Tweak"
@@ -70,6 +71,19 @@ def message(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, a
     for index, line in enumerate(textwrap.wrap(translated(text), max(int(width / _LETTER) - 9, 16))):
         icon = ("ERROR" if alert else "INFO") if index == 0 else "BLANK1"
         box.label(text=line, icon=icon, translate=False)
+
+
+def progress_bar(layout: bpy.types.UILayout, process: CommandProcess, stop: str) -> None:
+    """Draw how far a process is and how long it will take.
+
+    stop : the operator that ends it
+    """
+    left = process.seconds_left
+    time = "" if left is None else f", {int(left) // 60}:{int(left) % 60:02d}"
+    text = translated("Stopping…") if process.is_stopped else f"{process.done} / {process.left or '…'}{time}"
+    line = layout.row(align=True)
+    line.progress(factor=process.factor, text=text, translate=False)
+    line.operator(stop, text="", icon="CANCEL")
 
 
 def length_text(scene: bpy.types.Scene, metres: float) -> str:

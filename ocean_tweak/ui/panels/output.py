@@ -5,11 +5,10 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...scene import bake_process, cache_place
-from ...scene.bake_process import BakeProcess
 from ...scene.maps import MAPS
 from ...scene.shots import scene_frames
 from .. import bake_operators, operators
-from .drawing import OceanPanel, active_settings, message, row, split
+from .drawing import OceanPanel, active_settings, message, progress_bar, row, split
 
 
 class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
@@ -23,7 +22,7 @@ class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
         layout, settings = split(self.layout), active_settings(context)
         bake = bake_process.running(context.active_object)
         if bake is not None:
-            _progress(layout, bake)
+            progress_bar(layout, bake, bake_operators.OCEAN_OT_stop_bake.bl_idname)
         else:
             layout.prop(settings, "cache_folder")
             layout.operator(
@@ -44,15 +43,6 @@ def _bake_label(context: bpy.types.Context) -> str:
     if 0 < settings.bake_done < settings.bake_total:
         return translated("Resume Bake ({} of {} Frames)").format(settings.bake_done, settings.bake_total)
     return translated("Bake {} Frames").format(count)
-
-
-def _progress(layout: bpy.types.UILayout, bake: BakeProcess) -> None:
-    left = bake.seconds_left
-    time = "" if left is None else f", {int(left) // 60}:{int(left) % 60:02d}"
-    text = translated("Stopping…") if bake.is_stopped else f"{bake.done} / {bake.left or '…'}{time}"
-    line = layout.row(align=True)
-    line.progress(factor=bake.factor, text=text, translate=False)
-    line.operator(bake_operators.OCEAN_OT_stop_bake.bl_idname, text="", icon="CANCEL")
 
 
 def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A command of the command line in a process of its own: the window stays free while it works."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO, Any
+
+import bpy
+
+from ..core.shot import Shot
+from ..export.python_process import environment, module_command
+
+
+class CommandProcess:
+    """A command under way.
+
+    name : of the ocean that it is about
+    left, done : frames that were to be made, and that have been
+    error : the last line that told of a failure
+    """
+
+    def __init__(self, name: str, arguments: Sequence[str], shot: Shot | None = None) -> None:
+        """Start it. Raises OSError for what the disk refuses.
+
+        arguments : the command and what it is given
+        shot : the sea, for a command that takes one
+        """
+        self.name = name
+        self.left, self.done = 0, 0
+        self.error = ""
+        self.is_stopped = False
+        self._began = time.monotonic()
+        self._parameters = None if shot is None else _write_shot(shot.to_json(indent=None))
+        sea = () if self._parameters is None else ("--params", str(self._parameters))
+        self._process = subprocess.Popen(
+            [*module_command(), *arguments, "--json", *sea], env=environment(), stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8", errors="replace",
+        )  # fmt: skip
+        self._readers = [
+            threading.Thread(target=read, args=(stream,), name=f"Ocean Tweak {arguments[0]}", daemon=True)
+            for read, stream in (
+                (self._read_progress, self._process.stdout),
+                (self._read_errors, self._process.stderr),
+            )
+        ]
+        for reader in self._readers:
+            reader.start()
+
+    @property
+    def factor(self) -> float:
+        """The share that is done, 0…1."""
+        return self.done / self.left if self.left else 0.0
+
+    @property
+    def seconds_left(self) -> float | None:
+        """How long it will take, as far as that is known."""
+        if not 0 < self.done < self.left:
+            return None
+        return (time.monotonic() - self._began) / self.done * (self.left - self.done)
+
+    def has_ended(self) -> bool:
+        """Whether nothing more will come."""
+        if self._process.poll() is None:
+            return False
+        for reader in self._readers:
+            reader.join()
+        if self._parameters is not None:
+            self._parameters.unlink(missing_ok=True)
+        return True
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether it has ended and did all that it should."""
+        return self._process.returncode == 0
+
+    def stop(self) -> None:
+        """Let it end after the frames that are under way."""
+        self.is_stopped = True
+        if self._process.poll() is None:
+            self._process.terminate()
+
+    def wait(self) -> None:
+        """Wait until it has ended."""
+        self._process.wait()
+        self.has_ended()
+
+    def take(self, said: dict[str, Any]) -> None:
+        """What a line of its output says."""
+        if "left" in said:
+            self.left = said["left"]
+            self._began = time.monotonic()
+        elif "seconds" in said:
+            self.done += 1
+
+    def _read_progress(self, stream: IO[str]) -> None:
+        with stream:
+            for line in stream:
+                try:
+                    said = json.loads(line)
+                except ValueError:
+                    continue
+                self.take(said)
+
+    def _read_errors(self, stream: IO[str]) -> None:
+        with stream:
+            for line in stream:
+                self.error = line.strip().removeprefix("ocean_tweak: ") or self.error
+
+
+def _write_shot(text: str) -> Path:
+    handle, name = tempfile.mkstemp(prefix="ocean_tweak_", suffix=".json")
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(text)
+    return Path(name)
+
+
+class Running(dict[int, CommandProcess]):
+    """Processes under way, by the ocean's session uid: they are no data of the file and outlive undo."""
+
+    def of(self, item: bpy.types.Object) -> CommandProcess | None:
+        """The process that works for an ocean."""
+        return self.get(item.session_uid)
+
+    def forget(self, process: CommandProcess) -> None:
+        """It has ended, and its result has been taken."""
+        for uid in [uid for uid, other in self.items() if other is process]:
+            del self[uid]
+
+    def stop_all(self) -> None:
+        """Another file is opened, or the extension is disabled."""
+        for process in self.values():
+            process.stop()
+        self.clear()

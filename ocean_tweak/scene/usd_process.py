@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""USD layers of an ocean, written and checked by the command line in a process of its own.
+
+They hold the sea of the settings with the patch's corner at the origin, wherever the object stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..core.frames import Frame, format_frames
+from ..core.shot import Shot
+from ..export.usd.attributes import ATTRIBUTES
+from ..export.usd.options import OPTIONS, command_arguments
+from .cache_place import bake_name, shown_bake
+from .command_process import CommandProcess, Running
+from .settings import OceanObjectError, settings_of
+from .units import shortest_decimal
+from .user_folder import user_folder
+
+_FOLDER = "usd"
+
+
+class UsdExport(CommandProcess):
+    """An export under way.
+
+    frames : all that are wanted
+    path : the asset's own layer
+    size : of all layers and images that were written, bytes; 0 until the end
+    """
+
+    def __init__(self, item: bpy.types.Object, shot: Shot, frames: Sequence[Frame]) -> None:
+        """Start it. Raises OceanObjectError for a file without a place, OSError for what the disk refuses.
+
+        shot : the ocean's; where the images of a bake are used, that of the bake takes its place
+        """
+        self.frames = tuple(frames)
+        self.path = usd_file(item)
+        self.size = 0
+        bake = used_bake(item)
+        arguments = [
+            "usd", "--form", settings_of(item).usd.form, "--frames", format_frames(self.frames),
+            "--out", str(self.path), *command_arguments(choices(item)),
+        ]  # fmt: skip
+        if bake is None:
+            super().__init__(item.name, arguments, shot)
+        else:
+            super().__init__(item.name, [*arguments, "--bake", str(bake)])
+
+    def take(self, said: dict[str, Any]) -> None:
+        """At the end it says how much was written."""
+        self.size = said.get("bytes", self.size)
+        super().take(said)
+
+
+class UsdCheck(CommandProcess):
+    """The reading back of layers.
+
+    path : the asset's own layer
+    problems : each that was found
+    """
+
+    def __init__(self, item: bpy.types.Object) -> None:
+        """Start it. Raises OceanObjectError for a file without a place."""
+        self.path = usd_file(item)
+        self.problems: list[str] = []
+        super().__init__(item.name, ["usd-verify", str(self.path)])
+
+    def take(self, said: dict[str, Any]) -> None:
+        """It names the problems."""
+        if "problem" in said:
+            frame = "" if said["frame"] is None else f"frame {said['frame']}: "
+            self.problems.append(frame + said["problem"])
+
+
+def choices(item: bpy.types.Object) -> dict[str, Any]:
+    """What the ocean's settings choose, by the names of the command's arguments."""
+    settings = settings_of(item).usd
+    chosen = {name: getattr(settings, name) for name in OPTIONS}
+    return {
+        **chosen,
+        "metres_per_unit": float(shortest_decimal(settings.metres_per_unit)),
+        # in the order of the table, not of a set
+        "attributes": [name for name in ATTRIBUTES if name in settings.attributes],
+        "variants": "".join(settings.variants.split()),
+    }
+
+
+def has_bake(item: bpy.types.Object) -> bool:
+    """Whether the ocean reads a bake whose images could move the grid."""
+    return settings_of(item).source == "SEQUENCE" and shown_bake(item) is not None
+
+
+def used_bake(item: bpy.types.Object) -> Path | None:
+    """The bake whose images will move the grid; None where the export makes its own, or needs none."""
+    settings = settings_of(item).usd
+    wanted = settings.form == "displacement" and settings.use_bake and has_bake(item)
+    return shown_bake(item) if wanted else None
+
+
+def default_file(item: bpy.types.Object) -> str:
+    """Where an ocean goes that says no place, relative to its .blend file: each in a folder of its own."""
+    name = bake_name(item)
+    return f"//{_FOLDER}/{name}/{name}.usd"
+
+
+def usd_file(item: bpy.types.Object) -> Path:
+    """The asset's own layer. Raises OceanObjectError where that depends on a file that was never saved.
+
+    An ocean that says no place goes into the user's own folder while its file has none.
+    """
+    path = settings_of(item).usd.file
+    if bpy.data.filepath or item.library is not None:
+        return Path(bpy.path.abspath(path or default_file(item), library=item.library)).resolve()
+    if not path:
+        return user_folder(_FOLDER).joinpath(*default_file(item).split("/")[3:])
+    if path.startswith("//"):
+        raise OceanObjectError(f"{path} lies beside this file, which was never saved: save it first")
+    return Path(path).resolve()
+
+
+def beside_the_file(path: Path) -> str:
+    """The path as the .blend file keeps it: relative to itself, where it has a place and there is a way."""
+    if not bpy.data.filepath:
+        return str(path)
+    try:
+        return str(bpy.path.relpath(str(path)))
+    except ValueError:  # on another drive
+        return str(path)
+
+
+_running = Running()
+
+
+def start_export(item: bpy.types.Object, shot: Shot, frames: Sequence[Frame]) -> UsdExport:
+    """Start an export and remember it for the panel; raises what UsdExport raises."""
+    export = _running[item.session_uid] = UsdExport(item, shot, frames)
+    return export
+
+
+def start_check(item: bpy.types.Object) -> UsdCheck:
+    """Start a check and remember it for the panel; raises what UsdCheck raises."""
+    check = _running[item.session_uid] = UsdCheck(item)
+    return check
+
+
+running, forget, stop_all = _running.of, _running.forget, _running.stop_all

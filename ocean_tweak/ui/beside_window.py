@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators whose work a process does: the window stays free, and Esc stops."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from ..core import ParameterError
+from ..scene.command_process import CommandProcess
+from ..scene.settings import OceanObjectError
+from .active_ocean import OfActiveOcean, refuse
+
+_LOOK = 0.1  # s
+
+
+class BesideWindow(OfActiveOcean):
+    """Acts on the active ocean; `begin` starts the process and `conclude` takes its result.
+
+    processes : the module that keeps the processes of this kind
+    doing : what it does, for the status bar
+    busy : why a second one has to wait
+    """
+
+    processes: Any
+    doing = ""
+    busy = ""
+    _process: CommandProcess
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An ocean of this file that no process of this kind works for."""
+        if not super().poll(context):
+            return False
+        if cls.processes.running(context.active_object):
+            cls.poll_message_set(cls.busy)
+            return False
+        return True
+
+    def begin(self, context: bpy.types.Context) -> CommandProcess:
+        """Start the process. Raises ParameterError, OceanObjectError or OSError."""
+        raise NotImplementedError
+
+    def conclude(self, context: bpy.types.Context) -> set[str]:
+        """Take the result of the process, which has ended."""
+        raise NotImplementedError
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Start, and look at it from time to time."""
+        if not self._start(context):
+            return {"CANCELLED"}
+        self._timer = context.window_manager.event_timer_add(_LOOK, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        self._tell(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the progress; Esc stops."""
+        if event.type == "ESC" and event.value == "PRESS" and not self._process.is_stopped:
+            self._process.stop()
+            return {"RUNNING_MODAL"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if not self._process.has_ended():
+            self._tell(context)
+            return {"PASS_THROUGH"}
+        context.window_manager.event_timer_remove(self._timer)
+        context.workspace.status_text_set(None)
+        return self._end(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Do it, and wait for it."""
+        if not self._start(context):
+            return {"CANCELLED"}
+        self._process.wait()
+        return self._end(context)
+
+    def failed(self) -> set[str]:
+        """Report why the process failed."""
+        return refuse(self, self._process.error or f"{self.doing} {self._process.name} failed without a word")
+
+    def _start(self, context: bpy.types.Context) -> bool:
+        self._item, self._scene = context.active_object.name, context.scene.name
+        try:
+            self._process = self.begin(context)
+        except (ParameterError, OceanObjectError, OSError) as error:
+            refuse(self, error)
+            return False
+        return True
+
+    def _end(self, context: bpy.types.Context) -> set[str]:
+        self.processes.forget(self._process)
+        _redraw(context)
+        return self.conclude(context)
+
+    def _tell(self, context: bpy.types.Context) -> None:
+        process = self._process
+        doing = "Finishing the frame" if process.is_stopped else f"{self.doing} {process.name}"
+        count = f": {process.done} of {process.left}" if process.left else "…"
+        context.workspace.status_text_set(f"{doing}{count}   |   Esc: stop")
+        _redraw(context)
+
+
+class StopsProcess:
+    """Operators that stop the process of the active ocean.
+
+    processes : the module that keeps it
+    idle : what to say where there is none
+    """
+
+    processes: Any
+    idle = ""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """It is under way."""
+        item = context.active_object
+        if item is None or cls.processes.running(item) is None:
+            cls.poll_message_set(cls.idle)
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Ask for the end; the running operator sees it."""
+        self.processes.running(context.active_object).stop()
+        return {"FINISHED"}
+
+
+def _redraw(context: bpy.types.Context) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

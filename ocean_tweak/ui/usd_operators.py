@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The active ocean as USD layers for other programs, and a sea back from them."""
+
+from pathlib import Path
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from ..core.frames import format_frames
+from ..export.cache.estimate import readable_bytes
+from ..export.usd import library
+from ..export.usd.reading import SUFFIXES
+from ..scene import ocean_object, usd_import, usd_process
+from ..scene.settings import OceanObjectError, settings_of
+from ..scene.shots import scene_frames, shot_of
+from ..scene.usd_process import UsdCheck, UsdExport
+from .active_ocean import OfActiveOcean, refuse
+from .beside_window import BesideWindow, StopsProcess
+from .usd_properties import draw_choices
+
+_FILTER = ";".join(f"*{suffix}" for suffix in SUFFIXES)
+_EXTENSION = SUFFIXES[0]
+
+
+class _NeedsUsd:
+    """Operators that need OpenUSD; they say how to get it."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """OpenUSD can be found, and whatever else the operator wants."""
+        if not library.is_installed():
+            cls.poll_message_set(library.MISSING_IN_BLENDER)
+            return False
+        return super().poll(context)
+
+
+class OCEAN_OT_export_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
+    """Write the active ocean as USD layers."""
+
+    bl_idname = "ocean.export_usd"
+    bl_description = (
+        "Write the ocean over the scene's frames as USD layers, as computed from its settings: its patch's "
+        "corner at the origin, wherever the object stands. The window stays free, Esc stops"
+    )
+    bl_label = "Export USD"
+    bl_options = {"REGISTER"}
+    processes = usd_process
+    doing = "Exporting"
+    busy = "This ocean is being exported or checked: wait, or stop it with Esc"
+
+    def begin(self, context: bpy.types.Context) -> UsdExport:
+        """Write the scene's frames."""
+        item, frames = context.active_object, scene_frames(context.scene)
+        return usd_process.start_export(item, shot_of(item, context.scene, frames), frames)
+
+    def conclude(self, _context: bpy.types.Context) -> set[str]:
+        """Say what was written."""
+        export: UsdExport = self._process
+        if export.is_complete:
+            frames, size = format_frames(export.frames), readable_bytes(export.size)
+            self.report({"INFO"}, f"{len(export.frames)} frames, {frames}, {size}: {export.path}")
+            return {"FINISHED"}
+        if not export.is_stopped:
+            return self.failed()
+        self.report({"INFO"}, f"{export.error[:1].upper()}{export.error[1:]}" or "Stopped")
+        return {"CANCELLED"}
+
+
+class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, ExportHelper):
+    """Choose a file, then write the active ocean as USD layers."""
+
+    bl_idname = "ocean.export_usd_as"
+    bl_description = OCEAN_OT_export_usd.bl_description
+    bl_label = "Export Sea as USD"
+    bl_options = {"REGISTER"}
+
+    filename_ext = _EXTENSION
+    check_extension = False  # any of the three will do
+    filter_glob: StringProperty(default=_FILTER, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Open the browser where the ocean goes already."""
+        try:
+            self.filepath = str(usd_process.usd_file(context.active_object))
+        except (OceanObjectError, OSError) as error:
+            return refuse(self, error)
+        return super().invoke(context, event)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the choices of the panel."""
+        item = context.active_object
+        self.layout.use_property_split = True
+        draw_choices(self.layout, settings_of(item).usd, usd_process.has_bake(item))
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Note the file in the ocean, and export."""
+        file = Path(self.filepath)
+        file = file if file.suffix else file.with_suffix(_EXTENSION)
+        settings_of(context.active_object).usd.file = usd_process.beside_the_file(file)
+        try:
+            return bpy.ops.ocean.export_usd("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")
+        except RuntimeError as error:  # what the other operator reported
+            return refuse(self, str(error).removeprefix("Error: ").strip())
+
+
+class OCEAN_OT_verify_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
+    """Read the USD layers of the active ocean back."""
+
+    bl_idname = "ocean.verify_usd"
+    bl_description = (
+        "Read the exported layers back: what is missing, stands still or differs from the sea that they were "
+        "made from, at the first, middle and last frame"
+    )
+    bl_label = "Verify USD"
+    bl_options = {"REGISTER"}
+    processes = usd_process
+    doing = "Checking"
+    busy = OCEAN_OT_export_usd.busy
+
+    def begin(self, context: bpy.types.Context) -> UsdCheck:
+        """Read what the ocean's settings say."""
+        return usd_process.start_check(context.active_object)
+
+    def conclude(self, _context: bpy.types.Context) -> set[str]:
+        """Say what is wrong."""
+        check: UsdCheck = self._process
+        if check.is_complete:
+            self.report({"INFO"}, f"All is well with {check.path}")
+            return {"FINISHED"}
+        if check.is_stopped:
+            return {"CANCELLED"}
+        if not check.problems:
+            return self.failed()
+        more = f" (and {len(check.problems) - 1} more)" if len(check.problems) > 1 else ""
+        return refuse(self, f"{check.path}: {check.problems[0]}{more}")
+
+
+class OCEAN_OT_stop_usd(StopsProcess, bpy.types.Operator):
+    """Stop exporting or checking the active ocean."""
+
+    bl_idname = "ocean.stop_usd"
+    bl_description = "Stop after the frames that are under way. Clips that are written stay, points do not"
+    bl_label = "Stop"
+    bl_options = {"INTERNAL"}
+    processes = usd_process
+    idle = "The active object is not being exported"
+
+
+class _InObjectMode:
+    """Operators that add an object."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Objects are added in Object Mode."""
+        cls.poll_message_set("Switch to Object Mode to add an ocean")
+        return context.mode == "OBJECT"
+
+
+class OCEAN_OT_import_usd(_NeedsUsd, _InObjectMode, bpy.types.Operator, ImportHelper):
+    """Add the sea that USD layers were made from."""
+
+    bl_idname = "ocean.import_usd"
+    bl_description = (
+        "Add the sea that layers of Ocean Tweak were made from, live, by the parameters that they hold. Its "
+        "patch's corner stands at the origin, as theirs does"
+    )
+    bl_label = "Import Sea from USD"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = _EXTENSION
+    filter_glob: StringProperty(default=_FILTER, options={"HIDDEN"})
+    use_frame_rate: BoolProperty(
+        name="Set Frame Rate",
+        description="Give the scene the layers' frame rate, so that every frame shows their waves",
+        default=True,
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add it, and make it the active object."""
+        try:
+            item = usd_import.add_from_layer(
+                context.scene, Path(self.filepath), context.collection, self.use_frame_rate
+            )
+        except (library.UsdError, OSError, *ocean_object.EXPECTED_ERRORS) as error:
+            return refuse(self, error)
+        for other in context.selected_objects:
+            other.select_set(False)
+        # an excluded collection keeps its objects out of the view layer
+        if item.name in context.view_layer.objects:
+            item.select_set(True)
+            context.view_layer.objects.active = item
+        return {"FINISHED"}
+
+
+def draw_export_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Draw the entry in File > Export."""
+    self.layout.operator(OCEAN_OT_export_usd_as.bl_idname, text="Ocean Tweak Sea (.usd)")
+
+
+def draw_import_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    """Draw the entry in File > Import."""
+    self.layout.operator(OCEAN_OT_import_usd.bl_idname, text="Ocean Tweak Sea (.usd)")
+
+
+CLASSES = (
+    OCEAN_OT_export_usd,
+    OCEAN_OT_export_usd_as,
+    OCEAN_OT_verify_usd,
+    OCEAN_OT_stop_usd,
+    OCEAN_OT_import_usd,
+)
