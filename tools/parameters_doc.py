@@ -9,7 +9,15 @@ import sys
 from fractions import Fraction
 from typing import Any
 
-from ocean_tweak.core.parameters import OceanParameters, Timing, Water, WaveLayer, WindFieldLayer, WindKey
+from ocean_tweak.core.parameters import (
+    OceanParameters,
+    PictureLayer,
+    Timing,
+    Water,
+    WaveLayer,
+    WindFieldLayer,
+    WindKey,
+)
 from ocean_tweak.core.raster import Raster
 
 from .project import ROOT
@@ -23,6 +31,7 @@ CLASSES = {
     OceanParameters: "at the top",
     Water: "in `water`",
     WaveLayer: "in each entry of the list `layers`",
+    PictureLayer: "in each entry of the list `pictures`",
     WindFieldLayer: "in each entry of the list `wind_fields`",
     WindKey: "in each entry of a wind field's list `keys`",
     Timing: "in `timing`",

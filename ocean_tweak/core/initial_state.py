@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import dispersion, random
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
+from .noise_synthesis.state import PictureWaves, picture_waves
 from .parameters import OceanParameters, WaveLayer
 
 Array = NDArray[np.float64]
@@ -52,7 +53,7 @@ class InitialState:
 
     @property
     def parts(self) -> tuple[InitialState, ...]:
-        """This state and the others, each with frequencies of its own."""
+        """All of a sea's states, each with frequencies of its own."""
         return self, *self.others
 
     @cached_property
@@ -123,6 +124,16 @@ def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> I
     if parameters.match_height:
         _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
     omega = _angular_frequency(grid, parameters)
+    others = []
+    for picture in parameters.active_pictures:
+        waves = picture_waves(
+            picture, grid, parameters.dispersion, parameters.water, parameters.seed,
+            parameters.loop_duration, parameters.match_height, dtype,
+        )  # fmt: skip
+        if picture.animation == "DISPERSION":  # of the same frequencies: no more work for any frame
+            _add(waves, h_plus, h_minus, expected_plus, expected_minus)
+        else:
+            others.append(_state(grid, waves, parameters, mirrored=picture.animation != "TRANSLATION"))
     state = InitialState(
         grid,
         h_plus,
@@ -131,10 +142,31 @@ def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> I
         expected_plus,
         expected_minus,
         loop_duration=parameters.loop_duration,
-        orbit_depth=parameters.water.depth if parameters.orbits == "FINITE_DEPTH" else float("inf"),
+        orbit_depth=_orbit_depth(parameters),
+        others=tuple(others),
     )
     state.potential_factor  # noqa: B018  made with the state, not by its first surface
     return state
+
+
+def _orbit_depth(parameters: OceanParameters) -> float:
+    return parameters.water.depth if parameters.orbits == "FINITE_DEPTH" else float("inf")
+
+
+def _add(waves: PictureWaves, *to: ComplexArray | RealArray) -> None:
+    parts = (waves.h_plus, waves.h_minus, waves.expected_plus, waves.expected_minus)
+    for target, part in zip(to, parts, strict=True):
+        target += part
+
+
+def _state(
+    grid: WaveVectorGrid, waves: PictureWaves, parameters: OceanParameters, mirrored: bool
+) -> InitialState:
+    """A picture's waves as a state of its own."""
+    return InitialState(
+        grid, waves.h_plus, waves.h_minus, waves.omega, waves.expected_plus, waves.expected_minus,
+        parameters.loop_duration, _orbit_depth(parameters), mirrored,
+    )  # fmt: skip
 
 
 def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:

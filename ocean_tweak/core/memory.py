@@ -11,11 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from .fields import FOAM, OUTPUTS, memory_groups
+from .noise_synthesis.source import side
 from .parameters import OceanParameters
 from .synthesis import term
 
 #: float64 arrays of half the plane that live while the initial state is made, beyond what stays
 _TEMPORARY_ARRAYS = 5
+
+#: complex arrays of half a picture's plane that live while it is filtered
+_PICTURE_ARRAYS = 3
 
 #: bytes of the tables from which it is made, whatever the resolution
 _TABLES = 48 * 2**20
@@ -48,7 +52,12 @@ def memory_need(
     real = 4 if precision == "single" else 8
     phasors = min(len(parameters.active_layers), 4) * 2 * 2 * real
     state = half_plane * (3 * 2 * real + 2 * real + 8 + phasors)
+    moved_apart = [layer for layer in parameters.active_pictures if layer.animation != "DISPERSION"]
+    state += half_plane * (3 * 2 * real + 8) * len(moved_apart)
     building = half_plane * 8 * _TEMPORARY_ARRAYS + _TABLES
+    building += max(
+        (16 * _PICTURE_ARRAYS * side(layer) ** 2 for layer in parameters.active_pictures), default=0
+    )
     everything = frozenset(outputs)
     wanted = everything - {FOAM}
     fields = _foam_bytes(parameters) if FOAM in everything else 0

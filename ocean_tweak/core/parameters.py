@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from . import constants
 from .errors import ParameterError
+from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import Validated, choice, integer, nested, number, rational, switch
 from .wave_particles.parameters import WindFieldLayer, WindKey
@@ -23,6 +24,7 @@ __all__ = [
     "Foam",
     "OceanParameters",
     "ParameterError",
+    "PictureLayer",
     "Timing",
     "Water",
     "WaveLayer",
@@ -280,6 +282,7 @@ class OceanParameters(Validated):
     )
     water: Water = nested(Water)
     layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
+    pictures: tuple[PictureLayer, ...] = nested(PictureLayer, many=True, empty=True)
     wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
@@ -289,14 +292,21 @@ class OceanParameters(Validated):
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
         object.__setattr__(self, "layers", _identified("layers", self.layers))
+        object.__setattr__(self, "pictures", _identified("pictures", self.pictures))
         object.__setattr__(self, "wind_fields", _identified("wind_fields", self.wind_fields))
         _check_loop(self.loop_duration, self.timing)
+        check_loop(self.pictures, self.domain_size, self.loop_duration)
         _check_wind_fields(self)
 
     @property
     def active_layers(self) -> tuple[WaveLayer, ...]:
         """The layers that are not muted."""
         return tuple(layer for layer in self.layers if not layer.muted)
+
+    @property
+    def active_pictures(self) -> tuple[PictureLayer, ...]:
+        """The pictures that are not muted."""
+        return tuple(layer for layer in self.pictures if not layer.muted)
 
     @property
     def active_wind_fields(self) -> tuple[WindFieldLayer, ...]:
@@ -329,7 +339,7 @@ class OceanParameters(Validated):
         return cls.from_dict(parse_json(text))
 
 
-_Layer = TypeVar("_Layer", WaveLayer, WindFieldLayer)
+_Layer = TypeVar("_Layer", WaveLayer, PictureLayer, WindFieldLayer)
 
 
 def _identified(name: str, layers: tuple[_Layer, ...]) -> tuple[_Layer, ...]:

@@ -58,7 +58,8 @@ def propagate(
 ) -> PropagatedState:
     """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its derivative in time, times `scale`, for some columns kx.
 
-    The state's others are in the sum. Horvath (2015), § 7.1.2: waves along +k and along -k are separate; Chen (2014), eq. 9.
+    The state's others are in the sum. Horvath (2015), § 7.1.2: waves along +k and along -k are separate;
+    Chen (2014), eq. 9.
     """
     real = np.float32 if dtype is np.complex64 else np.float64
     angle = np.asarray(2.0 * np.pi * turns(state, time, columns), real)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .. import random
 from ..raster import Raster
+from .parameters import PictureLayer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -53,9 +54,17 @@ def picture_coefficients(picture: Raster) -> ComplexArray:
     The picture counts as periodic and is stretched to a square, band-limited: its first sample stays the
     first, and what is finer than S/2 waves a side is left out.
     """
+    return _frozen(_transformed(picture.values[..., 0].astype(np.float64), _picture_side(picture)))
+
+
+def side(layer: PictureLayer) -> int:
+    """Samples along each side of what a layer's waves are made of."""
+    return layer.noise_resolution if layer.picture is None else _picture_side(layer.picture)
+
+
+def _picture_side(picture: Raster) -> int:
     longest = max(picture.shape[:2])
-    side = min(LARGEST_SIDE, longest + longest % 2)
-    return _frozen(_transformed(picture.values[..., 0].astype(np.float64), max(side, 2)))
+    return min(LARGEST_SIDE, longest + longest % 2)
 
 
 def fitted(coefficients: _Modes, resolution: int) -> _Modes:
