@@ -19,7 +19,15 @@ import bpy
 
 from ..core import OceanParameters
 from . import evaluation
-from .refresh import EXPECTED_ERRORS, foam_job, has_statistics, refresh_and_tell, set_changed, tell
+from .refresh import (
+    EXPECTED_ERRORS,
+    foam_job,
+    has_statistics,
+    refresh_and_tell,
+    set_changed,
+    tell,
+    waves_job,
+)
 from .settings import OceanSettings, all_oceans, settings_of
 
 # s without a change after which all samples are shown
@@ -33,14 +41,16 @@ class _Outstanding:
     """What is still to be done, by the object's session uid.
 
     coarse : when all samples are due
+    preparing : the waves of all samples that are being made
     uncounted : oceans whose statistics are to be made
     counting : sea and result of those that are being made
     foamless : oceans whose foam lacks its history
     foaming : the foam that is being made
-    worker : the thread that makes foam and statistics; they touch no data of Blender
+    worker : the thread that makes waves, foam and statistics; they touch no data of Blender
     """
 
     coarse: dict[int, float] = field(default_factory=dict)
+    preparing: dict[int, Future[object]] = field(default_factory=dict)
     uncounted: set[int] = field(default_factory=set)
     counting: dict[int, tuple[OceanParameters, Future[str]]] = field(default_factory=dict)
     foamless: set[int] = field(default_factory=set)
@@ -50,12 +60,13 @@ class _Outstanding:
     @property
     def uids(self) -> set[int]:
         """Objects with something to be done."""
-        return {*self.coarse, *self.uncounted, *self.counting, *self.foamless, *self.foaming}
+        return {*self.coarse, *self.preparing, *self.uncounted, *self.counting, *self.foamless, *self.foaming}
 
     def keep_only(self, uids: Iterable[int]) -> None:
         """Forget objects that are gone."""
         for uid in self.uids.difference(uids):
             self.coarse.pop(uid, None)
+            self.preparing.pop(uid, None)
             self.uncounted.discard(uid)
             self.counting.pop(uid, None)
             self.foamless.discard(uid)
@@ -152,6 +163,7 @@ def go_on() -> float | None:
     oceans = {item.session_uid: item for item in all_oceans() if item.users_scene}
     _outstanding.keep_only(oceans)
     done = [*_show_all_samples(oceans), *_take_foam(oceans), *_take_statistics(oceans)]
+    _start_waves(oceans)
     _start_foam(oceans)
     _start_statistics(oceans)
     if done:
@@ -159,11 +171,29 @@ def go_on() -> float | None:
     return _INTERVAL if _outstanding.uids else None
 
 
-def _show_all_samples(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
+def _start_waves(oceans: dict[int, bpy.types.Object]) -> None:
     now = time.monotonic()
-    for uid in [uid for uid, due in _outstanding.coarse.items() if due <= now]:
-        del _outstanding.coarse[uid]
-        _refresh(uid, oceans[uid])
+    for uid, due in list(_outstanding.coarse.items()):
+        if due > now or uid in _outstanding.preparing:
+            continue
+        try:
+            job = waves_job(oceans[uid], _scene_of(oceans[uid]))
+        except EXPECTED_ERRORS as error:
+            del _outstanding.coarse[uid]
+            tell(oceans[uid], error)
+        else:
+            _outstanding.preparing[uid] = _outstanding.submit(job)
+
+
+def _show_all_samples(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
+    for uid, future in list(_outstanding.preparing.items()):
+        if not future.done():
+            continue
+        del _outstanding.preparing[uid]
+        if _outstanding.coarse.get(uid, 0.0) > time.monotonic():
+            continue  # another sea was set meanwhile
+        _outstanding.coarse.pop(uid, None)
+        _refresh(uid, oceans[uid])  # tells what went wrong with the waves, too
         yield uid
 
 

@@ -64,7 +64,7 @@ def test_few_samples_then_all_then_the_statistics(
     np.testing.assert_allclose(shown[::2, 1::2], (few[:, :-1] + few[:, 1:]) / 2, atol=TOLERANCE)
     np.testing.assert_allclose(shown[1::2, ::2], (few[:-1] + few[1:]) / 2, atol=TOLERANCE)
     assert item.ocean_tweak.statistics == before
-    assert refinement.go_on() is not None
+    assert run_until(refinement, lambda: not refinement.is_unfinished(item)) is not None
     np.testing.assert_allclose(evaluated(item), expected(sea, 1), atol=TOLERANCE)
     assert refinement.is_outstanding(item)
     assert run_until(refinement, lambda: not refinement.is_outstanding(item)) is None
