@@ -63,7 +63,7 @@ class OCEAN_PG_usd(bpy.types.PropertyGroup):
             )
         ),
         "half": BoolProperty(**_of("half")),
-        "tiles": IntVectorProperty(**_of("tiles", size=2, min=1, max=MOST_TILES, soft_max=8)),
+        "tiles": IntVectorProperty(**_of("tiles", size=2, subtype="XYZ", min=1, max=MOST_TILES, soft_max=8)),
         "proxy": IntProperty(**_of("proxy", min=0, soft_max=256)),
         "variants": StringProperty(**_of("variants", default="")),
         "force": BoolProperty(**_of("force")),
