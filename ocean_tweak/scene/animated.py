@@ -7,11 +7,13 @@ viewport only, so an animated ocean is shown after the evaluation, from the eval
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 
 from .settings import OceanSettings, settings_of
 from .units import frame_rate, frame_with_subframe, shortest_decimal
@@ -69,6 +71,39 @@ def _rate(item: bpy.types.Object, frame: Fraction, fps: Fraction) -> float | Non
     return float(change * fps)
 
 
+def set_keys(item: bpy.types.Object, first_frame: int, samples: Mapping[str, Sequence[float]]) -> None:
+    """Give an ocean's settings a key a frame, linear between; all their other keys and drivers go.
+
+    samples : values in Blender units, by path as in `core.shot.ANIMATED`; none takes the animation off
+    """
+    _remove_animation(item)
+    for path, values in samples.items():
+        data_path = _GROUP + re.sub(r"\.(\d+)", r"[\1]", path)
+        item.keyframe_insert(
+            data_path, frame=first_frame
+        )  # makes action, slot and curve where there are none
+        points = next(curve for curve in curves_of(item) if curve.data_path == data_path).keyframe_points
+        points.add(len(values) - len(points))
+        frames = first_frame + np.arange(len(values))
+        points.foreach_set("co", np.stack((frames, values), axis=-1).astype(np.float32).ravel())
+        for point in points:
+            point.interpolation = "LINEAR"
+        points.handles_recalc()
+
+
+def _remove_animation(item: bpy.types.Object) -> None:
+    data = item.animation_data
+    if data is None:
+        return
+    for driver in list(data.drivers):
+        if driver.data_path.startswith(_GROUP):
+            data.drivers.remove(driver)
+    for bag in _channel_bags(data.action, data.action_slot):
+        for curve in list(bag.fcurves):
+            if curve.data_path.startswith(_GROUP):
+                bag.fcurves.remove(curve)
+
+
 def curves_of(item: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
     """All curves of an object: those of its action, and of the strips of its nonlinear animation."""
     data = item.animation_data
@@ -83,10 +118,17 @@ def curves_of(item: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
 def _action_curves(
     action: bpy.types.Action | None, slot: bpy.types.ActionSlot | None
 ) -> Iterator[bpy.types.FCurve]:
+    for bag in _channel_bags(action, slot):
+        yield from bag.fcurves
+
+
+def _channel_bags(
+    action: bpy.types.Action | None, slot: bpy.types.ActionSlot | None
+) -> Iterator[bpy.types.ActionChannelbag]:
     if action is None or slot is None:
         return
     for layer in action.layers:
         for strip in layer.strips:
             bag = strip.channelbag(slot)
             if bag is not None:
-                yield from bag.fcurves
+                yield bag

@@ -7,7 +7,7 @@ it owns labels, ranges and units; here only this interface is known.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
@@ -119,6 +119,9 @@ class OceanSettings(Protocol):
 
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea; the scene is not changed."""
+
+    def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
+        """Values of a parameter that can be animated, by its path, in the units of its property."""
 
     def quiet(self) -> AbstractContextManager[None]:
         """While this is open, a changed property refreshes nothing."""

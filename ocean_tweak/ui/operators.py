@@ -8,10 +8,13 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core import OceanParameters, ParameterError, Timing
+from ..core.shot import OCEAN_TIME, Shot
 from ..export.exr import ExrError, read_image
 from ..scene import ocean_object
+from ..scene.animated import set_keys
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
 from ..scene.settings import METHODS, VIEWPORT_RESOLUTION, OceanObjectError, is_ocean, settings_of
+from ..scene.shots import shot_of
 from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
 
 # far beyond any sea; keeps a file chosen by mistake from filling the memory
@@ -85,10 +88,12 @@ class _OfActiveOcean:
 
 
 class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelper):
-    """Give the active ocean the parameters of a JSON file."""
+    """Give the active ocean the parameters of a JSON file, and keys where these change during the shot."""
 
     bl_idname = "ocean.import_parameters"
-    bl_description = "Give the active ocean the parameters of a JSON file"
+    bl_description = (
+        "Give the active ocean the parameters of a JSON file, and keys where these change during the shot"
+    )
     bl_label = "Import Parameters"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -103,18 +108,21 @@ class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelpe
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the file and apply it as a whole, or not at all."""
         try:
-            parameters = OceanParameters.from_json(_read_text(Path(self.filepath)))
-            _apply(context, parameters, self.use_frame_rate)
+            shot = Shot.from_json(_read_text(Path(self.filepath)))
+            _apply(context, shot.parameters, self.use_frame_rate)
+            _animate(context, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
             return _refuse(self, error)
         return {"FINISHED"}
 
 
 class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelper):
-    """Write the parameters of the active ocean to a JSON file."""
+    """Write the parameters of the active ocean to a JSON file, a sample a frame where they are animated."""
 
     bl_idname = "ocean.export_parameters"
-    bl_description = "Write the parameters of the active ocean to a JSON file"
+    bl_description = (
+        "Write the parameters of the active ocean to a JSON file, a sample a frame where they are animated"
+    )
     bl_label = "Export Parameters"
     bl_options = {"REGISTER"}
 
@@ -124,8 +132,8 @@ class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelpe
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write the file; settings that are no sea are refused."""
         try:
-            parameters = settings_of(context.active_object).to_parameters(context.scene)
-            Path(self.filepath).write_text(parameters.to_json() + "\n", encoding="utf-8")
+            shot = shot_of(context.active_object, context.scene)
+            Path(self.filepath).write_text(shot.to_json() + "\n", encoding="utf-8")
         except (ParameterError, OSError) as error:
             return _refuse(self, error)
         self.report({"INFO"}, f"Parameters written to {self.filepath}")
@@ -186,6 +194,19 @@ def _apply(context: bpy.types.Context, parameters: OceanParameters, use_frame_ra
     except OceanObjectError:
         set_frame_rate(scene, before)
         raise
+
+
+def _animate(context: bpy.types.Context, shot: Shot) -> None:
+    """Keys for what changes during a shot; none for a sea that stays the same."""
+    item, scene = context.active_object, context.scene
+    samples = dict(shot.animation.samples) if shot.animation is not None else {}
+    settings = settings_of(item)
+    with settings.quiet():
+        settings.use_ocean_time = OCEAN_TIME in samples
+    first = shot.animation.first_frame if shot.animation is not None else 0
+    set_keys(item, first, {path: settings.blender_values(path, samples[path], scene) for path in samples})
+    if samples:
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 def _baked_parameters(sequence: ImageSequence) -> OceanParameters:

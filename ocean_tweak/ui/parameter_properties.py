@@ -154,6 +154,12 @@ def _is_length(field: _Field) -> bool:
     return field.metadata.get("unit") in _LENGTHS and field.name not in _ABSOLUTE
 
 
+def unit_of(kind: type, name: str, metres: Fraction) -> float:
+    """How many core units one of the property's units is; 1 where the parameter class has no such field."""
+    fields = {field.name: field for field in dataclasses.fields(kind)}
+    return float(_unit(fields[name], metres)) if name in fields else 1.0
+
+
 def _unit(field: _Field, metres: Fraction) -> Fraction:
     return metres if _is_length(field) else Fraction(1)
 

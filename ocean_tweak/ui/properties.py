@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of an ocean object, `object.ocean_tweak`, and their way to and from OceanParameters."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import bpy
@@ -240,6 +240,12 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
+
+    def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
+        """Values of a parameter that can be animated, by its path, in the units of its property."""
+        kind = WaveLayer if path.startswith("layers.") else OceanParameters
+        unit = parameter_properties.unit_of(kind, path.rpartition(".")[2], metres_per_unit(scene))
+        return [value / unit for value in values]
 
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
