@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from . import constants, random
 from .initial_state import InitialState
-from .parameters import OceanParameters, WaveLayer
+from .noise_synthesis.state import wanted_variance
+from .parameters import OceanParameters
 from .wind_profile import wind_at_10_m
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ _SAMPLES = 2**18
 
 
 class Wind(NamedTuple):
-    """The strongest wind among the layers that are given by a wind."""
+    """The strongest wind among the layers and pictures that are given by a wind."""
 
     speed: float
     direction: float
@@ -32,15 +33,17 @@ class Wind(NamedTuple):
 
 def foam_wind(parameters: OceanParameters) -> Wind | None:
     """The wind at 10 m that makes whitecaps, m/s and rad; None without one: swell does not break."""
-
-    def speed(layer: WaveLayer) -> float:
-        return wind_at_10_m(layer.wind_speed, layer.wind_height)
-
-    layers = [layer for layer in parameters.active_layers if layer.definition == "WIND" and layer.gain > 0.0]
-    if not layers:
-        return None
-    strongest = max(layers, key=speed)
-    return Wind(speed(strongest), strongest.wind_direction)
+    winds = [
+        Wind(wind_at_10_m(layer.wind_speed, layer.wind_height), layer.wind_direction)
+        for layer in parameters.active_layers
+        if layer.definition == "WIND" and layer.gain > 0.0
+    ]
+    winds += [
+        Wind(picture.wind_speed, picture.wind_direction)
+        for picture in parameters.active_pictures
+        if picture.filter == "MODIFIED_PIERSON_MOSKOWITZ" and wanted_variance(picture, parameters.water) > 0.0
+    ]
+    return max(winds, key=lambda wind: wind.speed) if winds else None
 
 
 def whitecap_coverage(wind_speed: float) -> float:
@@ -100,10 +103,12 @@ def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float
         [np.broadcast_to(c, grid.shape) for c in (grid.kx**2, grid.ky**2, grid.kx * grid.ky)]
     )
     components *= factor
-    present = state.expected_plus * grid.multiplicity, state.expected_minus * grid.multiplicity
-    frequency = state.omega - along, state.omega + along
-    energy = present[0] + present[1]
-    rates = present[0] * frequency[0] ** 2 + present[1] * frequency[1] ** 2
+    energy, rates = np.zeros(grid.shape), np.zeros(grid.shape)
+    for part in state.parts:
+        present = part.expected_plus * grid.multiplicity, part.expected_minus * grid.multiplicity
+        frequency = part.omega - along, part.omega + along
+        energy += present[0] + present[1]
+        rates += present[0] * frequency[0] ** 2 + present[1] * frequency[1] ** 2
     gradient, change = (
         _correlated(components, weight, stream) for weight, stream in ((energy, 0), (rates, 8))
     )

@@ -12,65 +12,27 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import dispersion
-from .grid import WaveVectorGrid
 from .initial_state import InitialState
-from .layer_scales import refined_peak
 from .parameters import OceanParameters
+from .picture_statistics import (
+    empty_pictures,
+    longest_random_wave,
+    modes_of,
+    picture_modes,
+    unlooped,
+)
 from .sea_spectrum import SeaSpectrum
+from .sea_state import SeaState, field_state, mode_state, modes_state, state_of_moments, together
 from .spreading import mean_cosine
 
-Array = NDArray[np.float64]
-RealArray = NDArray[np.floating]
-
-#: width in ln k of the kernel that turns the energies of single modes into a frequency spectrum
-_KERNEL_WIDTH = 0.1
-_BINS_PER_LOG = 400
+__all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
 
 _LEAST_WAVELENGTHS = 3.0
 _LEAST_RESOLVED_SHARE = 0.95
 _LEAST_LOOP_PERIODS = 3.0
 _LARGEST_SPEED_CHANGE = 0.1
-
-
-@dataclass(frozen=True)
-class SeaState:
-    """Energy, periods and directions of a sea. What a flat sea does not have is NaN.
-
-    m0 : m²
-    peak_period, zero_crossing_period : Tp and Tz, s
-    peak_wavelength : of waves with the peak period, m
-    mean_square_slope : ∫k²S dω, for the continuous spectrum up to 100 times the peak frequency
-    mean_direction : rad, counter-clockwise from +x, weighted by energy
-    directional_spread : √(2 - 2r) in rad, with r the length of the mean direction vector
-        (Kuik, van Vledder & Holthuijsen 1988)
-    """
-
-    m0: float
-    peak_period: float
-    zero_crossing_period: float
-    peak_wavelength: float
-    mean_square_slope: float
-    mean_direction: float
-    directional_spread: float
-
-    @property
-    def significant_wave_height(self) -> float:
-        """Hs = 4√m0, m."""
-        return float(4.0 * np.sqrt(self.m0))
-
-    @property
-    def steepness(self) -> float:
-        """Hs over the peak wavelength."""
-        return self.significant_wave_height / self.peak_wavelength
-
-    def to_dict(self) -> dict[str, float | None]:
-        """Plain numbers for JSON; what does not exist is None."""
-        values = {"significant_wave_height": self.significant_wave_height, "steepness": self.steepness}
-        values |= {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        return {name: value if np.isfinite(value) else None for name, value in values.items()}
 
 
 @dataclass(frozen=True)
@@ -138,11 +100,15 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
     """Statistics of a sea from its parameters and its initial state."""
     sea = SeaSpectrum(parameters)
     spectrum = spectrum_state(sea)
-    along, against = np.abs(state.h_plus) ** 2, np.abs(state.h_minus) ** 2
+    if parameters.active_pictures:
+        pictures = [
+            modes_state([picture_modes(parameters, p)], parameters) for p in parameters.active_pictures
+        ]
+        spectrum = together([spectrum, *pictures])
     result = Statistics(
         spectrum=spectrum,
-        resolved=mode_state(state.expected_plus, state.expected_minus, state.grid, parameters),
-        seed=mode_state(along, against, state.grid, parameters),
+        resolved=modes_state(modes_of(state, expected=True), parameters),
+        seed=modes_state(modes_of(state, expected=False), parameters),
         wavelengths_per_domain=parameters.domain_size / spectrum.peak_wavelength,
         sample_spacing=parameters.domain_size / parameters.resolution,
         loop_speed_change=_loop_speed_change(parameters, state),
@@ -155,35 +121,49 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
     """Largest relative change of the phase speed among the modes that hold 99 % of the energy."""
     if state.loop_duration is None:
         return None
-    energy = ((state.expected_plus + state.expected_minus) * state.grid.multiplicity).ravel()
-    order = np.argsort(energy)[::-1]
-    cumulated = np.cumsum(energy[order])
-    if not cumulated[-1] > 0.0:
-        return 0.0
-    carrying = order[: int(np.searchsorted(cumulated, 0.99 * cumulated[-1])) + 1]
-    true = dispersion.angular_frequency(
-        state.grid.k.ravel()[carrying], parameters.dispersion, parameters.water
-    )
-    return float(np.max(np.abs(state.omega.ravel()[carrying] / true - 1.0)))
+    changes = [0.0]
+    for part, without_loop in zip(state.parts, unlooped(parameters, state.grid), strict=True):
+        energy = ((part.expected_plus + part.expected_minus) * part.grid.multiplicity).ravel()
+        order = np.argsort(energy)[::-1]
+        cumulated = np.cumsum(energy[order])
+        if not cumulated[-1] > 0.0:
+            continue
+        carrying = order[: int(np.searchsorted(cumulated, 0.99 * cumulated[-1])) + 1]
+        true = without_loop.ravel()[carrying]
+        moving = true > 0.0
+        changes.append(np.max(np.abs(part.omega.ravel()[carrying][moving] / true[moving] - 1.0), initial=0.0))
+    return float(max(changes))
 
 
 def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> tuple[str, ...]:
-    if not np.isfinite(statistics.peak_period):
-        return ("The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height",)
+    of_pictures = _picture_warnings(parameters)
+    if not np.isfinite(statistics.peak_wavelength):
+        flat = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
+        return (*of_pictures, flat)
     return (
-        *_grid_warnings(parameters, statistics),
+        *of_pictures,
+        *_grid_warnings(parameters, sea, statistics),
         *_loop_warnings(parameters, statistics),
         *_fetch_warnings(parameters, sea),
     )
 
 
-def _grid_warnings(parameters: OceanParameters, statistics: Statistics) -> list[str]:
+def _picture_warnings(parameters: OceanParameters) -> list[str]:
+    return [
+        f"Picture {layer.id}: its filter leaves nothing of it. Take another filter, wind or picture"
+        for layer in empty_pictures(parameters)
+    ]
+
+
+def _grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> list[str]:
     warnings = []
     wavelength = statistics.peak_wavelength
-    if statistics.wavelengths_per_domain < _LEAST_WAVELENGTHS:
+    if parameters.active_pictures:
+        wavelength = longest_random_wave(parameters, 2.0 * np.pi / sea.peak_wave_number)
+    if parameters.domain_size / wavelength < _LEAST_WAVELENGTHS:
         warnings.append(
             f"The domain of {parameters.domain_size:g} m holds only "
-            f"{statistics.wavelengths_per_domain:.2g} of the longest waves ({wavelength:.3g} m): "
+            f"{parameters.domain_size / wavelength:.2g} of the longest waves ({wavelength:.3g} m): "
             "wave height will differ much between seeds. "
             f"Make the domain at least {_round_up(_LEAST_WAVELENGTHS * wavelength)} m"
         )
@@ -243,88 +223,4 @@ def spectrum_state(sea: SeaSpectrum) -> SeaState:
         spectrum += energy
     m0, m2 = np.sum(spectrum * weight), np.sum(omega**2 * spectrum * weight)
     slope = np.sum(k**2 * spectrum * weight)
-    return _sea_state(m0, m2, slope, vector, sea.peak_frequency, parameters)
-
-
-def mode_state(
-    along: RealArray, against: RealArray, grid: WaveVectorGrid, parameters: OceanParameters
-) -> SeaState:
-    """State of single modes.
-
-    along, against : (N, N//2+1) m², |h_plus|² and |h_minus|²: energies of the waves along +k and -k
-    """
-    energy = (along + against) * grid.multiplicity
-    direction = np.divide(
-        grid.kx + 1j * grid.ky, grid.k, out=np.zeros(grid.shape, complex), where=grid.k > 0.0
-    )
-    vector = np.sum((along - against) * grid.multiplicity * direction)
-    return _state_of_modes(energy, vector, grid, parameters)
-
-
-def field_state(elevation: NDArray[np.floating], parameters: OceanParameters) -> SeaState:
-    """State measured on one (N, N) elevation field in m.
-
-    One field does not tell a wave from the one that runs against it: the mean direction is that of the
-    axis, in (-π/2, π/2], and the spread is the one around this axis.
-    """
-    grid = WaveVectorGrid(elevation.shape[0], parameters.domain_size)
-    coefficients = np.fft.rfft2(elevation.astype(np.float64)) / elevation.size
-    coefficients[0, 0] = 0.0
-    energy = np.abs(coefficients) ** 2 * grid.multiplicity
-    m0 = np.sum(energy)
-    axis = np.sum(energy * np.exp(2j * np.arctan2(grid.ky, grid.kx)))
-    # of a narrow sea, angles that are doubled have four times the variance: 1 - r is a quarter of theirs
-    length = m0 - 0.25 * (m0 - np.abs(axis))
-    vector = length * np.exp(0.5j * np.angle(axis))
-    return _state_of_modes(energy, vector, grid, parameters)
-
-
-def _state_of_modes(
-    energy: Array, vector: complex, grid: WaveVectorGrid, parameters: OceanParameters
-) -> SeaState:
-    omega = dispersion.angular_frequency(grid.k, parameters.dispersion, parameters.water)
-    peak = _mode_peak(energy, grid, parameters)
-    m2, slope = np.sum(omega**2 * energy), np.sum(grid.k**2 * energy)
-    return _sea_state(np.sum(energy), m2, slope, vector, peak, parameters)
-
-
-def _sea_state(
-    m0: float, m2: float, slope: float, vector: complex, peak: float, parameters: OceanParameters
-) -> SeaState:
-    if not (m0 > 0.0 and np.isfinite(peak)):
-        nan = float("nan")
-        return SeaState(float(m0), nan, nan, nan, float(slope), nan, nan)
-    k = dispersion.wave_number(peak, parameters.dispersion, parameters.water)
-    return SeaState(
-        m0=float(m0),
-        peak_period=float(2.0 * np.pi / peak),
-        zero_crossing_period=float(2.0 * np.pi * np.sqrt(m0 / m2)),
-        peak_wavelength=float(2.0 * np.pi / k),
-        mean_square_slope=float(slope),
-        mean_direction=float(np.angle(vector)),
-        directional_spread=float(np.sqrt(max(0.0, 2.0 - 2.0 * np.abs(vector) / m0))),
-    )
-
-
-def _mode_peak(energy: Array, grid: WaveVectorGrid, parameters: OceanParameters) -> float:
-    """ω in rad/s at the peak of the frequency spectrum of single modes; NaN for a flat sea.
-
-    The spectrum is the mean energy of the modes around a frequency (Gaussian kernel in ln k) times the
-    density of modes there, 2πk (dk/dω) / Δk²: a plain sum would show the lattice.
-    """
-    position = np.log(grid.k[grid.usable]) * _BINS_PER_LOG
-    first = int(np.floor(np.min(position))) - _BINS_PER_LOG // 2
-    bins = (position - first + 0.5).astype(np.int64)
-    size = int(np.max(bins)) + _BINS_PER_LOG // 2
-    count = np.broadcast_to(grid.multiplicity, grid.shape)[grid.usable]
-    sums = [np.bincount(bins, weights, minlength=size) for weights in (energy[grid.usable], count)]
-    centres = (first + np.arange(size)) / _BINS_PER_LOG
-    reach = int(4.0 * _KERNEL_WIDTH * _BINS_PER_LOG)
-    offset = np.arange(-reach, reach + 1) / _BINS_PER_LOG
-    kernel = np.exp(-0.5 * (offset / _KERNEL_WIDTH) ** 2)
-    energies, counts = (np.convolve(values, kernel, mode="same") for values in sums)
-    mean_energy = np.divide(energies, counts, out=np.zeros_like(energies), where=counts > 0.0)
-    k = np.exp(centres)
-    rate = dispersion.group_velocity(k, parameters.dispersion, parameters.water)
-    omega = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
-    return refined_peak(omega, mean_energy * k / rate)
+    return state_of_moments(m0, m2, slope, vector, sea.peak_frequency, parameters)

@@ -52,6 +52,6 @@ def trough_damping(strength: float, state: InitialState, peak_wave_number: float
         return None
     grid = state.grid
     long_waves = np.exp(-((grid.k / (constants.TROUGH_FILTER * peak_wave_number)) ** 4))
-    energy = (state.expected_plus + state.expected_minus) * grid.multiplicity
+    energy = sum(part.expected_plus + part.expected_minus for part in state.parts) * grid.multiplicity
     deviation = float(np.sqrt(np.sum(long_waves**2 * energy)))
     return TroughDamping(strength, long_waves, deviation) if deviation > _FLAT else None

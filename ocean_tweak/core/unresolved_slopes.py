@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from . import constants, dispersion
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
+from .noise_synthesis.state import filtered
 from .parameters import OceanParameters, Water
 from .sea_spectrum import SeaSpectrum
 
@@ -39,27 +40,45 @@ def capillary_limit(water: Water) -> float:
 def total_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of all gravity waves of a sea, dimensionless; 0 for a flat one."""
     sea = SeaSpectrum(parameters)
+    pictured = _pictured(parameters, None)
     if not np.isfinite(sea.peak_frequency):
-        return 0.0
+        return pictured
     limit = capillary_limit(parameters.water)
     lowest = 0.01 * min(sea.peak_wave_number, limit)  # below, S is 0 to the last digit
-    return sum(_rings(layer, lowest, limit) for layer in sea.layers)
+    return sum((_rings(layer, lowest, limit) for layer in sea.layers), pictured)
 
 
 @lru_cache(maxsize=16)
 def unresolved_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of the waves shorter than the grid can hold, dimensionless.
 
-    The grid holds a square of wave vectors: its modes and half a cell around them.
+    The grid holds a square of wave vectors: its modes and half a cell around them. Of pictures, what they
+    hold and the grid does not.
     """
+    pictured = _pictured(parameters, None) - _pictured(parameters, parameters.resolution)
     grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
     edge = (0.5 * parameters.resolution - 0.5) * grid.spacing
     limit = capillary_limit(parameters.water)
     if edge >= limit:
-        return 0.0
+        return pictured
     corner = min(np.sqrt(2.0) * edge, limit)
     layers = SeaSpectrum(parameters).layers
-    return sum(_sides(layer, edge, corner) + _rings(layer, corner, limit) for layer in layers)
+    return sum((_sides(layer, edge, corner) + _rings(layer, corner, limit) for layer in layers), pictured)
+
+
+def _pictured(parameters: OceanParameters, resolution: int | None) -> float:
+    """Mean square slope of the pictures' waves, of all that they hold or of those on a grid."""
+    return sum(
+        filtered(
+            layer,
+            parameters.domain_size,
+            resolution,
+            parameters.dispersion,
+            parameters.water,
+            parameters.seed,
+        ).slope_variance
+        for layer in parameters.active_pictures
+    )
 
 
 def _rings(layer: DirectionalSpectrum, lowest: float, highest: float) -> float:

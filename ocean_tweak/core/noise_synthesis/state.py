@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 RealArray = NDArray[np.floating]
 
+#: share of a picture's energy below which a filter has left nothing of it
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 class Filtered:
@@ -40,6 +43,11 @@ class Filtered:
     def m0(self) -> float:
         """Expected variance of the elevation, m²."""
         return float(np.sum(self.expected * self.grid.multiplicity))
+
+    @property
+    def slope_variance(self) -> float:
+        """Expected mean square slope."""
+        return float(np.sum(self.grid.k**2 * self.expected * self.grid.multiplicity))
 
 
 @dataclass(frozen=True)
@@ -89,17 +97,22 @@ def filtered(
         return _wind_driven(layer, domain_size, resolution or side, relation, water, source)
     whole = WaveVectorGrid(side, domain_size)
     power = filter_power(layer, whole, relation, water)
-    wanted = layer.gain**2 * (
-        total_energy(layer.wind_speed, water.gravity)
-        if layer.is_physical
-        else (layer.significant_wave_height / 4.0) ** 2
-    )
+    wanted = wanted_variance(layer, water)
     coefficients = source * np.sqrt(power)
-    energy = power if noise else np.abs(coefficients) ** 2
-    expected = _scaled_to(energy, whole, wanted)
-    coefficients = coefficients * np.sqrt(_factor(np.abs(coefficients) ** 2, whole, wanted))
-    result = Filtered(whole, coefficients, expected)
+    squares = np.abs(coefficients) ** 2
+    if np.sum(squares) < _ROUNDING * np.max(power) * np.sum(np.abs(source) ** 2):
+        squares = np.zeros_like(squares)  # what is left is the rounding of the picture's numbers, not a wave
+    coefficients *= np.sqrt(_factor(squares, whole, wanted))
+    energy = power if noise else squares
+    result = Filtered(whole, coefficients, energy * _factor(energy, whole, wanted))
     return result if resolution is None else _on_grid(result, resolution)
+
+
+def wanted_variance(layer: PictureLayer, water: Water) -> float:
+    """Variance in m² of the elevation that a layer is to have: its wind's or its own height's."""
+    if layer.is_physical:
+        return layer.gain**2 * total_energy(layer.wind_speed, water.gravity)
+    return (layer.gain * layer.significant_wave_height / 4.0) ** 2
 
 
 def _wind_driven(
@@ -128,10 +141,6 @@ def _factor(energy: Array, grid: WaveVectorGrid, wanted: float) -> float:
     """By which energies become the wanted variance in m²; 0 where a filter leaves nothing."""
     total = float(np.sum(energy * grid.multiplicity))
     return wanted / total if total > 0.0 else 0.0
-
-
-def _scaled_to(energy: Array, grid: WaveVectorGrid, wanted: float) -> Array:
-    return energy * _factor(energy, grid, wanted)
 
 
 def picture_waves(
