@@ -2,6 +2,7 @@
 """Node groups and material for the asset browser."""
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 
 from ..scene import asset_library
 from .active_ocean import refuse
@@ -24,7 +25,12 @@ class OCEAN_OT_install_assets(bpy.types.Operator):
             path = asset_library.install()
         except OSError as error:
             return refuse(self, error)
-        self.report({"INFO"}, f"Assets of {asset_library.LIBRARY} are in {path}")
+        self.report(
+            {"INFO"},
+            translated("Assets of {library} are in {folder}").format(
+                library=asset_library.LIBRARY, folder=path
+            ),
+        )
         return {"FINISHED"}
 
 

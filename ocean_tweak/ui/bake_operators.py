@@ -2,6 +2,7 @@
 """Baking the active ocean beside Blender, and taking a bake along to another folder."""
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty
 
 from ..scene import bake_process, cache_place, ocean_object
@@ -49,7 +50,10 @@ class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
         settings.bake_done = len(bake.frames) - bake.left + bake.done if bake.left else len(bake.frames)
         if not bake.is_complete:
             if bake.is_stopped:
-                self.report({"INFO"}, f"Stopped after {bake.done} frames: bake again to go on")
+                self.report(
+                    {"INFO"},
+                    translated("Stopped after {done} frames: bake again to go on").format(done=bake.done),
+                )
                 return {"CANCELLED"}
             settings.bake_done = min(settings.bake_done, settings.bake_total - 1)
             return self.failed()
@@ -60,7 +64,10 @@ class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
                 return refuse(self, error)
             if not bpy.app.background:
                 bpy.ops.ed.undo_push(message="Bake")
-        self.report({"INFO"}, f"{len(bake.frames)} frames in {bake.folder}")
+        self.report(
+            {"INFO"},
+            translated("{count} frames in {folder}").format(count=len(bake.frames), folder=bake.folder),
+        )
         return {"FINISHED"}
 
 
@@ -100,7 +107,9 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
             ocean_object.use_sequence(item, context.scene, cache_place.take_along(item))
         except (OSError, *ocean_object.EXPECTED_ERRORS) as error:
             return refuse(self, error)
-        self.report({"INFO"}, f"The bake is in {cache_place.shown_bake(item)}")
+        self.report(
+            {"INFO"}, translated("The bake is in {folder}").format(folder=cache_place.shown_bake(item))
+        )
         return {"FINISHED"}
 
 

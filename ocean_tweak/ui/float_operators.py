@@ -4,6 +4,7 @@
 import time
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import FloatProperty, IntProperty, StringProperty
 
 from ..core import ParameterError
@@ -127,7 +128,9 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
         if refused:
             self.report({"WARNING" if done else "ERROR"}, "; ".join(refused))
         else:
-            self.report({"INFO"}, f"{_objects(done)} on {ocean.name}")
+            self.report(
+                {"INFO"}, translated("Objects on {ocean}: {count}").format(ocean=ocean.name, count=done)
+            )
         return {"FINISHED"} if done else {"CANCELLED"}
 
 
@@ -174,7 +177,7 @@ class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
         if event.type == "ESC" and event.value == "PRESS":
             self._bake.cancel()
             self._clean_up(context)
-            self.report({"WARNING"}, "Given up: everything is as it was")
+            self.report({"WARNING"}, translated("Given up: everything is as it was"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
@@ -199,7 +202,12 @@ class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
         except _EXPECTED_ERRORS as error:
             bake.cancel()
             return _refuse(self, error)
-        self.report({"INFO"}, f"{_objects(baked)} baked, frames {bake.frames[0]} to {bake.frames[-1]}")
+        self.report(
+            {"INFO"},
+            translated("Objects baked, frames {first} to {last}: {count}").format(
+                first=bake.frames[0], last=bake.frames[-1], count=baked
+            ),
+        )
         return {"FINISHED"}
 
     def _clean_up(self, context: bpy.types.Context) -> None:
@@ -250,7 +258,7 @@ class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
         ]
         for item in (*items, *empty):
             floating.sink(item)
-        self.report({"INFO"}, f"{_objects(len(items))} back in place")
+        self.report({"INFO"}, translated("Objects back in place: {count}").format(count=len(items)))
         return {"FINISHED"}
 
 
@@ -263,10 +271,6 @@ def draw_object_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 def _floats(item: bpy.types.Object) -> bool:
     return floating.is_carrier(item) or floating.carrier_of(item) is not None or is_baked(item)
-
-
-def _objects(count: int) -> str:
-    return "1 object" if count == 1 else f"{count} objects"
 
 
 def _refuse(operator: bpy.types.Operator, error: BaseException) -> set[str]:

@@ -4,17 +4,17 @@
 from pathlib import Path
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core import OceanParameters, ParameterError, Timing
-from ..core.shot import OCEAN_TIME, Shot
+from ..core.shot import Shot
 from ..export.exr import ExrError, read_image
 from ..scene import ocean_object
-from ..scene.animated import set_keys
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
 from ..scene.settings import METHODS, VIEWPORT_RESOLUTION, OceanObjectError, is_ocean, settings_of
-from ..scene.shots import shot_of
+from ..scene.shots import animate, shot_of
 from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
 
 # far beyond any sea; keeps a file chosen by mistake from filling the memory
@@ -110,7 +110,7 @@ class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelpe
         try:
             shot = Shot.from_json(_read_text(Path(self.filepath)))
             _apply(context, shot.parameters, self.use_frame_rate)
-            _animate(context, shot)
+            animate(context.active_object, context.scene, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
             return _refuse(self, error)
         return {"FINISHED"}
@@ -136,7 +136,7 @@ class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelpe
             Path(self.filepath).write_text(shot.to_json() + "\n", encoding="utf-8")
         except (ParameterError, OSError) as error:
             return _refuse(self, error)
-        self.report({"INFO"}, f"Parameters written to {self.filepath}")
+        self.report({"INFO"}, translated("Parameters written to {file}").format(file=self.filepath))
         return {"FINISHED"}
 
 
@@ -166,7 +166,12 @@ class OCEAN_OT_use_sequence(_OfActiveOcean, bpy.types.Operator, ImportHelper):
             ocean_object.use_sequence(item, scene, sequence)
         except (ExrError, *ocean_object.EXPECTED_ERRORS) as error:
             return _refuse(self, error)
-        self.report({"INFO"}, f"{sequence.name}: frames {sequence.first} to {sequence.last}")
+        self.report(
+            {"INFO"},
+            translated("{name}: frames {first} to {last}").format(
+                name=sequence.name, first=sequence.first, last=sequence.last
+            ),
+        )
         return {"FINISHED"}
 
 
@@ -194,19 +199,6 @@ def _apply(context: bpy.types.Context, parameters: OceanParameters, use_frame_ra
     except OceanObjectError:
         set_frame_rate(scene, before)
         raise
-
-
-def _animate(context: bpy.types.Context, shot: Shot) -> None:
-    """Keys for what changes during a shot; none for a sea that stays the same."""
-    item, scene = context.active_object, context.scene
-    samples = dict(shot.animation.samples) if shot.animation is not None else {}
-    settings = settings_of(item)
-    with settings.quiet():
-        settings.use_ocean_time = OCEAN_TIME in samples
-    first = shot.animation.first_frame if shot.animation is not None else 0
-    set_keys(item, first, {path: settings.blender_values(path, samples[path], scene) for path in samples})
-    if samples:
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 def _baked_parameters(sequence: ImageSequence) -> OceanParameters:

@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
@@ -72,7 +73,7 @@ class OCEAN_OT_save_preset(OfActiveOcean, bpy.types.Operator):
             user_presets.save(Preset(self.title.strip(), self.text.strip(), parameters), self.replace)
         except _ERRORS as error:
             return refuse(self, error)
-        self.report({"INFO"}, f"Preset {self.title.strip()} saved")
+        self.report({"INFO"}, translated("Preset {title} saved").format(title=self.title.strip()))
         return {"FINISHED"}
 
 
@@ -160,7 +161,7 @@ class OCEAN_OT_import_preset(bpy.types.Operator, ImportHelper):
             user_presets.save(preset, self.replace)
         except _ERRORS as error:
             return refuse(self, error)
-        self.report({"INFO"}, f"Preset {preset.title} imported")
+        self.report({"INFO"}, translated("Preset {title} imported").format(title=preset.title))
         return {"FINISHED"}
 
 
@@ -185,7 +186,7 @@ class OCEAN_OT_export_preset(bpy.types.Operator, ExportHelper):
             Path(self.filepath).write_text(presets[self.key].to_json(), encoding="utf-8")
         except OSError as error:
             return refuse(self, error)
-        self.report({"INFO"}, f"Preset written to {self.filepath}")
+        self.report({"INFO"}, translated("Preset written to {file}").format(file=self.filepath))
         return {"FINISHED"}
 
 

@@ -2,6 +2,7 @@
 """A whole scene at one press, and the water material for an ocean."""
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty
 
 from ..core import ParameterError
@@ -75,8 +76,12 @@ class OCEAN_OT_add_scene(bpy.types.Operator):
         if self.use_new_scene and context.window is not None:
             context.window.scene = scene
         _select(context, scene, made.ocean)
-        kept = f"; kept the scene's {', '.join(made.kept)}" if made.kept else ""
-        self.report({"INFO"}, f"{MOODS[self.mood].label}: {self.engine.title()}, motion blur on{kept}")
+        said = translated("{mood}: {engine}, motion blur on").format(
+            mood=translated(MOODS[self.mood].label), engine=self.engine.title()
+        )
+        if made.kept:
+            said += "; " + translated("kept the scene's {list}").format(list=", ".join(made.kept))
+        self.report({"INFO"}, said)
         return {"FINISHED"}
 
 

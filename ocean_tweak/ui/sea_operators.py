@@ -4,6 +4,7 @@
 import dataclasses
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 from mathutils import Matrix
 
@@ -150,9 +151,13 @@ class OCEAN_OT_convert(bpy.types.Operator):
         else:
             bpy.data.objects.remove(original)
         if result.lost:
-            self.report({"WARNING"}, "Not carried over: " + "; ".join(result.lost))
+            self.report(
+                {"WARNING"}, translated("Not carried over: {list}").format(list="; ".join(result.lost))
+            )
         else:
-            self.report({"INFO"}, "Everything carried over; waves now have the height of their wind")
+            self.report(
+                {"INFO"}, translated("Everything carried over; waves now have the height of their wind")
+            )
         return {"FINISHED"}
 
 
