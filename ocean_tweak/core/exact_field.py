@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .surface_query import Field, Values
-from .synthesis import Column, Synthesis, X, Y, Z, term
+from .synthesis import Column, Synthesis, X, Y, Z
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
@@ -52,7 +52,7 @@ class _Columns:
         return np.stack([self._sum(component, by, along_x, along_y) for component in (X, Y, Z)], axis=-1)
 
     def _sum(self, component: int, by: str, along_x: ComplexArray, along_y: ComplexArray) -> Array:
-        wanted = term(component, by)
+        wanted = self._synthesis.term(component, by)
         coefficients = self._coefficients(wanted.column) * self._synthesis.x_factor(wanted)
         return np.einsum("pk,pk->p", along_y @ coefficients, along_x).real
 

@@ -14,6 +14,8 @@ from .fields import FOAM, OUTPUTS, memory_groups
 from .noise_synthesis.source import side
 from .parameters import OceanParameters
 from .synthesis import term
+from .wave_particles.bounds import bytes_of
+from .wave_particles.shape import MOST_CLASSES
 
 #: float64 arrays of half the plane that live while the initial state is made, beyond what stays
 _TEMPORARY_ARRAYS = 5
@@ -62,10 +64,19 @@ def memory_need(
     wanted = everything - {FOAM}
     fields = _foam_bytes(parameters) if FOAM in everything else 0
     fields += sum(int(np.prod(OUTPUTS[name].shape(n))) * real for name in wanted)
-    columns = max((_columns(group) for group in memory_groups(wanted)), default=0)
+    gradient = not parameters.active_wind_fields
+    columns = max((_columns(group, gradient) for group in memory_groups(wanted)), default=0)
     if parameters.trough_damping > 0.0:
         columns *= 2
-    return MemoryNeed(state, building, fields + columns * half_plane * 2 * real)
+    surface = fields + columns * half_plane * 2 * real
+    if parameters.active_wind_fields:
+        kept, making = bytes_of(parameters.wind_fields, parameters.water.gravity)
+        moving = any(derivative == "t" for name in wanted for _, derivative in OUTPUTS[name].needs)
+        # of each radius two quarters of a plane stay; a grid in float64 for each weight, and half a plane of it
+        state += kept + MOST_CLASSES * half_plane * real
+        building = max(building, 40 * n * n)
+        surface += making + (3 if moving else 1) * (8 * n * n + MOST_CLASSES * half_plane * 2 * real)
+    return MemoryNeed(state, building, surface)
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:
@@ -74,8 +85,8 @@ def _foam_bytes(parameters: OceanParameters) -> int:
     return 4 * parameters.resolution**2 + 48 * own**2
 
 
-def _columns(group: Iterable[str]) -> int:
-    return len({term(*need).column for name in group for need in OUTPUTS[name].needs})
+def _columns(group: Iterable[str], gradient: bool) -> int:
+    return len({term(*need, gradient=gradient).column for name in group for need in OUTPUTS[name].needs})
 
 
 def check_memory(need: int, what: str) -> None:

@@ -24,6 +24,7 @@ from .statistics import Statistics, sea_statistics
 from .surface_query import SurfacePoints, find_points, refine_points
 from .synthesis import Rows, Synthesis
 from .trough_damping import trough_damping
+from .wave_particles.wind_waves import WindWaves
 
 #: minimum eigenvalue below which several sheets of the surface are looked for
 _NEARLY_FOLDED = 0.1
@@ -74,7 +75,9 @@ class Ocean:
         check_memory(need, f"A sea of {self.parameters.resolution}² samples")
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
-        shared = self.parameters.replace(choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing)
+        shared = self.parameters.replace(
+            choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing, wind_fields=()
+        )
         return _cached_initial_state(shared, PRECISIONS[self.precision])
 
     @cached_property
@@ -84,7 +87,12 @@ class Ocean:
             peak = SeaSpectrum(self.parameters).peak_wave_number
             damping = trough_damping(self.parameters.trough_damping, self.initial_state, peak)
         return Synthesis(
-            self.initial_state, self.parameters, damping, PRECISIONS[self.precision], self.workers
+            self.initial_state,
+            self.parameters,
+            damping,
+            PRECISIONS[self.precision],
+            self.workers,
+            WindWaves(self.parameters) if self.parameters.active_wind_fields else None,
         )
 
     def surface(

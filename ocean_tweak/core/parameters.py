@@ -18,6 +18,7 @@ from .errors import ParameterError
 from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import Validated, choice, integer, nested, number, rational, switch
+from .wave_particles.bounds import check_bounds
 from .wave_particles.parameters import WindFieldLayer, WindKey
 
 __all__ = [
@@ -373,6 +374,7 @@ def _check_wind_fields(parameters: OceanParameters) -> None:
                 f"this wind's waves are {longest:.4g} m long and the domain {size:g} m: make the domain "
                 f"larger, or the wind at most {fitting:.4g} m/s, by its strength for one",
             )  # fmt: skip
+    check_bounds(parameters.wind_fields, parameters.water.gravity)
 
 
 def _check_loop(duration: Fraction | None, timing: Timing) -> None:

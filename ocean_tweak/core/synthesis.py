@@ -9,6 +9,9 @@ and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
 The first pass goes over blocks of columns kx: it moves the coefficients to their time, multiplies by
 (i ky)ⁿ and transforms along y. The second goes over blocks of rows y: it multiplies by (i kx)ᵐ, which
 commutes with the first transform, and transforms along x. Fields that differ only in m share a first pass.
+
+Waves of a wind field are not the gradient of a potential: with them λDx and λDy, each with a first pass of
+its own, take the potential's place, and all three hold the sum of both kinds of waves.
 """
 
 from __future__ import annotations
@@ -27,6 +30,7 @@ from .initial_state import InitialState
 from .parameters import OceanParameters
 from .propagation import PropagatedState, propagate
 from .trough_damping import TroughDamping
+from .wave_particles.wind_waves import BlockShares, Shares, WindWaves
 
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
@@ -48,10 +52,14 @@ _PADDING = 8
 _NUMPY_TRANSFORMS_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 
 
-class Column(NamedTuple):
-    """What a first pass transforms: h or Φ, or its rate, all or only the long waves, times (i ky)ⁿ."""
+#: what a column may hold: h, Φ, λDx or λDy
+ELEVATION, POTENTIAL, ALONG_X, ALONG_Y = range(4)
 
-    potential: bool
+
+class Column(NamedTuple):
+    """What a first pass transforms: h, Φ, λDx or λDy, or a rate, of all or of long waves, times (i ky)ⁿ."""
+
+    source: int
     rate: bool
     long: bool
     y_order: int
@@ -64,11 +72,17 @@ class Term(NamedTuple):
     x_order: int
 
 
-def term(component: int, derivative: str = "", long: bool = False) -> Term:
-    """The field of P[component] or of its derivative by "x", "y" or "t"."""
-    x_order = (derivative == "x") + (component == X)
-    y_order = (derivative == "y") + (component == Y)
-    return Term(Column(component != Z, derivative == "t", long, y_order), x_order)
+def term(component: int, derivative: str = "", long: bool = False, gradient: bool = True) -> Term:
+    """The field of P[component] or of its derivative by "x", "y" or "t".
+
+    gradient : whether the horizontal displacement is the gradient of Φ
+    """
+    rate, along_x, along_y = derivative == "t", derivative == "x", derivative == "y"
+    if component == Z:
+        return Term(Column(ELEVATION, rate, long, along_y), along_x)
+    if not gradient:
+        return Term(Column(ALONG_X if component == X else ALONG_Y, rate, long, along_y), along_x)
+    return Term(Column(POTENTIAL, rate, long, along_y + (component == Y)), along_x + (component == X))
 
 
 @dataclass(frozen=True)
@@ -78,6 +92,7 @@ class Synthesis:
     state, parameters, damping : the sea
     dtype : complex64 or complex128
     workers : threads; the result does not depend on their number
+    wind_waves : those of the sea's wind fields, if it has any
     """
 
     state: InitialState
@@ -85,18 +100,23 @@ class Synthesis:
     damping: TroughDamping | None = None
     dtype: type = np.complex64
     workers: int = 1
+    wind_waves: WindWaves | None = None
+
+    def term(self, component: int, derivative: str = "", long: bool = False) -> Term:
+        """The field of this sea's P[component] or of its derivative by "x", "y" or "t"."""
+        return term(component, derivative, long, self.wind_waves is None)
 
     def x_factor(self, wanted: Term) -> ComplexArray:
         """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none."""
         factor = (1j * self.state.grid.kx[0]) ** wanted.x_order
-        if wanted.column.potential and wanted.column.y_order == 0:
+        if wanted.column.source == POTENTIAL and wanted.column.y_order == 0:
             factor *= self.parameters.choppiness
         return factor.astype(self.dtype)
 
     def y_factor(self, column: Column) -> ComplexArray:
         """(i ky)ⁿ of a column, (N,), and the choppiness λ if it is one of the potential's derivatives."""
         factor = (1j * self.state.grid.ky[:, 0]) ** column.y_order
-        if column.potential:
+        if column.source == POTENTIAL:
             factor *= self.parameters.choppiness
         return factor.astype(self.dtype)
 
@@ -112,13 +132,14 @@ class Synthesis:
         workspace : arrays of earlier calls, to be used again and added to
         """
         arrays = [] if workspace is None else workspace
-        needed = sorted({term(*key).column for key in self._with_long_waves(wanted)})
+        needed = sorted({self.term(*key).column for key in self._with_long_waves(wanted)})
         while len(arrays) < len(needed):
             arrays.append(np.empty(self.state.grid.shape, self.dtype))
         first_pass = dict(zip(needed, arrays, strict=False))
+        shares = self._shares(time, needed)
 
         def transform_along_y(block: slice) -> None:
-            self._transform_columns(time, block, first_pass)
+            self._transform_columns(time, block, first_pass, shares)
 
         def transform_along_x(block: slice) -> None:
             write(block, Rows(self, first_pass, block))
@@ -130,8 +151,17 @@ class Synthesis:
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
         """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
         with_rate = any(column.rate for column in columns)
-        sources = _Sources(self, propagate(self.state, time, self.dtype, with_rate), slice(None))
+        shares = self._shares(time, columns)
+        added = None if shares is None else shares.of_block(slice(None))
+        sources = _Sources(self, propagate(self.state, time, self.dtype, with_rate), slice(None), added)
         return {column: sources.coefficients(column).T for column in columns}
+
+    def _shares(self, time: float | Fraction, columns: Iterable[Column]) -> Shares | None:
+        """What the waves of wind fields add to some columns."""
+        if self.wind_waves is None:
+            return None
+        rates = {column.rate for column in columns}
+        return self.wind_waves.shares(float(time), False in rates, True in rates, self.dtype)
 
     def _with_long_waves(self, wanted: Iterable[tuple[int, str]]) -> set[tuple[int, str, bool]]:
         wanted = set(wanted)
@@ -151,14 +181,19 @@ class Synthesis:
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
     def _transform_columns(
-        self, time: float | Fraction, block: slice, first_pass: Mapping[Column, ComplexArray]
+        self,
+        time: float | Fraction,
+        block: slice,
+        first_pass: Mapping[Column, ComplexArray],
+        shares: Shares | None,
     ) -> None:
         """The first pass for some columns: to y, into the arrays (N, N//2+1) of the first pass."""
         with_rate = any(column.rate for column in first_pass)
         # the inverse transforms divide by N each: what they are given is larger by N²
         scale = float(self.state.grid.resolution) ** 2
         moved = propagate(self.state, time, self.dtype, with_rate, block, scale)
-        sources = _Sources(self, moved, block)
+        added = None if shares is None else shares.of_block(block, scale)
+        sources = _Sources(self, moved, block, added)
         for column, target in first_pass.items():
             coefficients = sources.coefficients(column)
             target[:, block] = _inverse(coefficients).T
@@ -167,16 +202,19 @@ class Synthesis:
 class _Sources:
     """Coefficients of a block of columns, (columns, N), each made once."""
 
-    def __init__(self, synthesis: Synthesis, moved: PropagatedState, block: slice) -> None:
+    def __init__(
+        self, synthesis: Synthesis, moved: PropagatedState, block: slice, added: BlockShares | None = None
+    ) -> None:
         self._synthesis = synthesis
         self._block = block
+        self._added = added
         self._elevations = {False: moved.elevation.T}
         if moved.rate is not None:
             self._elevations[True] = moved.rate.T
         self._bases: dict[Column, ComplexArray] = {}
 
     def coefficients(self, column: Column) -> ComplexArray:
-        """h or Φ, or a rate, times (i ky)ⁿ."""
+        """h, Φ, λDx or λDy, or a rate, times (i ky)ⁿ."""
         base = self._base(column._replace(y_order=0))
         if column.y_order == 0:
             return base
@@ -185,14 +223,33 @@ class _Sources:
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
             base = self._elevations[column.rate]
-            if column.potential:
+            if column.source != ELEVATION:
                 factor = self._synthesis.state.potential_factor.T[self._block]
                 base = base * factor.astype(base.dtype, copy=False)
             damping = self._synthesis.damping
             if column.long and damping is not None:
                 base = base * damping.long_waves.T[self._block].astype(base.dtype)
+            if self._added is not None:
+                base = self._with_wind_waves(column, base, self._added)
             self._bases[column] = base
         return self._bases[column]
+
+    def _with_wind_waves(self, column: Column, base: ComplexArray, added: BlockShares) -> ComplexArray:
+        """h, λDx or λDy of the spectrum's waves, from h or Φ, and those of the wind fields.
+
+        The latter count among the long waves: it is not them that troughs are rid of.
+        """
+        if column.source == ELEVATION:
+            result = base.copy()
+            added.add(Z, column.rate, result)
+            return result
+        choppiness = self._synthesis.parameters.choppiness
+        grid = self._synthesis.state.grid
+        east = column.source == ALONG_X
+        along = grid.kx[0, self._block, np.newaxis] if east else grid.ky[:, 0]
+        result = base * (1j * choppiness * along).astype(base.dtype)
+        added.add(X if east else Y, column.rate, result, choppiness)
+        return result
 
 
 class Rows:
@@ -206,7 +263,7 @@ class Rows:
 
     def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
         """(rows, N) P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
-        damping = self._synthesis.damping
+        term, damping = self._synthesis.term, self._synthesis.damping
         if damping is None:
             return self._transform(term(component, derivative), out)
         everything = self._transform(term(component, derivative))

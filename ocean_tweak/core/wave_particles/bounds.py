@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many particles a layer can have at once, told from its parameters alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ..errors import ParameterError
+from .parameters import WindFieldLayer
+from .relations import period
+
+#: particles of all layers together: beyond it a frame takes seconds
+MOST_PARTICLES = 2_000_000
+
+#: waves that are looked at to find those that live, and winds that are kept: origins times keys
+MOST_BIRTHS, MOST_WINDS = 5_000_000, 8_000_000
+
+#: bytes that a particle takes while they are made and put on the grid
+PARTICLE_BYTES = 400
+
+#: how much larger than its class's radius a particle's own may be: classes are at most a factor of 2 apart
+_ROUNDING = math.sqrt(2.0)
+
+
+def check_bounds(layers: Sequence[WindFieldLayer], gravity: float) -> None:
+    """Raise ParameterError, with the number and the remedy, where layers would have too many particles."""
+    active = [layer for layer in layers if not layer.muted]
+    particles = sum(most_particles(layer) for layer in active)
+    if particles > MOST_PARTICLES:
+        raise ParameterError(
+            "wind_fields", f"up to {particles} particles",
+            f"must have at most {MOST_PARTICLES}: take fewer columns, rows, origins or particles, a smaller "
+            "split_angle or a shorter life",
+        )  # fmt: skip
+    births = sum(most_births(layer, gravity) for layer in active)
+    if births > MOST_BIRTHS:
+        raise ParameterError(
+            "wind_fields", f"up to {births} waves looked at",
+            f"must be at most {MOST_BIRTHS}: take a stronger calm, fewer columns, rows or origins, or a "
+            "shorter life",
+        )  # fmt: skip
+    winds = sum(_origins(layer) * len(layer.keys) for layer in active)
+    if winds > MOST_WINDS:
+        raise ParameterError(
+            "wind_fields", f"{winds} winds",
+            f"must have at most {MOST_WINDS}, keys times origins: take fewer keys, columns, rows or origins",
+        )  # fmt: skip
+
+
+def bytes_of(layers: Sequence[WindFieldLayer], gravity: float) -> tuple[int, int]:
+    """Bytes that layers keep, and bytes more while their particles are made: at most."""
+    active = [layer for layer in layers if not layer.muted]
+    kept = sum(_origins(layer) * (24 + 16 * max(1, len(layer.keys))) for layer in active)
+    kept += sum(8 * min(MOST_WINDS, 32 * _origins(layer) * len(layer.keys)) for layer in active)
+    particles = sum(most_particles(layer) for layer in active)
+    births = sum(most_births(layer, gravity) for layer in active)
+    return kept, PARTICLE_BYTES * (particles + births)
+
+
+def _origins(layer: WindFieldLayer) -> int:
+    return layer.columns * layer.rows * layer.origins
+
+
+def most_particles(layer: WindFieldLayer) -> int:
+    """A number that the layer's particles never exceed, whatever the wind does.
+
+    With a constant wind V, n wavelengths of life hold n waves of an origin, evenly spread over ages; with one
+    that changes between V_min and V_max, at most n(1 + ln(V_max/V_min)): waves that a stronger wind left
+    live on among those of the weaker one. Their particles are counted as divided as their ages allow.
+    """
+    speed = layer.greatest_speed
+    if layer.muted or speed < layer.calm:
+        return 0
+    at_end = 4.0 * layer.life * layer.split_angle * (_ROUNDING if layer.keys else 1.0)
+    if layer.front == "PARALLEL" or not layer.splitting:
+        at_end = 0.0
+    most, mean = _divided(at_end)
+    waves = layer.life * mean + most
+    if len(layer.keys) > 1:
+        waves += layer.life * most * math.log(speed / layer.calm)
+    return math.ceil(_origins(layer) * layer.particles * waves)
+
+
+def _divided(ratio: float) -> tuple[int, float]:
+    """What a particle has become at its end and in the mean over its life, from the distance of neighbours at
+    its end over that at which they divide; the distance grows with the age."""
+    parts, mean, begin = 1, 0.0, 0.0
+    while ratio > parts:
+        end = parts / ratio
+        mean += parts * (end - begin)
+        begin, parts = end, 3 * parts
+    return parts, mean + parts * (1.0 - begin)
+
+
+def most_births(layer: WindFieldLayer, gravity: float) -> int:
+    """Waves that are looked at to find those that live: none of an origin lives longer than the longest."""
+    speed = layer.greatest_speed
+    if layer.muted or speed < layer.calm:
+        return 0
+    shortest = period(layer.calm if len(layer.keys) > 1 else speed, gravity)
+    waves = layer.life * period(speed, gravity) / shortest + 1.0
+    return math.ceil(_origins(layer) * waves)

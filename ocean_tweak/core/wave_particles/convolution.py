@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The coefficients of many particles at once: points on the grid, times the transform of their shape.
+
+A particle becomes nine samples of a quadratic B-spline, whose width, unlike that of a bilinear deposit, does
+not depend on where between the samples it lies; dividing by the spline's own transform makes the shape
+that of a bump moved by spline interpolation, exact where the particle meets a sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..grid import WaveVectorGrid
+from .shape import RadiusClasses, bump
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+#: particles that are deposited together
+_CHUNK = 2**17
+
+
+class Kernel(NamedTuple):
+    """The transform of a bump for kx and ky from 0 to N/2, (N//2+1, N//2+1) indexed [kx, ky], real.
+
+    height : of z; even in kx and ky, without its mean
+    sideways : of x, over i; odd in kx, even in ky. That of y is its transpose
+    """
+
+    height: RealArray
+    sideways: RealArray
+
+    def columns(self, component: int, block: slice, grid: WaveVectorGrid) -> RealArray:
+        """(columns, N) transform of x, y (over i) or z, for all ky in FFT order."""
+        if component == 1:
+            half = self.sideways.T[block]
+            full = grid.mirror(half)
+            np.negative(full[:, grid.resolution // 2 + 1 :], out=full[:, grid.resolution // 2 + 1 :])
+            return full
+        return grid.mirror((self.height if component == 2 else self.sideways)[block])
+
+
+@lru_cache(maxsize=8)
+def kernel(grid: WaveVectorGrid, radius: float, dtype: type) -> Kernel:
+    """The transform of a bump of a radius in m, sampled on the grid; real parts in float32 or float64."""
+    n = grid.resolution
+    index = np.arange(n)
+    offset = np.where(index <= n // 2, index, index - n) * (grid.domain_size / n)
+    shape = bump(offset[np.newaxis, :], offset[:, np.newaxis], radius).position
+    half = n // 2 + 1
+    spline = (3.0 + np.cos(2.0 * np.pi * np.arange(half) / n)) / 4.0
+    parts = []
+    for values in (shape[..., 2], shape[..., 0]):
+        transform = np.fft.rfft2(values)[:half].T / (spline[:, np.newaxis] * spline)
+        transform[-1, :] = transform[:, -1] = 0.0  # modes at Nyquist are zero
+        parts.append(transform)
+    height, sideways = parts
+    height[0, 0] = 0.0
+    real = np.float32 if dtype is np.complex64 else np.float64
+    return Kernel(np.ascontiguousarray(height.real, real), np.ascontiguousarray(sideways.imag, real))
+
+
+def deposit(x: Array, y: Array, weights: Sequence[Array], grid: WaveVectorGrid) -> list[Array]:
+    """(N, N) float64 [y, x] grids on which particles at places in m leave each of their weights.
+
+    Sums are made in the order of the particles, so that they are the same to the bit on any machine.
+    """
+    n = grid.resolution
+    sums = [np.zeros(n * n) for _ in weights]
+    for first in range(0, len(x), _CHUNK):
+        chunk = slice(first, first + _CHUNK)
+        columns, along = _spline(x[chunk], n, grid.domain_size)
+        rows, up = _spline(y[chunk], n, grid.domain_size)
+        cells = (rows[:, np.newaxis] * n + columns).ravel()
+        shares = up[:, np.newaxis] * along
+        for total, weight in zip(sums, weights, strict=True):
+            total += np.bincount(cells, (shares * weight[chunk]).ravel(), minlength=n * n)
+    return [total.reshape(n, n) for total in sums]
+
+
+def _spline(places: Array, n: int, domain_size: float) -> tuple[NDArray[np.intp], Array]:
+    """The three samples around each place, (3, places), and the quadratic B-spline's weights there."""
+    position = places * (n / domain_size)
+    nearest = np.rint(position)
+    off = position - nearest
+    samples = (nearest.astype(np.intp) + np.array([[-1], [0], [1]])) % n
+    return samples, np.stack((0.5 * (0.5 - off) ** 2, 0.75 - off * off, 0.5 * (0.5 + off) ** 2))
+
+
+class Points(NamedTuple):
+    """Particles of one radius on the grid, transformed along x: (N, N//2+1) each.
+
+    amplitude : m; None where only rates are wanted
+    rates : amplitude a second, and amplitude times velocity along x and along y; None if not wanted
+    """
+
+    kernel: Kernel
+    amplitude: ComplexArray | None
+    rates: tuple[ComplexArray, ComplexArray, ComplexArray] | None
+
+    def coefficients(self, rate: bool, block: slice, grid: WaveVectorGrid) -> ComplexArray:
+        """(columns, N) transform of the points, or of their change a second, for some columns kx.
+
+        A bump's change is that of its height and its motion: dP/dt = (da/dt)·W - a·C·∇W.
+        """
+        if rate and self.rates is not None:
+            growing, along, up = (_transposed(part, block) for part in self.rates)
+            kx, ky = grid.kx[0, block, np.newaxis], grid.ky[:, 0]
+            growing -= (1j * kx).astype(along.dtype) * along
+            result = np.fft.fft(growing, axis=-1)
+            result -= (1j * ky).astype(along.dtype) * np.fft.fft(up, axis=-1)
+        elif not rate and self.amplitude is not None:
+            result = np.fft.fft(_transposed(self.amplitude, block), axis=-1)
+        else:
+            raise ValueError("only what was asked for is there")
+        dtype = (self.amplitude if self.rates is None else self.rates[0]).dtype  # type: ignore[union-attr]
+        return result.astype(dtype, copy=False)
+
+
+def _transposed(values: ComplexArray, block: slice) -> ComplexArray:
+    return np.ascontiguousarray(values[:, block].T)
+
+
+def along_x(values: Array, dtype: type) -> ComplexArray:
+    """(N, N//2+1) transform along x of an (N, N) grid, in complex64 or complex128."""
+    real = np.float32 if dtype is np.complex64 else np.float64
+    return np.fft.rfft(values.astype(real), axis=-1).astype(dtype, copy=False)
+
+
+def radii_of(classes: RadiusClasses) -> tuple[float, ...]:
+    """The radii as numbers that a cache can hold."""
+    return tuple(float(radius) for radius in classes.radii)

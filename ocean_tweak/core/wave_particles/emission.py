@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When waves are born, from the wind at their origins alone.
+
+The phase of an origin grows by dt/T, T = √(2π)·V/g the period of its wind's waves; a wave is born whenever it
+passes a whole number. So the waves that live at any time follow from that time, without those before.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .origins import Origins
+from .parameters import WindFieldLayer
+from .relations import period
+from .wind import winds_at
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+#: numbers of the table of phases over which steps between two times of the wind become coarser, and steps
+#: between two times at most and at least
+_TABLE, _MOST_STEPS = 2_000_000, 32
+
+
+class Births(NamedTuple):
+    """Waves that live at a time: where and when each was born, and the wind that it keeps.
+
+    x, y : (n,) m
+    age : (n,) s
+    wind : (n, 2) m/s
+    """
+
+    x: Array
+    y: Array
+    age: Array
+    wind: Array
+
+
+class Emission:
+    """The births of a layer's waves."""
+
+    def __init__(self, layer: WindFieldLayer, origins: Origins, domain_size: float, gravity: float) -> None:
+        self._layer = layer
+        self._origins = origins
+        self._gravity = gravity
+        self._times, self._winds = winds_at(layer, origins.x, origins.y, domain_size)
+        speed = np.hypot(self._winds[..., 0], self._winds[..., 1])
+        #: (origins,) s: the longest life of a wave from there
+        self._longest_life = layer.life * period(speed.max(axis=0), gravity)
+        self._nodes = self._node_times()
+        self._phases = self._table()
+        self._rate_after = self._rate(self._winds[-1])
+
+    def births(self, time: float) -> Births:
+        """The waves born before a time in s that are not gone yet; origin after origin, oldest first."""
+        start = np.maximum(self._nodes[0], time - self._longest_life)
+        first = np.floor(self._phase(start))
+        last = np.floor(self._phase(np.full(len(start), max(time, self._nodes[0]))))
+        counts = (last - first).astype(np.intp)
+        origin = np.repeat(np.arange(len(counts)), counts)
+        before = np.repeat(np.cumsum(counts) - counts, counts)
+        number = first[origin] + 1.0 + (np.arange(len(origin)) - before)
+        born = self._time_of(number, origin)
+        wind = self._wind(born, origin)
+        speed = np.hypot(wind[:, 0], wind[:, 1])
+        age = time - born
+        alive = (speed >= self._layer.calm) & (age >= 0.0)
+        alive &= age < self._layer.life * period(speed, self._gravity)
+        origin = origin[alive]
+        return Births(self._origins.x[origin], self._origins.y[origin], age[alive], wind[alive])
+
+    def _rate(self, winds: Array) -> Array:
+        """1/T in 1/s of winds (…, 2), 0 where it is calm."""
+        speed = np.hypot(winds[..., 0], winds[..., 1])
+        blowing = speed >= self._layer.calm
+        return np.divide(1.0, period(speed, self._gravity), out=np.zeros(speed.shape), where=blowing)
+
+    def _node_times(self) -> Array:
+        """From the start on, the times at which phases are tabulated; after the last the wind is constant."""
+        start = self._layer.start_time
+        keys = np.concatenate(([start], self._times[self._times > start]))
+        if len(self._times) == 1:
+            return keys[:1]
+        intervals = len(keys) - 1
+        steps = _TABLE // max(1, intervals * self._winds.shape[1])
+        steps = min(_MOST_STEPS, max(1, steps))
+        within = np.arange(steps) / steps
+        inner = keys[:-1, np.newaxis] + np.diff(keys)[:, np.newaxis] * within
+        return np.append(inner.ravel(), keys[-1])
+
+    def _table(self) -> Array:
+        """(nodes, origins) phases at the nodes: of the rate in the middle between two of them."""
+        phases = np.empty((len(self._nodes), self._winds.shape[1]))
+        phases[0] = self._origins.phase
+        everywhere = np.arange(phases.shape[1])
+        for index, (begin, end) in enumerate(zip(self._nodes[:-1], self._nodes[1:], strict=True)):
+            middle = np.full(len(everywhere), 0.5 * (begin + end))
+            phases[index + 1] = phases[index] + (end - begin) * self._rate(self._wind(middle, everywhere))
+        return phases
+
+    def _wind(self, times: Array, origin: Indices) -> Array:
+        """(n, 2) wind at times (n,) and origins (n,)."""
+        if len(self._times) == 1:
+            return np.asarray(self._winds[0, origin])
+        key = np.clip(np.searchsorted(self._times, times, side="right") - 1, 0, len(self._times) - 2)
+        width = self._times[key + 1] - self._times[key]
+        share = np.clip((times - self._times[key]) / width, 0.0, 1.0)[:, np.newaxis]
+        return np.asarray((1.0 - share) * self._winds[key, origin] + share * self._winds[key + 1, origin])
+
+    def _phase(self, times: Array) -> Array:
+        """(origins,) phases, each at its own time, not before the first node."""
+        everywhere = np.arange(len(times))
+        node = np.maximum(np.searchsorted(self._nodes, times, side="right") - 1, 0)
+        elapsed = np.maximum(times - self._nodes[node], 0.0)
+        return np.asarray(self._phases[node, everywhere] + elapsed * self._slope(node, everywhere))
+
+    def _slope(self, node: Indices, origin: Indices) -> Array:
+        """Phase a second after a node."""
+        last = len(self._nodes) - 1
+        if last == 0:
+            return np.asarray(self._rate_after[origin])
+        inner = np.minimum(node, last - 1)
+        rise = self._phases[inner + 1, origin] - self._phases[inner, origin]
+        width = self._nodes[inner + 1] - self._nodes[inner]
+        return np.where(node == last, self._rate_after[origin], rise / width)
+
+    def _time_of(self, number: Array, origin: Indices) -> Array:
+        """Times at which the phases of origins pass numbers, all of them above the first node's."""
+        low = np.zeros(len(number), np.intp)  # the last node with a phase below the number, by bisection
+        high = np.full(len(number), len(self._nodes))
+        while np.any(high - low > 1):
+            middle = (low + high) // 2
+            below = self._phases[middle, origin] < number
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        missing = number - self._phases[low, origin]
+        slope = self._slope(low, origin)
+        elapsed = np.divide(missing, slope, out=np.zeros(len(number)), where=slope > 0.0)
+        return np.asarray(self._nodes[low] + elapsed)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a wave's birth to its particles at a time: straight flight, rise and fall, division in three.
+
+All of it follows from the age. Positions are not reduced to the patch, which repeats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .emission import Births
+from .parameters import WindFieldLayer
+from .relations import period, phase_speed, wavelength
+from .shape import RadiusClasses
+
+Array = NDArray[np.float64]
+
+#: neighbours further apart than this share of the radius divide, and those of a parallel front are so far
+SPACING = 0.5
+
+
+class Particles(NamedTuple):
+    """Particles at one time, (n,) each.
+
+    x, y : m
+    velocity_x, velocity_y : m/s
+    amplitude, amplitude_rate : m and m/s
+    shape : index of the radius among the sea's classes
+    """
+
+    x: Array
+    y: Array
+    velocity_x: Array
+    velocity_y: Array
+    amplitude: Array
+    amplitude_rate: Array
+    shape: NDArray[np.intp]
+
+
+def particles_of(
+    births: Births, layer: WindFieldLayer, classes: RadiusClasses, gravity: float, shortest: float
+) -> Particles:
+    """The particles of some waves, those divided least first.
+
+    shortest : wavelength in m below which a wave has none
+    """
+    speed = np.hypot(births.wind[:, 0], births.wind[:, 1])
+    kept = wavelength(speed, gravity) >= shortest
+    speed, age, wind = speed[kept], births.age[kept], births.wind[kept]
+    x, y = births.x[kept], births.y[kept]
+    shape = classes.nearest(0.5 * wavelength(speed, gravity))
+    radius = classes.radii[shape]
+    travelled = phase_speed(speed) * age
+    divided = divisions(travelled, radius, layer)
+    phase = np.pi * age / (layer.life * period(speed, gravity))
+    height = amplitude(speed, layer, gravity)
+    towards = np.arctan2(wind[:, 1], wind[:, 0])
+    parts: list[Particles] = []
+    for times in np.unique(divided):
+        # one row a wave, one column a particle
+        these = np.nonzero(divided == times)[0][:, np.newaxis]
+        turn, aside = _fan(layer, int(times))
+        angle = towards[these] + turn
+        cosine, sine = np.cos(angle), np.sin(angle)
+        lateral = aside * radius[these]
+        share = height[these] / 3.0**times
+        rise = np.sin(phase[these])
+        rate = np.cos(phase[these]) * (np.pi / (layer.life * period(speed[these], gravity)))
+        flight = phase_speed(speed[these])
+        columns = (
+            x[these] + travelled[these] * cosine - lateral * sine,
+            y[these] + travelled[these] * sine + lateral * cosine,
+            flight * cosine,
+            flight * sine,
+            share * rise,
+            share * rate,
+            shape[these],
+        )
+        parts.append(Particles._make(np.broadcast_to(column, angle.shape).ravel() for column in columns))
+    return joined(parts)
+
+
+def joined(parts: Sequence[Particles]) -> Particles:
+    """Particles one after the other."""
+    none = (*([np.zeros(0)] * 6), np.zeros(0, np.intp))
+    return Particles._make(np.concatenate(columns) for columns in zip(none, *parts, strict=True))
+
+
+def amplitude(speed: Array, layer: WindFieldLayer, gravity: float) -> Array:
+    """Height in m of a wave's particles at the middle of its life, before they divide.
+
+    Li & Wang (2016), eq. 5, k_a·V; or by steepness s, s·λ/2π, with which long waves are not the flatter ones.
+    """
+    if layer.height == "WIND_SPEED":
+        return np.asarray(layer.gain * layer.height_per_speed * speed)
+    return np.asarray(layer.gain * layer.steepness / (2.0 * np.pi) * wavelength(speed, gravity))
+
+
+def divisions(travelled: Array, radius: Array, layer: WindFieldLayer) -> NDArray[np.intp]:
+    """How often the particles of waves have divided in three.
+
+    Li & Wang (2016), eq. 25 with its small angle, and algorithm 1, corrected: half a radius is the limit
+    (the algorithm's quarter of a size, which is 2r), and the distance travelled is C·(t - t_born).
+    """
+    if layer.front == "PARALLEL" or not layer.splitting:
+        return np.zeros(len(travelled), np.intp)
+    ratio = travelled * layer.split_angle / (SPACING * radius)
+    powers = 3.0 ** np.arange(32)
+    return np.searchsorted(powers, ratio, side="left")
+
+
+def _fan(layer: WindFieldLayer, times: int) -> tuple[Array, Array]:
+    """Directions in rad and places aside in radii of a wave's particles, against those of its middle."""
+    first = np.arange(layer.particles, dtype=np.float64) - 0.5 * (layer.particles - 1)
+    if layer.front == "PARALLEL":
+        return np.zeros(layer.particles), np.asarray(SPACING * first)
+    parts = 3**times
+    within = (np.arange(parts) - 0.5 * (parts - 1)) / parts
+    turn: Array = layer.split_angle * (first[:, np.newaxis] + within).ravel()
+    return turn, np.zeros(len(turn))

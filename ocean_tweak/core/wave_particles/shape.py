@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The bump of water that a particle carries, and the few radii that the particles of a sea may have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .parameters import WindFieldLayer
+from .relations import wavelength
+
+Array = NDArray[np.float64]
+
+#: how many radii there are at most, how far the smallest may lie below the largest, and the ratio of two
+#: neighbours below which there are fewer
+MOST_CLASSES, _WIDEST, _FINEST = 4, 16.0, 1.1
+
+#: samples of a raster that are looked at, and the share of them whose waves may be rounded up
+_SAMPLES, _SHORTEST_SHARE = 65536, 0.05
+
+
+class RadiusClasses(NamedTuple):
+    """Radii in m, ascending: (at most 4,)."""
+
+    radii: Array
+
+    def nearest(self, radius: Array) -> NDArray[np.intp]:
+        """The nearest class of radii in m, by ratio."""
+        return np.searchsorted(np.sqrt(self.radii[1:] * self.radii[:-1]), radius)
+
+
+def radius_classes(layers: Iterable[WindFieldLayer], gravity: float) -> RadiusClasses:
+    """The radii of the particles of some layers, from their winds: half the wavelengths.
+
+    Those themselves where there are at most four, else four of equal ratio. The resolution has no say: it
+    refines the same sea.
+    """
+    speeds = np.concatenate([np.zeros(0), *(_speeds(layer) for layer in layers)])
+    radii = np.unique(0.5 * wavelength(speeds, gravity))
+    if len(radii) == 0:
+        return RadiusClasses(np.ones(1))
+    if len(radii) <= MOST_CLASSES:
+        return RadiusClasses(radii)
+    largest = radii[-1]
+    all_radii = 0.5 * wavelength(speeds, gravity)
+    smallest = max(float(np.quantile(all_radii, _SHORTEST_SHARE)), largest / _WIDEST)
+    count = int(np.clip(np.ceil(np.log(largest / smallest) / np.log(_FINEST)), 1, MOST_CLASSES))
+    return RadiusClasses(smallest * (largest / smallest) ** ((np.arange(count) + 0.5) / count))
+
+
+def _speeds(layer: WindFieldLayer) -> Array:
+    """Winds of a layer that raise waves, m/s, at some of the samples of all its times."""
+    if not layer.keys:
+        speeds = np.array([layer.strength * layer.wind_speed])
+    else:
+        parts = []
+        for raster in layer.rasters:
+            vectors = raster.values.reshape(-1, 2)
+            some = vectors[:: max(1, len(vectors) // _SAMPLES)].astype(np.float64)
+            parts.append(layer.strength * np.hypot(some[:, 0], some[:, 1]))
+        speeds = np.concatenate(parts)
+    return speeds[speeds >= layer.calm]
+
+
+class Bump(NamedTuple):
+    """A particle of height 1 at places around it: what is added to the position and its derivatives.
+
+    position, by_x, by_y : (…, 3), of x, y and z
+    """
+
+    position: Array
+    by_x: Array
+    by_y: Array
+
+
+def bump(dx: Array, dy: Array, radius: float) -> Bump:
+    """The bump at places (dx, dy) in m from its middle; 0 with slope 0 from the radius on.
+
+    W = ½(cos(π d/r) + 1): Li & Wang (2016), eq. 6, corrected (as printed its rim is a step); sideways
+    -sin(π Δx/r)·W and -sin(π Δy/r)·W, eq. 23, which draws the water towards the crest.
+    """
+    distance = np.hypot(dx, dy)
+    inside = distance < radius
+    turn = np.pi / radius
+    height = np.where(inside, 0.5 * (np.cos(turn * distance) + 1.0), 0.0)
+    # dW/dd / d, which is finite in the middle
+    steep = np.where(inside, -0.5 * turn * turn * np.sinc(distance / radius), 0.0)
+    slope_x, slope_y = steep * dx, steep * dy
+    sine_x, sine_y = np.sin(turn * dx), np.sin(turn * dy)
+    position = (-sine_x * height, -sine_y * height, height)
+    by_x = (-turn * np.cos(turn * dx) * height - sine_x * slope_x, -sine_y * slope_x, slope_x)
+    by_y = (-sine_x * slope_y, -turn * np.cos(turn * dy) * height - sine_y * slope_y, slope_y)
+    return Bump(*(np.stack(values, axis=-1) for values in (position, by_x, by_y)))

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The waves of a sea's wind fields: their particles, and what these add to the sea's coefficients."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..grid import WaveVectorGrid
+from ..parameters import OceanParameters
+from .convolution import Points, along_x, deposit, kernel
+from .emission import Emission
+from .life import Particles, joined, particles_of
+from .origins import layer_origins
+from .shape import RadiusClasses, radius_classes
+
+ComplexArray = NDArray[np.complexfloating]
+
+#: samples to the shortest wave that is shown
+SHORTEST = 4.0
+
+
+class WindWaves:
+    """The waves of all wind fields that are not muted."""
+
+    def __init__(self, parameters: OceanParameters) -> None:
+        self._parameters = parameters
+        self._gravity = parameters.water.gravity
+        self._layers = parameters.active_wind_fields
+        self._grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
+
+    @cached_property
+    def classes(self) -> RadiusClasses:
+        """The radii that their particles have."""
+        return radius_classes(self._layers, self._gravity)
+
+    @cached_property
+    def _emissions(self) -> list[Emission]:
+        size, seed = self._parameters.domain_size, self._parameters.seed
+        return [
+            Emission(layer, layer_origins(layer, seed, size), size, self._gravity) for layer in self._layers
+        ]
+
+    def particles(self, time: float) -> Particles:
+        """All particles at a time in s, layer after layer."""
+        shortest = SHORTEST * self._parameters.domain_size / self._parameters.resolution
+        parts = [
+            particles_of(emission.births(time), layer, self.classes, self._gravity, shortest)
+            for emission, layer in zip(self._emissions, self._layers, strict=True)
+        ]
+        return joined(parts)
+
+    def shares(self, time: float, still: bool, moving: bool, dtype: type) -> Shares:
+        """What the particles add at a time: to positions, where `still`, and to rates, where `moving`."""
+        particles = self.particles(time)
+        points = []
+        for index, radius in enumerate(self.classes.radii):
+            these = np.nonzero(particles.shape == index)[0]
+            if not len(these):
+                continue
+            a, rate, across, up = (
+                values[these]
+                for values in (
+                    particles.amplitude, particles.amplitude_rate, particles.velocity_x, particles.velocity_y
+                )
+            )  # fmt: skip
+            weights = [a] * still + [rate, a * across, a * up] * moving
+            grids = deposit(particles.x[these], particles.y[these], weights, self._grid)
+            transformed = [along_x(values, dtype) for values in grids]
+            rates = (transformed[-3], transformed[-2], transformed[-1]) if moving else None
+            own = kernel(self._grid, float(radius), dtype)
+            points.append(Points(own, transformed[0] if still else None, rates))
+        return Shares(self._grid, points)
+
+
+class Shares:
+    """Coefficients of the particles at one time."""
+
+    def __init__(self, grid: WaveVectorGrid, points: list[Points]) -> None:
+        self._grid = grid
+        self._points = points
+
+    def of_block(self, block: slice, scale: float = 1.0) -> BlockShares:
+        """Those of a block of columns kx, times `scale`."""
+        return BlockShares(self._grid, self._points, block, scale)
+
+
+class BlockShares:
+    """Coefficients of a block of columns: the particles of each radius are transformed once."""
+
+    def __init__(self, grid: WaveVectorGrid, points: list[Points], block: slice, scale: float) -> None:
+        self._grid = grid
+        self._points = points
+        self._block = block
+        self._scale = scale / grid.resolution**2
+        self._made: dict[bool, list[ComplexArray]] = {}
+
+    def add(self, component: int, rate: bool, target: ComplexArray, factor: float = 1.0) -> None:
+        """Add the share in P[component], or in its rate, times `factor` to coefficients (columns, N)."""
+        if rate not in self._made:
+            self._made[rate] = [p.coefficients(rate, self._block, self._grid) for p in self._points]
+        scale = factor * self._scale * (1.0 if component == 2 else 1j)
+        for points, coefficients in zip(self._points, self._made[rate], strict=True):
+            shape = points.kernel.columns(component, self._block, self._grid)
+            target += (coefficients * target.dtype.type(scale)) * shape
