@@ -140,7 +140,7 @@ class Track:
         columns = list(zip(*self._rows, strict=True))
         for path, values in (("location", columns[:3]), (rotation_path(item), columns[3:])):
             for index, column in enumerate(values):
-                write_curve(action.fcurve_ensure_for_datablock(item, path, index=index), first, column)
+                _write_curve(action.fcurve_ensure_for_datablock(item, path, index=index), first, column)
 
 
 def _action_of(item: bpy.types.Object) -> bpy.types.Action | None:
@@ -154,8 +154,7 @@ def _assign(item: bpy.types.Object, action: bpy.types.Action, slot: str) -> None
     animation.action_slot = found or action.slots.new("OBJECT", item.name)
 
 
-def write_curve(curve: bpy.types.FCurve, first: int, values: Sequence[float]) -> None:
-    """Make values keys a frame apart, linear between; keys outside of them stay."""
+def _write_curve(curve: bpy.types.FCurve, first: int, values: Sequence[float]) -> None:
     last = first + len(values) - 1
     points = curve.keyframe_points
     for index in reversed([i for i, point in enumerate(points) if first <= point.co.x <= last]):

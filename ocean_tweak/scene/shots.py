@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An ocean as a shot that needs no Blender: its sea, and what of it is animated, a sample a frame."""
+"""An ocean as a shot that needs no Blender: its sea, and what is animated, a sample a frame; and back."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..core import OceanParameters
 from ..core.frames import Frame
 from ..core.shot import ANIMATED, OCEAN_TIME, Animation, Shot
 from . import handlers
-from .animated import clock_of, is_animated, shown_settings
+from .animated import clock_of, is_animated, set_keys, shown_settings
 from .settings import settings_of
 
 
@@ -38,6 +38,18 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     if not changing:
         return Shot(parameters)
     return Shot(parameters, Animation(first, tuple(changing.items())))
+
+
+def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
+    """Give an ocean, which is the shot's sea already, keys for what changes; none where nothing does."""
+    samples = dict(shot.animation.samples) if shot.animation is not None else {}
+    settings = settings_of(item)
+    with settings.quiet():
+        settings.use_ocean_time = OCEAN_TIME in samples
+    first = shot.animation.first_frame if shot.animation is not None else 0
+    set_keys(item, first, {path: settings.blender_values(path, samples[path], scene) for path in samples})
+    if samples:
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:

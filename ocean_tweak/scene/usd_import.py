@@ -7,14 +7,11 @@ from pathlib import Path
 
 import bpy
 
-from ..core.shot import OCEAN_TIME, Animation, Shot
 from ..export.usd.reading import read_package
 from . import ocean_object
-from .float_keys import write_curve
-from .settings import VIEWPORT_RESOLUTION, OceanSettings, settings_of
+from .settings import VIEWPORT_RESOLUTION
+from .shots import animate
 from .units import frame_rate, set_frame_rate
-
-_SETTINGS = "ocean_tweak"
 
 
 def add_from_layer(
@@ -42,43 +39,5 @@ def add_from_layer(
     except ocean_object.EXPECTED_ERRORS:
         set_frame_rate(scene, before)
         raise
-    if shot.animation is not None:
-        _animate(item, scene, shot, shot.animation)
+    animate(item, scene, shot)
     return item
-
-
-def _animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot, animation: Animation) -> None:
-    """Make keys of the samples, linear between as the samples are."""
-    settings = settings_of(item)
-    action = bpy.data.actions.new(item.name)
-    data = item.animation_data_create()
-    data.action = action
-    data.action_slot = action.slots.new("OBJECT", item.name)
-    for path, values in _columns(settings, scene, shot, animation).items():
-        curve = action.fcurve_ensure_for_datablock(item, f"{_SETTINGS}.{path}")
-        write_curve(curve, animation.first_frame, values)
-    with settings.quiet():
-        settings.use_ocean_time = OCEAN_TIME in dict(animation.samples)
-    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-
-
-def _columns(
-    settings: OceanSettings, scene: bpy.types.Scene, shot: Shot, animation: Animation
-) -> dict[str, list[float]]:
-    """Values in Blender's units by the path of their property: the settings know how to convert them."""
-    columns: dict[str, list[float]] = {_property(path): [] for path, _ in animation.samples}
-    with settings.quiet():
-        for frame in range(animation.first_frame, animation.last_frame + 1):
-            moment = shot.at(frame)
-            settings.from_parameters(moment.parameters, scene)
-            settings.ocean_time = float(moment.time)
-            for path, column in columns.items():
-                column.append(settings.path_resolve(path))
-        settings.from_parameters(shot.parameters, scene)
-    return columns
-
-
-def _property(path: str) -> str:
-    """The path of a property below the settings, from one of a parameter: layers.0.gain, layers[0].gain."""
-    *parents, name = path.split(".")
-    return f"{parents[0]}[{parents[1]}].{name}" if parents else name
