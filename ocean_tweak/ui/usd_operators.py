@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import bpy
+from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
@@ -59,11 +60,14 @@ class OCEAN_OT_export_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
         export: UsdExport = self._process
         if export.is_complete:
             frames, size = format_frames(export.frames), readable_bytes(export.size)
-            self.report({"INFO"}, f"{len(export.frames)} frames, {frames}, {size}: {export.path}")
+            text = translated("{count} frames, {frames}, {size}: {path}")
+            self.report(
+                {"INFO"}, text.format(count=len(export.frames), frames=frames, size=size, path=export.path)
+            )
             return {"FINISHED"}
         if not export.is_stopped:
             return self.failed()
-        self.report({"INFO"}, f"{export.error[:1].upper()}{export.error[1:]}" or "Stopped")
+        self.report({"INFO"}, f"{export.error[:1].upper()}{export.error[1:]}" or translated("Stopped"))
         return {"CANCELLED"}
 
 
@@ -126,13 +130,14 @@ class OCEAN_OT_verify_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
         """Say what is wrong."""
         check: UsdCheck = self._process
         if check.is_complete:
-            self.report({"INFO"}, f"All is well with {check.path}")
+            self.report({"INFO"}, translated("All is well with {path}").format(path=check.path))
             return {"FINISHED"}
         if check.is_stopped:
             return {"CANCELLED"}
         if not check.problems:
             return self.failed()
-        more = f" (and {len(check.problems) - 1} more)" if len(check.problems) > 1 else ""
+        others = len(check.problems) - 1
+        more = translated(" (and {count} more)").format(count=others) if others else ""
         return refuse(self, f"{check.path}: {check.problems[0]}{more}")
 
 
