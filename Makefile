@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core test-long test-window mutate lint bench bench-smoke build docs clean
+.PHONY: help setup demo test test-core test-long test-window mutate lint bench bench-smoke build docs papers clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -52,6 +52,10 @@ build:      ## the extension's zip, into build/
 docs:       ## write the documentation that is made from the code
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.parameters_doc
+
+papers:     ## make the tables and pictures of docs/papers anew (some minutes)
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m tools.papers
 
 clean:      ## remove what was made, except .tools/
 	rm -rf build wheels .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

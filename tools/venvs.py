@@ -11,6 +11,7 @@ from .project import REQUIREMENTS, TOOLS, run_logged
 PYTHON_OF_BLENDER = {"5.2": "3.13", "4.5": "3.11"}
 PYTEST_IN_BLENDER = TOOLS / "pytest"
 FARM = TOOLS / "farm"
+PAPERS = TOOLS / "papers"
 
 
 def python(blender: str) -> Path:
@@ -51,14 +52,24 @@ def make_pytest_for_blender() -> None:
 
 def make_farm() -> None:
     """Make the environment of the farms' own programs: their versions would disturb those of the others."""
-    requirements = REQUIREMENTS / "farm.txt"
+    _make_beside(FARM)
+
+
+def make_papers() -> None:
+    """Make the environment that draws the plots of docs/papers: nothing else wants what it needs."""
+    _make_beside(PAPERS)
+
+
+def _make_beside(place: Path) -> None:
+    """Make an environment of its own from the requirements of its name."""
+    requirements = REQUIREMENTS / f"{place.name}.txt"
     recipe = requirements.read_text()
-    if stamps.is_made(FARM, recipe):
+    if stamps.is_made(place, recipe):
         return
-    log = TOOLS / "logs" / "farm.log"
-    with stamps.making(FARM, recipe):
-        run_logged([str(python("5.2")), "-m", "venv", str(FARM)], log)
-        run_logged([str(FARM / "bin" / "python"), "-m", "pip", "install", "-r", str(requirements)], log)
+    log = TOOLS / "logs" / f"{place.name}.log"
+    with stamps.making(place, recipe):
+        run_logged([str(python("5.2")), "-m", "venv", str(place)], log)
+        run_logged([str(place / "bin" / "python"), "-m", "pip", "install", "-r", str(requirements)], log)
 
 
 def _folder(blender: str) -> Path:

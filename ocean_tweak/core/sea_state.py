@@ -166,7 +166,7 @@ def _state_of_modes(
 def state_of_moments(
     m0: float, m2: float, slope: float, vector: complex, peak: float, parameters: OceanParameters
 ) -> SeaState:
-    """State from m0, m2, slope variance, the sum of energies times unit vectors as x + iy, and ω at the peak."""
+    """State from m0, m2, slope variance, energies times their directions x + iy, and ω at the peak."""
     if not (m0 > 0.0 and np.isfinite(peak)):
         nan = float("nan")
         return SeaState(float(m0), nan, nan, nan, float(slope), nan, nan)

@@ -20,7 +20,12 @@ from ocean_tweak.core.initial_state import initial_state
 from tools import parameters_doc
 
 ROOT = Path(__file__).resolve().parents[2]
-PAPERS = {"Horvath (2015)": 62, "Chen, Jin and Yin (2014)": 33, "Lantz": 4}
+PAPERS = {
+    "Horvath (2015)": 62,
+    "Chen, Jin and Yin (2014)": 33,
+    "Lantz": 4,
+    "Mastin, Watterberg and Mareda (1987)": 10,
+}
 
 
 # docs/equations.md
@@ -62,14 +67,14 @@ def definitions(path: Path) -> frozenset[str]:
 
 
 def function_exists(name: str) -> bool:
-    package = ROOT / "ocean_tweak"
-    module, _, rest = name.partition(".")
-    if (package / module).is_dir():
-        package, (module, _, rest) = package / module, rest.partition(".")
-    else:
-        package = package / "core"
-    path = package / f"{module}.py"
-    return path.exists() and rest in definitions(path)
+    """Whether a name stands in the core, or with its folders in the package."""
+    for place in (ROOT / "ocean_tweak" / "core", ROOT / "ocean_tweak"):
+        rest = name.split(".")
+        while len(rest) > 1 and (place / rest[0]).is_dir():
+            place /= rest.pop(0)
+        if (place / f"{rest[0]}.py").exists():
+            return ".".join(rest[1:]) in definitions(place / f"{rest[0]}.py")
+    return False
 
 
 def check_exists(name: str) -> bool:
