@@ -161,7 +161,7 @@ class Synthesis:
         if self.wind_waves is None:
             return None
         rates = {column.rate for column in columns}
-        return self.wind_waves.shares(float(time), False in rates, True in rates, self.dtype)
+        return self.wind_waves.shares(float(time), False in rates, True in rates, self.dtype, self.workers)
 
     def _with_long_waves(self, wanted: Iterable[tuple[int, str]]) -> set[tuple[int, str, bool]]:
         wanted = set(wanted)

@@ -25,6 +25,9 @@ ComplexArray = NDArray[np.complexfloating]
 #: particles that are deposited together
 _CHUNK = 2**17
 
+#: rows that are transformed together
+_ROWS = 32
+
 
 class Kernel(NamedTuple):
     """The transform of a bump for kx and ky from 0 to N/2, (N//2+1, N//2+1) indexed [kx, ky], real.
@@ -50,13 +53,16 @@ class Kernel(NamedTuple):
 def kernel(grid: WaveVectorGrid, radius: float, dtype: type) -> Kernel:
     """The transform of a bump of a radius in m, sampled on the grid; real parts in float32 or float64."""
     n = grid.resolution
-    index = np.arange(n)
-    offset = np.where(index <= n // 2, index, index - n) * (grid.domain_size / n)
+    reach = min(int(np.ceil(radius * n / grid.domain_size)), n // 2)
+    index = np.arange(-reach, reach + (2 * reach < n))
+    offset: Array = index.astype(np.float64) * (grid.domain_size / n)
     shape = bump(offset[np.newaxis, :], offset[:, np.newaxis], radius).position
     half = n // 2 + 1
     spline = (3.0 + np.cos(2.0 * np.pi * np.arange(half) / n)) / 4.0
     parts = []
-    for values in (shape[..., 2], shape[..., 0]):
+    values = np.zeros((n, n))
+    for component in (2, 0):
+        values[np.ix_(index % n, index % n)] = shape[..., component]
         transform = np.fft.rfft2(values)[:half].T / (spline[:, np.newaxis] * spline)
         transform[-1, :] = transform[:, -1] = 0.0  # modes at Nyquist are zero
         parts.append(transform)
@@ -72,15 +78,17 @@ def deposit(x: Array, y: Array, weights: Sequence[Array], grid: WaveVectorGrid) 
     Sums are made in the order of the particles, so that they are the same to the bit on any machine.
     """
     n = grid.resolution
-    sums = [np.zeros(n * n) for _ in weights]
+    sums: list[Array] = []
     for first in range(0, len(x), _CHUNK):
         chunk = slice(first, first + _CHUNK)
         columns, along = _spline(x[chunk], n, grid.domain_size)
         rows, up = _spline(y[chunk], n, grid.domain_size)
         cells = (rows[:, np.newaxis] * n + columns).ravel()
         shares = up[:, np.newaxis] * along
-        for total, weight in zip(sums, weights, strict=True):
-            total += np.bincount(cells, (shares * weight[chunk]).ravel(), minlength=n * n)
+        parts = [np.bincount(cells, (shares * weight[chunk]).ravel(), minlength=n * n) for weight in weights]
+        for total, part in zip(sums, parts, strict=False):
+            total += part
+        sums = sums or parts
     return [total.reshape(n, n) for total in sums]
 
 
@@ -130,7 +138,12 @@ def _transposed(values: ComplexArray, block: slice) -> ComplexArray:
 def along_x(values: Array, dtype: type) -> ComplexArray:
     """(N, N//2+1) transform along x of an (N, N) grid, in complex64 or complex128."""
     real = np.float32 if dtype is np.complex64 else np.float64
-    return np.fft.rfft(values.astype(real), axis=-1).astype(dtype, copy=False)
+    rows, n = values.shape
+    result: ComplexArray = np.empty((rows, n // 2 + 1), dtype)
+    for first in range(0, rows, _ROWS):  # few enough to stay in a cache
+        block = slice(first, first + _ROWS)
+        result[block] = np.fft.rfft(values[block].astype(real), axis=-1)
+    return result
 
 
 def radii_of(classes: RadiusClasses) -> tuple[float, ...]:

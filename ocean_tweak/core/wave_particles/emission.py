@@ -22,7 +22,7 @@ Indices = NDArray[np.intp]
 
 #: numbers of the table of phases over which steps between two times of the wind become coarser, and steps
 #: between two times at most and at least
-_TABLE, _MOST_STEPS = 2_000_000, 32
+_TABLE, _MOST_STEPS = 2_000_000, 128
 
 
 class Births(NamedTuple):
@@ -95,10 +95,16 @@ class Emission:
         """(nodes, origins) phases at the nodes: of the rate in the middle between two of them."""
         phases = np.empty((len(self._nodes), self._winds.shape[1]))
         phases[0] = self._origins.phase
+        widths = np.diff(self._nodes)
+        middles = self._nodes[:-1] + 0.5 * widths
         everywhere = np.arange(phases.shape[1])
-        for index, (begin, end) in enumerate(zip(self._nodes[:-1], self._nodes[1:], strict=True)):
-            middle = np.full(len(everywhere), 0.5 * (begin + end))
-            phases[index + 1] = phases[index] + (end - begin) * self._rate(self._wind(middle, everywhere))
+        for first in range(0, len(widths), _MOST_STEPS):
+            some = slice(first, first + _MOST_STEPS)
+            times = np.repeat(middles[some], len(everywhere))
+            origin = np.tile(everywhere, len(middles[some]))
+            rates = self._rate(self._wind(times, origin)).reshape(-1, len(everywhere))
+            growth = np.cumsum(rates * widths[some, np.newaxis], axis=0)
+            phases[first + 1 : first + 1 + len(growth)] = phases[first] + growth
         return phases
 
     def _wind(self, times: Array, origin: Indices) -> Array:

@@ -15,8 +15,8 @@ from .relations import wavelength
 Array = NDArray[np.float64]
 
 #: how many radii there are at most, how far the smallest may lie below the largest, and the ratio of two
-#: neighbours below which there are fewer
-MOST_CLASSES, _WIDEST, _FINEST = 4, 16.0, 1.1
+#: neighbours below which there are fewer: rounded by less than a fifth, nobody sees it, and each costs time
+MOST_CLASSES, _WIDEST, _FINEST = 4, 16.0, 2.0**0.5
 
 #: samples of a raster that are looked at, and the share of them whose waves may be rounded up
 _SAMPLES, _SHORTEST_SHARE = 65536, 0.05
@@ -47,7 +47,7 @@ def radius_classes(layers: Iterable[WindFieldLayer], gravity: float) -> RadiusCl
     largest = radii[-1]
     all_radii = 0.5 * wavelength(speeds, gravity)
     smallest = max(float(np.quantile(all_radii, _SHORTEST_SHARE)), largest / _WIDEST)
-    count = int(np.clip(np.ceil(np.log(largest / smallest) / np.log(_FINEST)), 1, MOST_CLASSES))
+    count = int(np.clip(np.ceil(np.log(largest / smallest) / np.log(_FINEST) - 1e-9), 1, MOST_CLASSES))
     return RadiusClasses(smallest * (largest / smallest) ** ((np.arange(count) + 0.5) / count))
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 
 import numpy as np
@@ -52,27 +53,35 @@ class WindWaves:
         ]
         return joined(parts)
 
-    def shares(self, time: float, still: bool, moving: bool, dtype: type) -> Shares:
-        """What the particles add at a time: to positions, where `still`, and to rates, where `moving`."""
+    def shares(self, time: float, still: bool, moving: bool, dtype: type, workers: int = 1) -> Shares:
+        """What the particles add at a time: to positions, where `still`, and to rates, where `moving`.
+
+        workers : threads, which share the radii; the result does not depend on their number
+        """
         particles = self.particles(time)
-        points = []
-        for index, radius in enumerate(self.classes.radii):
+
+        def points_of(index: int) -> Points:
             these = np.nonzero(particles.shape == index)[0]
-            if not len(these):
-                continue
-            a, rate, across, up = (
-                values[these]
-                for values in (
-                    particles.amplitude, particles.amplitude_rate, particles.velocity_x, particles.velocity_y
-                )
-            )  # fmt: skip
-            weights = [a] * still + [rate, a * across, a * up] * moving
-            grids = deposit(particles.x[these], particles.y[these], weights, self._grid)
+            own = Particles._make(column[these] for column in particles)
+            rates = (
+                own.amplitude_rate,
+                own.amplitude * own.velocity_x,
+                own.amplitude * own.velocity_y,
+            )
+            weights = [own.amplitude] * still + [*rates] * moving
+            grids = deposit(own.x, own.y, weights, self._grid)
             transformed = [along_x(values, dtype) for values in grids]
-            rates = (transformed[-3], transformed[-2], transformed[-1]) if moving else None
-            own = kernel(self._grid, float(radius), dtype)
-            points.append(Points(own, transformed[0] if still else None, rates))
-        return Shares(self._grid, points)
+            return Points(
+                kernel(self._grid, float(self.classes.radii[index]), dtype),
+                transformed[0] if still else None,
+                (transformed[-3], transformed[-2], transformed[-1]) if moving else None,
+            )
+
+        present = [int(index) for index in np.unique(particles.shape)]
+        if workers == 1 or len(present) < 2:
+            return Shares(self._grid, [points_of(index) for index in present])
+        with ThreadPoolExecutor(workers) as pool:
+            return Shares(self._grid, list(pool.map(points_of, present)))
 
 
 class Shares:
@@ -101,7 +110,12 @@ class BlockShares:
         """Add the share in P[component], or in its rate, times `factor` to coefficients (columns, N)."""
         if rate not in self._made:
             self._made[rate] = [p.coefficients(rate, self._block, self._grid) for p in self._points]
-        scale = factor * self._scale * (1.0 if component == 2 else 1j)
+        total = np.zeros_like(target)
         for points, coefficients in zip(self._points, self._made[rate], strict=True):
-            shape = points.kernel.columns(component, self._block, self._grid)
-            target += (coefficients * target.dtype.type(scale)) * shape
+            total += coefficients * points.kernel.columns(component, self._block, self._grid)
+        scale = factor * self._scale
+        if component != 2:
+            total *= target.dtype.type(1j * scale)
+        elif scale != 1.0:
+            total *= target.dtype.type(scale)
+        target += total
