@@ -55,13 +55,18 @@ def read_picture(path: Path, channels: int | None = None) -> Raster:
     return Raster(values, path.name)
 
 
-def with_pictures(kind: type, data: Any, folder: Path) -> Any:
+#: from a file and how many channels are wanted of it to its raster; as `read_picture`
+Reader = Callable[[Path, int], Raster]
+
+
+def with_pictures(kind: type, data: Any, folder: Path, read: Reader = read_picture) -> Any:
     """Plain data of a dataclass in which each reference to a file has become the raster's plain data.
 
     kind : the dataclass; its fields of rasters say how many channels they want
     data : as it stands in JSON; {"file": "wind.exr"} may stand for a raster, with "offset" and "scale" where
         the numbers are to become scale · (number - offset)
     folder : what relative paths are relative to
+    read : what reads a file
 
     Raises ParameterError with the path of what is wrong. Data of another form is left for validation.
     """
@@ -72,32 +77,32 @@ def with_pictures(kind: type, data: Any, folder: Path) -> Any:
         if field.name not in data:
             continue
         try:
-            result[field.name] = _resolved(field.metadata, data[field.name], folder)
+            result[field.name] = _resolved(field.metadata, data[field.name], folder, read)
         except ParameterError as error:
             raise error.inside(field.name) from None
     return result
 
 
-def _resolved(metadata: Any, value: Any, folder: Path) -> Any:
+def _resolved(metadata: Any, value: Any, folder: Path, read: Reader) -> Any:
     nested = metadata.get("nested")
     if metadata.get("kind") is Raster and isinstance(value, dict) and "file" in value:
-        return _referred(value, metadata["channels"], folder).to_plain()
+        return _referred(value, metadata["channels"], folder, read).to_plain()
     if nested is None:
         return value
     if not metadata.get("many"):
-        return with_pictures(nested, value, folder)
+        return with_pictures(nested, value, folder, read)
     if not isinstance(value, list):
         return value
     items = []
     for index, item in enumerate(value):
         try:
-            items.append(with_pictures(nested, item, folder))
+            items.append(with_pictures(nested, item, folder, read))
         except ParameterError as error:
             raise error.inside(str(index)) from None
     return items
 
 
-def _referred(reference: dict[str, Any], channels: int, folder: Path) -> Raster:
+def _referred(reference: dict[str, Any], channels: int, folder: Path, read: Reader) -> Raster:
     unknown = sorted(set(reference) - REFERENCE_KEYS)
     if unknown:
         known = ", ".join(sorted(REFERENCE_KEYS))
@@ -110,7 +115,7 @@ def _referred(reference: dict[str, Any], channels: int, folder: Path) -> Raster:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= 1e6:
             raise ParameterError(key, value, "must be a number from -1e6 to 1e6")
         numbers[key] = float(value)
-    picture = read_picture(folder / reference["file"], channels)
+    picture = read(folder / reference["file"], channels)
     if numbers == {"offset": 0.0, "scale": 1.0}:
         return picture
     values = numbers["scale"] * (picture.values.astype(np.float64) - numbers["offset"])
