@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core test-long test-window mutate lint bench bench-smoke build docs papers clean
+.PHONY: help setup demo test test-core test-long test-window mutate lint bench bench-smoke build docs guide papers clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -28,6 +28,10 @@ test-long:  ## the tests of bakes, ten times as many kills, shared folders and d
 test-window: ## the tests in a real Blender's window, by mouse and keyboard; wants a machine that is quiet
 	@$(PYTHON) -m tools.setup
 	@$(VENV) -m pytest -q tests/ui
+
+guide:      ## follow docs/first-sea.md in a real Blender's window, and renew its pictures
+	@$(PYTHON) -m tools.setup
+	@$(VENV) -m tools.guide
 
 mutate:     ## change each physical constant by 2 % and see which test notices (minutes; not part of `test`)
 	@$(PYTHON) -m tools.setup python-5.2

@@ -4,6 +4,7 @@
 Runs in the environment of the 5.2 wheel; the window's own Blender is told what to do by mouse and keyboard.
 """
 
+import contextlib
 import os
 import tempfile
 from pathlib import Path
@@ -39,8 +40,9 @@ def environment(blender):
     return env
 
 
-@pytest.fixture(scope="session")
-def session_hand(blender, environment):
+@contextlib.contextmanager
+def opened_window(blender, environment):
+    """Mouse and keyboard on a new Blender with this environment; skips the test where there is no display."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="ocean-window-") as name:
         folder = Path(name)
@@ -52,6 +54,12 @@ def session_hand(blender, environment):
             pytest.skip(f"no window: {reason}")
         with display, windows.BlenderWindow(blender, display, SCRIPT, folder, environment) as window:
             yield Hand(display, window, PICTURES)
+
+
+@pytest.fixture(scope="session")
+def session_hand(blender, environment):
+    with opened_window(blender, environment) as hand:
+        yield hand
 
 
 @pytest.fixture

@@ -132,6 +132,14 @@ def new_file():
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_splash=False, use_empty=False)
 
 
+def install(zip_file):
+    """What Blender does with a zip that is dropped into its window, once that is confirmed."""
+    with over("WINDOW"):
+        bpy.ops.extensions.package_install_files(
+            filepath=zip_file, repo="user_default", enable_on_install=True
+        )
+
+
 def save(path):
     """Save the file as."""
     with over("WINDOW"):

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Documents name files that are there, and their pictures are small."""
+
+import re
+
+import pytest
+
+from tools.project import ROOT
+
+DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
+LARGEST = 200_000  # bytes
+PICTURES = sorted(path for path in (ROOT / "docs").rglob("*") if path.suffix in {".jpg", ".png", ".svg"})
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_links_lead_somewhere(document):
+    text = re.sub(r"```.*?```", "", document.read_text(encoding="utf-8"), flags=re.DOTALL)
+    targets = re.findall(r"\]\(([^)\s#]+)[^)]*\)", text)
+    local = [target for target in targets if "://" not in target]
+    assert [target for target in local if not (document.parent / target).exists()] == []
+
+
+def test_pictures_are_small_and_shown():
+    assert PICTURES
+    assert [path.name for path in PICTURES if path.stat().st_size > LARGEST] == []
+    shown = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
+    assert [path.name for path in PICTURES if path.name not in shown] == []
