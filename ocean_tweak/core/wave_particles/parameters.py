@@ -87,7 +87,7 @@ class WindFieldLayer(Validated):
     )
     height: str = choice("STEEPNESS", HEIGHTS, "What gives a particle's height")
     steepness: float = number(
-        0.2, 0.0, 2.0, "", "s of the height s·λ/2π of a particle, to which its neighbours add theirs",
+        0.1, 0.0, 2.0, "", "s of the height s·λ/2π of a particle, to which its neighbours add theirs",
         "waves break near 0.44",
     )  # fmt: skip
     height_per_speed: float = number(

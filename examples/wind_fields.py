@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures of waves from wind fields, seen from above, for docs/wind-fields.md.
+
+Run from the project's folder: `python -m examples.wind_fields`. Wants Pillow.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core.wave_particles.presets import WIND_FIELDS, wind_field
+from ocean_tweak.core.wave_particles.wind import winds_at
+
+PICTURES = Path(__file__).resolve().parent.parent / "docs" / "gallery"
+
+SIZE, RESOLUTION = 200.0, 400
+_LIGHT = np.array([-0.55, 0.35, 0.76])
+_DEEP, _BRIGHT = np.array([8.0, 38.0, 60.0]), np.array([190.0, 220.0, 228.0])
+
+
+def shaded(normal: NDArray[np.floating]) -> NDArray[np.uint8]:
+    """A picture (N, N, 3) of the sea from above, lit from one side; its first row is the top."""
+    light = np.clip((normal @ (_LIGHT / np.linalg.norm(_LIGHT)) - 0.45) / 0.55, 0.0, 1.0)[..., np.newaxis]
+    return np.asarray(_DEEP + light * (_BRIGHT - _DEEP), np.uint8)[::-1]
+
+
+def arrows(parameters: OceanParameters, across: int = 14) -> NDArray[np.uint8]:
+    """A picture of the wind: strokes that are longer and thicker where it is stronger."""
+    picture = np.full((RESOLUTION, RESOLUTION, 3), 245, np.uint8)
+    (layer,) = parameters.wind_fields
+    places = (np.arange(across) + 0.5) * (SIZE / across)
+    x, y = (values.ravel() for values in np.meshgrid(places, places))
+    _, winds = winds_at(layer, x, y, SIZE)
+    reach = 0.65 * SIZE / across / layer.greatest_speed
+    for share in np.linspace(-0.5, 0.5, 60):
+        column = np.clip((x + share * reach * winds[0, :, 0]) * RESOLUTION / SIZE, 0, RESOLUTION - 4).astype(
+            int
+        )
+        row = np.clip((y + share * reach * winds[0, :, 1]) * RESOLUTION / SIZE, 0, RESOLUTION - 4).astype(int)
+        width = 4 if share > 0.3 else 2  # its head is the thick end
+        for i in range(width):
+            for j in range(width):
+                picture[row + i, column + j] = (30, 60, 90)
+    return picture[::-1]
+
+
+def main() -> int:
+    """Write a picture of the three presets: their winds above, the sea below."""
+    columns = []
+    for name in WIND_FIELDS:
+        parameters = OceanParameters(
+            resolution=RESOLUTION, domain_size=SIZE, layers=(WaveLayer(wind_speed=2.0, fetch=2e3),),
+            wind_fields=(replace(wind_field(name, SIZE, 9.81), steepness=0.16),),
+        )  # fmt: skip
+        normal = Ocean(parameters).surface(0.0, {"normal"}).normal
+        columns.append(np.concatenate([arrows(parameters), shaded(normal)]))
+    path = PICTURES / "wind-fields.jpg"
+    gap = np.full((2 * RESOLUTION, 8, 3), 255, np.uint8)
+    parts = [part for column in columns for part in (gap, column)][1:]
+    Image.fromarray(np.concatenate(parts, axis=1)).save(path, quality=75)
+    print(f"written: {path}, {path.stat().st_size / 1024:.0f} kB")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
