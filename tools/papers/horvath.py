@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, constants, dispersion, spectra
+from ocean_tweak.core import Foam, Ocean, OceanParameters, Water, WaveLayer, constants, dispersion, spectra
 from ocean_tweak.core.spreading import Spreading, directional_spreading
 from ocean_tweak.core.statistics import Statistics
 
@@ -26,7 +26,7 @@ WIND_FREQUENCY = 1.2
 
 def sea(spectrum: str = "TMA", **changes: object) -> OceanParameters:
     """A sea of one layer; names of the layer's fields and of the sea's may be mixed."""
-    names = {"resolution", "domain_size", "seed", "water"}
+    names = {"resolution", "domain_size", "seed", "water", "foam"}
     of_layer = {name: value for name, value in changes.items() if name not in names}
     of_sea = {name: value for name, value in changes.items() if name in names}
     return OceanParameters(layers=(WaveLayer(spectrum=spectrum, **of_layer),), **of_sea)  # type: ignore[arg-type]
@@ -54,7 +54,7 @@ FIGURE_6 = sea(
 )  # fmt: skip
 FIGURE_7 = sea(
     wind_speed=75.0, fetch=1250e3, swell=0.35, water=Water(depth=150.0), domain_size=4000.0, resolution=1024,
-    seed=1,
+    seed=1, foam=Foam(coverage=0.15),  # the law of whitecaps, measured below 20 m/s, leaves no water here
 )  # fmt: skip
 
 

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures from a file beside the parameters, through bakes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.export.exr import read_image
+from ocean_tweak.export.pictures import read_picture
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def test_the_word_stands_in_the_water(tmp_path: Path) -> None:
+    """At the first frame the example's sea holds its picture, and two seconds later no longer so."""
+    code = main(
+        [
+            "bake", "--params", str(EXAMPLES / "from-image.json"), "--frames", "1,49", "--out", str(tmp_path),
+            "--set", "resolution=256", "--set", "layers.0.muted=true", "--set", "choppiness=0",
+        ]
+    )  # fmt: skip
+    assert code == 0
+    heights = [read_image(path)[0][..., 2] for path in sorted(tmp_path.glob("*/v*/*_disp.*.exr"))]
+    picture = read_picture(EXAMPLES / "sea.png", 1).values[..., 0].astype(float)
+    index = np.fft.fftfreq(256, 1 / 256)
+    k = np.hypot(index, index[:, np.newaxis])
+    k[0, 0] = 1.0
+    # β = 8 - 2·3.2 in power
+    by_numpy = np.fft.ifft2(np.fft.fft2(picture - picture.mean()) * k**-0.8).real
+    correlations = [np.corrcoef(by_numpy.ravel(), height.ravel())[0, 1] for height in heights]
+    assert correlations[0] > 0.999
+    assert correlations[1] < 0.8
+    assert 4 * heights[0].std() == pytest.approx(2.5, rel=1e-3)
+
+
+def test_a_picture_that_is_missing_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    params = tmp_path / "sea.json"
+    params.write_text(json.dumps({"pictures": [{"picture": {"file": "nowhere.png"}}]}))
+    assert main(["info", "--params", str(params)]) == 2
+    error = capsys.readouterr().err
+    assert "pictures.0.picture.file" in error
+    assert "nowhere.png" in error
