@@ -42,12 +42,12 @@ class OCEAN_OT_add_scene(bpy.types.Operator):
     use_new_camera: BoolProperty(
         name="Replace Camera",
         description="Look through the new camera also where the scene has one. The old one stays an object",
-        default=True,
+        default=False,
     )
     use_new_world: BoolProperty(
         name="Replace World",
         description="Give the scene a new sky also where it has one. The old one stays in the file",
-        default=True,
+        default=False,
     )
     use_buoy: BoolProperty(name="Buoy", description="Let a buoy float before the camera", default=True)
 
@@ -76,7 +76,7 @@ class OCEAN_OT_add_scene(bpy.types.Operator):
         if self.use_new_scene and context.window is not None:
             context.window.scene = scene
         _select(context, scene, made.ocean)
-        if self.use_new_camera and isinstance(context.space_data, bpy.types.SpaceView3D):
+        if scene.camera == made.camera and isinstance(context.space_data, bpy.types.SpaceView3D):
             context.space_data.region_3d.view_perspective = "CAMERA"
         said = translated("{mood}: {engine}, motion blur on").format(
             mood=translated(MOODS[self.mood].label), engine=self.engine.title()
