@@ -13,6 +13,7 @@ from ..core import Ocean, OceanParameters, sea_scales
 from ..core.foam_field import foam_outlook
 from ..core.memory import memory_need
 from ..core.statistics import SeaState, Statistics
+from ..core.wave_particles.outlook import wind_wave_outlook
 from .outcome import DONE
 from .seas import Sea
 
@@ -27,6 +28,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
                 "parameters": seas[name].shot.to_dict(),
                 "statistics": statistics.to_dict(),
                 "memory": dataclasses.asdict(memory_need(parameters[name])),
+                **_wind_fields(parameters[name]),
             }
             for name, statistics in results.items()
         }
@@ -35,6 +37,12 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     for name, statistics in results.items():
         print("\n".join(_report(name, parameters[name], statistics)))
     return DONE
+
+
+def _wind_fields(parameters: OceanParameters) -> dict[str, object]:
+    """What `info --json` says of wind fields, where there are any."""
+    outlook = wind_wave_outlook(parameters)
+    return {} if outlook is None else {"wind_fields": outlook._asdict()}
 
 
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
@@ -61,7 +69,14 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.loop_duration or 0)
         lines.append(f"  loop of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
-    return lines + [f"  warning: {warning}" for warning in statistics.warnings]
+    of_wind = wind_wave_outlook(parameters)
+    if of_wind is not None:
+        lines.append(
+            f"  wind fields: waves up to {of_wind.longest_wavelength:.3g} m long, at most "
+            f"{of_wind.most_particles} particles at once; the heights above are without them"
+        )
+    warnings = (*statistics.warnings, *(of_wind.warnings if of_wind else ()))
+    return lines + [f"  warning: {warning}" for warning in warnings]
 
 
 def _state_row(title: str, state: SeaState) -> str:

@@ -136,10 +136,10 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
 
 
 def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> tuple[str, ...]:
-    of_pictures = _picture_warnings(parameters)
+    of_pictures = tuple(_picture_warnings(parameters))
     if not np.isfinite(statistics.peak_wavelength):
         flat = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
-        return (*of_pictures, flat)
+        return of_pictures if parameters.active_wind_fields else (*of_pictures, flat)
     return (
         *of_pictures,
         *_grid_warnings(parameters, sea, statistics),
