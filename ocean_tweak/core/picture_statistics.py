@@ -76,19 +76,6 @@ def longest_random_wave(parameters: OceanParameters, of_layers: float) -> float:
     return max(found) if found else float("nan")
 
 
-def empty_pictures(parameters: OceanParameters) -> list[PictureLayer]:
-    """Pictures of which their filter leaves nothing, although they are to have a height."""
-    return [
-        layer
-        for layer in parameters.active_pictures
-        if wanted_variance(layer, parameters.water) > 0.0
-        and not filtered(
-            layer, parameters.domain_size, parameters.resolution, parameters.dispersion, parameters.water,
-            parameters.seed,
-        ).m0 > 0.0
-    ]  # fmt: skip
-
-
 def unlooped(parameters: OceanParameters, grid: WaveVectorGrid) -> Iterable[Array]:
     """ω in rad/s of each of a sea's states as it would be without a loop, in the order of its parts."""
     yield dispersion.angular_frequency(grid.k, parameters.dispersion, parameters.water)

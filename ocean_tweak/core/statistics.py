@@ -10,14 +10,15 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from . import dispersion
 from .initial_state import InitialState
-from .parameters import OceanParameters
+from .noise_synthesis.state import wanted_variance
+from .parameters import OceanParameters, PictureLayer
 from .picture_statistics import (
-    empty_pictures,
     longest_random_wave,
     modes_of,
     picture_modes,
@@ -101,9 +102,7 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
     sea = SeaSpectrum(parameters)
     spectrum = spectrum_state(sea)
     if parameters.active_pictures:
-        pictures = [
-            modes_state([picture_modes(parameters, p)], parameters) for p in parameters.active_pictures
-        ]
+        pictures = [_picture_state(_alone(parameters, layer)) for layer in parameters.active_pictures]
         spectrum = together([spectrum, *pictures])
     result = Statistics(
         spectrum=spectrum,
@@ -115,6 +114,20 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
         warnings=(),
     )
     return dataclasses.replace(result, warnings=_warnings(parameters, sea, result))
+
+
+@lru_cache(maxsize=32)
+def _picture_state(alone: OceanParameters) -> SeaState:
+    """State of all that the only picture of a sea holds: it takes long, and is asked for often."""
+    return modes_state([picture_modes(alone, alone.pictures[0])], alone)
+
+
+def _alone(parameters: OceanParameters, layer: PictureLayer) -> OceanParameters:
+    """What of a sea acts on the state of one of its pictures."""
+    return OceanParameters(
+        resolution=16, domain_size=parameters.domain_size, seed=parameters.seed, water=parameters.water,
+        dispersion=parameters.dispersion, pictures=(layer,),
+    )  # fmt: skip
 
 
 def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> float | None:
@@ -151,7 +164,9 @@ def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statist
 def _picture_warnings(parameters: OceanParameters) -> list[str]:
     return [
         f"Picture {layer.id}: its filter leaves nothing of it. Take another filter, wind or picture"
-        for layer in empty_pictures(parameters)
+        for layer in parameters.active_pictures
+        if wanted_variance(layer, parameters.water) > 0.0
+        and not _picture_state(_alone(parameters, layer)).m0 > 0.0
     ]
 
 
