@@ -25,6 +25,7 @@ PAPERS = {
     "Chen, Jin and Yin (2014)": 33,
     "Lantz": 4,
     "Mastin, Watterberg and Mareda (1987)": 10,
+    "Li and Wang (2016)": 25,
 }
 
 
