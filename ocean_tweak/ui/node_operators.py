@@ -16,6 +16,7 @@ class NODE_OT_ocean_tweak_add_group(bpy.types.Operator):
     """Add a node group that reads an ocean."""
 
     bl_idname = "node.ocean_tweak_add_group"
+    bl_description = "Add a node group that reads an ocean"
     bl_label = "Add Ocean Group"
     bl_options = {"REGISTER", "UNDO"}
 
