@@ -20,13 +20,24 @@ from . import (
     report,
     transforms,
     usd_rows,
+    wind_fields,
 )
 from .plan import FULL, SCRATCH, SMOKE, Plan
 from .rows import Row
 
 GROUPS: dict[str, Callable[[Plan], Iterator[Row]]] = {
     module.GROUP: module.rows
-    for module in (blender_rows, baking, initial_states, transforms, growth, memory_use, usd_rows, precision)
+    for module in (
+        blender_rows,
+        baking,
+        initial_states,
+        transforms,
+        wind_fields,
+        growth,
+        memory_use,
+        usd_rows,
+        precision,
+    )
 }
 
 #: above this load, others are at work and the numbers are noise

@@ -65,6 +65,9 @@ TARGETS = {
         "bake of `disp` at 1024², two workers", 1.15, "× (compute + encode)/2", needs_two_cores=True
     ),
     "bake memory": Target("memory of that bake", 400.0, "MB a worker"),
+    "wind fields": Target(
+        "20,000 wave particles, displacement, slopes and Jacobian, 1024²", 3.0, "× one six-field frame"
+    ),
     "growth": Target("time per sample, 4096² against 512²", 1.6, "×"),
     "memory": Target("memory of `surface()` beyond its outputs", 24.0, "bytes a sample"),
     "usd time": Target(
