@@ -30,7 +30,7 @@ def one_origin(**changes: object) -> WindFieldLayer:
     """One place from which waves come, one of them at a time: 12 m/s along +x."""
     given: dict[str, Any] = {
         "wind_speed": 12.0, "columns": 1, "rows": 1, "jitter": 0.0, "phase_jitter": 0.0, "start_time": 0.0,
-        "particles": 5, "split_angle": 0.12, "life": 12.0, **changes,
+        "particles": 5, "split_angle": 0.12, "life": 12.0, "steepness": 0.1, **changes,
     }  # fmt: skip
     return WindFieldLayer(**given)
 
@@ -56,9 +56,14 @@ def _winds(kind: str) -> Raster:
 
 #: figure 9
 WINDS = {
-    kind: sea(WindFieldLayer(keys=(WindKey(vectors=_winds(kind)),)))
+    kind: sea(
+        WindFieldLayer(
+            keys=(WindKey(vectors=_winds(kind)),), columns=16, rows=16, particles=5, split_angle=0.1,
+            life=8.0, steepness=0.1, calm=2.0, start_time=-120.0,
+        )
+    )
     for kind in ("the same everywhere", "apart, to the left and to the right", "weak below, strong above")
-}
+}  # fmt: skip
 
 
 def elevation(parameters: OceanParameters, time: float) -> Array:
