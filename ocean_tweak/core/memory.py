@@ -73,7 +73,7 @@ def memory_need(
         kept, making = bytes_of(parameters.wind_fields, parameters.water.gravity)
         moving = any(derivative == "t" for name in wanted for _, derivative in OUTPUTS[name].needs)
         # of each radius two quarters of a plane stay; each weight takes a grid and half a plane a radius
-        state += kept + MOST_CLASSES * half_plane * real
+        state += kept + MOST_CLASSES * half_plane * 2 * real
         building = max(building, 40 * n * n)
         surface += making + (3 if moving else 1) * (8 * n * n + MOST_CLASSES * half_plane * 2 * real)
     return MemoryNeed(state, building, surface)

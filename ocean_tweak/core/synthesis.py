@@ -222,32 +222,39 @@ class _Sources:
 
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
-            base = self._elevations[column.rate]
-            if column.source != ELEVATION:
-                factor = self._synthesis.state.potential_factor.T[self._block]
-                base = base * factor.astype(base.dtype, copy=False)
-            damping = self._synthesis.damping
-            if column.long and damping is not None:
-                base = base * damping.long_waves.T[self._block].astype(base.dtype)
-            if self._added is not None:
-                base = self._with_wind_waves(column, base, self._added)
+            added = self._added
+            base = self._spectral(column) if added is None else self._with_wind_waves(column, added)
             self._bases[column] = base
         return self._bases[column]
 
-    def _with_wind_waves(self, column: Column, base: ComplexArray, added: BlockShares) -> ComplexArray:
-        """h, λDx or λDy of the spectrum's waves, from h or Φ, and those of the wind fields.
+    def _spectral(self, column: Column) -> ComplexArray:
+        """h or Φ of the spectrum's waves alone."""
+        base = self._elevations[column.rate]
+        if column.source != ELEVATION:
+            factor = self._synthesis.state.potential_factor.T[self._block]
+            base = base * factor.astype(base.dtype, copy=False)
+        damping = self._synthesis.damping
+        if column.long and damping is not None:
+            base = base * damping.long_waves.T[self._block].astype(base.dtype)
+        return base
+
+    def _with_wind_waves(self, column: Column, added: BlockShares) -> ComplexArray:
+        """h, λDx or λDy of the spectrum's waves and of those of the wind fields.
 
         The latter count among the long waves: it is not them that troughs are rid of.
         """
         if column.source == ELEVATION:
-            result = base.copy()
+            result = self._spectral(column).copy()
             added.add(Z, column.rate, result)
             return result
+        potential = column._replace(source=POTENTIAL)
+        if potential not in self._bases:
+            self._bases[potential] = self._spectral(potential)
         choppiness = self._synthesis.parameters.choppiness
         grid = self._synthesis.state.grid
         east = column.source == ALONG_X
         along = grid.kx[0, self._block, np.newaxis] if east else grid.ky[:, 0]
-        result = base * (1j * choppiness * along).astype(base.dtype)
+        result = self._bases[potential] * (1j * choppiness * along).astype(self._synthesis.dtype)
         added.add(X if east else Y, column.rate, result, choppiness)
         return result
 

@@ -19,7 +19,6 @@ from ..grid import WaveVectorGrid
 from .shape import RadiusClasses, bump
 
 Array = NDArray[np.float64]
-RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
 
 #: particles that are deposited together
@@ -30,20 +29,21 @@ _ROWS = 32
 
 
 class Kernel(NamedTuple):
-    """The transform of a bump for kx and ky from 0 to N/2, (N//2+1, N//2+1) indexed [kx, ky], real.
+    """The transform of a bump for kx and ky from 0 to N/2, (N//2+1, N//2+1) indexed [kx, ky].
 
-    height : of z; even in kx and ky, without its mean
-    sideways : of x, over i; odd in kx, even in ky. That of y is its transpose
+    Both are complex, or each product with coefficients would convert them.
+
+    height : of z; real, even in kx and ky, without its mean
+    sideways : of x; imaginary, odd in kx, even in ky. That of y is its transpose
     """
 
-    height: RealArray
-    sideways: RealArray
+    height: ComplexArray
+    sideways: ComplexArray
 
-    def columns(self, component: int, block: slice, grid: WaveVectorGrid) -> RealArray:
-        """(columns, N) transform of x, y (over i) or z, for all ky in FFT order."""
+    def columns(self, component: int, block: slice, grid: WaveVectorGrid) -> ComplexArray:
+        """(columns, N) transform of x, y or z, for all ky in FFT order."""
         if component == 1:
-            half = self.sideways.T[block]
-            full = grid.mirror(half)
+            full = grid.mirror(self.sideways.T[block])
             np.negative(full[:, grid.resolution // 2 + 1 :], out=full[:, grid.resolution // 2 + 1 :])
             return full
         return grid.mirror((self.height if component == 2 else self.sideways)[block])
@@ -51,7 +51,7 @@ class Kernel(NamedTuple):
 
 @lru_cache(maxsize=8)
 def kernel(grid: WaveVectorGrid, radius: float, dtype: type) -> Kernel:
-    """The transform of a bump of a radius in m, sampled on the grid; real parts in float32 or float64."""
+    """The transform of a bump of a radius in m, sampled on the grid, in complex64 or complex128."""
     n = grid.resolution
     reach = min(int(np.ceil(radius * n / grid.domain_size)), n // 2)
     index = np.arange(-reach, reach + (2 * reach < n))
@@ -68,8 +68,8 @@ def kernel(grid: WaveVectorGrid, radius: float, dtype: type) -> Kernel:
         parts.append(transform)
     height, sideways = parts
     height[0, 0] = 0.0
-    real = np.float32 if dtype is np.complex64 else np.float64
-    return Kernel(np.ascontiguousarray(height.real, real), np.ascontiguousarray(sideways.imag, real))
+    # by their symmetry one has no imaginary part and the other no real one, but for rounding
+    return Kernel(np.ascontiguousarray(height.real, dtype), np.ascontiguousarray(1j * sideways.imag, dtype))
 
 
 def deposit(x: Array, y: Array, weights: Sequence[Array], grid: WaveVectorGrid) -> list[Array]:

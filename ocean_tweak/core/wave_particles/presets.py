@@ -53,7 +53,7 @@ def wind_field(name: str, domain_size: float, gravity: float) -> WindFieldLayer:
     Raises KeyError for a name that is none of WIND_FIELDS.
     """
     fitting = _ROOM * math.sqrt(domain_size * gravity)
-    return WIND_FIELDS[name](_SPEED if _SPEED <= fitting else float(f"{fitting:.2g}"))
+    return WIND_FIELDS[name](_SPEED if fitting >= _SPEED else float(f"{fitting:.2g}"))
 
 
 def _of_vectors(vectors: NDArray[np.float64], name: str) -> WindFieldLayer:

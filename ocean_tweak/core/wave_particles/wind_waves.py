@@ -110,12 +110,10 @@ class BlockShares:
         """Add the share in P[component], or in its rate, times `factor` to coefficients (columns, N)."""
         if rate not in self._made:
             self._made[rate] = [p.coefficients(rate, self._block, self._grid) for p in self._points]
-        total = np.zeros_like(target)
-        for points, coefficients in zip(self._points, self._made[rate], strict=True):
-            total += coefficients * points.kernel.columns(component, self._block, self._grid)
         scale = factor * self._scale
-        if component != 2:
-            total *= target.dtype.type(1j * scale)
-        elif scale != 1.0:
-            total *= target.dtype.type(scale)
-        target += total
+        for points, coefficients in zip(self._points, self._made[rate], strict=True):
+            share = points.kernel.columns(component, self._block, self._grid)
+            share *= coefficients
+            if scale != 1.0:
+                share *= scale
+            target += share
