@@ -39,6 +39,7 @@ _CONSTANT = {
     "resolution": "a sequence of images has one size",
     "seed": "another seed is another sea",
     "amplitudes": "other amplitudes are another sea",
+    "pictures": "each keeps its waves; what can change is how fast they move, by ocean_time",
     "wind_fields": "a wave keeps the wind of its birth; give the wind keys at several times instead",
     "timing": "frames become seconds in one way; animate ocean_time instead",
 }
@@ -175,7 +176,8 @@ class Shot:
 
     def _with(self, values: Mapping[str, float]) -> OceanParameters:
         data = {**self._plain, "layers": [dict(layer) for layer in self._plain["layers"]]}
-        data["wind_fields"] = list(self.parameters.wind_fields)  # as they are: their pictures may be large
+        for name in ("pictures", "wind_fields"):  # as they are: their rasters may be large
+            data[name] = list(getattr(self.parameters, name))
         for path, value in values.items():
             layer, _, name = path.removeprefix("layers.").partition(".")
             if path == OCEAN_TIME:

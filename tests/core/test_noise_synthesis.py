@@ -20,6 +20,7 @@ from ocean_tweak.core.noise_synthesis import animation, filters, source
 from ocean_tweak.core.noise_synthesis.parameters import PictureLayer, check_loop
 from ocean_tweak.core.noise_synthesis.state import filtered, picture_waves
 from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.synthesis import Synthesis, Z
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 
@@ -587,3 +588,14 @@ def test_finest_waves_become_roughness() -> None:
     assert np.mean(np.sum(slopes**2, axis=-1)) == pytest.approx(total, rel=0.1)
     resolved = Ocean(coarse).statistics().resolved.mean_square_slope
     assert unresolved_slope_variance(coarse) == pytest.approx(total - resolved, rel=1e-6)
+
+
+def test_a_shot_keeps_its_pictures() -> None:
+    """What is animated moves, the picture stays as it is: the same object, not its numbers read anew."""
+    parameters = sea(PictureLayer(picture=Raster(drawing()), filter="FRACTAL"), layers=(WaveLayer(),))
+    shot = Shot(parameters, Animation(1, (("layers.0.gain", (0.0, 1.0)),)))
+    moved = shot.at(2).parameters
+    assert moved.layers[0].gain == 1.0
+    assert moved.pictures[0].picture is parameters.pictures[0].picture
+    with pytest.raises(ParameterError, match=r"pictures\.0\.gain.*each keeps its waves"):
+        Animation(1, (("pictures.0.gain", (0.0, 1.0)),))
