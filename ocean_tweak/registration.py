@@ -27,6 +27,8 @@ from .ui import (
     scene_operators,
     sea_operators,
     usd_operators,
+    wind_operators,
+    wind_overlay,
 )
 
 CLASSES = (
@@ -36,6 +38,7 @@ CLASSES = (
     *bake_operators.CLASSES,
     *usd_operators.CLASSES,
     *layer_operators.CLASSES,
+    *wind_operators.CLASSES,
     *preset_operators.CLASSES,
     *sea_operators.CLASSES,
     *panels.CLASSES,
@@ -90,6 +93,7 @@ def register(package: str | None = None) -> None:
     bpy.types.TOPBAR_MT_file_export.append(usd_operators.draw_export_menu)
     bpy.types.TOPBAR_MT_file_import.append(usd_operators.draw_import_menu)
     handlers.register()
+    wind_overlay.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
 
@@ -98,6 +102,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
+    wind_overlay.unregister()
     handlers.unregister()
     asset_library.remove()
     bpy.types.TOPBAR_MT_file_import.remove(usd_operators.draw_import_menu)

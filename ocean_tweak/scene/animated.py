@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -20,6 +20,7 @@ from .units import frame_rate, frame_with_subframe, shortest_decimal
 
 _GROUP = "ocean_tweak."
 _OCEAN_TIME = "ocean_tweak.ocean_time"
+_LAYER = re.compile(r"ocean_tweak\.layers\[(\d+)\]")
 
 
 class Clock(NamedTuple):
@@ -89,6 +90,32 @@ def set_keys(item: bpy.types.Object, first_frame: int, samples: Mapping[str, Seq
         for point in points:
             point.interpolation = "LINEAR"
         points.handles_recalc()
+
+
+def move_keys(item: bpy.types.Object, places: Mapping[int, int | None]) -> None:
+    """Let keys and drivers of wave layers follow these to other places in the list.
+
+    places : number of a layer before and after; None takes its keys away
+    """
+    data = item.animation_data
+    if data is None or all(old == new for old, new in places.items()):
+        return
+    for driver in list(data.drivers):
+        _move_curve(driver, places, data.drivers)
+    for bag in _channel_bags(data.action, data.action_slot):
+        for curve in list(bag.fcurves):
+            _move_curve(curve, places, bag.fcurves)
+
+
+def _move_curve(curve: bpy.types.FCurve, places: Mapping[int, int | None], curves: Any) -> None:
+    match = _LAYER.match(curve.data_path)
+    if match is None or int(match[1]) not in places:
+        return
+    place = places[int(match[1])]
+    if place is None:
+        curves.remove(curve)
+    else:
+        curve.data_path = f"{_GROUP}layers[{place}]{curve.data_path[match.end() :]}"
 
 
 def _remove_animation(item: bpy.types.Object) -> None:

@@ -11,7 +11,7 @@ from bpy.app.handlers import persistent
 
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
-from . import bake_process, evaluation, live_image, refinement, usd_process
+from . import bake_process, evaluation, live_image, refinement, source_images, usd_process
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, refresh_and_tell, refresh_render
@@ -59,6 +59,20 @@ def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
 
 
 @persistent
+def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Show oceans whose waves are made from an image that was painted or changed otherwise."""
+    if depsgraph is None or not depsgraph.id_type_updated("IMAGE"):
+        return
+    changed = {update.id.original for update in depsgraph.updates if isinstance(update.id, bpy.types.Image)}
+    for image in changed:
+        source_images.forget(image)
+    for item in oceans_in(scene):
+        settings = settings_of(item)
+        if settings.source == "LIVE" and changed & settings.source_images():
+            show(item, scene, dragged=True)
+
+
+@persistent
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels. Its node
     groups may be of another version."""
@@ -74,6 +88,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
 def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     """Undo restores settings, but neither the texels nor what was made anew since."""
     live_image.forget_all()
+    source_images.forget_all()
     refresh_live_oceans()
 
 
@@ -96,6 +111,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_animated),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_render),
+    ("depsgraph_update_post", refresh_for_images),
     ("load_post", refresh_after_load),
     ("undo_post", refresh_after_undo),
     ("redo_post", refresh_after_undo),
@@ -143,6 +159,7 @@ def _forget_all() -> None:
     refinement.forget_all()
     evaluation.forget_all()
     live_image.forget_all()
+    source_images.forget_all()
 
 
 def _subscribe() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import bpy
 
@@ -22,6 +22,27 @@ METHODS = {
 SOURCES = {
     "LIVE": ("Live", "Compute the sea on every frame change. Needs no files, but this extension"),
     "SEQUENCE": ("Baked", "Read a baked EXR sequence. Also works where this extension is not installed"),
+}
+
+
+class LayerKind(NamedTuple):
+    """A kind of layer: the list of the parameters that it stands in, and how it looks in the window."""
+
+    parameter: str
+    label: str
+    description: str
+    icon: str
+
+
+#: in the order in which they stand in an ocean's list
+LAYER_KINDS = {
+    "WAVES": LayerKind("layers", "Waves", "A wave system: a wind and its fetch, or a swell", "MOD_WAVE"),
+    "WIND_FIELD": LayerKind(
+        "wind_fields", "Wind Field", "Waves that follow a wind that differs from place to place", "FORCE_WIND"
+    ),
+    "PICTURE": LayerKind(
+        "pictures", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
+    ),
 }
 
 OUT_OF_RANGE = {
@@ -119,6 +140,9 @@ class OceanSettings(Protocol):
 
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea; the scene is not changed."""
+
+    def source_images(self) -> set[bpy.types.Image]:
+        """The images from which waves are made."""
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""

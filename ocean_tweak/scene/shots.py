@@ -29,7 +29,7 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
     # one more on either side: the velocity of an end is that of the motion through it
     first, last = math.floor(min(wanted)) - 1, math.ceil(max(wanted)) + 1
-    samples = [_sample(item, scene, depsgraph) for depsgraph in _evaluations(scene, range(first, last + 1))]
+    samples = [_sample(item, scene, depsgraph) for depsgraph in evaluations(scene, range(first, last + 1))]
     changing = {
         path: tuple(sample[path] for sample in samples)
         for path in samples[0]
@@ -52,13 +52,8 @@ def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
-def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:
-    """The frames that the scene renders."""
-    return tuple(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
-
-
-def _evaluations(scene: bpy.types.Scene, frames: Iterable[int]) -> Iterator[bpy.types.Depsgraph]:
-    """The scene at each frame, without the waves of any ocean."""
+def evaluations(scene: bpy.types.Scene, frames: Iterable[int]) -> Iterator[bpy.types.Depsgraph]:
+    """The scene at each frame, without the waves of any ocean; it ends at the frame where it was."""
     before = scene.frame_current, scene.frame_subframe
     try:
         with handlers.asleep():
@@ -67,6 +62,11 @@ def _evaluations(scene: bpy.types.Scene, frames: Iterable[int]) -> Iterator[bpy.
                 yield _depsgraph(scene)
     finally:
         scene.frame_set(before[0], subframe=before[1])
+
+
+def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:
+    """The frames that the scene renders."""
+    return tuple(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
 
 
 def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
@@ -88,7 +88,7 @@ def _sample(
 
 
 def _values(parameters: OceanParameters) -> Iterator[tuple[str, float]]:
-    data = parameters.to_dict()
+    data = parameters.to_dict(brief=True)
     for path in ANIMATED:
         *parents, name = path.split(".")
         if parents:

@@ -49,14 +49,20 @@ def read_preset(path: Path) -> Preset:
 def save(preset: Preset, replace: bool = False) -> str:
     """Keep a preset in the user's folder; returns its key.
 
-    Raises ParameterError where the title is taken and `replace` is off, OSError for what the disk refuses.
+    Raises ParameterError where the title is taken and `replace` is off, and for pictures that are too large
+    for a preset, OSError for what the disk refuses.
     """
-    key = _key(preset.title)
+    key, text = _key(preset.title), preset.to_json()
+    if len(text) > LARGEST:
+        raise ParameterError(
+            "title", preset.title,
+            f"its pictures make it larger than the {LARGEST // 1000} kB of a preset: export the parameters",
+        )  # fmt: skip
     path = path_of(key)
     if path.exists() and not replace:
         raise ParameterError("title", preset.title, "is the name of another preset already")
     with whole_file(path) as beside:
-        beside.write_text(preset.to_json(), encoding="utf-8")
+        beside.write_text(text, encoding="utf-8")
     return key
 
 

@@ -2,6 +2,7 @@
 """What the artist can do: add an ocean, take parameters in and out, switch between live and baked."""
 
 from pathlib import Path
+from typing import Any
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
@@ -9,16 +10,20 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core import OceanParameters, ParameterError, Timing
+from ..core.parameters import parse_json
 from ..core.shot import Shot
+from ..export.cache.job import CacheError, read_job
 from ..export.exr import ExrError, read_image
+from ..export.pictures import with_pictures
 from ..scene import ocean_object
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
 from ..scene.settings import METHODS, VIEWPORT_RESOLUTION, OceanObjectError, is_ocean, settings_of
 from ..scene.shots import animate, shot_of
+from ..scene.source_images import open_image
 from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
 
-# far beyond any sea; keeps a file chosen by mistake from filling the memory
-_LARGEST_JSON = 1_000_000
+# far beyond any sea with its pictures; keeps a file chosen by mistake from filling the memory
+_LARGEST_JSON = 64_000_000
 
 
 def default_sea(scene: bpy.types.Scene) -> OceanParameters:
@@ -108,7 +113,9 @@ class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelpe
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Read the file and apply it as a whole, or not at all."""
         try:
-            shot = Shot.from_json(_read_text(Path(self.filepath)))
+            path = Path(self.filepath)
+            data = with_pictures(OceanParameters, parse_json(_read_text(path)), path.parent, open_image)
+            shot = Shot.from_dict(data)
             _apply(context, shot.parameters, self.use_frame_rate)
             animate(context.active_object, context.scene, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
@@ -206,14 +213,34 @@ def _baked_parameters(sequence: ImageSequence) -> OceanParameters:
     _, metadata = read_image(path)
     if "parameters" not in metadata:
         raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
-    return OceanParameters.from_dict(metadata["parameters"])
+    told = metadata["parameters"]
+    try:
+        return OceanParameters.from_dict(told)
+    except ParameterError:
+        if not _has_brief_pictures(told):
+            raise
+    # images name their pictures and winds, which stand in the job beside them
+    try:
+        parameters = read_job(path.parent).shot.at(sequence.first).parameters
+    except (CacheError, ParameterError) as error:
+        raise SequenceError(
+            f"{path} names the pictures or winds of its sea, but does not hold them, and the bake's job does "
+            f"not either ({error}): switch off Use Its Parameters"
+        ) from None
+    if parameters.to_dict(brief=True) != told:
+        raise SequenceError(f"{path} is of another sea than the job beside it: switch off Use Its Parameters")
+    return parameters
+
+
+def _has_brief_pictures(told: Any) -> bool:
+    return isinstance(told, dict) and bool(told.get("pictures") or told.get("wind_fields"))
 
 
 def _read_text(path: Path) -> str:
     with path.open("rb") as file:
         data = file.read(_LARGEST_JSON + 1)
     if len(data) > _LARGEST_JSON:
-        raise ParameterError("file", str(path), f"is larger than {_LARGEST_JSON // 1000} kB: not parameters")
+        raise ParameterError("file", str(path), f"is larger than {_LARGEST_JSON // 10**6} MB: not parameters")
     return data.decode("utf-8")
 
 

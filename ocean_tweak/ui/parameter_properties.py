@@ -18,6 +18,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..core.raster import Raster
 from ..core.shot import ANIMATED
 from ..scene.units import shortest_decimal
 
@@ -41,13 +42,18 @@ _STEPS = {"m": 100, "m/s": 10}
 
 
 def annotations(
-    kind: type, update: Callable[[Any, bpy.types.Context], None], without: tuple[str, ...] = ()
+    kind: type,
+    update: Callable[[Any, bpy.types.Context], None],
+    without: tuple[str, ...] = (),
+    animated: bool = True,
 ) -> dict[str, Any]:
     """Blender properties for the plain fields of a parameter class, and the hidden `exact`.
 
     without : fields that come from elsewhere
+    animated : whether those that may change during a shot in any class may do so in this one
     """
-    properties = {field.name: _property(field, update) for field in _plain_fields(kind, without)}
+    moving = _ANIMATED if animated else set()
+    properties = {field.name: _property(field, update, moving) for field in _plain_fields(kind, without)}
     return {
         **properties,
         "exact": bpy.props.StringProperty(options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}),
@@ -66,7 +72,7 @@ def write(
     data : as it stands in a JSON file; nested parameters in it have groups of their own
     metres : in a Blender unit
     """
-    own = [field.name for field in dataclasses.fields(kind) if "nested" not in field.metadata]
+    own = [field.name for field in dataclasses.fields(kind) if _is_text(field)]
     group.exact = json.dumps({name: data[name] for name in own if name not in without})
     for field in _plain_fields(kind, without):
         setattr(group, field.name, _to_blender(field, data[field.name], metres))
@@ -85,18 +91,23 @@ def read(
     return result
 
 
+def _is_text(field: _Field) -> bool:
+    """Whether its value stands in JSON as it is; pictures are images instead, nested parameters groups."""
+    return "nested" not in field.metadata and field.metadata.get("kind") is not Raster
+
+
 def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
     for field in dataclasses.fields(kind):
         if field.metadata.get("kind") in _BUILDERS and field.name not in without:
             yield field
 
 
-def _property(field: _Field, update: Callable[[Any, bpy.types.Context], None]) -> Any:
+def _property(field: _Field, update: Callable[[Any, bpy.types.Context], None], moving: set[str]) -> Any:
     common = {
         "name": field.name.replace("_", " ").title(),
         "default": field.default,
         "update": update,
-        "options": {"ANIMATABLE"} if field.name in _ANIMATED else set(),
+        "options": {"ANIMATABLE"} if field.name in moving else set(),
         "override": {"LIBRARY_OVERRIDABLE"},
     }
     return _BUILDERS[field.metadata["kind"]](field, common)

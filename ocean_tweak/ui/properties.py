@@ -16,28 +16,25 @@ from bpy.props import (
 )
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from ..core.plain_data import to_plain
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.maps import MAPS
-from ..scene.refinement import show
-from ..scene.settings import METHODS, OUT_OF_RANGE, SOURCES, VIEWPORT_RESOLUTION, OceanObjectError
+from ..scene.settings import (
+    LAYER_KINDS,
+    METHODS,
+    OUT_OF_RANGE,
+    SOURCES,
+    VIEWPORT_RESOLUTION,
+    OceanObjectError,
+)
 from ..scene.units import frame_rate, metres_per_unit
-from . import parameter_properties
+from . import layer_properties, parameter_properties
+from .changes import changed
+from .layer_properties import OCEAN_PG_layer
 from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
 _FROM_SCENE = ("fps",)
-
-
-def _changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    item = group.id_data
-    settings = item.ocean_tweak
-    if settings.is_quiet or not settings.is_ocean:
-        return
-    if settings.preset:
-        settings.preset = ""
-    scenes = item.users_scene
-    if scenes:
-        show(item, context.scene if context.scene in scenes else scenes[0], dragged=True)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -46,64 +43,32 @@ def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
 
 # every setting of a linked ocean can be overridden
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
-_SHOWN = {"options": set(), "update": _changed, **_OVERRIDE}
+_SHOWN = {"options": set(), "update": changed, **_OVERRIDE}
 _HIDDEN = {"options": {"HIDDEN"}, **_OVERRIDE}
 
 
-def _set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
-    # layers that stay are kept: Blender neither adds to nor removes from a library override
-    while len(layers) > count:
-        layers.remove(len(layers) - 1)
-    while len(layers) < count:
-        layers.add()
+def _listed(kinds: list[str]) -> str:
+    """How many layers of which kinds."""
+    counts = [f"{kinds.count(kind)} {LAYER_KINDS[kind].label}" for kind in LAYER_KINDS if kind in kinds]
+    return ", ".join(counts) + (" layer" if len(kinds) == 1 else " layers")
 
 
 class OCEAN_PG_water(bpy.types.PropertyGroup):
     """The body of water."""
 
-    __annotations__ = parameter_properties.annotations(Water, _changed)
-
-
-def _metres(layer: bpy.types.PropertyGroup) -> float:
-    """Metres in a Blender unit of the layer's scene."""
-    scenes = layer.id_data.users_scene
-    scene = bpy.context.scene if bpy.context.scene in scenes or not scenes else scenes[0]
-    return float(metres_per_unit(scene))
-
-
-def _fetch_in_km(layer: bpy.types.PropertyGroup) -> float:
-    return layer.fetch * _metres(layer) / 1000.0
-
-
-def _set_fetch_in_km(layer: bpy.types.PropertyGroup, value: float) -> None:
-    layer.fetch = value * 1000.0 / _metres(layer)
-
-
-class OCEAN_PG_layer(bpy.types.PropertyGroup):
-    """One wave system."""
-
-    __annotations__ = {
-        **parameter_properties.annotations(WaveLayer, _changed),
-        # Blender has no property that is always shown in kilometres; this is the fetch itself
-        "fetch_km": FloatProperty(
-            name="Fetch", min=0.001, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
-            get=_fetch_in_km, set=_set_fetch_in_km, options=set(),
-            description="Distance of open water over which the wind has blown, in kilometres. "
-            "Longer fetch: higher and longer waves, until the sea is fully developed",
-        ),
-    }  # fmt: skip
+    __annotations__ = parameter_properties.annotations(Water, changed)
 
 
 class OCEAN_PG_foam(bpy.types.PropertyGroup):
     """How whitecaps cover the sea and how long they last."""
 
-    __annotations__ = parameter_properties.annotations(Foam, _changed)
+    __annotations__ = parameter_properties.annotations(Foam, changed)
 
 
 class OCEAN_PG_timing(bpy.types.PropertyGroup):
     """How frames become seconds."""
 
-    __annotations__ = parameter_properties.annotations(Timing, _changed, _FROM_SCENE)
+    __annotations__ = parameter_properties.annotations(Timing, changed, _FROM_SCENE)
 
 
 class OCEAN_PG_maps(bpy.types.PropertyGroup):
@@ -142,7 +107,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
-        **parameter_properties.annotations(OceanParameters, _changed),
+        **parameter_properties.annotations(OceanParameters, changed),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
@@ -174,7 +139,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             "ramps, a still sea",
         ),
         "ocean_time": FloatProperty(
-            name="Ocean Time", unit="TIME_ABSOLUTE", precision=3, step=10, update=_changed,
+            name="Ocean Time", unit="TIME_ABSOLUTE", precision=3, step=10, update=changed,
             description="Seconds on the waves' own clock; animate it", options={"ANIMATABLE"}, **_OVERRIDE,
         ),
         "method": EnumProperty(
@@ -235,11 +200,15 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data = parameter_properties.read(self, OceanParameters, metres)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
-        data["layers"] = [parameter_properties.read(layer, WaveLayer, metres) for layer in self.layers]
+        data.update(layer_properties.read(self.layers, metres))
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
+
+    def source_images(self) -> set[bpy.types.Image]:
+        """The images from which waves are made."""
+        return layer_properties.images(self.layers)
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
@@ -250,15 +219,15 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
 
-        Raises OceanObjectError for another number of layers on a library override.
+        Raises OceanObjectError for other kinds of layers on a library override.
         """
-        count = len(self.layers)
-        if self.id_data.override_library and len(parameters.layers) != count:
+        kinds, wanted = [layer.kind for layer in self.layers], layer_properties.kinds(parameters)
+        if self.id_data.override_library and wanted != kinds:
             raise OceanObjectError(
-                f"A library override keeps its {count} wave layers, this sea has {len(parameters.layers)}: "
+                f"A library override keeps its {_listed(kinds)}, this sea has {_listed(wanted)}: "
                 "make the ocean local first"
             )
-        metres, data = metres_per_unit(scene), parameters.to_dict()
+        metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
             parameter_properties.write(self, OceanParameters, data, metres)
             parameter_properties.write(self.water, Water, data["water"], metres)
@@ -267,15 +236,13 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             self.use_loop = parameters.loop_duration is not None
             if parameters.loop_duration is not None:
                 self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
-            _set_count(self.layers, len(data["layers"]))
-            for layer, values in zip(self.layers, data["layers"], strict=True):
-                parameter_properties.write(layer, WaveLayer, values, metres)
-        _changed(self, bpy.context)
+            layer_properties.write(self.layers, parameters, metres)
+        changed(self, bpy.context)
 
 
 CLASSES = (
     OCEAN_PG_water,
-    OCEAN_PG_layer,
+    *layer_properties.CLASSES,
     OCEAN_PG_foam,
     OCEAN_PG_timing,
     OCEAN_PG_maps,

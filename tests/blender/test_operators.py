@@ -83,7 +83,7 @@ def test_import_gives_the_scene_the_file_s_frame_rate(active, empty_scene, tmp_p
         ('{"layers": [', "not valid JSON"),
         ("[]", "JSON object"),
         (b"\xff\xfe", "utf-8"),
-        (b" " * 2_000_000, "larger than 1000 kB"),
+        (b" " * 64_000_001, "larger than 64 MB"),
     ],
 )
 def test_a_bad_file_is_refused_and_changes_nothing(active, empty_scene, tmp_path, text, said):

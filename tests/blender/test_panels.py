@@ -27,6 +27,13 @@ class Layout:
         assert {items, active} <= set(owner.bl_rna.properties.keys())
         self.drawn.append(name)
 
+    def template_ID(self, owner, name, **_named):  # Blender's own name
+        assert name in owner.bl_rna.properties
+        self.drawn.append(name)
+
+    def separator(self, **_named):
+        pass
+
     def template_icon(self, icon_value, **_named):
         assert icon_value
 
@@ -46,6 +53,7 @@ class Layout:
         module, _, function = name.partition(".")
         assert hasattr(bpy.types, f"{module.upper()}_OT_{function}")
         self.drawn.append(name)
+        return SimpleNamespace()
 
 
 @pytest.fixture
@@ -93,10 +101,29 @@ def test_every_parameter_can_be_reached(draw, item, core):
         layer.definition, layer.spectrum, layer.spreading = definition, spectrum, spreading
         layer.spreading_mix = 0.3
         drawn.update(draw(item))
-    fields = [core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing]
+    settings = item.ocean_tweak
+    bpy.context.view_layer.objects.active = item
+    bpy.ops.ocean.layer_add(kind="WIND_FIELD")
+    wind = settings.layers[settings.active_layer].wind_field
+    for source, height in (("UNIFORM", "STEEPNESS"), ("IMAGE", "WIND_SPEED"), ("RECORDING", "STEEPNESS")):
+        wind.source, wind.height = source, height
+        drawn.update(draw(item))
+    wind.source = "UNIFORM"
+    bpy.ops.ocean.layer_add(kind="PICTURE")
+    picture = settings.layers[settings.active_layer].picture
+    for kind in ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE"):
+        for animation in ("DISPERSION", "DOMINANT_BAND", "TRANSLATION"):
+            picture.filter, picture.animation = kind, animation
+            drawn.update(draw(item))
+    fields = [
+        core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing, core.WindFieldLayer,
+        core.PictureLayer,
+    ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
     elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration"}
-    assert names - elsewhere - drawn == set()
+    in_lists = {"wind_fields", "pictures", "keys", "picture"}  # as layers, recordings and images
+    assert names - elsewhere - in_lists - drawn == set()
+    assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
 
 
 def test_the_beaufort_number_is_that_of_the_wind(draw, item):

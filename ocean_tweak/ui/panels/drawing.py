@@ -53,6 +53,13 @@ def active_settings(context: bpy.types.Context) -> OceanSettings:
     return settings_of(context.active_object)
 
 
+def active_waves(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
+    """The active layer where it is a wave system."""
+    layers = settings.layers
+    layer = layers[settings.active_layer] if settings.active_layer < len(layers) else None
+    return layer if layer is not None and layer.kind == "WAVES" else None
+
+
 def row(layout: bpy.types.UILayout, label: str, text: str) -> None:
     """Draw a label and its text in line with Blender's split properties."""
     parts = layout.split(factor=_LABEL_SHARE)

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wave layers: their list, the active one in full, and the spectrum that they make."""
+"""Layers of all kinds: their list, and the active one in full."""
 
 import bpy
 
-from ...core import ParameterError
-from ...core.parameters import WaveLayer
-from .. import layer_operators
-from ..previews import PREVIEWS
-from .drawing import SubPanel, active_settings, split
-
-_FRACTIONS = 12.0  # height of the picture in units of a button
+from ...scene.settings import LAYER_KINDS
+from .. import layer_operators, wind_operators
+from .drawing import SubPanel, active_settings, message, split
 
 
 class OCEAN_UL_layers(bpy.types.UIList):
@@ -21,15 +17,33 @@ class OCEAN_UL_layers(bpy.types.UIList):
         self, _context: bpy.types.Context, layout: bpy.types.UILayout, _data: object,
         layer: bpy.types.PropertyGroup, _icon: int, _active_data: object, _active_property: str,
     ) -> None:  # fmt: skip
-        """Draw the layer's wind, or its waves."""
-        if layer.definition == "WIND":
-            text, icon = f"{layer.wind_speed:.3g} m/s, {layer.fetch_km:.3g} km", "FORCE_WIND"
-        else:
-            text, icon = f"{layer.significant_wave_height:.3g} m, {layer.peak_period:.3g} s", "MOD_WAVE"
+        """Draw the layer's wind, its waves or its picture."""
+        group = layer.group
         line = layout.row(align=True)
-        line.active = not layer.muted
-        line.label(text=text, icon=icon, translate=False)
-        line.prop(layer, "muted", text="", icon="HIDE_ON" if layer.muted else "HIDE_OFF", emboss=False)
+        line.active = not group.muted
+        line.label(text=_TITLES[layer.kind](group), icon=LAYER_KINDS[layer.kind].icon, translate=False)
+        line.prop(group, "muted", text="", icon="HIDE_ON" if group.muted else "HIDE_OFF", emboss=False)
+
+
+def _waves_title(layer: bpy.types.PropertyGroup) -> str:
+    if layer.definition == "WIND":
+        return f"{layer.wind_speed:.3g} m/s, {layer.fetch_km:.3g} km"
+    return f"{layer.significant_wave_height:.3g} m, {layer.peak_period:.3g} s"
+
+
+def _wind_title(group: bpy.types.PropertyGroup) -> str:
+    if group.source == "UNIFORM":
+        return f"Wind field, {group.wind_speed:.3g} m/s"
+    if group.source == "IMAGE" and group.image is not None:
+        return f"Wind field, {group.image.name}"
+    return "Wind field, recorded" if group.source == "RECORDING" else "Wind field"
+
+
+def _picture_title(group: bpy.types.PropertyGroup) -> str:
+    return "White noise" if group.image is None else f"Picture, {group.image.name}"
+
+
+_TITLES = {"WAVES": _waves_title, "WIND_FIELD": _wind_title, "PICTURE": _picture_title}
 
 
 class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
@@ -43,95 +57,104 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
         settings = active_settings(context)
         line = self.layout.row()
         line.template_list(
-            OCEAN_UL_layers.bl_idname, "", settings, "layers", settings, "active_layer", rows=3
+            OCEAN_UL_layers.bl_idname, "", settings, "layers", settings, "active_layer", rows=5
         )
         buttons = line.column(align=True)
+        buttons.menu(layer_operators.OCEAN_MT_layer_add.bl_idname, text="", icon="ADD")
         for operator, icon in layer_operators.BUTTONS:
             buttons.operator(operator.bl_idname, text="", icon=icon)
+        buttons.separator()
+        for direction in ("UP", "DOWN"):
+            move = layer_operators.OCEAN_OT_layer_move.bl_idname
+            buttons.operator(move, text="", icon=f"TRIA_{direction}").direction = direction
         if settings.active_layer < len(settings.layers):
-            _draw_layer(split(self.layout, animated=True), settings.layers[settings.active_layer])
+            layer = settings.layers[settings.active_layer]
+            _DRAWERS[layer.kind](split(self.layout, animated=True), layer.group, context)
 
 
-def _draw_layer(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
+def _draw_waves(
+    layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup, _context: bpy.types.Context
+) -> None:
     layout.row().prop(layer, "definition", expand=True)
-    column = layout.column(align=True)
     names = ("wind_speed", "wind_direction", "fetch", "wind_height", "limit_fetch")
     if layer.definition == "SEA_STATE":
         names = ("significant_wave_height", "peak_period", "wind_direction")
-    _props(column, layer, *names)
+    _props(layout.column(align=True), layer, *names)
     _props(layout, layer, "gain")
 
 
-class OCEAN_PT_spectrum(SubPanel, bpy.types.Panel):
-    """A picture of the spectrum, and the active layer's model."""
-
-    bl_idname = "OCEAN_PT_spectrum"
-    bl_label = "Spectrum"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw energy over period and over direction, then the models."""
-        layout = split(self.layout)
-        settings = active_settings(context)
-        try:
-            icon = PREVIEWS.spectrum(settings.to_parameters(context.scene))
-        except ParameterError:
-            icon = 0  # the panel above says what is wrong
-        if icon:
-            layout.template_icon(icon_value=icon, scale=_FRACTIONS)
-        if settings.active_layer >= len(settings.layers):
-            return
-        layer = settings.layers[settings.active_layer]
-        _props(layout, layer, "spectrum")
-        if layer.spectrum in ("TMA", "JONSWAP"):
-            _props(layout, layer, "peak_enhancement")
-        if layer.spectrum == "TMA":
-            _props(layout, layer, "depth_factor")
-        if layer.spectrum == "GENERALIZED_AB":
-            _props(layout, layer, "generalized_a", "generalized_b")
-        _props(layout, layer, "short_wave_cutoff")
-
-
-class OCEAN_PT_spreading(SubPanel, bpy.types.Panel):
-    """Over which directions the active layer's energy goes."""
-
-    bl_idname = "OCEAN_PT_spreading"
-    bl_label = "Spreading"
-    bl_parent_id = "OCEAN_PT_spectrum"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the model, and the one that is mixed in."""
-        layout, settings = split(self.layout), active_settings(context)
-        if settings.active_layer >= len(settings.layers):
-            return
-        layer = settings.layers[settings.active_layer]
-        _props(layout, layer, "spreading", "swell", "spreading_mix")
-        if layer.spreading_mix > 0.0:
-            _props(layout, layer, "second_spreading")
-        if "COSINE_2S" in (layer.spreading, layer.second_spreading):
-            _props(layout, layer, "spreading_exponent")
+def _draw_wind_field(
+    layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
+) -> None:
+    layout.row().prop(group, "source", expand=True)
+    if group.source == "UNIFORM":
+        _props(layout.column(align=True), group, "wind_speed", "wind_direction")
+    elif group.source == "IMAGE":
+        layout.template_ID(group, "image", new="image.new", open="image.open")
+        if group.image is not None:
+            _image_notes(layout, context, group.image)
+        _props(layout, group, "image_values", "image_speed")
+    else:
+        _props(layout, group, "objects")
+        text = "Record Again" if group.recording_hash else "Record Wind"
+        layout.operator(wind_operators.OCEAN_OT_record_wind.bl_idname, text=text, icon="REC")
+    _props(layout, group, "strength", "show_vectors")
+    places = layout.column(align=True)
+    _props(places, group, "columns", "rows", "origins")
+    _props(layout, group, "jitter", "phase_jitter", "start_time", "calm")
+    _props(
+        layout, group, "height", "steepness" if group.height == "STEEPNESS" else "height_per_speed", "gain"
+    )
+    _props(layout, group, "life", "front", "particles")
+    if group.front == "ARC":
+        _props(layout, group, "split_angle", "splitting")
+    _props(layout, group, "seed")
 
 
-class OCEAN_PT_band(SubPanel, bpy.types.Panel):
-    """Which wavelengths of the active layer are kept."""
+def _draw_picture(
+    layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
+) -> None:
+    layout.template_ID(group, "image", new="image.new", open="image.open")
+    if group.image is not None:
+        _image_notes(layout, context, group.image)
+    else:
+        _props(layout, group, "noise_resolution", "seed")
+    _props(layout, group, "filter")
+    physical = False
+    if group.filter == "MODIFIED_PIERSON_MOSKOWITZ":
+        _props(layout, group, "filter_gain", "wind_speed")
+        physical = group.filter_gain == "PHYSICAL"
+    else:
+        _props(layout, group, "fractal_dimension")
+    if group.filter == "WATER_TEXTURE":
+        _props(layout, group, "texture_wavelength")
+    if not physical:
+        _props(layout, group, "significant_wave_height")
+    _props(layout, group, "gain", "wind_direction", "animation")
+    _props(layout, group, *_ANIMATION[group.animation])
 
-    bl_idname = "OCEAN_PT_band"
-    bl_label = "Band and Seed"
-    bl_parent_id = "OCEAN_PT_spectrum"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the band's ends and the seed."""
-        layout, settings = split(self.layout), active_settings(context)
-        if settings.active_layer >= len(settings.layers):
-            return
-        layer = settings.layers[settings.active_layer]
-        _props(layout, layer, "shortest_wavelength", "longest_wavelength", "band_softness")
-        _props(layout, layer, "band_inverted", "seed")
+_DRAWERS = {"WAVES": _draw_waves, "WIND_FIELD": _draw_wind_field, "PICTURE": _draw_picture}
+_ANIMATION = {
+    "DISPERSION": (),
+    "DOMINANT_BAND": ("dominant_rate", "surrounding_rate"),
+    "TRANSLATION": ("translation_speed",),
+}
 
 
-def _props(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup, *names: str) -> None:
+def _image_notes(layout: bpy.types.UILayout, context: bpy.types.Context, image: bpy.types.Image) -> None:
+    layout.operator(wind_operators.OCEAN_OT_reload_image.bl_idname, icon="FILE_REFRESH")
+    if image.is_float and not image.colorspace_settings.is_data:
+        message(
+            layout, context,
+            f"{image.name} is in the colour space {image.colorspace_settings.name}: choose Non-Color for the "
+            "numbers of its file",
+        )  # fmt: skip
+
+
+def _props(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, *names: str) -> None:
     for name in names:
-        assert name in WaveLayer.__dataclass_fields__, name
-        layout.prop(layer, name)
+        layout.prop(group, name)
 
 
-CLASSES = (OCEAN_UL_layers, OCEAN_PT_layers, OCEAN_PT_spectrum, OCEAN_PT_spreading, OCEAN_PT_band)
+CLASSES = (OCEAN_UL_layers, OCEAN_PT_layers)

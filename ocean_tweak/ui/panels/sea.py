@@ -112,7 +112,8 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _beaufort(settings: Any, scene: bpy.types.Scene) -> list[tuple[str, str]]:
-    winds = [layer for layer in settings.layers if layer.definition == "WIND" and not layer.muted]
+    waves = [layer for layer in settings.layers if layer.kind == "WAVES"]
+    winds = [layer for layer in waves if layer.definition == "WIND" and not layer.muted]
     if not winds:
         return []
     metres = float(metres_per_unit(scene))

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The spectrum of all wave layers, and how the active one shares its energy."""
+
+import bpy
+
+from ...core import ParameterError
+from ...core.parameters import WaveLayer
+from ..previews import PREVIEWS
+from .drawing import SubPanel, active_settings, active_waves, split
+
+_FRACTIONS = 12.0  # height of the picture in units of a button
+
+
+class _OfWaves(SubPanel):
+    """Shown where the active layer is a wave system."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An ocean is active, and a wave layer in it."""
+        return super().poll(context) and active_waves(active_settings(context)) is not None
+
+
+class OCEAN_PT_spectrum(SubPanel, bpy.types.Panel):
+    """A picture of the spectrum, and the active layer's model."""
+
+    bl_idname = "OCEAN_PT_spectrum"
+    bl_label = "Spectrum"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw energy over period and over direction, then the models."""
+        layout = split(self.layout)
+        settings = active_settings(context)
+        try:
+            icon = PREVIEWS.spectrum(settings.to_parameters(context.scene))
+        except ParameterError:
+            icon = 0  # the panel above says what is wrong
+        if icon:
+            layout.template_icon(icon_value=icon, scale=_FRACTIONS)
+        layer = active_waves(settings)
+        if layer is None:
+            return
+        _props(layout, layer, "spectrum")
+        if layer.spectrum in ("TMA", "JONSWAP"):
+            _props(layout, layer, "peak_enhancement")
+        if layer.spectrum == "TMA":
+            _props(layout, layer, "depth_factor")
+        if layer.spectrum == "GENERALIZED_AB":
+            _props(layout, layer, "generalized_a", "generalized_b")
+        _props(layout, layer, "short_wave_cutoff")
+
+
+class OCEAN_PT_spreading(_OfWaves, bpy.types.Panel):
+    """Over which directions the active layer's energy goes."""
+
+    bl_idname = "OCEAN_PT_spreading"
+    bl_label = "Spreading"
+    bl_parent_id = "OCEAN_PT_spectrum"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the model, and the one that is mixed in."""
+        layout, settings = split(self.layout), active_settings(context)
+        layer = active_waves(settings)
+        _props(layout, layer, "spreading", "swell", "spreading_mix")
+        if layer.spreading_mix > 0.0:
+            _props(layout, layer, "second_spreading")
+        if "COSINE_2S" in (layer.spreading, layer.second_spreading):
+            _props(layout, layer, "spreading_exponent")
+
+
+class OCEAN_PT_band(_OfWaves, bpy.types.Panel):
+    """Which wavelengths of the active layer are kept."""
+
+    bl_idname = "OCEAN_PT_band"
+    bl_label = "Band and Seed"
+    bl_parent_id = "OCEAN_PT_spectrum"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the band's ends and the seed."""
+        layout, settings = split(self.layout), active_settings(context)
+        layer = active_waves(settings)
+        _props(layout, layer, "shortest_wavelength", "longest_wavelength", "band_softness")
+        _props(layout, layer, "band_inverted", "seed")
+
+
+def _props(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup, *names: str) -> None:
+    for name in names:
+        assert name in WaveLayer.__dataclass_fields__, name
+        layout.prop(layer, name)
+
+
+CLASSES = (OCEAN_PT_spectrum, OCEAN_PT_spreading, OCEAN_PT_band)

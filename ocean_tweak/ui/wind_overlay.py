@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The wind of the active ocean's layers as arrows in the 3D view."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import ParameterError, WindFieldLayer
+from ..core.wave_particles.wind import bilinear
+from ..scene.animated import clock_of
+from ..scene.settings import is_ocean, settings_of
+from ..scene.units import metres_per_unit
+
+#: arrows along each side of the patch
+_ARROWS = 16
+#: of the distance of two arrows: the length of the strongest, and of an arrow: its head
+_LENGTH, _HEAD = 0.9, 0.3
+_COLOUR, _WIDTH = (1.0, 0.65, 0.1, 0.9), 1.5
+
+# what Blender gave for the drawing, needed to take it back
+_handles: list[object] = []
+
+
+def register() -> None:
+    """Draw in every 3D view; without a window there is none."""
+    if not bpy.app.background:
+        _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+
+
+def unregister() -> None:
+    """Draw no more."""
+    while _handles:
+        bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+
+
+def lines(item: bpy.types.Object, scene: bpy.types.Scene) -> NDArray[np.float32]:
+    """(n, 2, 3) ends of the lines of all arrows, in Blender units of the ocean's own space."""
+    settings = settings_of(item)
+    shown = [layer.wind_field.show_vectors for layer in settings.layers if layer.kind == "WIND_FIELD"]
+    if not any(shown):
+        return np.zeros((0, 2, 3), np.float32)
+    try:
+        parameters = settings.to_parameters(scene)
+    except ParameterError:
+        return np.zeros((0, 2, 3), np.float32)
+    time = float(clock_of(settings, scene, parameters.timing.start_frame).time)
+    size = parameters.domain_size
+    parts = [
+        arrows(layer, time, size)
+        for layer, is_shown in zip(parameters.wind_fields, shown, strict=True)
+        if is_shown and not layer.muted
+    ]
+    metres = float(metres_per_unit(scene))
+    return np.concatenate([np.zeros((0, 2, 3)), *parts]).astype(np.float32) / np.float32(metres)
+
+
+def arrows(layer: WindFieldLayer, time: float, size: float) -> NDArray[np.float64]:
+    """(n, 2, 3) lines in m: a shaft and two strokes of a head for each place where wind blows.
+
+    time : s
+    size : side of the patch, m
+    """
+    step = size / _ARROWS
+    x, y = (axis.ravel() for axis in np.meshgrid(*2 * [(np.arange(_ARROWS) + 0.5) * step]))
+    wind = wind_now(layer, time, x, y, size)
+    if layer.greatest_speed == 0.0:
+        return np.zeros((0, 2, 3))
+    along = wind * (_LENGTH * step / layer.greatest_speed)
+    blowing = np.hypot(*along.T) > 0.0
+    tail, along = np.stack((x, y), axis=-1)[blowing], along[blowing]
+    tip, across = tail + along, np.stack((-along[:, 1], along[:, 0]), axis=-1)
+    strokes = [np.stack((tail, tip), axis=1)]
+    for side in (-0.5, 0.5):
+        strokes.append(np.stack((tip, tip - _HEAD * (along + side * across)), axis=1))
+    flat = np.concatenate(strokes)
+    return np.concatenate((flat, np.zeros((*flat.shape[:2], 1))), axis=-1)
+
+
+def wind_now(
+    layer: WindFieldLayer, time: float, x: NDArray[np.float64], y: NDArray[np.float64], size: float
+) -> NDArray[np.float64]:
+    """(places, 2) the layer's wind in m/s at places in m: of the keys around the time alone."""
+    if not layer.keys:
+        direction = np.array([np.cos(layer.wind_direction), np.sin(layer.wind_direction)])
+        return np.tile(layer.strength * layer.wind_speed * direction, (len(x), 1))
+    times = np.array([key.time for key in layer.keys])
+    after = int(np.clip(np.searchsorted(times, time), 1, max(len(times) - 1, 1)))
+    near = layer.rasters[after - 1 : after + 1]
+    values = [bilinear(raster, x, y, size) for raster in near]
+    if len(near) == 1:
+        return layer.strength * values[0]
+    share = float(np.clip((time - times[after - 1]) / (times[after] - times[after - 1]), 0.0, 1.0))
+    return layer.strength * ((1.0 - share) * values[0] + share * values[1])
+
+
+def _draw() -> None:
+    context = bpy.context
+    item, space = context.active_object, context.space_data
+    if not (space.overlay.show_overlays and is_ocean(item) and item.visible_get()):
+        return
+    ends = lines(item, context.scene)
+    if not len(ends):
+        return
+    import gpu
+    from gpu_extras.batch import batch_for_shader
+
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    batch = batch_for_shader(shader, "LINES", {"pos": ends.reshape(-1, 3)})
+    region = context.region
+    shader.uniform_float("viewportSize", (region.width, region.height))
+    shader.uniform_float("lineWidth", _WIDTH * context.preferences.system.ui_scale)
+    shader.uniform_float("color", _COLOUR)
+    gpu.state.blend_set("ALPHA")
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(item.matrix_world)
+        batch.draw(shader)
+    gpu.state.blend_set("NONE")
