@@ -66,4 +66,4 @@ MASTIN_PEAK = 0.13  # f_m U / g, U at 10 m
 MASTIN_SHAPE = 9.77
 MASTIN_BELOW_EXPONENT = 4.06
 MASTIN_ABOVE_EXPONENT = -2.34
-DOMINANT_SHARE = 0.6666666666666666  # two thirds of the peak's energy, from which waves belong to the dominant band
+DOMINANT_SHARE = 0.6666666666666666  # of the peak's energy: from there on waves belong to the dominant band
