@@ -83,7 +83,7 @@ class OCEAN_OT_reload_image(OfActiveOcean, bpy.types.Operator):
     bl_idname = "ocean.reload_image"
     bl_description = "Read the image's file again, and make the waves anew"
     bl_label = "Reload Image"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

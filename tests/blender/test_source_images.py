@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images become waves and winds by the numbers of their files, and what is wrong with one is told by name."""
+
+import struct
+import zlib
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+@pytest.fixture
+def ocean(ocean_object, make_parameters, empty_scene):
+    item = ocean_object.add(empty_scene, make_parameters())
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+@pytest.fixture
+def picture(ocean):
+    bpy.ops.ocean.layer_add(kind="PICTURE")
+    return ocean.ocean_tweak.layers[1].picture
+
+
+@pytest.fixture
+def wind(ocean):
+    bpy.ops.ocean.layer_add(kind="WIND_FIELD")
+    return ocean.ocean_tweak.layers[1].wind_field
+
+
+def sea_of(item):
+    return item.ocean_tweak.to_parameters(bpy.context.scene)
+
+
+def png(path, values):
+    """Write an 8-bit PNG, the top row first: (rows, columns) grey or (rows, columns, 3)."""
+    rows, columns = values.shape[:2]
+    colour = 2 if values.ndim == 3 else 0
+    content = b"".join(b"\0" + row.astype(np.uint8).tobytes() for row in values)
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", columns, rows, 8, colour, 0, 0, 0)
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", head)
+        + chunk(b"IDAT", zlib.compress(content))
+        + chunk(b"IEND", b"")
+    )
+    return path
+
+
+def float_image(values, name="decimal"):
+    """An image of (rows, columns) or (rows, columns, channels), the bottom row first."""
+    rows, columns = values.shape[:2]
+    image = bpy.data.images.new(name, columns, rows, alpha=False, float_buffer=True, is_data=True)
+    texels = np.ones((rows, columns, 4), np.float32)
+    texels[..., : 3 if values.ndim == 2 else values.shape[2]] = (
+        values[..., None] if values.ndim == 2 else values
+    )
+    image.pixels.foreach_set(texels.ravel())
+    return image
+
+
+@pytest.mark.parametrize("shape", [(3, 5), (4, 7, 3)])
+def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, picture, tmp_path, shape):
+    values = np.random.default_rng(2).integers(0, 256, shape)
+    picture.image = bpy.data.images.load(str(png(tmp_path / "odd.png", values)))
+    raster = sea_of(ocean).pictures[0].picture
+    grey = values if len(shape) == 2 else values @ (0.2126, 0.7152, 0.0722)
+    assert raster.shape == (*shape[:2], 1)
+    assert np.abs(raster.values[..., 0] - grey[::-1] / 255.0).max() < 1e-6
+    assert raster.name == "odd.png"
+    assert not ocean.ocean_tweak.error
+
+
+def test_decimals_are_themselves(ocean, picture, wind):
+    values = np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32) * 40
+    ocean.ocean_tweak.layers[2].picture.image = float_image(values)
+    assert sea_of(ocean).pictures[0].picture.values[..., 0].tolist() == values.tolist()
+
+
+def test_pictures_that_hold_no_waves_are_told_by_name(ocean, picture):
+    flat = np.ones((4, 4), np.float32)
+    picture.image = float_image(flat, "wall")
+    assert "pictures.0.picture (wall) = 1.0: everywhere" in ocean.ocean_tweak.error
+    broken = np.arange(12, dtype=np.float32).reshape(3, 4)
+    broken[2, 1] = np.nan
+    picture.image = float_image(broken, "hole")
+    assert "raster 'hole' = nan: must be finite everywhere" in ocean.ocean_tweak.error
+    assert "row 2, column 1" in ocean.ocean_tweak.error
+    picture.image = None
+    assert ocean.ocean_tweak.error == ""
+
+
+def test_missing_files_and_movies_are_told_by_name(ocean, picture, tmp_path):
+    file = png(tmp_path / "gone.png", np.arange(12).reshape(3, 4))
+    picture.image = bpy.data.images.load(str(file))
+    file.unlink()
+    bpy.ops.ocean.reload_image()
+    assert "pictures.0.image = 'gone.png': its file cannot be read" in ocean.ocean_tweak.error
+    picture.image.source = "SEQUENCE"
+    ocean.ocean_tweak.seed += 1
+    assert "must be a single picture" in ocean.ocean_tweak.error
+
+
+def test_a_changed_file_is_read_again_when_asked(ocean, picture, tmp_path):
+    file = png(tmp_path / "drawn.png", np.arange(12).reshape(3, 4))
+    picture.image = bpy.data.images.load(str(file))
+    png(file, np.arange(12)[::-1].reshape(3, 4))
+    assert sea_of(ocean).pictures[0].picture.values[0, 0, 0] == pytest.approx(8 / 255)
+    bpy.ops.ocean.reload_image()
+    assert sea_of(ocean).pictures[0].picture.values[0, 0, 0] == pytest.approx(3 / 255)
+
+
+def test_painting_shows(ocean, picture, evaluated, empty_scene):
+    values = np.random.default_rng(4).normal(size=(16, 16)).astype(np.float32)
+    picture.filter = "FRACTAL"
+    picture.image = image = float_image(values)
+    before = evaluated(ocean)
+    image.pixels[4 * 100] = 30.0
+    image.update_tag()
+    bpy.context.view_layer.update()
+    painted = evaluated(ocean)
+    assert np.abs(painted - before).max() > 0.01
+    image.pixels[4 * 10] = -30.0  # without a note to Blender: seen with the next frame
+    empty_scene.frame_set(empty_scene.frame_current)
+    assert np.abs(evaluated(ocean) - painted).max() > 0.01
+
+
+def test_playback_reads_no_image_again(ocean, picture, empty_scene, extension, monkeypatch):
+    values = np.random.default_rng(4).normal(size=(16, 16)).astype(np.float32)
+    picture.image = float_image(values)
+    picture.image.pack()
+    sea_of(ocean)
+    images = extension("scene.source_images")
+    monkeypatch.setattr(images, "_texels", None)
+    monkeypatch.setattr(images, "Raster", None)
+    for frame in (2, 3):
+        empty_scene.frame_set(frame)
+    assert ocean.ocean_tweak.error == ""
+    assert sea_of(ocean).pictures[0] is sea_of(ocean).pictures[0]
+
+
+def test_colour_space_of_decimals_is_asked_for(ocean, picture, extension, empty_scene):
+    image = float_image(np.random.default_rng(4).normal(size=(4, 4)).astype(np.float32), "linear")
+    picture.image = image
+    panel = extension("ui.panels.layers")
+    said = []
+    layout = SimpleNamespace(operator=lambda *_args, **_named: None)
+    panel_message = panel.message
+    try:
+        panel.message = lambda _layout, _context, text: said.append(text)
+        panel._image_notes(layout, None, image)
+        image.colorspace_settings.name = "sRGB"
+        panel._image_notes(layout, None, image)
+    finally:
+        panel.message = panel_message
+    assert len(said) == 1
+    assert "choose Non-Color" in said[0]
+
+
+def test_red_and_green_are_the_wind(ocean, wind):
+    values = np.zeros((2, 3, 3), np.float32)
+    values[0, 1] = (0.25, -0.5, 9.0)
+    wind.source = "IMAGE"
+    assert "wind_fields.0.image = '': choose an image" in ocean.ocean_tweak.error
+    wind.image, wind.image_values, wind.image_speed = float_image(values), "PLAIN", 8.0
+    layer = sea_of(ocean).wind_fields[0]
+    assert layer.keys[0].vectors.shape == (2, 3, 2)
+    assert layer.keys[0].vectors.values[0, 1].tolist() == [2.0, -4.0]
+    wind.image_values = "CENTRED"
+    assert sea_of(ocean).wind_fields[0].keys[0].vectors.values[0, 1].tolist() == [-4.0, -16.0]
+    assert wind.source == "IMAGE"
+    bpy.ops.ocean.layer_add()  # through the parameters and back
+    assert ocean.ocean_tweak.layers[2].wind_field.image_values == "CENTRED"
+
+
+def test_a_wind_too_strong_for_the_patch_is_told(ocean, wind):
+    wind.wind_speed = 60.0
+    assert "wind_fields.0 = '60 m/s': this wind's waves are 367 m long" in ocean.ocean_tweak.error
+
+
+def test_a_sea_from_a_file_that_names_its_picture(ocean, tmp_path, expected, evaluated, empty_scene, core):
+    values = np.random.default_rng(6).integers(0, 256, (8, 6, 3))
+    png(tmp_path / "sketch.png", values)
+    np.save(tmp_path / "wind.npy", np.full((2, 2, 2), 5.0))
+    file = tmp_path / "sea.json"
+    file.write_text(
+        """{"resolution": 32, "domain_size": 90,
+        "pictures": [{"picture": {"file": "sketch.png"}, "filter": "FRACTAL"}],
+        "wind_fields": [{"keys": [{"vectors": {"file": "wind.npy"}}], "columns": 3, "rows": 3}]}"""
+    )
+    bpy.ops.ocean.import_parameters(filepath=str(file))
+    layers = ocean.ocean_tweak.layers
+    assert layers[2].picture.image.filepath == str(tmp_path / "sketch.png")
+    assert layers[1].wind_field.image.name == "wind.npy"
+    sea = sea_of(ocean)
+    grey = values[::-1] @ (0.2126, 0.7152, 0.0722) / 255.0
+    assert np.abs(sea.pictures[0].picture.values[..., 0] - grey).max() < 1e-6
+    assert np.abs(evaluated(ocean) - expected(sea, 1)).max() < 1e-4
+
+
+@pytest.mark.parametrize("name", ["from-image.json", "wind-front.json"])
+def test_the_examples_come_in(ocean, name, empty_scene):
+    if not (EXAMPLES / name).exists():
+        pytest.skip("the installed extension has no examples")
+    ocean.ocean_tweak.viewport_resolution = 32
+    bpy.ops.ocean.import_parameters(filepath=str(EXAMPLES / name))
+    assert ocean.ocean_tweak.error == ""
+    sea = sea_of(ocean)
+    assert sea.pictures or sea.wind_fields
