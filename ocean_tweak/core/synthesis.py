@@ -177,6 +177,8 @@ class Synthesis:
         n = self.state.grid.resolution
         spare = max(1, _MEMORY - _COLUMN * columns)
         numbers = min(_BLOCK, n * n * spare // _TEMPORARIES)
+        if self.wind_waves is not None:  # what they take is told apart, and small blocks are slow
+            numbers = _BLOCK
         size = max(1, numbers // self.workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 

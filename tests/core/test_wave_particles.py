@@ -157,7 +157,8 @@ def test_speed_length_and_period_follow_the_wind(speed: float) -> None:
 
 def one_wave(age: float, **layer: Any) -> tuple[Particles, RadiusClasses]:
     """The particles of one wave of an age in wavelengths travelled; it lives for 12."""
-    field = WindFieldLayer(**{**LONE, "life": 12.0, "particles": 5, "split_angle": 0.1, "steepness": 0.2, **layer})
+    wave = {"life": 12.0, "particles": 5, "split_angle": 0.1, "steepness": 0.2}
+    field = WindFieldLayer(**{**LONE, **wave, **layer})
     origins = layer_origins(field, 0, 4000.0)
     births = Emission(field, origins, 4000.0, G).births(PERIOD * (1.0 + age))
     newest_but = np.argmax(births.age)

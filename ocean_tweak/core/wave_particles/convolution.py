@@ -24,6 +24,9 @@ ComplexArray = NDArray[np.complexfloating]
 #: particles that are deposited together
 _CHUNK = 2**17
 
+#: NumPy before 2.0 transforms in double precision only, and into arrays of its own
+_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
+
 #: rows that are transformed together
 _ROWS = 32
 
@@ -121,14 +124,19 @@ class Points(NamedTuple):
             growing, along, up = (_transposed(part, block) for part in self.rates)
             kx, ky = grid.kx[0, block, np.newaxis], grid.ky[:, 0]
             growing -= (1j * kx).astype(along.dtype) * along
-            result = np.fft.fft(growing, axis=-1)
-            result -= (1j * ky).astype(along.dtype) * np.fft.fft(up, axis=-1)
+            result = _along_y(growing)
+            result -= (1j * ky).astype(along.dtype) * _along_y(up)
         elif not rate and self.amplitude is not None:
-            result = np.fft.fft(_transposed(self.amplitude, block), axis=-1)
+            result = _along_y(_transposed(self.amplitude, block))
         else:
             raise ValueError("only what was asked for is there")
         dtype = (self.amplitude if self.rates is None else self.rates[0]).dtype  # type: ignore[union-attr]
         return result.astype(dtype, copy=False)
+
+
+def _along_y(columns: ComplexArray) -> ComplexArray:
+    """Transform along the last axis, in the array itself where NumPy can."""
+    return np.fft.fft(columns, axis=-1, out=columns) if _IN_PLACE else np.fft.fft(columns, axis=-1)
 
 
 def _transposed(values: ComplexArray, block: slice) -> ComplexArray:
@@ -142,7 +150,10 @@ def along_x(values: Array, dtype: type) -> ComplexArray:
     result: ComplexArray = np.empty((rows, n // 2 + 1), dtype)
     for first in range(0, rows, _ROWS):  # few enough to stay in a cache
         block = slice(first, first + _ROWS)
-        result[block] = np.fft.rfft(values[block].astype(real), axis=-1)
+        if _IN_PLACE:
+            np.fft.rfft(values[block].astype(real), axis=-1, out=result[block])
+        else:
+            result[block] = np.fft.rfft(values[block], axis=-1)
     return result
 
 
