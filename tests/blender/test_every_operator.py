@@ -8,8 +8,8 @@ import pytest
 WITHOUT_OCEAN = {
     "mesh.ocean_tweak_add", "ocean.add_scene", "ocean.install_assets", "node.ocean_tweak_add_group",
     "ocean.convert", "ocean.delete_preset", "ocean.rename_preset", "ocean.import_preset",
-    "ocean.export_preset", "ocean.import_usd", "ocean.stop_usd", "ocean.verify_usd", "object.ocean_tweak_float",
-    "object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove",
+    "ocean.export_preset", "ocean.import_usd", "ocean.stop_usd", "ocean.verify_usd",
+    "object.ocean_tweak_float", "object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove",
 }  # fmt: skip
 
 
@@ -66,6 +66,7 @@ STEPS = {
     "ocean.layer_add": lambda files: {},
     "ocean.layer_remove": lambda files: {},
     "ocean.layer_duplicate": lambda files: {},
+    "ocean.layer_move": lambda files: {"direction": "UP"},
     "ocean.layer_solo": lambda files: {},
     "ocean.apply_preset": lambda files: {"key": "gale"},
     "ocean.match_sea_state": lambda files: {},

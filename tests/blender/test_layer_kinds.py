@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from .conftest import DOMAIN
+from .conftest import DOMAIN, positions_of
 
 TOLERANCE = 1e-4  # m
 
@@ -117,6 +117,32 @@ def test_the_three_winds_of_the_menu_have_waves(ocean, evaluated):
     bpy.ops.ocean.layer_add(kind="WIND_FIELD", wind="OPPOSED_HALVES")
     (layer,) = sea_of(ocean).wind_fields
     assert np.sign(layer.rasters[0].values[3, :, 0]).tolist() == [-1.0] * 8 + [1.0] * 8
+
+
+def test_the_three_winds_of_the_menu_are_rendered(ocean, rendering, expected):
+    """Coarser in the viewport, as it is when an ocean is added; the render has all samples."""
+    settings = ocean.ocean_tweak
+    settings.resolution, settings.viewport_resolution = 128, 64
+    for wind in ("UNIFORM", "OPPOSED_HALVES", "VARYING_SPEED"):
+        bpy.ops.ocean.layer_add(kind="WIND_FIELD", wind=wind)
+        rendered = rendering(positions_of)["Ocean"]
+        assert np.abs(rendered - expected(sea_of(ocean), 1)).max() < TOLERANCE, wind
+        bpy.ops.ocean.layer_remove()
+    assert np.abs(rendered - expected(sea_of(ocean), 1)).max() > 0.05
+
+
+def test_usd_of_every_kind_comes_back(ocean, rich, empty_scene, tmp_path, extension):
+    if not extension("export.usd.library").is_installed():
+        pytest.skip("this Blender has no OpenUSD")
+    settings = ocean.ocean_tweak
+    settings.from_parameters(rich, empty_scene)
+    settings.usd.file = str(tmp_path / "sea.usd")
+    empty_scene.frame_start, empty_scene.frame_end = 2, 3
+    assert bpy.ops.ocean.export_usd() == {"FINISHED"}
+    bpy.ops.ocean.import_usd(filepath=str(tmp_path / "sea.usd"))
+    came = bpy.context.view_layer.objects.active
+    assert came != ocean
+    assert sea_of(came) == rich
 
 
 def test_duplicate_move_solo_and_remove_work_for_every_kind(ocean, rich, empty_scene):
