@@ -48,7 +48,7 @@ LAYER_KINDS = {
         "FORCE_WIND",
     ),
     "PICTURE": LayerKind(
-        "pictures", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
+        "pictures", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
     ),
 }
 
