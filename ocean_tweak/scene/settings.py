@@ -29,6 +29,7 @@ class LayerKind(NamedTuple):
     """A kind of layer: the list of the parameters that it stands in, and how it looks in the window."""
 
     parameter: str
+    noun: str
     label: str
     description: str
     icon: str
@@ -36,12 +37,18 @@ class LayerKind(NamedTuple):
 
 #: in the order in which they stand in an ocean's list
 LAYER_KINDS = {
-    "WAVES": LayerKind("layers", "Waves", "A wave system: a wind and its fetch, or a swell", "MOD_WAVE"),
+    "WAVES": LayerKind(
+        "layers", "wave layer", "Waves", "A wave system: a wind and its fetch, or a swell", "MOD_WAVE"
+    ),
     "WIND_FIELD": LayerKind(
-        "wind_fields", "Wind Field", "Waves that follow a wind that differs from place to place", "FORCE_WIND"
+        "wind_fields",
+        "wind field",
+        "Wind Field",
+        "Waves that follow a wind that differs from place to place",
+        "FORCE_WIND",
     ),
     "PICTURE": LayerKind(
-        "pictures", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
+        "pictures", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
     ),
 }
 

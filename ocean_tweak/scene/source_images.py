@@ -106,7 +106,8 @@ def open_image(path: Path, channels: int) -> Raster:
         image = bpy.data.images.load(str(path), check_existing=True)
     except RuntimeError:
         raise ParameterError("file", str(path), "cannot be read as an image") from None
-    mark_as_data(image)
+    if image.users == 0:  # otherwise something else shows it in its colours
+        mark_as_data(image)
     try:
         return raster_of(image, channels)
     except ParameterError:

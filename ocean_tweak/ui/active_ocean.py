@@ -24,5 +24,6 @@ class OfActiveOcean:
 
 def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]:
     """Report what is wrong, and end the operator without a change."""
-    operator.report({"ERROR"}, str(error) or type(error).__name__)
+    missing = "Not enough memory for this sea" if isinstance(error, MemoryError) else type(error).__name__
+    operator.report({"ERROR"}, str(error) or missing)
     return {"CANCELLED"}

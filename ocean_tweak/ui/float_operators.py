@@ -13,6 +13,7 @@ from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
 from ..scene.settings import OceanObjectError, is_ocean, oceans_in
+from .active_ocean import refuse
 
 _EXPECTED_ERRORS = (OceanObjectError, ParameterError, MemoryError, OSError)
 # s of a modal bake before the window may draw again
@@ -118,7 +119,7 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
         try:
             ocean = self.chosen_ocean(context)
         except FloatError as error:
-            return _refuse(self, error)
+            return refuse(self, error)
         for item in floating.outermost(floatable(context)):
             try:
                 floating.float_on(item, ocean, context.scene, self.ride)
@@ -201,7 +202,7 @@ class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
             baked = bake.finish()
         except _EXPECTED_ERRORS as error:
             bake.cancel()
-            return _refuse(self, error)
+            return refuse(self, error)
         self.report(
             {"INFO"},
             translated("Objects baked, frames {first} to {last}: {count}").format(
@@ -224,7 +225,7 @@ class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
             ocean = self.chosen_ocean(context)
             self._bake = FloatBake(context.scene, floatable(context), ocean, self.ride, frames)
         except _EXPECTED_ERRORS as error:
-            _refuse(self, error)
+            refuse(self, error)
             return False
         return True
 
@@ -271,11 +272,6 @@ def draw_object_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 def _floats(item: bpy.types.Object) -> bool:
     return floating.is_carrier(item) or floating.carrier_of(item) is not None or is_baked(item)
-
-
-def _refuse(operator: bpy.types.Operator, error: BaseException) -> set[str]:
-    operator.report({"ERROR"}, str(error) or "Not enough memory for this sea")
-    return {"CANCELLED"}
 
 
 CLASSES = (OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove)

@@ -17,10 +17,11 @@ from ..export.exr import ExrError, read_image
 from ..export.pictures import with_pictures
 from ..scene import ocean_object
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
-from ..scene.settings import METHODS, VIEWPORT_RESOLUTION, OceanObjectError, is_ocean, settings_of
+from ..scene.settings import METHODS, VIEWPORT_RESOLUTION, OceanObjectError, settings_of
 from ..scene.shots import animate, shot_of
 from ..scene.source_images import open_image
 from ..scene.units import frame_rate, metres_per_unit, set_frame_rate
+from .active_ocean import OfActiveOcean, refuse
 
 # far beyond any sea with its pictures; keeps a file chosen by mistake from filling the memory
 _LARGEST_JSON = 64_000_000
@@ -62,7 +63,7 @@ class MESH_OT_ocean_tweak_add(bpy.types.Operator):
                 viewport_resolution=VIEWPORT_RESOLUTION,
             )  # fmt: skip
         except ocean_object.EXPECTED_ERRORS as error:
-            return _refuse(self, error)
+            return refuse(self, error)
         half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))
         item.location = scene.cursor.location
         item.location.x -= half
@@ -76,23 +77,7 @@ class MESH_OT_ocean_tweak_add(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class _OfActiveOcean:
-    """Operators that act on the active object."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """An ocean is active, and it is this file's own."""
-        item = context.active_object
-        if not is_ocean(item):
-            cls.poll_message_set("Select an ocean first")
-            return False
-        if item.library is not None:
-            cls.poll_message_set("The ocean is linked from another file: make it local or override it")
-            return False
-        return True
-
-
-class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelper):
+class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper):
     """Give the active ocean the parameters of a JSON file, and keys where these change during the shot."""
 
     bl_idname = "ocean.import_parameters"
@@ -119,11 +104,11 @@ class OCEAN_OT_import_parameters(_OfActiveOcean, bpy.types.Operator, ImportHelpe
             _apply(context, shot.parameters, self.use_frame_rate)
             animate(context.active_object, context.scene, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
-            return _refuse(self, error)
+            return refuse(self, error)
         return {"FINISHED"}
 
 
-class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelper):
+class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper):
     """Write the parameters of the active ocean to a JSON file, a sample a frame where they are animated."""
 
     bl_idname = "ocean.export_parameters"
@@ -142,12 +127,12 @@ class OCEAN_OT_export_parameters(_OfActiveOcean, bpy.types.Operator, ExportHelpe
             shot = shot_of(context.active_object, context.scene)
             Path(self.filepath).write_text(shot.to_json() + "\n", encoding="utf-8")
         except (ParameterError, OSError) as error:
-            return _refuse(self, error)
+            return refuse(self, error)
         self.report({"INFO"}, translated("Parameters written to {file}").format(file=self.filepath))
         return {"FINISHED"}
 
 
-class OCEAN_OT_use_sequence(_OfActiveOcean, bpy.types.Operator, ImportHelper):
+class OCEAN_OT_use_sequence(OfActiveOcean, bpy.types.Operator, ImportHelper):
     """Let baked files move the active ocean."""
 
     bl_idname = "ocean.use_sequence"
@@ -172,7 +157,7 @@ class OCEAN_OT_use_sequence(_OfActiveOcean, bpy.types.Operator, ImportHelper):
                 _apply(context, _baked_parameters(sequence), use_frame_rate=True)
             ocean_object.use_sequence(item, scene, sequence)
         except (ExrError, *ocean_object.EXPECTED_ERRORS) as error:
-            return _refuse(self, error)
+            return refuse(self, error)
         self.report(
             {"INFO"},
             translated("{name}: frames {first} to {last}").format(
@@ -182,7 +167,7 @@ class OCEAN_OT_use_sequence(_OfActiveOcean, bpy.types.Operator, ImportHelper):
         return {"FINISHED"}
 
 
-class OCEAN_OT_use_live(_OfActiveOcean, bpy.types.Operator):
+class OCEAN_OT_use_live(OfActiveOcean, bpy.types.Operator):
     """Compute the active ocean on every frame again."""
 
     bl_idname = "ocean.use_live"
@@ -242,11 +227,6 @@ def _read_text(path: Path) -> str:
     if len(data) > _LARGEST_JSON:
         raise ParameterError("file", str(path), f"is larger than {_LARGEST_JSON // 10**6} MB: not parameters")
     return data.decode("utf-8")
-
-
-def _refuse(operator: bpy.types.Operator, error: BaseException) -> set[str]:
-    operator.report({"ERROR"}, str(error) or type(error).__name__)
-    return {"CANCELLED"}
 
 
 CLASSES = (

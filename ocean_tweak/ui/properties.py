@@ -49,8 +49,8 @@ _HIDDEN = {"options": {"HIDDEN"}, **_OVERRIDE}
 
 def _listed(kinds: list[str]) -> str:
     """How many layers of which kinds."""
-    counts = [f"{kinds.count(kind)} {LAYER_KINDS[kind].label}" for kind in LAYER_KINDS if kind in kinds]
-    return ", ".join(counts) + (" layer" if len(kinds) == 1 else " layers")
+    counts = {LAYER_KINDS[kind].noun: kinds.count(kind) for kind in LAYER_KINDS if kind in kinds}
+    return ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
 
 
 class OCEAN_PG_water(bpy.types.PropertyGroup):

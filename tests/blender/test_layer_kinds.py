@@ -91,7 +91,10 @@ def test_all_kinds_are_linked_and_overridden(ocean, rich, empty_scene, tmp_path)
     assert sea_of(linked) == rich
     own = linked.override_create(remap_local_usages=True)
     assert sea_of(own) == rich
-    with pytest.raises(ValueError, match="2 Waves, 3 Wind Field, 2 Picture layers"):
+    with pytest.raises(
+        ValueError,
+        match="2 wave layers, 3 wind fields, 2 pictures, this sea has 2 wave layers, 3 wind fields:",
+    ):
         own.ocean_tweak.from_parameters(rich.replace(pictures=()), bpy.context.scene)
 
 

@@ -88,7 +88,7 @@ def test_linked_and_overridden_oceans_move(
     np.testing.assert_allclose(evaluated(override), expected(other, 6), atol=TOLERANCE)
     np.testing.assert_allclose(evaluated(wanted.objects[1]), expected(sea, 6), atol=TOLERANCE)
     layers = (other.layers[0], type(other.layers[0])())
-    with pytest.raises(ValueError, match="keeps its 1 wave layers, this sea has 2"):
+    with pytest.raises(ValueError, match="keeps its 1 wave layer, this sea has 2 wave layers"):
         override.ocean_tweak.from_parameters(other.replace(layers=layers), scene)
     shot = str(tmp_path / "shot.blend")
     bpy.ops.wm.save_as_mainfile(filepath=shot)

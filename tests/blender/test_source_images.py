@@ -176,9 +176,12 @@ def test_red_and_green_are_the_wind(ocean, wind):
     assert layer.keys[0].vectors.values[0, 1].tolist() == [2.0, -4.0]
     wind.image_values = "CENTRED"
     assert sea_of(ocean).wind_fields[0].keys[0].vectors.values[0, 1].tolist() == [-4.0, -16.0]
-    assert wind.source == "IMAGE"
+    wind.show_vectors = True
+    image = wind.image
     bpy.ops.ocean.layer_add()  # through the parameters and back
-    assert ocean.ocean_tweak.layers[2].wind_field.image_values == "CENTRED"
+    again = ocean.ocean_tweak.layers[2].wind_field
+    assert (again.source, again.image, again.image_values) == ("IMAGE", image, "CENTRED")
+    assert (again.image_speed, again.show_vectors) == (8.0, True)
 
 
 def test_a_wind_too_strong_for_the_patch_is_told(ocean, wind):
