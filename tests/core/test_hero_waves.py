@@ -232,6 +232,7 @@ def test_a_hero_wave_squeezes_its_crest_and_foams(windy: OceanParameters) -> Non
     wave = HeroWave(x=200.0, y=400.0, wavelength=80.0, group_width=300.0, crest_height=8.0)
     surface = Ocean(windy.replace(hero_waves=(wave,))).surface(0.0, {"cusp", "foam"})
     assert surface.foam[62:67, 31:34].mean() > 0.5
+    assert Ocean(windy).surface(0.0, {"foam"}).foam[62:67, 31:34].mean() < 0.2
     assert np.unravel_index(np.argmax(surface.cusp), surface.cusp.shape)[1] in range(26, 40)
 
 
@@ -279,6 +280,8 @@ def test_hero_waves_survive_json_and_make_frames_of_their_own() -> None:
     assert len(parameters.active_hero_waves) == 1
     prints = {frame_fingerprint(Shot(sea(*waves)), 1) for waves in ((), (HeroWave(),), (HeroWave(time=1.0),))}
     assert len(prints) == 3
+    shot = Shot(parameters, Animation(1, (("choppiness", (0.5, 1.0)),)))
+    assert shot.at(2).parameters == parameters.replace(choppiness=1.0)
     with pytest.raises(ParameterError, match="animate ocean_time"):
         Animation(1, (("hero_waves.0.crest_height", (1.0, 2.0)),))
 
