@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from ocean_tweak.core.parameters import (
+    HeroWave,
     OceanParameters,
     PictureLayer,
     Timing,
@@ -34,6 +35,7 @@ CLASSES = {
     PictureLayer: "in each entry of the list `pictures`",
     WindFieldLayer: "in each entry of the list `wind_fields`",
     WindKey: "in each entry of a wind field's list `keys`",
+    HeroWave: "in each entry of the list `hero_waves`",
     Timing: "in `timing`",
 }
 

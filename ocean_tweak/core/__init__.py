@@ -4,6 +4,7 @@
 from .ocean import Ocean
 from .parameters import (
     Foam,
+    HeroWave,
     OceanParameters,
     ParameterError,
     PictureLayer,
@@ -18,6 +19,7 @@ from .sea_state_match import layer_for_sea_state
 
 __all__ = [
     "Foam",
+    "HeroWave",
     "Ocean",
     "OceanParameters",
     "ParameterError",

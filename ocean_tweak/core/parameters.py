@@ -15,6 +15,8 @@ from typing import Any, TypeVar
 
 from . import constants
 from .errors import ParameterError
+from .hero_waves.group import check_hero_waves, is_held
+from .hero_waves.parameters import HeroWave
 from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import Validated, choice, integer, nested, number, rational, switch
@@ -23,6 +25,7 @@ from .wave_particles.parameters import WindFieldLayer, WindKey
 
 __all__ = [
     "Foam",
+    "HeroWave",
     "OceanParameters",
     "ParameterError",
     "PictureLayer",
@@ -285,6 +288,7 @@ class OceanParameters(Validated):
     layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
     pictures: tuple[PictureLayer, ...] = nested(PictureLayer, many=True, empty=True)
     wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
+    hero_waves: tuple[HeroWave, ...] = nested(HeroWave, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
@@ -298,6 +302,7 @@ class OceanParameters(Validated):
         _check_loop(self.loop_duration, self.timing)
         check_loop(self.pictures, self.domain_size, self.loop_duration)
         _check_wind_fields(self)
+        check_hero_waves(self.hero_waves, self.domain_size, self.resolution)
 
     @property
     def active_layers(self) -> tuple[WaveLayer, ...]:
@@ -314,9 +319,22 @@ class OceanParameters(Validated):
         """The wind fields that are not muted."""
         return tuple(layer for layer in self.wind_fields if not layer.muted)
 
+    @property
+    def active_hero_waves(self) -> tuple[HeroWave, ...]:
+        """The hero waves that are not muted."""
+        return tuple(wave for wave in self.hero_waves if not wave.muted)
+
     def replace(self, **changes: Any) -> OceanParameters:
         """A copy with some fields changed, validated anew."""
         return dataclasses.replace(self, **changes)
+
+    def at_resolution(self, resolution: int) -> OceanParameters:
+        """The same sea on other samples; hero waves that are too short for them are muted."""
+        waves = tuple(
+            wave if is_held(wave, self.domain_size, resolution) else dataclasses.replace(wave, muted=True)
+            for wave in self.hero_waves
+        )
+        return self.replace(resolution=resolution, hero_waves=waves)
 
     def to_dict(self, brief: bool = False) -> dict[str, Any]:
         """Plain dictionaries, lists and numbers, as they stand in a JSON file.

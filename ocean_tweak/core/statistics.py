@@ -42,7 +42,7 @@ class Statistics:
 
     spectrum : the continuous spectrum, all wavelengths
     resolved : the mean over all seeds of what the grid holds
-    seed : this seed, averaged over time
+    seed : this seed, averaged over time; hero waves are in it, and in none of the above
     wavelengths_per_domain : peak wavelengths along a side
     sample_spacing : m
     loop_speed_change : largest relative change of a wave's phase speed by the loop, or None without one
@@ -152,7 +152,8 @@ def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statist
     of_pictures = tuple(_picture_warnings(parameters))
     if not np.isfinite(statistics.peak_wavelength):
         flat = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
-        return of_pictures if parameters.active_wind_fields else (*of_pictures, flat)
+        placed = parameters.active_wind_fields or parameters.active_hero_waves
+        return of_pictures if placed else (*of_pictures, flat)
     return (
         *of_pictures,
         *_grid_warnings(parameters, sea, statistics),
