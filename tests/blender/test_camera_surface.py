@@ -326,3 +326,62 @@ def test_the_helper(extension, ocean_object, make_parameters, camera, empty_scen
     assert np.abs(shown[item.name]).max() > 0.1
     with pytest.raises(extension("scene.settings").OceanObjectError, match="is no ocean"):
         add(item, empty_scene)
+
+
+@pytest.fixture
+def brightness(empty_scene, camera, tmp_path):
+    """Mean of the far and of the near half of what the camera sees, under a sky brighter at the horizon."""
+    world = empty_scene.world = bpy.data.worlds.new("Sky")
+    if world.node_tree is None:
+        world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    place, parts, strength = (
+        nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "SeparateXYZ", "MapRange")
+    )
+    links.new(place.outputs["Generated"], parts.inputs[0])
+    links.new(parts.outputs["Z"], strength.inputs[0])
+    strength.inputs[3].default_value, strength.inputs[4].default_value = 1.0, 0.4
+    background = next(node for node in nodes if node.type == "BACKGROUND")
+    background.inputs[0].default_value = (1.0, 1.0, 1.0, 1.0)
+    links.new(strength.outputs[0], background.inputs[1])
+    render = empty_scene.render
+    render.engine, render.filepath = "CYCLES", str(tmp_path / "seen.exr")
+    render.resolution_x, render.resolution_y = 64, 12
+    render.image_settings.file_format = "OPEN_EXR"
+    cycles = empty_scene.cycles
+    cycles.samples, cycles.seed, cycles.device, cycles.use_denoising = 24, 1, "CPU", False
+    camera.rotation_euler.x = math.radians(79.0)
+    camera.data.angle, camera.data.clip_end = math.radians(50.0), 1000.0
+    moved_to(camera, 1.3, -1.2, 15.0)
+
+    def seen():
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(render.filepath)
+        pixels = np.empty(4 * 64 * 12, np.float32)
+        image.pixels.foreach_get(pixels)
+        bpy.data.images.remove(image)
+        return pixels.reshape(2, -1, 4)[::-1, :, 0].mean(axis=1)
+
+    return seen
+
+
+def test_brightness_stays_when_waves_become_roughness(
+    extension, ocean_object, core, make_parameters, empty_scene, brightness
+):
+    layer = core.WaveLayer(wind_speed=4.0, fetch=20e3)
+    parameters = make_parameters(domain_size=40.0, layers=(layer,))
+    ocean = ocean_object.add(empty_scene, parameters)
+    water = extension("scene.water_material")
+    material = water.water_material()
+    water.assign(ocean, material)
+    group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+    for name in ("Ripples", "Gusts", "Foam Amount"):  # patterns of their own
+        group.inputs[name].default_value = 0.0
+    item = extension("scene.camera_surface").add_camera_surface(ocean, empty_scene)
+    set_inputs = extension("nodes.modifier_inputs").set_inputs
+    settings = {"To Horizon": False, "Reach": 170.0, "Curvature": False}
+    set_inputs(item.modifiers[0], {**settings, "Fade": False, "Vertex Budget": 500_000})
+    in_mesh = brightness()
+    set_inputs(item.modifiers[0], {"Fade": True, "Vertex Budget": 5000})
+    item.update_tag()
+    assert brightness() == pytest.approx(in_mesh, rel=0.05)
