@@ -21,7 +21,9 @@ def add_camera_surface(
     camera: bpy.types.Object | None = None,
     budget: int = _BUDGET,
 ) -> bpy.types.Object:
-    """Show an ocean around a camera; its own mesh is hidden in renders and in the viewport.
+    """Show an ocean around a camera; its own mesh and its horizon make room for it.
+
+    In renders both are hidden. In the viewport the ocean is a box, so that it can still be chosen.
 
     The surface is the ocean's child, in the same collections, with the same material. Near the camera it
     has two cells a sample of the ocean: all of its waves.
@@ -51,6 +53,13 @@ def add_camera_surface(
         "Material": ocean.material_slots[0].material if ocean.material_slots else None,
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
-    ocean.hide_render = True
-    ocean.hide_viewport = True
+    _make_room(ocean)
     return surface
+
+
+def _make_room(ocean: bpy.types.Object) -> None:
+    ocean.hide_render = True
+    ocean.display_type = "BOUNDS"
+    for child in ocean.children:
+        if water_material.is_far(child):
+            child.hide_render = child.hide_viewport = True

@@ -59,7 +59,7 @@ def describe(
     values = _values(item, parameters, scene)
     if _set_properties(item, values):
         for child in item.children:
-            if _FAR in child:
+            if is_far(child):
                 _set_properties(child, {**values, SLOPES: total_slope_variance(parameters)})
             elif _NEAR in child:
                 _set_properties(child, values)
@@ -78,6 +78,11 @@ def describe_far(
     """Tell the material about flat water that stands for an ocean far away: all waves are roughness."""
     slopes = total_slope_variance(parameters)
     _set_properties(item, {**_values(item, parameters, scene), SLOPES: slopes, _FAR: 1.0})
+
+
+def is_far(item: bpy.types.Object) -> bool:
+    """Whether an object is flat water that stands for an ocean far away."""
+    return _FAR in item
 
 
 def _values(

@@ -308,7 +308,9 @@ def test_the_helper(extension, ocean_object, make_parameters, camera, empty_scen
     water.assign(ocean, water.water_material())
     water.describe(ocean, parameters, empty_scene)
     add = extension("scene.camera_surface").add_camera_surface
+    horizon = extension("scene.stage").add_horizon(ocean, parameters, empty_scene, empty_scene.collection, 1)
     item = add(ocean, empty_scene, budget=BUDGET)
+    assert horizon.hide_viewport
     mesh = evaluated_mesh(item)
     assert 0.8 * BUDGET < len(mesh.vertices) <= BUDGET
     assert mesh.materials[mesh.polygons[0].material_index].original == water.water_material()
