@@ -18,11 +18,11 @@ def _build(tree: bpy.types.NodeTree) -> None:
     )
     outputs = (Plug("Warning", "NodeSocketBool", None, "Whether something is wrong"),)
     build = Builder(tree, inputs, outputs)
-    held = _text(
+    held = joined_text(
         build,
         "Frame", build.given("Scene Frame"), "was not baked: frame", build.given("Frame"), "is held",
     )  # fmt: skip
-    missing = _text(
+    missing = joined_text(
         build,
         "The displacement image of frame", build.given("Frame"),
         "is missing or cannot be read, and the sea is flat: bake it again or choose other files",
@@ -37,7 +37,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish_with({"Warning": build.logic("OR", *shown)})
 
 
-def _text(build: Builder, *words: Input) -> Socket:
+def joined_text(build: Builder, *words: Input) -> Socket:
     """Texts and whole numbers, joined by spaces."""
     join = build.add("GeometryNodeStringJoin", {"Delimiter": " "})
     strings = []

@@ -3,7 +3,21 @@
 
 from __future__ import annotations
 
-from . import floating, frame_warnings, grid, horizon, ocean, patch, sample, shown_frame, surface, water
+from . import (
+    averages,
+    camera_grid,
+    camera_surface,
+    floating,
+    frame_warnings,
+    grid,
+    horizon,
+    ocean,
+    patch,
+    sample,
+    shown_frame,
+    surface,
+    water,
+)
 
 ALL_KINDS = (
     grid.GRID,
@@ -20,5 +34,8 @@ ALL_KINDS = (
     floating.FLOAT,
     floating.CARRIER,
     horizon.HORIZON,
+    camera_grid.CAMERA_GRID,
+    averages.AVERAGES,
+    camera_surface.CAMERA_SURFACE,
     water.WATER,
 )

@@ -7,6 +7,9 @@ from __future__ import annotations
 #: how far the surface is squeezed
 DISPLACEMENT, VELOCITY, FOAM, CUSP = "displacement", "velocity", "foam", "cusp"
 
+#: point attribute of a surface around the camera: mean square slope of the waves that it leaves out
+SLOPE_VARIANCE = "slope_variance"
+
 #: corner attribute: position / domain size + ½ / samples, going on over the repeats
 TEXTURE_COORDINATES = "st"
 

@@ -24,6 +24,8 @@ from .units import metres_per_unit
 _KEY = "ocean_tweak_material"
 # marks flat water that stands for the ocean it is a child of
 _FAR = "ocean_tweak_is_far"
+# marks a mesh that shows the waves of the ocean it is a child of
+_NEAR = "ocean_tweak_is_near"
 NAME = "Ocean Tweak Water"
 
 #: inputs of the group for waters of some kinds; absorption and backscatter per metre in red, green and blue
@@ -48,7 +50,8 @@ def describe(
 ) -> None:
     """Tell the material about an ocean, by custom properties; those that hold their value stay untouched.
 
-    The ocean's horizon goes along. A linked object keeps what it has: Blender drops changes to it.
+    The ocean's horizon and its surfaces around cameras go along. A linked object keeps what it has: Blender
+    drops changes to it.
 
     parameters : of the render
     scene : whose units hold, by default the first one that the object is in
@@ -56,8 +59,17 @@ def describe(
     values = _values(item, parameters, scene)
     if _set_properties(item, values):
         for child in item.children:
-            if _FAR in child:
+            if is_far(child):
                 _set_properties(child, {**values, SLOPES: total_slope_variance(parameters)})
+            elif _NEAR in child:
+                _set_properties(child, values)
+
+
+def describe_near(
+    item: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene | None = None
+) -> None:
+    """Tell the material about another mesh that shows an ocean's waves."""
+    _set_properties(item, {**_values(item, parameters, scene), _NEAR: 1.0})
 
 
 def describe_far(
@@ -66,6 +78,11 @@ def describe_far(
     """Tell the material about flat water that stands for an ocean far away: all waves are roughness."""
     slopes = total_slope_variance(parameters)
     _set_properties(item, {**_values(item, parameters, scene), SLOPES: slopes, _FAR: 1.0})
+
+
+def is_far(item: bpy.types.Object) -> bool:
+    """Whether an object is flat water that stands for an ocean far away."""
+    return _FAR in item
 
 
 def _values(

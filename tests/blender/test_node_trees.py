@@ -24,6 +24,9 @@ KINDS = {
     "frame": ("nodes.shown_frame", lambda module: module.SHOWN_FRAME),
     "frame-warnings": ("nodes.frame_warnings", lambda module: module.WARNINGS),
     "grid": ("nodes.grid", lambda module: module.GRID),
+    "camera-grid": ("nodes.camera_grid", lambda module: module.CAMERA_GRID),
+    "averages": ("nodes.averages", lambda module: module.AVERAGES),
+    "camera-surface": ("nodes.camera_surface", lambda module: module.CAMERA_SURFACE),
 }
 
 

@@ -24,5 +24,12 @@ def test_every_input_of_the_group(extension, empty_scene):
     assert first_column("<!-- inputs:") == inputs
 
 
+def test_every_input_of_the_camera_surface(extension, empty_scene):
+    kind = extension("nodes.camera_surface").CAMERA_SURFACE
+    group = extension("nodes.versioned").node_group(kind)
+    inputs = [item.name for item in group.interface.items_tree if getattr(item, "in_out", "") == "INPUT"]
+    assert first_column("<!-- camera surface:") == inputs
+
+
 def test_every_attribute():
     assert first_column("in a render.") == list(CONTRACT)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface around the camera that shows an ocean up to the horizon, in the place of the ocean's own mesh."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
+from ..nodes.modifier_inputs import set_inputs
+from ..nodes.versioned import node_group
+from . import water_material
+from .settings import OceanObjectError, is_ocean, settings_of
+from .units import metres_per_unit
+
+_BUDGET = 200_000
+
+
+def add_camera_surface(
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    camera: bpy.types.Object | None = None,
+    budget: int = _BUDGET,
+) -> bpy.types.Object:
+    """Show an ocean around a camera; its own mesh and its horizon make room for it.
+
+    In renders both are hidden. In the viewport the ocean is a box, so that it can still be chosen.
+
+    The surface is the ocean's child, in the same collections, with the same material. Near the camera it
+    has two cells a sample of the ocean: all of its waves.
+
+    camera : None for the scene's, whichever that is
+    budget : vertices, at most
+
+    Raises OceanObjectError for an object that is no ocean.
+    """
+    if not is_ocean(ocean):
+        raise OceanObjectError(f"{ocean.name} is no ocean: choose one to show around the camera")
+    parameters = settings_of(ocean).to_parameters(scene)
+    metres = float(metres_per_unit(scene))
+    name = f"{ocean.name} Camera Surface"
+    surface = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    surface.parent = ocean
+    for collection in ocean.users_collection:
+        collection.objects.link(surface)
+    water_material.describe_near(surface, parameters, scene)
+    modifier = surface.modifiers.new(name, "NODES")
+    modifier.node_group = node_group(CAMERA_SURFACE)
+    inputs = {
+        "Ocean": ocean,
+        "Finest Spacing": 0.5 * parameters.domain_size / parameters.resolution / metres,
+        "Vertex Budget": budget,
+        "Planet Radius": EARTH_RADIUS / metres,
+        "Material": ocean.material_slots[0].material if ocean.material_slots else None,
+    }
+    set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
+    _make_room(ocean)
+    return surface
+
+
+def _make_room(ocean: bpy.types.Object) -> None:
+    ocean.hide_render = True
+    ocean.display_type = "BOUNDS"
+    for child in ocean.children:
+        if water_material.is_far(child):
+            child.hide_render = child.hide_viewport = True
