@@ -15,6 +15,7 @@ from .scene.shots import scene_frames, shot_of
 from .ui import (
     asset_operators,
     bake_operators,
+    camera_operators,
     float_operators,
     float_panel,
     layer_operators,
@@ -42,6 +43,7 @@ CLASSES = (
     *preset_operators.CLASSES,
     *sea_operators.CLASSES,
     *panels.CLASSES,
+    *camera_operators.CLASSES,
     *float_operators.CLASSES,
     *float_panel.CLASSES,
     *node_operators.CLASSES,

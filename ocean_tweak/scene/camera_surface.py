@@ -7,7 +7,7 @@ import bpy
 
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
-from ..nodes.versioned import node_group
+from ..nodes.versioned import is_of_kind, node_group
 from . import water_material
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit
@@ -57,9 +57,29 @@ def add_camera_surface(
     return surface
 
 
-def _make_room(ocean: bpy.types.Object) -> None:
-    ocean.hide_render = True
-    ocean.display_type = "BOUNDS"
+def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
+    """The surface that shows an ocean around a camera; None where its own mesh does."""
+    for child in ocean.children:
+        groups = [modifier.node_group for modifier in child.modifiers if modifier.type == "NODES"]
+        if any(is_of_kind(group, CAMERA_SURFACE) for group in groups):
+            return child
+    return None
+
+
+def remove_camera_surface(ocean: bpy.types.Object) -> None:
+    """Let an ocean's own mesh and its horizon show it again."""
+    surface = camera_surface_of(ocean)
+    if surface is not None:
+        mesh = surface.data
+        bpy.data.objects.remove(surface)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
+    _make_room(ocean, is_there=False)
+
+
+def _make_room(ocean: bpy.types.Object, is_there: bool = True) -> None:
+    ocean.hide_render = is_there
+    ocean.display_type = "BOUNDS" if is_there else "TEXTURED"
     for child in ocean.children:
         if water_material.is_far(child):
-            child.hide_render = child.hide_viewport = True
+            child.hide_render = child.hide_viewport = is_there

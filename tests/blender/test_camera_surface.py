@@ -387,3 +387,31 @@ def test_brightness_stays_when_waves_become_roughness(
     set_inputs(item.modifiers[0], {"Fade": True, "Vertex Budget": 5000})
     item.update_tag()
     assert brightness() == pytest.approx(in_mesh, rel=0.05)
+
+
+def test_the_button_makes_it_and_takes_it_away(extension, ocean_object, make_parameters, empty_scene, window):
+    parameters = make_parameters()
+    ocean = ocean_object.add(empty_scene, parameters)
+    horizon = extension("scene.stage").add_horizon(ocean, parameters, empty_scene, empty_scene.collection, 1)
+    bpy.context.view_layer.objects.active = ocean
+    meshes = len(bpy.data.meshes)
+    assert not bpy.ops.ocean.remove_camera_surface.poll()
+    with window.override():
+        bpy.ops.ed.undo_push(message="before")
+        assert bpy.ops.ocean.add_camera_surface(budget=2000) == {"FINISHED"}
+        bpy.ops.ed.undo_push(message="added")
+        ocean = bpy.data.objects[ocean.name]
+        surface = extension("scene.camera_surface").camera_surface_of(ocean)
+        assert 1500 < len(evaluated_mesh(surface).vertices) <= 2000
+        assert ocean.hide_render
+        with pytest.raises(RuntimeError, match="has a camera surface already"):
+            bpy.ops.ocean.add_camera_surface()
+        bpy.ops.ed.undo()
+        assert not bpy.data.objects["Ocean"].hide_render
+        bpy.ops.ed.redo()
+        ocean, horizon = bpy.data.objects["Ocean"], bpy.data.objects["Ocean Horizon"]
+        bpy.context.view_layer.objects.active = ocean
+        assert bpy.ops.ocean.remove_camera_surface() == {"FINISHED"}
+    assert extension("scene.camera_surface").camera_surface_of(ocean) is None
+    assert (ocean.hide_render, ocean.display_type, horizon.hide_viewport) == (False, "TEXTURED", False)
+    assert len(bpy.data.meshes) == meshes

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import asset_operators, operators, scene_operators
+from .. import asset_operators, camera_operators, operators, scene_operators
 from .drawing import SubPanel, active_settings, split
 
 
@@ -95,6 +95,7 @@ class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
         attributes = layout.column(heading="Attributes")
         attributes.prop(settings, "use_normals")
         attributes.prop(settings, "use_velocity")
+        camera_operators.draw_camera_surface(layout, context.active_object)
 
 
 class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
