@@ -11,6 +11,7 @@ from typing import Any
 
 from ocean_tweak.core.parameters import (
     OceanParameters,
+    Patch,
     PictureLayer,
     Timing,
     Water,
@@ -34,6 +35,7 @@ CLASSES = {
     PictureLayer: "in each entry of the list `pictures`",
     WindFieldLayer: "in each entry of the list `wind_fields`",
     WindKey: "in each entry of a wind field's list `keys`",
+    Patch: "in each entry of the list `patches`",
     Timing: "in `timing`",
 }
 

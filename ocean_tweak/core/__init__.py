@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sea itself: NumPy and the standard library, nothing else."""
 
+from .cascades.cascade import Cascade
 from .ocean import Ocean
 from .parameters import (
     Foam,
     OceanParameters,
     ParameterError,
+    Patch,
     PictureLayer,
     Timing,
     Water,
@@ -17,10 +19,12 @@ from .raster import Raster
 from .sea_state_match import layer_for_sea_state
 
 __all__ = [
+    "Cascade",
     "Foam",
     "Ocean",
     "OceanParameters",
     "ParameterError",
+    "Patch",
     "PictureLayer",
     "Raster",
     "Timing",

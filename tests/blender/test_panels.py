@@ -121,7 +121,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
     elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration"}
-    in_lists = {"wind_fields", "pictures", "keys", "picture"}  # as layers, recordings and images
+    in_lists = {"wind_fields", "pictures", "keys", "picture", "patches"}  # as layers, recordings and images
     assert names - elsewhere - in_lists - drawn == set()
     assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
 
