@@ -12,6 +12,10 @@ from ..parameters import OceanParameters, Patch, WaveLayer
 _LARGEST_SEED = 2**31 - 1
 
 
+#: outputs of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
+ADDING = frozenset({"displacement", "velocity", "slope", "strain"})
+
+
 def rotations(parameters: OceanParameters) -> tuple[float, ...]:
     """By how much each patch is turned, rad counter-clockwise."""
     return tuple(patch.rotation for patch in parameters.patches) or (0.0,)
