@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -475,3 +477,33 @@ def test_unresolved_slopes_begin_where_the_last_patch_ends() -> None:
 
     expected, _ = integrate.quad(density, math.log(shortest), math.log(limit))
     assert unresolved_slope_variance(SEA) == pytest.approx(expected, rel=0.02)
+
+
+# documents and examples
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_example_is_a_plan_without_warnings() -> None:
+    sea = OceanParameters.from_json((ROOT / "examples" / "horizon.json").read_text(encoding="utf-8"))
+    found = Cascade(sea).statistics()
+    assert len(sea.patches) == 4
+    assert found.total.warnings == ()
+    assert found.total.resolved_share == pytest.approx(1.0, abs=0.01)
+    assert sea.patches[-1].shortest_wavelength == 0.1
+
+
+def test_the_document_shows_a_sea() -> None:
+    text = (ROOT / "docs" / "cascades.md").read_text(encoding="utf-8")
+    (patches,) = re.findall(r"^```json\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    sea = OceanParameters.from_json(f"{{{patches}}}")
+    assert Cascade(sea).statistics().total.warnings == ()
+
+
+def test_cusp_of_the_sum_is_made_of_strains_as_the_document_says() -> None:
+    cascade = Cascade(SEA)
+    x, y = GENERATOR.uniform(0.0, 500.0, (2, 200))
+    fields = cascade.fields_at(x, y, 2.0, {"strain", "cusp"})
+    xx, yy, xy = np.moveaxis(fields.strain, -1, 0)
+    cusp = np.maximum(0.0, 1 - (1 + (xx + yy) / 2) + np.sqrt(((xx - yy) / 2) ** 2 + xy**2))
+    np.testing.assert_allclose(fields.cusp, cusp, atol=1e-6)
