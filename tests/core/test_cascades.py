@@ -26,10 +26,12 @@ from ocean_tweak.core import (
     WindFieldLayer,
     WindKey,
 )
+from ocean_tweak.core.cascades.foam import foam_at
 from ocean_tweak.core.cascades.patch_seas import patch_parameters
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.dispersion import angular_frequency
 from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.foam import FoamModel
 from ocean_tweak.core.foam_threshold import whitecap_coverage
 from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.shot import Animation, Shot
@@ -115,6 +117,21 @@ def test_no_wave_vector_is_twice_there_or_lost(softness: float) -> None:
     shares = [DirectionalSpectrum(layer, Water(), "DEEP", patch.band).energy_weight(k) for patch in THREE]
     np.testing.assert_array_equal(sum(shares), DirectionalSpectrum(layer, Water(), "DEEP").energy_weight(k))
     assert np.all(np.count_nonzero(shares, axis=0) <= 1)
+
+
+def test_a_cell_that_a_band_ends_in_is_shared() -> None:
+    """Each patch has the mean of the part of the cell that lies in its band."""
+    patches = (Patch(200.0, 0.0, 5.0, 1e6, 128), Patch(200.0, 0.0, 2.0, 5.0, 256))
+    sea = SEA.replace(layers=LAYERS["all directions"], patches=patches)
+    states = [Ocean(p).initial_state for p in patch_parameters(sea)]
+    grid = states[0].grid  # the band ends 40 cells from the origin
+    cut = (np.abs(grid.k / grid.spacing - 40.0) < 0.3) & grid.usable
+    rows = np.where(np.arange(128) < 64, np.arange(128), np.arange(128) + 128)
+    first, second = states[0].expected_plus[cut], states[1].expected_plus[rows, :65][cut]
+    share = first / (first + second)
+    inside = 0.5 + (40.0 - grid.k[cut] / grid.spacing)  # of a cell whose sides lie along and across
+    assert np.std(share - inside) < 0.1
+    assert np.all((share > 0.05) & (share < 0.95))
 
 
 def test_variance_of_the_sum_is_that_of_its_waves() -> None:
@@ -303,15 +320,20 @@ def test_foam_of_the_sum_covers_what_the_wind_leaves() -> None:
 
 
 def test_foam_drifts_along_the_wind() -> None:
-    """Foam born at once and never after would only move; here the part that is old must lie downwind."""
-    wind = dataclasses.replace(LAYER, wind_speed=15.0, wind_direction=0.0)
-    patches = tuple(dataclasses.replace(p, resolution=64) for p in THREE[:2])
-    still, moving = (
-        Cascade(SEA.replace(layers=(wind,), patches=patches, foam=Foam(half_life=2.0, drift=drift)))
-        for drift in (0.0, 0.1)
-    )
-    assert moving.foam_model.drift == pytest.approx((1.5, 0.0))
-    assert still.foam_model.drift == (0.0, 0.0)
+    """Foam that is born once, in a spot at the origin, lies downwind of it later, and fades."""
+    model = FoamModel(threshold=0.5, half_life=2.0, drift=(1.5, -0.5), spacing=1.0)
+
+    def spot(x: np.ndarray, y: np.ndarray, time: Fraction) -> np.ndarray:
+        return np.where((np.hypot(x, y) < 0.4) & (time == 1), 1.0, 0.0)
+
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(-6.0, 6.1, 0.25), np.arange(-6.0, 6.1, 0.25)))
+    foam = foam_at(model, spot, x, y, 3.0)
+    covered = foam > 0.0
+    assert np.mean(x[covered]) == pytest.approx(2.0 * 1.5, abs=0.1)
+    assert np.mean(y[covered]) == pytest.approx(2.0 * -0.5, abs=0.1)
+    np.testing.assert_allclose(foam[covered], 0.5, rtol=1e-6)
+    assert np.all(foam_at(model, spot, x, y, 1.0) == (np.hypot(x, y) < 0.4))
+    assert not np.any(foam_at(model, spot, x, y, 0.5))
 
 
 # parameters
