@@ -33,7 +33,10 @@ AT_ONCE = 2
 LEFT_OUT = ("test_documentation.py",)
 
 #: the cheap tests of published numbers, which notice most; the others run only where these see nothing
-FIRST = ("test_constants.py", "test_spectra.py", "test_published_numbers.py", "test_dispersion.py")
+FIRST = (
+    "test_constants.py", "test_spectra.py", "test_published_numbers.py", "test_dispersion.py",
+    "test_noise_synthesis.py",
+)  # fmt: skip
 
 FAILED_TEST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from ocean_tweak.core.parameters import (
+    HeroWave,
     OceanParameters,
     Patch,
     PictureLayer,
@@ -36,6 +37,7 @@ CLASSES = {
     WindFieldLayer: "in each entry of the list `wind_fields`",
     WindKey: "in each entry of a wind field's list `keys`",
     Patch: "in each entry of the list `patches`",
+    HeroWave: "in each entry of the list `hero_waves`",
     Timing: "in `timing`",
 }
 

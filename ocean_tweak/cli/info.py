@@ -14,6 +14,7 @@ from ..core import Cascade, OceanParameters, sea_scales
 from ..core.cascades.patch import NO_LONGEST
 from ..core.cascades.statistics import CascadeStatistics
 from ..core.foam_field import foam_outlook
+from ..core.hero_waves.outlook import HeroWaveOutlook, hero_wave_outlooks
 from ..core.memory import memory_need
 from ..core.statistics import SeaState
 from ..core.wave_particles.outlook import wind_wave_outlook
@@ -35,6 +36,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
                 "statistics": _plain(statistics),
                 "memory": dataclasses.asdict(memory_need(parameters[name])),
                 **_wind_fields(parameters[name]),
+                **_hero_waves(parameters[name]),
             }
             for name, statistics in results.items()
         }
@@ -62,6 +64,12 @@ def _wind_fields(parameters: OceanParameters) -> dict[str, object]:
     """What `info --json` says of wind fields, where there are any."""
     outlook = wind_wave_outlook(parameters)
     return {} if outlook is None else {"wind_fields": outlook._asdict()}
+
+
+def _hero_waves(parameters: OceanParameters) -> dict[str, object]:
+    """What `info --json` says of hero waves, where there are any."""
+    outlooks = hero_wave_outlooks(parameters)
+    return {"hero_waves": [wave.to_dict() for wave in outlooks]} if outlooks else {}
 
 
 def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) -> list[str]:
@@ -98,7 +106,12 @@ def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) ->
             f"  wind fields: waves up to {of_wind.longest_wavelength:.3g} m long, at most "
             f"{of_wind.most_particles} particles at once; the heights above are without them"
         )
+    heroes = hero_wave_outlooks(parameters)
+    lines += [_hero_row(wave) for wave in heroes]
+    if heroes:
+        lines.append("  hero waves are in the row of the seed alone: no spectrum expects them")
     warnings = (*statistics.warnings, *(of_wind.warnings if of_wind else ()))
+    warnings += tuple(warning for wave in heroes for warning in wave.warnings)
     return lines + [f"  warning: {warning}" for warning in warnings]
 
 
@@ -139,6 +152,15 @@ def _patch_rows(found: CascadeStatistics) -> list[str]:
     widths = [max(len(row[column]) for row in rows) for column in range(len(head))]
     cells = (zip(row, widths, strict=True) for row in rows)
     return ["  " + "  ".join(f"{cell:>{width}}" for cell, width in row) for row in cells]
+
+
+def _hero_row(wave: HeroWaveOutlook) -> str:
+    return (
+        f"  hero wave {wave.number}: {wave.crest_height:.3g} m high at x = {wave.x:.4g}, y = {wave.y:.4g} m "
+        f"at {wave.time:.4g} s (frame {wave.frame:.6g}), {wave.wavelength:.4g} m and {wave.period:.3g} s "
+        f"long, towards {math.degrees(wave.direction):.0f}°; crests run {wave.phase_speed:.3g} m/s, the "
+        f"group {wave.group_speed:.3g} m/s and {wave.domain_size / wave.group_speed:.3g} s through the patch"
+    )
 
 
 def _state_row(title: str, state: SeaState) -> str:

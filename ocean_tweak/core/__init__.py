@@ -5,6 +5,7 @@ from .cascades.cascade import Cascade
 from .ocean import Ocean
 from .parameters import (
     Foam,
+    HeroWave,
     OceanParameters,
     ParameterError,
     Patch,
@@ -21,6 +22,7 @@ from .sea_state_match import layer_for_sea_state
 __all__ = [
     "Cascade",
     "Foam",
+    "HeroWave",
     "Ocean",
     "OceanParameters",
     "ParameterError",

@@ -57,6 +57,9 @@ SWELL_SHAPE = 16.0
 # Trough damping: the long waves are those below this multiple of the peak wave number
 TROUGH_FILTER = 3.0
 
+# Height over length at which waves break in deep water, Miche (1944)
+BREAKING_STEEPNESS = 0.142
+
 # Whitecaps, Monahan & O'Muircheartaigh (1980): share of the sea, wind at 10 m in m/s
 WHITECAP_FACTOR = 3.84e-6
 WHITECAP_EXPONENT = 3.41

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import dispersion, random
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
+from .hero_waves.group import add_hero_wave
 from .noise_synthesis.state import PictureWaves, picture_waves
 from .parameters import OceanParameters, WaveLayer
 
@@ -33,7 +34,8 @@ class InitialState:
     h_plus, h_minus : complex, m. The elevation's coefficient at time t is
         h_plus·exp(-iωt) + h_minus·exp(+iωt); h_minus(k) is the conjugate of h_plus(-k).
     omega : float64, rad/s; in a loop a multiple of 2π/T
-    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²
+    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²,
+        without the hero waves, which no seed changes
     loop_duration : T in s, or None
     orbit_depth : depth in m that widens the water's orbits; infinite for those of deep water
     mirrored : whether ω is even in ky, which halves the work; where it is not, it still is even in k
@@ -101,7 +103,7 @@ def layer_seed(parameters: OceanParameters, layer: WaveLayer) -> int:
 
 
 def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> InitialState:
-    """Coefficients of all layers together: layers add in the spectrum.
+    """Coefficients of all layers together: layers add in the spectrum, and so do hero waves.
 
     The amplitude of a cosine is ν√(2ΨΔkxΔky), so its coefficient is half of that (Horvath 2015, eq. 47,
     corrected by this half; Chen 2014, eq. 10 and 18), and the elevation's variance is ΣΨΔkxΔky = m0.
@@ -124,6 +126,8 @@ def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> I
     if parameters.match_height:
         _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
     omega = _angular_frequency(grid, parameters)
+    for wave in parameters.active_hero_waves:
+        add_hero_wave(wave, grid, omega, h_plus, h_minus)
     others = []
     for picture in parameters.active_pictures:
         waves = picture_waves(

@@ -166,7 +166,7 @@ class Ocean:
         resolution = self.parameters.foam.resolution or self.parameters.resolution
         sea = self
         if resolution != self.parameters.resolution:
-            sea = Ocean(self.parameters.replace(resolution=resolution), self.precision, self.workers)
+            sea = Ocean(self.parameters.at_resolution(resolution), self.precision, self.workers)
 
         def cusp_at(time: Fraction) -> RealArray:
             fields = sea._arrays(frozenset({"cusp"}), {})

@@ -16,6 +16,8 @@ from typing import Any, TypeVar
 from . import constants
 from .cascades.patch import MOST_PATCHES, Patch, check_patches, resampled
 from .errors import ParameterError
+from .hero_waves.group import check_hero_waves, is_held
+from .hero_waves.parameters import HeroWave
 from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import Validated, choice, integer, nested, number, rational, switch
@@ -24,6 +26,7 @@ from .wave_particles.parameters import WindFieldLayer, WindKey
 
 __all__ = [
     "Foam",
+    "HeroWave",
     "OceanParameters",
     "ParameterError",
     "Patch",
@@ -288,6 +291,7 @@ class OceanParameters(Validated):
     pictures: tuple[PictureLayer, ...] = nested(PictureLayer, many=True, empty=True)
     wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
     patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
+    hero_waves: tuple[HeroWave, ...] = nested(HeroWave, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
@@ -304,7 +308,8 @@ class OceanParameters(Validated):
         _check_loop(self.loop_duration, self.timing)
         check_loop(self.pictures, self.domain_size, self.loop_duration)
         _check_wind_fields(self)
-        on_the_first = [name for name in ("pictures", "wind_fields") if getattr(self, name)]
+        check_hero_waves(self.hero_waves, self.domain_size, self.resolution)
+        on_the_first = [name for name in ("pictures", "wind_fields", "hero_waves") if getattr(self, name)]
         check_patches(self.patches, self.trough_damping, on_the_first)
 
     @property
@@ -332,6 +337,11 @@ class OceanParameters(Validated):
         """The wind fields that are not muted."""
         return tuple(layer for layer in self.wind_fields if not layer.muted)
 
+    @property
+    def active_hero_waves(self) -> tuple[HeroWave, ...]:
+        """The hero waves that are not muted."""
+        return tuple(wave for wave in self.hero_waves if not wave.muted)
+
     def replace(self, **changes: Any) -> OceanParameters:
         """A copy with some fields changed, validated anew.
 
@@ -347,6 +357,14 @@ class OceanParameters(Validated):
                     "is that of the first of the patches: change it there",
                 )
         return dataclasses.replace(self, **changes)
+
+    def at_resolution(self, resolution: int) -> OceanParameters:
+        """The same sea on other samples; hero waves that are too short for them are muted."""
+        waves = tuple(
+            wave if is_held(wave, self.domain_size, resolution) else dataclasses.replace(wave, muted=True)
+            for wave in self.hero_waves
+        )
+        return self.replace(resolution=resolution, hero_waves=waves)
 
     def to_dict(self, brief: bool = False) -> dict[str, Any]:
         """Plain dictionaries, lists and numbers, as they stand in a JSON file.

@@ -45,7 +45,7 @@ class Statistics:
 
     spectrum : the continuous spectrum, all wavelengths
     resolved : the mean over all seeds of what the grid holds
-    seed : this seed, averaged over time
+    seed : this seed, averaged over time; hero waves are in it, and in none of the above
     wavelengths_per_domain : peak wavelengths along a side
     sample_spacing : m
     loop_speed_change : largest relative change of a wave's phase speed by the loop, or None without one
@@ -161,7 +161,8 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
 def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> tuple[str, ...]:
     of_pictures = tuple(picture_warnings(parameters))
     if not np.isfinite(statistics.peak_wavelength):
-        return of_pictures if parameters.active_wind_fields else (*of_pictures, FLAT)
+        placed = parameters.active_wind_fields or parameters.active_hero_waves
+        return of_pictures if placed else (*of_pictures, FLAT)
     return (
         *of_pictures,
         *grid_warnings(parameters, sea, statistics),

@@ -66,7 +66,7 @@ class Plan:
     def viewport_sea(self, coarse: bool = False) -> OceanParameters:
         """The sea that the viewport shows; coarse, one of few samples."""
         samples = self.viewport.samples
-        parameters = self.parameters.replace(resolution=min(COARSE, samples) if coarse else samples)
+        parameters = self.parameters.at_resolution(min(COARSE, samples) if coarse else samples)
         if not self.has_own_render:
             return parameters
         foam = parameters.foam

@@ -50,6 +50,9 @@ LAYER_KINDS = {
     "PICTURE": LayerKind(
         "pictures", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
     ),
+    "HERO_WAVE": LayerKind(
+        "hero_waves", "hero wave", "Hero Wave", "A single group of waves, placed by hand", "SMOOTHCURVE"
+    ),
 }
 
 OUT_OF_RANGE = {

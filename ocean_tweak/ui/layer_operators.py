@@ -8,6 +8,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..core import OceanParameters, ParameterError, PictureLayer, WaveLayer
+from ..core.hero_waves.presets import hero_wave
 from ..core.wave_particles.presets import WIND_FIELDS, wind_field
 from ..scene.animated import move_keys
 from ..scene.settings import LAYER_KINDS, OceanObjectError, settings_of
@@ -75,7 +76,7 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
     """Add a layer."""
 
     bl_idname = "ocean.layer_add"
-    bl_description = "Add a layer: a swell from another direction, a wind field, a picture"
+    bl_description = "Add a layer: a swell from another direction, a wind field, a picture, a hero wave"
     bl_label = "Add Layer"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -108,6 +109,9 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
     def _new(self, parameters: OceanParameters) -> object:
         if self.kind == "WIND_FIELD":
             return wind_field(self.wind, parameters.domain_size, parameters.water.gravity)
+        if self.kind == "HERO_WAVE":
+            time = parameters.timing.time(bpy.context.scene.frame_current)
+            return hero_wave(parameters.domain_size, parameters.resolution, float(time))
         return WaveLayer() if self.kind == "WAVES" else PictureLayer()
 
 
@@ -123,7 +127,9 @@ class OCEAN_OT_layer_duplicate(_OfLayers, bpy.types.Operator):
         """A copy with another identity behind the active one."""
         name, index = active
         layers = getattr(parameters, name)
-        copy = dataclasses.replace(layers[index], id=-1)
+        copy = layers[index]
+        if name != "hero_waves":  # these have no random numbers, and so no identity
+            copy = dataclasses.replace(copy, id=-1)
         with_copy = (*layers[: index + 1], copy, *layers[index + 1 :])
         return _with(parameters, name, with_copy), Entry(name, index + 1)
 
@@ -217,7 +223,7 @@ class OCEAN_MT_layer_add(bpy.types.Menu):
 
     bl_idname = "OCEAN_MT_layer_add"
     bl_label = "Add Layer"
-    bl_description = "Add a layer: a swell from another direction, a wind field, a picture"
+    bl_description = "Add a layer: a swell from another direction, a wind field, a picture, a hero wave"
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw an entry a kind; wind fields have several to begin with."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The layers of an ocean as properties: waves by a spectrum, waves of a wind field, waves out of a picture.
+"""The layers of an ocean as properties: waves by a spectrum, of a wind field, out of a picture, by hand.
 
 They stand in one list, wave layers first, so that the number of a wave layer is its number in the parameters
 and in the paths of keys.
@@ -20,7 +20,15 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import OceanParameters, ParameterError, PictureLayer, WaveLayer, WindFieldLayer, WindKey
+from ..core import (
+    HeroWave,
+    OceanParameters,
+    ParameterError,
+    PictureLayer,
+    WaveLayer,
+    WindFieldLayer,
+    WindKey,
+)
 from ..core.plain_data import to_plain
 from ..scene import source_images, wind_recording
 from ..scene.settings import LAYER_KINDS
@@ -106,6 +114,12 @@ class OCEAN_PG_picture(bpy.types.PropertyGroup):
     }  # fmt: skip
 
 
+class OCEAN_PG_hero_wave(bpy.types.PropertyGroup):
+    """A single group of waves."""
+
+    __annotations__ = parameter_properties.annotations(HeroWave, changed, animated=False)
+
+
 class OCEAN_PG_layer(bpy.types.PropertyGroup):
     """One layer: a wave system of its own properties, or what its kind says."""
 
@@ -124,6 +138,7 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
         ),
         "wind_field": PointerProperty(type=OCEAN_PG_wind_field, **_OVERRIDE),
         "picture": PointerProperty(type=OCEAN_PG_picture, **_OVERRIDE),
+        "hero_wave": PointerProperty(type=OCEAN_PG_hero_wave, **_OVERRIDE),
     }  # fmt: skip
 
     @property
@@ -136,6 +151,7 @@ _GROUPS = {
     "WAVES": lambda layer: layer,
     "WIND_FIELD": lambda layer: layer.wind_field,
     "PICTURE": lambda layer: layer.picture,
+    "HERO_WAVE": lambda layer: layer.hero_wave,
 }
 
 
@@ -156,8 +172,12 @@ def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> dict[str, l
 
 def images(layers: bpy.types.bpy_prop_collection) -> set[bpy.types.Image]:
     """Those from which waves are made."""
-    found = {layer.group.image for layer in layers if layer.kind != "WAVES"}
-    return found - {None}
+    return {image for image in map(source_image, layers) if image is not None}
+
+
+def source_image(layer: bpy.types.PropertyGroup) -> bpy.types.Image | None:
+    """The image from which a layer's waves are made, if it has one."""
+    return getattr(layer.group, "image", None)
 
 
 def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, metres: Fraction) -> None:
@@ -218,7 +238,16 @@ def _read_wind_field(layer: bpy.types.PropertyGroup, metres: Fraction) -> object
     return source_images.made_layer(WindFieldLayer, tuple(values.items()))
 
 
-_READERS = {"WAVES": _read_waves, "WIND_FIELD": _read_wind_field, "PICTURE": _read_picture}
+def _read_hero_wave(layer: bpy.types.PropertyGroup, metres: Fraction) -> dict[str, Any]:
+    return parameter_properties.read(layer.hero_wave, HeroWave, metres)
+
+
+_READERS = {
+    "WAVES": _read_waves,
+    "WIND_FIELD": _read_wind_field,
+    "PICTURE": _read_picture,
+    "HERO_WAVE": _read_hero_wave,
+}
 
 
 def _keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
@@ -303,4 +332,4 @@ def _image_of(raster: Any, known: set[bpy.types.Image]) -> bpy.types.Image:
     return image
 
 
-CLASSES = (OCEAN_PG_wind_field, OCEAN_PG_picture, OCEAN_PG_layer)
+CLASSES = (OCEAN_PG_wind_field, OCEAN_PG_picture, OCEAN_PG_hero_wave, OCEAN_PG_layer)

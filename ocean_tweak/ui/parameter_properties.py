@@ -120,7 +120,8 @@ def _float_property(field: _Field, common: dict[str, Any]) -> Any:
     limits = {"min": low, "max": high, "soft_min": soft_low, "soft_max": soft_high}
     if _is_length(field):
         # the range is in metres and the property in Blender units: the core says what is out of range
-        limits |= {"min": 0.0, "max": _FLOAT32_MAX, "unit": _LENGTHS[meta["unit"]]}
+        least = 0.0 if low >= 0.0 else -_FLOAT32_MAX
+        limits |= {"min": least, "max": _FLOAT32_MAX, "unit": _LENGTHS[meta["unit"]]}
     limits |= _SUBTYPES.get(meta["unit"], {})
     return bpy.props.FloatProperty(
         description=f"{meta['description']} ({low:g} to {high:g} {meta['unit']})".replace(" )", ")"),

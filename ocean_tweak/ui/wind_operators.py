@@ -116,7 +116,7 @@ def _active_wind(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
 
 def _active_image(context: bpy.types.Context) -> bpy.types.Image | None:
     layer = _active_layer(context)
-    return layer.group.image if layer is not None and layer.kind != "WAVES" else None
+    return layer_properties.source_image(layer) if layer is not None else None
 
 
 def _keep(

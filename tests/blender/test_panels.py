@@ -115,15 +115,40 @@ def test_every_parameter_can_be_reached(draw, item, core):
         for animation in ("DISPERSION", "DOMINANT_BAND", "TRANSLATION"):
             picture.filter, picture.animation = kind, animation
             drawn.update(draw(item))
+    bpy.ops.ocean.layer_add(kind="HERO_WAVE")
+    drawn.update(draw(item))
     fields = [
         core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing, core.WindFieldLayer,
-        core.PictureLayer,
+        core.PictureLayer, core.HeroWave,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
     elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration"}
-    in_lists = {"wind_fields", "pictures", "keys", "picture", "patches"}  # as layers, recordings and images
+    in_lists = {
+        "wind_fields",
+        "pictures",
+        "hero_waves",
+        "patches",
+        "keys",
+        "picture",
+    }  # as layers, recordings and images
     assert names - elsewhere - in_lists - drawn == set()
     assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
+
+
+def test_a_hero_wave_says_when_and_how_fast(draw, item, empty_scene):
+    """In deep water crests run with √(g·λ/2π), the group half as fast."""
+    item.ocean_tweak.dispersion = "DEEP"
+    bpy.context.view_layer.objects.active = item
+    for frame in (25, 37):
+        empty_scene.frame_set(frame)
+        bpy.ops.ocean.layer_add(kind="HERO_WAVE")
+    wave = item.ocean_tweak.layers[2].hero_wave
+    wave.wavelength, wave.crest_height = 25.0, 2.0
+    drawn = draw(item)
+    assert {"Frame 37", "6.25 m/s", "3.12 m/s"} <= set(drawn)
+    assert "Hero wave 1: waves of 25 m break" in " ".join(drawn)
+    wave.muted = True
+    assert "Frame 37" not in draw(item)
 
 
 def test_the_beaufort_number_is_that_of_the_wind(draw, item):

@@ -26,6 +26,7 @@ PAPERS = {
     "Lantz": 4,
     "Mastin, Watterberg and Mareda (1987)": 10,
     "Li and Wang (2016)": 25,
+    "Hero waves": 0,
 }
 
 

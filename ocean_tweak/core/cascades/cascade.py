@@ -189,7 +189,7 @@ class Cascade:
         if resolution in (0, self.parameters.resolution):
             return self
         first = self.patches[0]
-        return Cascade(self.parameters.replace(resolution=resolution), first.precision, first.workers)
+        return Cascade(self.parameters.at_resolution(resolution), first.precision, first.workers)
 
     @property
     def _dtype(self) -> type:

@@ -26,7 +26,7 @@ def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]
 
     A wind towards θ blows towards θ - rotation there. Each patch has random numbers of its own, or waves at a
     band's end, of which two patches hold a part each, would be alike in both. The first keeps those of a
-    sea of one patch, and holds the pictures and wind fields.
+    sea of one patch, and holds the pictures, wind fields and hero waves.
     """
     if not parameters.patches:
         return (parameters,)
@@ -35,7 +35,7 @@ def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]
 
 def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanParameters:
     layers = tuple(_in_patch(parameters, layer, index, patch.rotation) for layer in parameters.layers)
-    others = {"pictures": (), "wind_fields": ()} if index else {}
+    others = {"pictures": (), "wind_fields": (), "hero_waves": ()} if index else {}
     return parameters.replace(layers=layers, patches=(replace(patch, rotation=0.0),), **others)
 
 

@@ -141,7 +141,7 @@ class _Planner:
 
     def _memory(self, resolution: int) -> tuple[int, int]:
         """Bytes that each patch keeps, and those that only one takes at a time."""
-        need = memory_need(self._parameters.replace(resolution=resolution))
+        need = memory_need(self._parameters.at_resolution(resolution))
         return need.state + need.surface, max(0, need.building - need.surface)
 
     def _patches(self, wish: Wish, resolutions: tuple[int, ...], cells: float) -> tuple[Patch, ...] | None:

@@ -120,7 +120,7 @@ def _warnings(
 ) -> Iterator[str]:
     yield from picture_warnings(sea.parameters)
     if not np.isfinite(total.peak_wavelength):
-        if not parameters.active_wind_fields:
+        if not (parameters.active_wind_fields or parameters.active_hero_waves):
             yield FLAT
         return
     if not parameters.is_cascade:

@@ -67,7 +67,7 @@ def _with_few_samples(parameters: OceanParameters) -> OceanParameters:
     if foam.resolution:  # in proportion, so that its time is too
         of_foam = max(16, 2 * round(foam.resolution * samples / parameters.resolution / 2))
         foam = replace(foam, resolution=of_foam)
-    return parameters.replace(resolution=samples, foam=foam)
+    return parameters.at_resolution(samples).replace(foam=foam)
 
 
 def _room(size: float) -> int:

@@ -89,7 +89,7 @@ class Package:
 
     def at(self, resolution: int) -> Shot:
         """The sea with as many samples along a side: the same waves, as far as they can be held."""
-        return replace(self.shot, parameters=self.shot.parameters.replace(resolution=resolution))
+        return replace(self.shot, parameters=self.shot.parameters.at_resolution(resolution))
 
     @property
     def frames_per_second(self) -> float:

@@ -2,10 +2,12 @@
 """Layers of all kinds: their list, and the active one in full."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as translated
 
+from ...core.hero_waves.outlook import hero_wave_outlooks
 from ...scene.settings import LAYER_KINDS
 from .. import layer_operators, wind_operators
-from .drawing import SubPanel, active_settings, message, split
+from .drawing import SubPanel, active_settings, length_text, message, row, split
 
 
 class OCEAN_UL_layers(bpy.types.UIList):
@@ -43,7 +45,16 @@ def _picture_title(group: bpy.types.PropertyGroup) -> str:
     return "White noise" if group.image is None else f"Picture, {group.image.name}"
 
 
-_TITLES = {"WAVES": _waves_title, "WIND_FIELD": _wind_title, "PICTURE": _picture_title}
+def _hero_title(group: bpy.types.PropertyGroup) -> str:
+    return f"Hero wave, {group.crest_height:.3g} high, {group.time:.4g} s"
+
+
+_TITLES = {
+    "WAVES": _waves_title,
+    "WIND_FIELD": _wind_title,
+    "PICTURE": _picture_title,
+    "HERO_WAVE": _hero_title,
+}
 
 
 class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
@@ -134,7 +145,32 @@ def _draw_picture(
     _props(layout, group, *_ANIMATION[group.animation])
 
 
-_DRAWERS = {"WAVES": _draw_waves, "WIND_FIELD": _draw_wind_field, "PICTURE": _draw_picture}
+def _draw_hero_wave(
+    layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
+) -> None:
+    _props(layout.column(align=True), group, "x", "y", "time")
+    _props(layout, group, "direction", "wavelength", "crest_height")
+    _props(layout.column(align=True), group, "group_length", "group_width")
+    _props(layout, group, "phase")
+    settings, scene = active_settings(context), context.scene
+    if group.muted or settings.error:
+        return
+    number = [layer.kind for layer in settings.layers[: settings.active_layer]].count("HERO_WAVE")
+    (wave,) = (found for found in hero_wave_outlooks(settings.to_parameters(scene)) if found.number == number)
+    column = layout.column(align=True)
+    row(column, "Focus", f"{translated('Frame')} {wave.frame:.6g}")
+    row(column, "Crests Run", f"{length_text(scene, wave.phase_speed)}/s")
+    row(column, "Group Runs", f"{length_text(scene, wave.group_speed)}/s")
+    for warning in wave.warnings:
+        message(layout, context, warning)
+
+
+_DRAWERS = {
+    "WAVES": _draw_waves,
+    "WIND_FIELD": _draw_wind_field,
+    "PICTURE": _draw_picture,
+    "HERO_WAVE": _draw_hero_wave,
+}
 _ANIMATION = {
     "DISPERSION": (),
     "DOMINANT_BAND": ("dominant_rate", "surrounding_rate"),

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a hero wave to the coefficients of its waves, which the sea's initial state takes in.
+
+At its focus the surface is A·exp(-ξ²/2σ² - ζ²/2τ²)·cos(k0 ξ + φ), with ξ along and ζ across the direction.
+The transform of this is a Gaussian around k0 with deviations 1/σ and 1/τ. Each of its waves turns with the
+sea's own ω(k), so that crests run with ω/k and the group with dω/dk.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError
+from ..grid import WaveVectorGrid
+from .parameters import HeroWave
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complexfloating]
+
+#: of a Gaussian: width between the places at half its height over its deviation
+HALF_HEIGHT_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
+
+#: deviations up to which the Gaussian's waves are taken: those beyond are less than 1/20,000 of the highest
+REACH = 4.5
+
+#: samples that a wavelength must have
+FEWEST_SAMPLES = 4
+
+#: modes of a block that are made at once
+_BLOCK = 2**17
+
+
+class Bandwidth(NamedTuple):
+    """Deviations of a group's wave vectors around k0, rad/m: along its direction and across."""
+
+    along: float
+    across: float
+
+
+def bandwidth(wave: HeroWave) -> Bandwidth:
+    """1/σ and 1/τ: the longer or wider a group, the closer its waves are to one."""
+    length = wave.group_length * wave.wavelength
+    return Bandwidth(HALF_HEIGHT_WIDTH / length, HALF_HEIGHT_WIDTH / wave.group_width)
+
+
+def wave_number(wave: HeroWave) -> float:
+    """k0 = 2π/λ, rad/m."""
+    return 2.0 * math.pi / wave.wavelength
+
+
+def largest_wave_number(wave: HeroWave) -> float:
+    """Of all waves of a group, rad/m: that of the point of their ellipse which is farthest from 0."""
+    k0, (along, across) = wave_number(wave), bandwidth(wave)
+    cosine = 1.0
+    if across > along:
+        cosine = min(1.0, along * k0 / (REACH * (across**2 - along**2)))
+    return math.hypot(k0 + REACH * along * cosine, REACH * across * math.sqrt(1.0 - cosine**2))
+
+
+def needed_samples(wave: HeroWave, domain_size: float) -> int:
+    """Fewest samples along a side that hold all of a group's waves, whatever its direction; even."""
+    spacing = 2.0 * math.pi / domain_size
+    of_group = math.ceil(largest_wave_number(wave) / spacing) + 1  # the last modes are no waves
+    return 2 * max(of_group, math.ceil(0.5 * FEWEST_SAMPLES * domain_size / wave.wavelength))
+
+
+def check_hero_waves(waves: Sequence[HeroWave], domain_size: float, resolution: int) -> None:
+    """Raise ParameterError, with the remedy, for a wave that the patch or its samples cannot hold."""
+    for index, wave in enumerate(waves):
+        if wave.muted:
+            continue
+        length = wave.group_length * wave.wavelength
+        for name, value, size, smaller in (
+            ("wavelength", wave.wavelength, wave.wavelength, "shorter"),
+            ("group_length", wave.group_length, length, "smaller"),
+            ("group_width", wave.group_width, wave.group_width, "smaller"),
+        ):
+            if size > domain_size:
+                raise ParameterError(
+                    f"hero_waves.{index}.{name}", value,
+                    f"is {size:.4g} m in a domain of {domain_size:g} m: make it {smaller}, or that larger",
+                )  # fmt: skip
+        needed = needed_samples(wave, domain_size)
+        if needed > resolution:
+            raise ParameterError(
+                f"hero_waves.{index}.wavelength", wave.wavelength,
+                f"needs {needed} samples a side with this length and width of its group, and the resolution "
+                f"is {resolution}: raise it, or make the wave longer, its group longer or the domain smaller",
+            )  # fmt: skip
+
+
+def is_held(wave: HeroWave, domain_size: float, resolution: int) -> bool:
+    """Whether so many samples hold a wave."""
+    return needed_samples(wave, domain_size) <= resolution
+
+
+class _Waves(NamedTuple):
+    """Waves of a block: their wave vectors over 2π/L, (M,) whole numbers, and weights, (M,)."""
+
+    i: NDArray[Any]
+    j: NDArray[Any]
+    weight: Array
+
+
+def _blocks(wave: HeroWave, spacing: float) -> Iterator[_Waves]:
+    """A group's waves, whatever the resolution: kx = i·Δk of either sign, ky = j·Δk."""
+    k0, (along, across) = wave_number(wave), bandwidth(wave)
+    cosine, sine = math.cos(wave.direction), math.sin(wave.direction)
+    i = _between(k0 * cosine, REACH * math.hypot(along * cosine, across * sine), spacing)
+    j = _between(k0 * sine, REACH * math.hypot(along * sine, across * cosine), spacing)
+    width = max(1, _BLOCK // len(j))
+    for first in range(0, len(i), width):
+        kx, ky = spacing * i[first : first + width, np.newaxis], spacing * j
+        distance = ((kx * cosine + ky * sine - k0) / along) ** 2 + ((ky * cosine - kx * sine) / across) ** 2
+        distance[(kx == 0.0) & (ky == 0.0)] = np.inf  # the mean is no wave
+        rows, columns = np.nonzero(distance <= REACH**2)
+        yield _Waves(i[first + rows], j[columns], np.exp(-0.5 * distance[rows, columns]))
+
+
+def _between(centre: float, reach: float, spacing: float) -> NDArray[Any]:
+    return np.arange(math.ceil((centre - reach) / spacing), math.floor((centre + reach) / spacing) + 1)
+
+
+def add_hero_wave(
+    wave: HeroWave, grid: WaveVectorGrid, omega: Array, h_plus: ComplexArray, h_minus: ComplexArray
+) -> None:
+    """Add a group's waves to coefficients (N, N//2+1) in m of those along +k and along -k.
+
+    omega : (N, N//2+1) rad/s, of the sea
+
+    They are in step at the focus, where their heights add up to the crest's exactly. The grid must hold all
+    of them.
+    """
+    n, spacing = grid.resolution, grid.spacing
+    height = 0.5 * wave.crest_height / sum(float(np.sum(some.weight)) for some in _blocks(wave, spacing))
+    for i, j, weight in _blocks(wave, spacing):
+        side = np.where(i < 0, -1, 1)  # of two opposite wave vectors the half plane holds one
+        turns = i * (wave.x / grid.domain_size % 1.0) + j * (wave.y / grid.domain_size % 1.0)
+        angle = (
+            omega[side * j % n, side * i] * wave.time + wave.phase - 2.0 * np.pi * (turns - np.rint(turns))
+        )
+        coefficients = height * weight * np.exp(1j * angle)
+        along, against = i >= 0, i <= 0
+        h_plus[j[along] % n, i[along]] += coefficients[along]
+        h_minus[-j[against] % n, -i[against]] += np.conj(coefficients[against])

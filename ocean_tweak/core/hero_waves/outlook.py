@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When and where a sea's hero waves have their focus and how fast they run, told without making any."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from .. import constants, dispersion
+from ..parameters import OceanParameters
+from .group import wave_number
+from .parameters import HeroWave
+
+
+class HeroWaveOutlook(NamedTuple):
+    """What to expect of one wave.
+
+    number : which of the sea's hero waves it is
+    time, frame : of its focus, s and frame of the shot
+    x, y : of its focus, m, in the patch
+    direction : towards which it runs, rad
+    wavelength, period : m and s
+    crest_height : at its focus, m
+    phase_speed, group_speed : of its crests and of the group, m/s
+    domain_size : side of the patch, m
+    warnings : one sentence each, with the remedy
+    """
+
+    number: int
+    time: float
+    frame: float
+    x: float
+    y: float
+    direction: float
+    wavelength: float
+    period: float
+    crest_height: float
+    phase_speed: float
+    group_speed: float
+    domain_size: float
+    warnings: tuple[str, ...]
+
+    def place(self, time: float) -> tuple[float, float]:
+        """x and y in m, in the patch, of the middle of the group at an ocean time in s."""
+        way = self.group_speed * (time - self.time)
+        return (
+            (self.x + way * math.cos(self.direction)) % self.domain_size,
+            (self.y + way * math.sin(self.direction)) % self.domain_size,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {**self._asdict(), "warnings": list(self.warnings)}
+
+
+def hero_wave_outlooks(parameters: OceanParameters) -> tuple[HeroWaveOutlook, ...]:
+    """Of all hero waves that are not muted."""
+    return tuple(
+        _outlook(parameters, index, wave)
+        for index, wave in enumerate(parameters.hero_waves)
+        if not wave.muted
+    )
+
+
+def _outlook(parameters: OceanParameters, index: int, wave: HeroWave) -> HeroWaveOutlook:
+    k, size, timing = wave_number(wave), parameters.domain_size, parameters.timing
+    omega = float(dispersion.angular_frequency(k, parameters.dispersion, parameters.water))
+    group_speed = float(dispersion.group_velocity(k, parameters.dispersion, parameters.water))
+    return HeroWaveOutlook(
+        index, wave.time, timing.start_frame + wave.time * float(timing.fps), wave.x % size, wave.y % size,
+        wave.direction, wave.wavelength, 2.0 * math.pi / omega, wave.crest_height, omega / k, group_speed,
+        size, tuple(_warnings(parameters, index, wave, group_speed)),
+    )  # fmt: skip
+
+
+def _warnings(parameters: OceanParameters, index: int, wave: HeroWave, group_speed: float) -> list[str]:
+    warnings = []
+    steepest = constants.BREAKING_STEEPNESS * wave.wavelength
+    steepest *= 0.5 * math.tanh(wave_number(wave) * parameters.water.depth)
+    if wave.crest_height > steepest:
+        warnings.append(
+            f"Hero wave {index}: waves of {wave.wavelength:.4g} m break before their crests are "
+            f"{wave.crest_height:.4g} m high. Make it at most {steepest:.3g} m high, or longer"
+        )
+    if parameters.loop_duration is not None:
+        around = parameters.domain_size / group_speed
+        if float(parameters.loop_duration) < around:
+            warnings.append(
+                f"Hero wave {index}: its group crosses the patch in {around:.4g} s and the loop is shorter: "
+                "between two focuses it comes apart. Make the loop longer or the domain smaller"
+            )
+    return warnings
