@@ -12,6 +12,7 @@ from typing import Any
 from . import (
     baking,
     blender_rows,
+    cascades,
     growth,
     initial_states,
     machine,
@@ -33,6 +34,7 @@ GROUPS: dict[str, Callable[[Plan], Iterator[Row]]] = {
         initial_states,
         transforms,
         wind_fields,
+        cascades,
         growth,
         memory_use,
         usd_rows,

@@ -68,6 +68,7 @@ TARGETS = {
     "wind fields": Target(
         "20,000 wave particles, displacement, slopes and Jacobian, 1024²", 3.0, "× one six-field frame"
     ),
+    "cascades": Target("three 512² patches, 6 fields + minimum eigenvalue each", 3.2, "× one 512² patch"),
     "growth": Target("time per sample, 4096² against 512²", 1.6, "×"),
     "memory": Target("memory of `surface()` beyond its outputs", 24.0, "bytes a sample"),
     "usd time": Target(

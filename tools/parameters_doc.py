@@ -12,6 +12,7 @@ from typing import Any
 from ocean_tweak.core.parameters import (
     HeroWave,
     OceanParameters,
+    Patch,
     PictureLayer,
     Timing,
     Water,
@@ -35,6 +36,7 @@ CLASSES = {
     PictureLayer: "in each entry of the list `pictures`",
     WindFieldLayer: "in each entry of the list `wind_fields`",
     WindKey: "in each entry of a wind field's list `keys`",
+    Patch: "in each entry of the list `patches`",
     HeroWave: "in each entry of the list `hero_waves`",
     Timing: "in `timing`",
 }

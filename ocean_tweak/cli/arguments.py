@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
+from ..core.cascades.plan import Wish
 from ..core.errors import ParameterError
 from ..core.frames import Frame, parse_frames
 from ..core.presets import built_in
@@ -58,6 +59,12 @@ def _command(commands: _Commands, name: str, purpose: str) -> argparse.ArgumentP
 def _add_info(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "info", "print what the sea will be")
     _add_sea_arguments(parser, in_blender)
+    parser.add_argument(
+        "--save",
+        type=Path,
+        metavar="FILE.json",
+        help="write the sea with all changes, and planned patches, as parameters",
+    )
     parser.set_defaults(run=lambda arguments, oceans: info.run(arguments, chosen_seas(arguments, oceans)))
 
 
@@ -314,10 +321,35 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
         "--set", action="append", default=[], metavar="KEY=VALUE", dest="assignments",
         help="change one parameter, for example layers.0.wind_speed=25 (may be repeated)",
     )  # fmt: skip
+    parser.add_argument(
+        "--plan", type=_wish, metavar="finest=0.1,area=4000,memory=2GB",
+        help="make the sea of patches: waves down to so many metres, no repetition in a square of so many "
+        "metres, in so many bytes (2GB where they are left out)",
+    )  # fmt: skip
     parser.add_argument("--fps", metavar="N", help="frames per second, also as a fraction: 24000/1001")
     parser.add_argument("--start-frame", metavar="N", help="frame at which ocean time is 0")
     if in_blender:
         source.add_argument("--object", metavar="NAME", help="only the ocean of this object")
+
+
+_BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
+_WISHED = re.compile(r"(finest|area|memory)=(\d+(?:\.\d*)?|\.\d+)([a-z]*)", re.IGNORECASE)
+
+
+def _wish(text: str) -> Wish:
+    values: dict[str, float] = {}
+    for part in text.split(","):
+        match = _WISHED.fullmatch(part.strip())
+        units = _BYTES if match and match[1].lower() == "memory" else {"": 1.0, "m": 1.0}
+        if not match or match[3].lower() not in units or match[1].lower() in values:
+            raise argparse.ArgumentTypeError(f"{text!r} must look like finest=0.1,area=4000,memory=2GB")
+        values[match[1].lower()] = float(match[2]) * units[match[3].lower()]
+    if not {"finest", "area"} <= values.keys():
+        raise argparse.ArgumentTypeError(f"{text!r} must tell finest and area, in metres")
+    try:
+        return Wish(**values)
+    except ParameterError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _frames(text: str) -> tuple[Frame, ...]:

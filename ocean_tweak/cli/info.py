@@ -8,26 +8,32 @@ import dataclasses
 import json
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
-from ..core import Ocean, OceanParameters, sea_scales
+from ..core import Cascade, OceanParameters, sea_scales
+from ..core.cascades.patch import NO_LONGEST
+from ..core.cascades.statistics import CascadeStatistics
 from ..core.foam_field import foam_outlook
 from ..core.hero_waves.outlook import HeroWaveOutlook, hero_wave_outlooks
 from ..core.memory import memory_need
-from ..core.statistics import SeaState, Statistics
+from ..core.statistics import SeaState
 from ..core.wave_particles.outlook import wind_wave_outlook
-from .outcome import DONE
+from ..export.files import whole_file
+from .outcome import DONE, UsageError
 from .seas import Sea
 
 
 def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     """Print what each sea will be; an animated one at its first frame."""
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
-    results = {name: Ocean(of_sea).statistics() for name, of_sea in parameters.items()}
+    results = {name: Cascade(of_sea).statistics() for name, of_sea in parameters.items()}
+    if arguments.save is not None:
+        _save(arguments.save, seas)
     if arguments.json:
         report = {
             name: {
                 "parameters": seas[name].shot.to_dict(),
-                "statistics": statistics.to_dict(),
+                "statistics": _plain(statistics),
                 "memory": dataclasses.asdict(memory_need(parameters[name])),
                 **_wind_fields(parameters[name]),
                 **_hero_waves(parameters[name]),
@@ -39,6 +45,19 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     for name, statistics in results.items():
         print("\n".join(_report(name, parameters[name], statistics)))
     return DONE
+
+
+def _save(path: Path, seas: Mapping[str, Sea]) -> None:
+    if len(seas) > 1:
+        raise UsageError("--save: the file has several oceans; choose one with --object")
+    (sea,) = seas.values()
+    with whole_file(path) as beside:
+        beside.write_text(sea.shot.to_json() + "\n", encoding="utf-8")
+
+
+def _plain(statistics: CascadeStatistics) -> dict[str, object]:
+    """Of a sea of one patch only what is told of the whole."""
+    return statistics.to_dict() if len(statistics.patches) > 1 else statistics.total.to_dict()
 
 
 def _wind_fields(parameters: OceanParameters) -> dict[str, object]:
@@ -53,22 +72,26 @@ def _hero_waves(parameters: OceanParameters) -> dict[str, object]:
     return {"hero_waves": [wave.to_dict() for wave in outlooks]} if outlooks else {}
 
 
-def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
+def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) -> list[str]:
+    statistics = found.total
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     state = sea_scales.sea_state(statistics.significant_wave_height)
     need = memory_need(parameters)
+    samples = " and ".join(f"{patch.patch.resolution}²" for patch in found.patches)
+    grid = "grid" if len(found.patches) == 1 else "grids"
     lines = [
-        f"{name}: {parameters.resolution}² samples, {statistics.sample_spacing:.3g} m apart; "
+        f"{name}: {samples} samples, {statistics.sample_spacing:.3g} m apart; "
         f"{need.peak() / 2**20:.0f} MB of memory, {need.surface / 2**20:.0f} MB more for each further worker",
         f"  {'':<18}{'Hs':>10}{'Tp':>10}{'Tz':>10}{'slope':>8}{'towards':>9}{'spread':>8}",
         _state_row("spectrum", statistics.spectrum),
-        f"{_state_row('resolved by grid', statistics.resolved)}  {share}",
+        f"{_state_row(f'resolved by {grid}', statistics.resolved)}  {share}",
         _state_row(f"seed {parameters.seed}", statistics.seed),
         f"  peak wavelength {statistics.peak_wavelength:.4g} m, "
         f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m; "
         f"steepness {statistics.spectrum.steepness:.3f}; "
         f"sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
+    lines += _patch_rows(found)
     coverage, earlier = foam_outlook(parameters)
     if coverage > 0.0:
         share = f"{100.0 * coverage:.2g} %"
@@ -90,6 +113,45 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
     warnings = (*statistics.warnings, *(of_wind.warnings if of_wind else ()))
     warnings += tuple(warning for wave in heroes for warning in wave.warnings)
     return lines + [f"  warning: {warning}" for warning in warnings]
+
+
+def _patch_rows(found: CascadeStatistics) -> list[str]:
+    """A table of the patches, where there are several."""
+    if len(found.patches) == 1:
+        return []
+    head = (
+        "patch",
+        "side",
+        "turned",
+        "waves from",
+        "to",
+        "samples",
+        "a wave",
+        "waves a side",
+        "Hs",
+        "energy",
+    )
+    rows = [head]
+    for number, of_patch in enumerate(found.patches, 1):
+        patch = of_patch.patch
+        is_open = patch.longest_wavelength >= NO_LONGEST
+        rows.append(
+            (
+                str(number),
+                f"{patch.domain_size:g} m",
+                f"{math.degrees(patch.rotation):.3g}°",
+                f"{patch.shortest_wavelength:.4g} m",
+                "all" if is_open else f"{patch.longest_wavelength:.4g} m",
+                f"{patch.resolution}²",
+                f"{patch.samples_a_wave:.3g}" if patch.shortest_wavelength else "–",
+                "–" if is_open else f"{patch.longest_waves_a_side:.3g}",
+                f"{of_patch.statistics.resolved.significant_wave_height:.3g} m",
+                f"{100.0 * of_patch.share:.3g} %",
+            )
+        )
+    widths = [max(len(row[column]) for row in rows) for column in range(len(head))]
+    cells = (zip(row, widths, strict=True) for row in rows)
+    return ["  " + "  ".join(f"{cell:>{width}}" for cell, width in row) for row in cells]
 
 
 def _hero_row(wave: HeroWaveOutlook) -> str:

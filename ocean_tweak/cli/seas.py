@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core import OceanParameters, ParameterError
+from ..core.cascades.plan import planned
 from ..core.frames import Frame
 from ..core.parameters import parse_json
 from ..core.presets import built_in
@@ -88,12 +89,17 @@ def _changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
             raise UsageError(f"--set {assignment}: must look like layers.0.wind_speed=25")
         if shot.animation is not None and path.strip() in dict(shot.animation.samples):
             raise UsageError(f"--set {assignment}: the shot animates this; change its samples instead")
+        if data.get("patches") and path.strip() in ("resolution", "domain_size"):
+            raise UsageError(f"--set {assignment}: this sea has patches; set patches.0.{path.strip()}")
         _assign(data, path.strip(), _value(value))
     for key in ("fps", "start_frame"):
         value = getattr(arguments, key)
         if value is not None:
             data["timing"][key] = _value(value)
-    return Shot.from_dict(data)
+    changed = Shot.from_dict(data)
+    if arguments.plan is None:
+        return changed
+    return Shot(planned(changed.parameters, arguments.plan), changed.animation)
 
 
 def _value(text: str) -> Any:

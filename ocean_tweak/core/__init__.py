@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sea itself: NumPy and the standard library, nothing else."""
 
+from .cascades.cascade import Cascade
 from .ocean import Ocean
 from .parameters import (
     Foam,
     HeroWave,
     OceanParameters,
     ParameterError,
+    Patch,
     PictureLayer,
     Timing,
     Water,
@@ -18,11 +20,13 @@ from .raster import Raster
 from .sea_state_match import layer_for_sea_state
 
 __all__ = [
+    "Cascade",
     "Foam",
     "HeroWave",
     "Ocean",
     "OceanParameters",
     "ParameterError",
+    "Patch",
     "PictureLayer",
     "Raster",
     "Timing",

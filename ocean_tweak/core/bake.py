@@ -14,6 +14,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from .cascades.cascade import Cascade
+from .cascades.patch_seas import ADDING
 from .fields import FOAM, SurfaceFields
 from .frames import Frame
 from .memory import check_memory, memory_need
@@ -29,8 +31,8 @@ class FrameSink(Protocol):
     def outputs(self) -> frozenset[str]:
         """The fields that a frame must have."""
 
-    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
-        """Keep a frame's fields; returns where."""
+    def write(self, frame: Frame, fields: SurfaceFields, *others: SurfaceFields) -> tuple[Path, ...]:
+        """Keep a frame's fields, those of the first patch and of the others; returns where."""
 
 
 class BakedFrame(NamedTuple):
@@ -46,20 +48,28 @@ class ShotSurfaces:
 
     def __init__(self, shot: Shot) -> None:
         self.shot = shot
-        self._ocean: Ocean | None = None
+        self._sea: Cascade | None = None
 
-    def ocean(self, parameters: OceanParameters) -> Ocean:
-        """The sea of a moment: the last one where its parameters are the same."""
-        if self._ocean is None or self._ocean.parameters != parameters:
-            self._ocean = Ocean(parameters, workers=1)
-        return self._ocean
+    def oceans(self, parameters: OceanParameters) -> tuple[Ocean, ...]:
+        """The patches of the sea of a moment: the last one where its parameters are the same."""
+        if self._sea is None or self._sea.parameters != parameters:
+            self._sea = Cascade(parameters, workers=1)
+        return self._sea.patches
+
+    def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
+        """Fields of each patch in a frame; velocity is per second of the shot."""
+        moment: Moment = self.shot.at(frame)
+        made = tuple(ocean.surface(moment.time, outputs) for ocean in self.oceans(moment.parameters))
+        for fields in made:
+            if "velocity" in fields and moment.rate != 1.0:
+                fields.velocity[...] *= moment.rate
+        return made
 
     def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:
-        """Fields of a frame; velocity is per second of the shot."""
-        moment: Moment = self.shot.at(frame)
-        fields = self.ocean(moment.parameters).surface(moment.time, outputs)
-        if "velocity" in fields and moment.rate != 1.0:
-            fields.velocity[...] *= moment.rate
+        """Fields of a frame of a sea of one patch. Raises ValueError for another."""
+        if self.shot.parameters.is_cascade:
+            raise ValueError("this sea has several patches: their fields are those of frames()")
+        (fields,) = self.frames(frame, outputs)
         return fields
 
 
@@ -70,11 +80,10 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
     memory, is made here, in the order of the frames. What a frame holds does not depend on the number of
     workers. When the caller stops, frames under way are finished and no more begun.
 
-    Raises MemoryError before the first frame where the machine is too small.
+    Raises MemoryError before the first frame where the machine is too small, and ValueError for fields of
+    several patches that are not sums of theirs.
     """
-    parameters = shot.parameters
-    need = memory_need(parameters, sink.outputs).peak(workers)
-    check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")
+    _check(shot.parameters, sink, workers)
     with_memory = ShotSurfaces(shot)
     own = threading.local()
 
@@ -82,17 +91,18 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
         started = time.perf_counter()
         if not hasattr(own, "surfaces"):
             own.surfaces = ShotSurfaces(shot)
-        fields = own.surfaces.frame(frame, sink.outputs - {FOAM})
+        fields, *others = own.surfaces.frames(frame, sink.outputs - {FOAM})
         if foam is not None:
             fields = fields.including(FOAM, foam)
-        return BakedFrame(frame, sink.write(frame, fields), time.perf_counter() - started)
+        return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
     with ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
                 if not under_way:  # made once, before the workers ask for it
-                    with_memory.ocean(shot.at(frame).parameters).initial_state  # noqa: B018
+                    for ocean in with_memory.oceans(shot.at(frame).parameters):
+                        ocean.initial_state  # noqa: B018
                 foam = with_memory.frame(frame, {FOAM}).foam if FOAM in sink.outputs else None
                 under_way.append(pool.submit(make, frame, foam))
                 if len(under_way) > workers:
@@ -102,3 +112,12 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
         finally:
             for future in under_way:
                 future.cancel()
+
+
+def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:
+    """Raise for what cannot be baked, or not on this machine."""
+    if parameters.is_cascade and not sink.outputs <= ADDING:
+        others = ", ".join(sorted(sink.outputs - ADDING))
+        raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")
+    need = memory_need(parameters, sink.outputs).peak(workers)
+    check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")

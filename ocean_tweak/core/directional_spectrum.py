@@ -32,11 +32,15 @@ class DirectionalSpectrum:
     """S(ω)·D(ω, θ) of one layer, and its form over wave vectors.
 
     Horvath (2015), eq. 16 and 61.
+
+    patch_band : shortest and longest wavelength in m of the patch that holds it, sharp, beside the layer's
+        own band; None for all waves
     """
 
     layer: WaveLayer
     water: Water
     dispersion: str
+    patch_band: tuple[float, float] | None = None
 
     @cached_property
     def scales(self) -> LayerScales:
@@ -81,15 +85,30 @@ class DirectionalSpectrum:
         The cut-off is Tessendorf's exp(-k²l²) (Horvath 2015, § 5.1.3). A band and its inverse add to 1.
         """
         layer = self.layer
-        weight = self._band_weight(k) if self.has_band else np.ones_like(k)
+        weight = self._band_weight(k) if self._layer_has_band else np.ones_like(k)
+        if self.patch_band is not None:
+            shortest, longest = self.patch_band
+            wavelength = 2.0 * np.pi / np.maximum(k, 1e-300)
+            weight = weight * ((wavelength > shortest) & (wavelength <= longest))
         if layer.short_wave_cutoff > 0.0:
             weight = weight * np.exp(-((k * layer.short_wave_cutoff) ** 2))
         return weight
 
     @property
     def has_band(self) -> bool:
-        """Whether the layer leaves wavelengths out."""
+        """Whether the layer or its patch leaves wavelengths out."""
+        return self._layer_has_band or self.patch_band is not None
+
+    @property
+    def _layer_has_band(self) -> bool:
         return self.layer.band_inverted or bool(len(self.band_ends))
+
+    @property
+    def sharp_ends(self) -> Array:
+        """Wave numbers in rad/m at which energy begins or ends at once."""
+        of_layer = self.band_ends if self.layer.band_softness == 0.0 else self.band_ends[:0]
+        ends = [end for end in self.patch_band or () if 0.0 < end < 1e6]
+        return np.concatenate([of_layer, 2.0 * np.pi / np.array(ends)]) if ends else of_layer
 
     @cached_property
     def band_ends(self) -> Array:
@@ -204,17 +223,16 @@ class CellMeans:
     def _subdivisions(self) -> NDArray[np.int8]:
         """(N//2+1, N) sub-cells along a side: more towards the origin, where cells are wide against their
         wave number, and where the sharp end of a band cuts a cell."""
-        grid, layer = self._grid, self._spectrum.layer
+        grid = self._grid
         result = np.zeros(grid.shape[::-1], np.int8)
         near = int(min(_FINEST_RADIUS, grid.resolution // 2))
         for rows in (slice(0, near), slice(-near, None)):
             radius = np.hypot(np.arange(near)[:, np.newaxis], grid.ky[rows, 0] / grid.spacing)
             wanted = _FINEST_RADIUS / np.clip(radius, 1.0, _FINEST_RADIUS)
             result[:near, rows] = 2 ** np.ceil(np.log2(wanted))
-        if layer.band_softness == 0.0:
-            for end in self._spectrum.band_ends:
-                cut = np.abs(grid.k.T - end) < np.sqrt(0.5) * grid.spacing
-                result[cut] = np.maximum(result[cut], _BAND_SUBCELLS)
+        for end in self._spectrum.sharp_ends:
+            cut = np.abs(grid.k.T - end) < np.sqrt(0.5) * grid.spacing
+            result[cut] = np.maximum(result[cut], _BAND_SUBCELLS)
         result[~grid.usable.T] = 0
         return result
 

@@ -9,30 +9,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .synthesis import Rows, X, Y, Z
+from .synthesis import PositionRows, X, Y, Z
 
 RealArray = NDArray[np.floating]
 
 
-def displacement(rows: Rows, out: RealArray) -> None:
+def displacement(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 3) m: what is added to the rest position (x, y, 0), choppiness applied."""
     for component in (X, Y, Z):
         rows.position(component, out=out[..., component])
 
 
-def slope(rows: Rows, out: RealArray) -> None:
+def slope(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 2) m/m: derivatives of the elevation by the rest position's x and y."""
     for index, along in enumerate("xy"):
         rows.position(Z, along, out=out[..., index])
 
 
-def velocity(rows: Rows, out: RealArray) -> None:
+def velocity(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 3) m/s: derivative of the displacement in ocean time."""
     for component in (X, Y, Z):
         rows.position(component, "t", out=out[..., component])
 
 
-def _gradient(rows: Rows) -> tuple[RealArray, RealArray, RealArray, RealArray]:
+def _gradient(rows: PositionRows) -> tuple[RealArray, RealArray, RealArray, RealArray]:
     """Jxx, Jxy, Jyx, Jyy of the map from the rest position to the displaced one, seen from above."""
     return (
         1.0 + rows.position(X, "x"),
@@ -42,13 +42,23 @@ def _gradient(rows: Rows) -> tuple[RealArray, RealArray, RealArray, RealArray]:
     )
 
 
-def jacobian(rows: Rows, out: RealArray) -> None:
+def strain(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 3): of the horizontal displacement, Dx by x, Dy by y, and the mean of Dx by y and Dy by x.
+
+    Those of several patches add, once turned; normals, Jacobians and eigenvalues do not.
+    """
+    rows.position(X, "x", out=out[..., 0])
+    rows.position(Y, "y", out=out[..., 1])
+    np.multiply(rows.position(X, "y") + rows.position(Y, "x"), 0.5, out=out[..., 2])
+
+
+def jacobian(rows: PositionRows, out: RealArray) -> None:
     """(N, N): determinant of the gradient of x ↦ x + λD; 1 - λkA at one wave's crest, < 0 in a fold."""
     xx, xy, yx, yy = _gradient(rows)
     np.subtract(xx * yy, xy * yx, out=out)
 
 
-def min_eigenvalue(rows: Rows, out: RealArray) -> None:
+def min_eigenvalue(rows: PositionRows, out: RealArray) -> None:
     """(N, N): smaller eigenvalue of the gradient of x ↦ x + λD, < 0 where the surface folds.
 
     The crest field of Horvath (2015), § 8. The gradient is symmetric but where troughs are damped; there
@@ -61,14 +71,14 @@ def min_eigenvalue(rows: Rows, out: RealArray) -> None:
     np.subtract(half_sum, np.sqrt(half_difference, out=half_difference), out=out)
 
 
-def cusp(rows: Rows, out: RealArray) -> None:
+def cusp(rows: PositionRows, out: RealArray) -> None:
     """(N, N): how far the surface is squeezed, 1 - min_eigenvalue; 0 where it is stretched, 1 in a fold."""
     min_eigenvalue(rows, out)
     np.subtract(1.0, out, out=out)
     np.maximum(out, 0.0, out=out)
 
 
-def min_eigenvector(rows: Rows, out: RealArray) -> None:
+def min_eigenvector(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 2): unit vector along which the surface is squeezed most, its x ≥ 0."""
     _, half_difference, shear = _symmetric_part(rows)
     angle = 0.5 * np.arctan2(-shear, -half_difference)
@@ -76,7 +86,7 @@ def min_eigenvector(rows: Rows, out: RealArray) -> None:
     np.sin(angle, out=out[..., 1])
 
 
-def _symmetric_part(rows: Rows) -> tuple[RealArray, RealArray, RealArray]:
+def _symmetric_part(rows: PositionRows) -> tuple[RealArray, RealArray, RealArray]:
     """Half the sum and half the difference of the diagonal, and the mean of the others."""
     along_x, along_y = rows.position(X, "x"), rows.position(Y, "y")
     across, also_across = rows.position(X, "y"), rows.position(Y, "x")
@@ -89,7 +99,7 @@ def _symmetric_part(rows: Rows) -> tuple[RealArray, RealArray, RealArray]:
     return half_sum, half_difference, shear
 
 
-def normal(rows: Rows, out: RealArray) -> None:
+def normal(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 3): unit normal of the displaced surface, the cross product of its tangents."""
     xx, xy, yx, yy = _gradient(rows)
     zx, zy = rows.position(Z, "x"), rows.position(Z, "y")
@@ -107,7 +117,7 @@ class Output(NamedTuple):
     channels : numbers a sample; 0 for a plain (N, N) array
     """
 
-    write: Callable[[Rows, RealArray], None]
+    write: Callable[[PositionRows, RealArray], None]
     needs: frozenset[tuple[int, str]]
     channels: int
 
@@ -124,6 +134,7 @@ OUTPUTS: dict[str, Output] = {
     "displacement": Output(displacement, frozenset({(X, ""), (Y, ""), (Z, "")}), 3),
     "slope": Output(slope, _SLOPES, 2),
     "velocity": Output(velocity, frozenset({(X, "t"), (Y, "t"), (Z, "t")}), 3),
+    "strain": Output(strain, _GRADIENT, 3),
     "jacobian": Output(jacobian, _GRADIENT, 0),
     "min_eigenvalue": Output(min_eigenvalue, _GRADIENT, 0),
     "cusp": Output(cusp, _GRADIENT, 0),

@@ -112,7 +112,7 @@ class FoamHistory:
             return present
         births = self._births_until(math.floor(now / model.step))
         shift_y, shift_x = (-float(now) * v / model.spacing for v in model.drift[::-1])
-        past = _shifted(_faded(births, now, model), shift_y, shift_x)
+        past = _shifted(faded(births, now, model), shift_y, shift_x)
         result = np.maximum(past, present)
         result[result < FAINTEST] = 0.0
         return result
@@ -139,7 +139,7 @@ class FoamHistory:
         return np.roll(model.birth(squeeze, time), (rows, columns), axis=(0, 1))
 
 
-def _faded(births: Array, now: Fraction, model: FoamModel) -> RealArray:
+def faded(births: Array, now: Fraction, model: FoamModel) -> RealArray:
     """What is left of the foam by now; what a longer history remembers beyond the faintest is none."""
     result = np.exp2((births - float(now)) / model.half_life).astype(np.float32)
     result[result < FAINTEST] = 0.0

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .foam import FoamHistory, FoamModel, strength_levels
-from .foam_threshold import foam_wind, strains, whitecap_coverage
+from .foam_threshold import Strains, foam_wind, strains, whitecap_coverage
 from .initial_state import InitialState
 from .parameters import OceanParameters
 
@@ -48,6 +48,14 @@ def foam_model(parameters: OceanParameters, state: InitialState) -> FoamModel:
     state : of the sea at the resolution at which foam is made: the threshold follows from the strains that
         this grid holds, so that foam made coarser covers as much
     """
+    spacing = parameters.domain_size / state.grid.resolution
+    return foam_model_of(parameters, lambda drift: strains(state, parameters, drift), spacing)
+
+
+def foam_model_of(
+    parameters: OceanParameters, strains_of: Callable[[tuple[float, float]], Strains], spacing: float
+) -> FoamModel:
+    """The same with what gives the strains that a drifting point meets."""
     foam, wind = parameters.foam, foam_wind(parameters)
     drift, threshold = (0.0, 0.0), math.inf
     if wind is not None:
@@ -55,13 +63,12 @@ def foam_model(parameters: OceanParameters, state: InitialState) -> FoamModel:
         drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
     coverage = _coverage(parameters)
     if coverage > 0.0:
-        of_sea = strains(state, parameters, drift)
-        threshold = of_sea.threshold(coverage, foam.half_life, strength_levels())
+        threshold = strains_of(drift).threshold(coverage, foam.half_life, strength_levels())
     return FoamModel(
         threshold=threshold,
         half_life=foam.half_life,
         drift=drift,
-        spacing=parameters.domain_size / state.grid.resolution,
+        spacing=spacing,
         loop_duration=parameters.loop_duration,
     )
 

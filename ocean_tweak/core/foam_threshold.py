@@ -96,12 +96,30 @@ def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float
     The gradient of the horizontal displacement is Gaussian with the covariance of its spectrum; so is its
     rate, independent of it, with ω² (ω as the drifting point meets the waves) in the integral.
     """
+    return sampled_strains(*strain_covariances(state, parameters.choppiness, drift))
+
+
+def strain_covariances(
+    state: InitialState,
+    choppiness: float,
+    drift: tuple[float, float],
+    rotation: float = 0.0,
+    interpolated: bool = False,
+) -> tuple[Array, Array]:
+    """Covariances (3, 3) of the gradient's xx, yy and xy, and of their rates in 1/s²; those of waves add.
+
+    rotation : by which the grid is turned against the axes of the drift and of the gradient, rad
+    interpolated : whether what is wanted are the strains between the samples, bilinear: the mean square of a
+        wave is less there, by (2 + cos kΔ)/3 along each axis
+    """
     grid = state.grid
-    factor = parameters.choppiness * state.potential_factor.real.astype(np.float64)
-    along = grid.kx * drift[0] + grid.ky * drift[1]
-    components = np.stack(
-        [np.broadcast_to(c, grid.shape) for c in (grid.kx**2, grid.ky**2, grid.kx * grid.ky)]
-    )
+    kx, ky = grid.kx, grid.ky
+    if rotation:
+        c, s = np.cos(rotation), np.sin(rotation)
+        kx, ky = c * grid.kx - s * grid.ky, s * grid.kx + c * grid.ky
+    factor = choppiness * state.potential_factor.real.astype(np.float64)
+    along = kx * drift[0] + ky * drift[1]
+    components = np.stack([np.broadcast_to(c, grid.shape) for c in (kx**2, ky**2, kx * ky)])
     components *= factor
     energy, rates = np.zeros(grid.shape), np.zeros(grid.shape)
     for part in state.parts:
@@ -109,9 +127,18 @@ def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float
         frequency = part.omega - along, part.omega + along
         energy += present[0] + present[1]
         rates += present[0] * frequency[0] ** 2 + present[1] * frequency[1] ** 2
-    gradient, change = (
-        _correlated(components, weight, stream) for weight, stream in ((energy, 0), (rates, 8))
-    )
+    if interpolated:
+        spacing = grid.domain_size / grid.resolution
+        left = (2.0 + np.cos(grid.kx * spacing)) * (2.0 + np.cos(grid.ky * spacing)) / 9.0
+        energy, rates = energy * left, rates * left
+    flat = components.reshape(3, -1)
+    gradient, change = ((flat * weight.ravel()) @ flat.T for weight in (energy, rates))
+    return gradient, change
+
+
+def sampled_strains(of_gradient: Array, of_rates: Array) -> Strains:
+    """Random strains with the covariances that `strain_covariances` gives."""
+    gradient, change = (_correlated(c, stream) for c, stream in ((of_gradient, 0), (of_rates, 8)))
     half_difference, shear = 0.5 * (gradient[0] - gradient[1]), gradient[2]
     root = np.hypot(half_difference, shear)
     squeeze = root - 0.5 * (gradient[0] + gradient[1])
@@ -120,10 +147,8 @@ def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float
     return Strains(squeeze, rate)
 
 
-def _correlated(components: Array, weight: Array, stream: int) -> Array:
-    """(3, samples) Gaussian numbers with the covariance of components (3, …) of waves of some energies."""
-    flat = components.reshape(3, -1)
-    covariance = (flat * weight.ravel()) @ flat.T
+def _correlated(covariance: Array, stream: int) -> Array:
+    """(3, samples) Gaussian numbers with a covariance (3, 3)."""
     values, vectors = np.linalg.eigh(covariance)
     key = np.arange(_SAMPLES, dtype=np.uint64)
     independent = np.stack([random.normal(key, stream + 2 * i) for i in range(3)])

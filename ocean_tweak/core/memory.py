@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .cascades.patch_seas import patch_parameters
 from .fields import FOAM, OUTPUTS, memory_groups
 from .noise_synthesis.source import side
 from .parameters import OceanParameters
@@ -48,7 +49,14 @@ class MemoryNeed:
 def memory_need(
     parameters: OceanParameters, outputs: Iterable[str] = ("displacement",), precision: str = "single"
 ) -> MemoryNeed:
-    """Bytes that a sea needs for the outputs asked for."""
+    """Bytes that a sea needs for the outputs asked for; one of several patches has all of them at once."""
+    if parameters.is_cascade:
+        needs = [memory_need(patch, outputs, precision) for patch in patch_parameters(parameters)]
+        return MemoryNeed(
+            sum(need.state for need in needs),
+            max(need.building for need in needs),
+            sum(need.surface for need in needs),
+        )
     n = parameters.resolution
     half_plane = n * (n // 2 + 1)
     real = 4 if precision == "single" else 8

@@ -21,7 +21,7 @@ from .memory import check_memory, memory_need
 from .parameters import Foam, OceanParameters, Timing
 from .sea_spectrum import SeaSpectrum
 from .statistics import Statistics, sea_statistics
-from .surface_query import SurfacePoints, find_points, refine_points
+from .surface_query import Field, SurfacePoints, find_points, refine_points
 from .synthesis import Rows, Synthesis
 from .trough_damping import trough_damping
 from .wave_particles.wind_waves import WindWaves
@@ -47,7 +47,8 @@ class Ocean:
     workers : threads that make a surface, by default one a core for 1024² samples or more, else one; the
         result does not depend on it
 
-    Raises ValueError for an unknown precision or a number of workers below 1.
+    Raises ValueError for an unknown precision, a number of workers below 1 or a sea of several patches, which
+    is a `Cascade`.
     """
 
     def __init__(
@@ -59,6 +60,11 @@ class Ocean:
             raise ValueError(f"precision = {precision!r}: must be one of {', '.join(PRECISIONS)}")
         if workers is not None and workers < 1:
             raise ValueError(f"workers = {workers!r}: must be 1 or more")
+        if parameters.is_cascade:
+            raise ValueError(
+                f"Ocean makes one patch and this sea has {len(parameters.patches)}, each with its own axes: "
+                "use Cascade, whose `patches` are an Ocean each and whose fields are their sum"
+            )
         self.parameters = parameters
         self.precision = precision
         self.workers = workers or default_workers(parameters.resolution)
@@ -128,6 +134,32 @@ class Ocean:
 
             self._synthesis.fill(time, needs, write, self._workspace)
 
+    def components(
+        self, time: float | Fraction, wanted: Iterable[tuple[int, str]]
+    ) -> dict[tuple[int, str], RealArray]:
+        """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t"."""
+        keys = frozenset(wanted)
+        n = self.parameters.resolution
+        dtype = np.float32 if self.precision == "single" else np.float64
+        made = {key: np.empty((n, n), dtype) for key in keys}
+
+        def write(block: slice, rows: Rows) -> None:
+            for component, derivative in keys:
+                rows.position(component, derivative, out=made[component, derivative][block])
+
+        with self._busy:
+            self._synthesis.fill(time, keys, write, self._workspace)
+        return made
+
+    def exact_field(self, time: float | Fraction) -> Field:
+        """The band-limited surface at a time, whose cost grows with points times wave vectors.
+
+        Raises ValueError for a sea with trough damping, which is no sum of waves.
+        """
+        if self.parameters.trough_damping > 0.0:
+            raise ValueError("surface = 'exact': there is none with trough damping; use mesh")
+        return exact(replace(self._synthesis, dtype=np.complex128), time)
+
     @cached_property
     def foam(self) -> FoamField:
         """The sea's foam. Its history serves ascending times; any other time is made from the sea alone."""
@@ -176,18 +208,15 @@ class Ocean:
         """
         if surface not in ("mesh", "exact"):
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
-        damped = self.parameters.trough_damping > 0.0
-        if surface == "exact" and damped:
-            raise ValueError("surface = 'exact': there is none with trough damping; use mesh")
+        waves = self.exact_field(time) if surface == "exact" else None
         outputs = {"displacement", "min_eigenvalue"} | ({"velocity"} if velocity else set())
         fields = self.surface(time, outputs)
         spacing = self.parameters.domain_size / self.parameters.resolution
         folded = fields.min_eigenvalue < _NEARLY_FOLDED
         moving = fields.velocity if velocity else None
         points = find_points(x, y, fields.displacement, moving, spacing, folded)
-        if surface == "mesh":
+        if waves is None:
             return points
-        waves = exact(replace(self._synthesis, dtype=np.complex128), time)
         return refine_points(x, y, waves, points, spacing, velocity)
 
     def height_at(

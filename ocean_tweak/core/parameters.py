@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from . import constants
+from .cascades.patch import MOST_PATCHES, Patch, check_patches, resampled
 from .errors import ParameterError
 from .hero_waves.group import check_hero_waves, is_held
 from .hero_waves.parameters import HeroWave
@@ -28,6 +29,7 @@ __all__ = [
     "HeroWave",
     "OceanParameters",
     "ParameterError",
+    "Patch",
     "PictureLayer",
     "Timing",
     "Water",
@@ -288,12 +290,16 @@ class OceanParameters(Validated):
     layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
     pictures: tuple[PictureLayer, ...] = nested(PictureLayer, many=True, empty=True)
     wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
+    patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
     hero_waves: tuple[HeroWave, ...] = nested(HeroWave, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.patches:  # one place tells the size of the first patch, on which pictures and wind fields are
+            object.__setattr__(self, "resolution", self.patches[0].resolution)
+            object.__setattr__(self, "domain_size", self.patches[0].domain_size)
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
         object.__setattr__(self, "layers", _identified("layers", self.layers))
@@ -303,6 +309,18 @@ class OceanParameters(Validated):
         check_loop(self.pictures, self.domain_size, self.loop_duration)
         _check_wind_fields(self)
         check_hero_waves(self.hero_waves, self.domain_size, self.resolution)
+        on_the_first = [name for name in ("pictures", "wind_fields", "hero_waves") if getattr(self, name)]
+        check_patches(self.patches, self.trough_damping, on_the_first)
+
+    @property
+    def is_cascade(self) -> bool:
+        """Whether it takes a `Cascade` to make it: it has several patches, or one that is turned."""
+        return len(self.patches) > 1 or any(patch.rotation for patch in self.patches)
+
+    @property
+    def band(self) -> tuple[float, float] | None:
+        """Shortest and longest wavelength in m of a sea that is one patch of several; None for all waves."""
+        return self.patches[0].band if len(self.patches) == 1 else None
 
     @property
     def active_layers(self) -> tuple[WaveLayer, ...]:
@@ -325,7 +343,19 @@ class OceanParameters(Validated):
         return tuple(wave for wave in self.hero_waves if not wave.muted)
 
     def replace(self, **changes: Any) -> OceanParameters:
-        """A copy with some fields changed, validated anew."""
+        """A copy with some fields changed, validated anew.
+
+        Of a sea of patches, another resolution is that of the first; the others keep their ratio to it.
+        """
+        if self.patches and "patches" not in changes:
+            if "resolution" in changes:
+                changes["patches"] = resampled(self.patches, changes["resolution"])
+            if changes.get("domain_size", self.domain_size) != self.domain_size:
+                raise ParameterError(
+                    "domain_size",
+                    changes["domain_size"],
+                    "is that of the first of the patches: change it there",
+                )
         return dataclasses.replace(self, **changes)
 
     def at_resolution(self, resolution: int) -> OceanParameters:

@@ -22,7 +22,7 @@ class SeaSpectrum:
     def __init__(self, parameters: OceanParameters) -> None:
         self.parameters = parameters
         self.layers = tuple(
-            DirectionalSpectrum(layer, parameters.water, parameters.dispersion)
+            DirectionalSpectrum(layer, parameters.water, parameters.dispersion, parameters.band)
             for layer in parameters.active_layers
         )
 

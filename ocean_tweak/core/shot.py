@@ -39,6 +39,7 @@ _CONSTANT = {
     "resolution": "a sequence of images has one size",
     "seed": "another seed is another sea",
     "amplitudes": "other amplitudes are another sea",
+    "patches": "they set which waves there are: " + _ONE_SEA,
     "pictures": "each keeps its waves; what can change is how fast they move, by ocean_time",
     "wind_fields": "a wave keeps the wind of its birth; give the wind keys at several times instead",
     "hero_waves": "a wave that runs freely keeps what it is; place a second one, or animate ocean_time",

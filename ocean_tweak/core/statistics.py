@@ -30,8 +30,11 @@ from .spreading import mean_cosine
 
 __all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
 
+#: said of a sea without waves
+FLAT = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
+
 _LEAST_WAVELENGTHS = 3.0
-_LEAST_RESOLVED_SHARE = 0.95
+LEAST_RESOLVED_SHARE = 0.95
 _LEAST_LOOP_PERIODS = 3.0
 _LARGEST_SPEED_CHANGE = 0.1
 
@@ -100,10 +103,7 @@ class Statistics:
 def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statistics:
     """Statistics of a sea from its parameters and its initial state."""
     sea = SeaSpectrum(parameters)
-    spectrum = spectrum_state(sea)
-    if parameters.active_pictures:
-        pictures = [_picture_state(_alone(parameters, layer)) for layer in parameters.active_pictures]
-        spectrum = together([spectrum, *pictures])
+    spectrum = continuous_state(sea)
     result = Statistics(
         spectrum=spectrum,
         resolved=modes_state(modes_of(state, expected=True), parameters),
@@ -114,6 +114,16 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
         warnings=(),
     )
     return dataclasses.replace(result, warnings=_warnings(parameters, sea, result))
+
+
+def continuous_state(sea: SeaSpectrum) -> SeaState:
+    """State of all that a sea's layers and pictures hold, whether a grid resolves it or not."""
+    parameters = sea.parameters
+    spectrum = spectrum_state(sea)
+    if not parameters.active_pictures:
+        return spectrum
+    pictures = [_picture_state(_alone(parameters, layer)) for layer in parameters.active_pictures]
+    return together([spectrum, *pictures])
 
 
 @lru_cache(maxsize=32)
@@ -149,20 +159,20 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
 
 
 def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> tuple[str, ...]:
-    of_pictures = tuple(_picture_warnings(parameters))
+    of_pictures = tuple(picture_warnings(parameters))
     if not np.isfinite(statistics.peak_wavelength):
-        flat = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
         placed = parameters.active_wind_fields or parameters.active_hero_waves
-        return of_pictures if placed else (*of_pictures, flat)
+        return of_pictures if placed else (*of_pictures, FLAT)
     return (
         *of_pictures,
-        *_grid_warnings(parameters, sea, statistics),
-        *_loop_warnings(parameters, statistics),
-        *_fetch_warnings(parameters, sea),
+        *grid_warnings(parameters, sea, statistics),
+        *loop_warnings(parameters, statistics),
+        *fetch_warnings(parameters, sea),
     )
 
 
-def _picture_warnings(parameters: OceanParameters) -> list[str]:
+def picture_warnings(parameters: OceanParameters) -> list[str]:
+    """Of pictures of which nothing is left."""
     return [
         f"Picture {layer.id}: its filter leaves nothing of it. Take another filter, wind or picture"
         for layer in parameters.active_pictures
@@ -171,7 +181,8 @@ def _picture_warnings(parameters: OceanParameters) -> list[str]:
     ]
 
 
-def _grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> list[str]:
+def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> list[str]:
+    """Of a grid that is too small or too coarse for its waves."""
     warnings = []
     wavelength = statistics.peak_wavelength
     if parameters.active_pictures:
@@ -183,7 +194,7 @@ def _grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: St
             "wave height will differ much between seeds. "
             f"Make the domain at least {_round_up(_LEAST_WAVELENGTHS * wavelength)} m"
         )
-    if statistics.resolved_share < _LEAST_RESOLVED_SHARE:
+    if statistics.resolved_share < LEAST_RESOLVED_SHARE:
         warnings.append(
             f"The grid resolves {100.0 * statistics.resolved_share:.0f} % of the energy: samples are "
             f"{statistics.sample_spacing:.3g} m apart. Raise the resolution or make the domain smaller"
@@ -197,7 +208,8 @@ def _round_up(length: float) -> str:
     return f"{np.ceil(length / unit) * unit:.10g}"
 
 
-def _loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[str]:
+def loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[str]:
+    """Of a loop that is too short."""
     if parameters.loop_duration is None or statistics.loop_speed_change is None:
         return []
     duration, shortest = float(parameters.loop_duration), _LEAST_LOOP_PERIODS * statistics.peak_period
@@ -215,7 +227,8 @@ def _loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[
     return warnings
 
 
-def _fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
+def fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
+    """Of fetches that the sea is done growing before."""
     return [
         f"Layer {spectrum.layer.id}: the sea is fully developed after {spectrum.scales.fetch / 1e3:.4g} km; "
         f"the fetch of {spectrum.layer.fetch / 1e3:.4g} km counts as that"

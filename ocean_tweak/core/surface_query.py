@@ -89,7 +89,7 @@ def find_points(
     places_x, places_y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
     shape, px, py = places_x.shape, places_x.ravel(), places_y.ravel()
     field = bilinear(displacement, velocity, spacing)
-    rest_x, rest_y, found = _newton(px, py, px, py, field, spacing)
+    rest_x, rest_y, found = newton(px, py, px, py, field, spacing)
     if np.any(folded):
         reach = float(np.max(np.abs(displacement[..., :2]))) / spacing
         near = _spread(folded, int(np.ceil(reach)) + 1)
@@ -100,7 +100,7 @@ def find_points(
         rest_x[doubtful] = np.where(sheet.met, sheet.rest_x, rest_x[doubtful])
         rest_y[doubtful] = np.where(sheet.met, sheet.rest_y, rest_y[doubtful])
         found[doubtful] |= sheet.met
-    return _described(rest_x, rest_y, found, shape, field, velocity is not None)
+    return described(rest_x, rest_y, found, shape, field, velocity is not None)
 
 
 def _spread(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
@@ -138,7 +138,7 @@ def _highest_sheet(px: Array, py: Array, displacement: RealArray, spacing: float
             inside = np.nonzero(np.all((plane.min(axis=0) <= 0.0) & (plane.max(axis=0) >= 0.0), axis=-1))[0]
             if not len(inside):
                 continue
-            u, v, hit = _inside_quad(corners[:, inside, :2])
+            u, v, hit = inside_quad(corners[:, inside, :2])
             quad = corners[:, inside, 2]
             z = (quad[0] * (1 - u) + quad[1] * u) * (1 - v) + (quad[2] * (1 - u) + quad[3] * u) * v
             better = hit & (z > best[inside])
@@ -149,7 +149,7 @@ def _highest_sheet(px: Array, py: Array, displacement: RealArray, spacing: float
     return _Sheet(rest_x, rest_y, np.isfinite(best))
 
 
-def _inside_quad(corners: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+def inside_quad(corners: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """u and v at which quads (4, points, 2) pass over the origin, by Newton's method, and whether they do."""
     p00, p01, p10, p11 = corners
     across, up, twist = p01 - p00, p10 - p00, p00 - p01 - p10 + p11
@@ -181,11 +181,11 @@ def refine_points(
     """The points of another surface near those of `guess`, above the same places."""
     px, py = (np.broadcast_to(np.asarray(v, np.float64), guess.height.shape).ravel() for v in (x, y))
     rest = guess.rest.reshape(-1, 2)
-    rest_x, rest_y, found = _newton(px, py, rest[:, 0], rest[:, 1], field, spacing)
-    return _described(rest_x, rest_y, found, guess.height.shape, field, with_velocity)
+    rest_x, rest_y, found = newton(px, py, rest[:, 0], rest[:, 1], field, spacing)
+    return described(rest_x, rest_y, found, guess.height.shape, field, with_velocity)
 
 
-def _described(
+def described(
     rest_x: Array,
     rest_y: Array,
     found: NDArray[np.bool_],
@@ -193,6 +193,7 @@ def _described(
     field: Field,
     with_velocity: bool,
 ) -> SurfacePoints:
+    """The surface of a field at rest positions, in the shape that was asked for."""
     values, velocity = field(rest_x, rest_y, with_velocity)
     normal = _normals(values)
     return SurfacePoints(
@@ -204,7 +205,7 @@ def _described(
     )
 
 
-def _newton(
+def newton(
     px: Array, py: Array, rest_x: Array, rest_y: Array, field: Field, spacing: float
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Rest positions of what is above (px, py), from first guesses, and which of them were met.

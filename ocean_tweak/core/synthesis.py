@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -259,6 +259,13 @@ class _Sources:
         result = self._bases[potential] * (1j * choppiness * along).astype(self._synthesis.dtype)
         added.add(X if east else Y, column.rate, result, choppiness)
         return result
+
+
+class PositionRows(Protocol):
+    """Whatever gives components of the displacement and their derivatives, each as one array."""
+
+    def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
+        """P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
 
 
 class Rows:

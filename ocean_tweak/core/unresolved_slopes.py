@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import constants, dispersion
+from .cascades.patch_seas import patch_parameters
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
 from .noise_synthesis.state import filtered
@@ -53,9 +54,19 @@ def unresolved_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of the waves shorter than the grid can hold, dimensionless.
 
     The grid holds a square of wave vectors: its modes and half a cell around them. Of pictures, what they
-    hold and the grid does not.
+    hold and the grid does not. Of a sea of patches, the waves shorter than the last one holds.
     """
-    pictured = _pictured(parameters, None) - _pictured(parameters, parameters.resolution)
+    if parameters.patches:
+        *longer, last = patch_parameters(parameters)
+        sharp = last.patches[0].shortest_wavelength
+        whole = last.replace(patches=())
+        # the end of the last band, if it comes before that of its grid
+        if sharp > 2.0 * last.domain_size / last.resolution:
+            limit = capillary_limit(last.water)
+            rings = (_rings(layer, 2.0 * np.pi / sharp, limit) for layer in SeaSpectrum(whole).layers)
+            return sum(rings, _missing_from_pictures(longer[0] if longer else last))
+        return unresolved_slope_variance(whole)
+    pictured = _missing_from_pictures(parameters)
     grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
     edge = (0.5 * parameters.resolution - 0.5) * grid.spacing
     limit = capillary_limit(parameters.water)
@@ -64,6 +75,10 @@ def unresolved_slope_variance(parameters: OceanParameters) -> float:
     corner = min(np.sqrt(2.0) * edge, limit)
     layers = SeaSpectrum(parameters).layers
     return sum((_sides(layer, edge, corner) + _rings(layer, corner, limit) for layer in layers), pictured)
+
+
+def _missing_from_pictures(parameters: OceanParameters) -> float:
+    return _pictured(parameters, None) - _pictured(parameters, parameters.resolution)
 
 
 def _pictured(parameters: OceanParameters, resolution: int | None) -> float:

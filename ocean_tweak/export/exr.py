@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..core.fields import SurfaceFields
 from ..core.frames import Frame, frame_label
-from ..core.parameters import OceanParameters
+from ..core.parameters import OceanParameters, Patch
 from ..core.plain_data import to_plain
 from .files import whole_file
 
@@ -71,19 +71,27 @@ def _foam_image(fields: SurfaceFields) -> NDArray[np.floating]:
     return np.stack((fields.foam, fields.cusp, np.zeros_like(fields.foam)), axis=-1)
 
 
+def _slope_image(fields: SurfaceFields) -> NDArray[np.floating]:
+    """R along x, G along y, B nothing."""
+    return np.concatenate((fields.slope, np.zeros_like(fields.slope[..., :1])), axis=-1)
+
+
 MAPS: dict[str, Map] = {
     "disp": Map(frozenset({"displacement"}), "m", lambda fields: fields.displacement),
     "foam": Map(frozenset({"foam", "cusp"}), "1", _foam_image),
     "normal": Map(frozenset({"normal"}), "1", lambda fields: fields.normal),
     "vel": Map(frozenset({"velocity"}), "m/s", lambda fields: fields.velocity),
+    "slope": Map(frozenset({"slope"}), "1", _slope_image),
+    "strain": Map(frozenset({"strain"}), "1", lambda fields: fields.strain),
 }
 
 
 @dataclass(frozen=True)
 class ExrSequence:
-    """A sink for frames: NAME_map.####.exr in a folder, one file a map.
+    """A sink for frames: NAME_map.####.exr in a folder, one file a map; of a patch, NAME_p1_map.####.exr.
 
     parameters : what made the frames; stands in every header
+    patch : the number of the patch, from 0, whose frames these are, in a sea of several
     compression : a key of COMPRESSION_ERROR
     maps : keys of MAPS
     """
@@ -93,6 +101,7 @@ class ExrSequence:
     parameters: OceanParameters
     compression: str = "PXR24"
     maps: tuple[str, ...] = ("disp",)
+    patch: int | None = None
 
     @property
     def outputs(self) -> frozenset[str]:
@@ -101,7 +110,23 @@ class ExrSequence:
 
     def path(self, frame: Frame, map_name: str = "disp") -> Path:
         """Where a frame's map goes."""
-        return self.directory / f"{self.name}_{map_name}.{frame_label(frame)}.exr"
+        name = self.name if self.patch is None else f"{self.name}_p{self.patch + 1}"
+        return self.directory / f"{name}_{map_name}.{frame_label(frame)}.exr"
+
+    @property
+    def domain_size(self) -> float:
+        """Of the patch, m."""
+        return self.parameters.domain_size if self.patch is None else self._patch.domain_size
+
+    @property
+    def resolution(self) -> int:
+        """Texels along each side."""
+        return self.parameters.resolution if self.patch is None else self._patch.resolution
+
+    @property
+    def _patch(self) -> Patch:
+        assert self.patch is not None
+        return self.parameters.patches[self.patch]
 
     def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Write the frame's maps, in object space. Returns the files' paths."""
@@ -115,10 +140,13 @@ class ExrSequence:
             "unit": MAPS[name].unit,
             "frame": to_plain(frame),
             "time": fields.time,
-            "domain_size": self.parameters.domain_size,
+            "domain_size": self.domain_size,
             "compression": self.compression,
             "parameters": self.parameters.to_dict(brief=True),
         }
+        if self.patch is not None:
+            count = len(self.parameters.patches)
+            metadata["patch"] = {"number": self.patch + 1, "of": count, "rotation": self._patch.rotation}
         write_image(path, MAPS[name].image(fields), metadata, self.parameters.timing.fps, self.compression)
         return path
 

@@ -127,6 +127,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
         "wind_fields",
         "pictures",
         "hero_waves",
+        "patches",
         "keys",
         "picture",
     }  # as layers, recordings and images

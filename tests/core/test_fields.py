@@ -64,6 +64,7 @@ def outputs_from(sums: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         "displacement": np.stack([sums[c] for c in "xyz"], -1),
         "slope": np.stack([sums["z_x"], sums["z_y"]], -1),
         "velocity": np.stack([sums[c + "_t"] for c in "xyz"], -1),
+        "strain": np.stack([sums["x_x"], sums["y_y"], 0.5 * (sums["x_y"] + sums["y_x"])], -1),
         "jacobian": np.linalg.det(gradient),
         "min_eigenvalue": values[..., 0],
         "cusp": np.maximum(0.0, 1.0 - values[..., 0]),

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Timing, Water, WaveLayer
+from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Timing, Water, WaveLayer
 from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.propagation import propagate
 
@@ -112,7 +112,7 @@ def outside(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
 
 REFUSED = [
     (cls, field)
-    for cls in (OceanParameters, WaveLayer, Water, Foam, Timing)
+    for cls in (OceanParameters, WaveLayer, Water, Foam, Timing, Patch)
     for field in dataclasses.fields(cls)
     if "kind" in field.metadata
 ]

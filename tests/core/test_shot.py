@@ -10,7 +10,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing, WaveLayer
+from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, Timing, WaveLayer
 from ocean_tweak.core.bake import ShotSurfaces
 from ocean_tweak.core.fingerprint import frame_fingerprint, shot_fingerprint
 from ocean_tweak.core.shot import Animation, Shot
@@ -80,6 +80,15 @@ def test_ocean_time_slows_the_waves_and_their_velocity() -> None:
     expected = Ocean(SEA).surface(0.25, {"displacement", "velocity"})
     np.testing.assert_array_equal(fields.displacement, expected.displacement)
     np.testing.assert_array_equal(fields.velocity, np.float32(6.0) * expected.velocity)
+
+
+def test_frames_of_several_patches_are_several() -> None:
+    patches = (Patch(100.0, 0.0, 10.0, resolution=32), Patch(70.0, 0.4, 3.0, 10.0, 48))
+    surfaces = ShotSurfaces(Shot(SEA.replace(patches=patches)))
+    made = surfaces.frames(2, {"displacement"})
+    assert [fields.displacement.shape for fields in made] == [(32, 32, 3), (48, 48, 3)]
+    with pytest.raises(ValueError, match="several patches"):
+        surfaces.frame(2, {"displacement"})
 
 
 def test_velocity_follows_the_clock_between_frames() -> None:

@@ -126,7 +126,7 @@ def test_maps_hold_what_they_say(tmp_path: Path) -> None:
     fields = Ocean(parameters).frame(30, sink.outputs)
     paths = sink.write(30, fields)
     assert [path.name for path in paths] == [
-        f"sea_{name}.0030.exr" for name in ("disp", "foam", "normal", "vel")
+        f"sea_{name}.0030.exr" for name in ("disp", "foam", "normal", "vel", "slope", "strain")
     ]
     images = {name: read_image(sink.path(30, name)) for name in MAPS}
     np.testing.assert_array_equal(images["disp"][0], fields.displacement)
@@ -135,7 +135,10 @@ def test_maps_hold_what_they_say(tmp_path: Path) -> None:
     np.testing.assert_array_equal(images["foam"][0][..., 0], fields.foam)
     np.testing.assert_array_equal(images["foam"][0][..., 1], fields.cusp)
     assert not np.any(images["foam"][0][..., 2])
+    np.testing.assert_array_equal(images["slope"][0][..., :2], fields.slope)
+    assert not np.any(images["slope"][0][..., 2])
+    np.testing.assert_array_equal(images["strain"][0], fields.strain)
     assert {name: metadata["unit"] for name, (_, metadata) in images.items()} == {
-        "disp": "m", "foam": "1", "normal": "1", "vel": "m/s"
+        "disp": "m", "foam": "1", "normal": "1", "vel": "m/s", "slope": "1", "strain": "1"
     }  # fmt: skip
     assert images["vel"][1]["map"] == "vel"

@@ -78,12 +78,16 @@ def _trial_frame(folder: Path, job: Job, frames: Sequence[Frame]) -> tuple[list[
     """Bytes of a frame's files, and seconds to make them after the frame before."""
     surfaces = ShotSurfaces(job.shot)
     started = time.perf_counter()
-    sequence = job.sequence(folder, frames[0])
-    fields = surfaces.frame(frames[0], job.outputs)
+    sequences = job.sequences(folder, frames[0])
+    made = surfaces.frames(frames[0], job.outputs)
     if len(frames) > 1:  # what is made once does not count where there are many
         started = time.perf_counter()
-        fields = surfaces.frame(frames[1], job.outputs)
-    paths = sequence.write(frames[0], fields)
+        made = surfaces.frames(frames[1], job.outputs)
+    paths = [
+        path
+        for sequence, fields in zip(sequences, made, strict=True)
+        for path in sequence.write(frames[0], fields)
+    ]
     return [path.stat().st_size for path in paths], time.perf_counter() - started
 
 

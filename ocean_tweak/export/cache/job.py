@@ -12,7 +12,7 @@ import json
 import platform
 import re
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, combinations
@@ -21,9 +21,11 @@ from typing import Any
 
 import numpy as np
 
+from ...core.cascades.patch_seas import ADDING
 from ...core.errors import ParameterError
 from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
+from ...core.parameters import OceanParameters
 from ...core.shot import Shot
 from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
 from ..files import alone, new_file, sync_folder, whole_file
@@ -65,6 +67,7 @@ class Job:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(name for name in MAPS if name in self.maps))
+        _check_maps(self.maps, self.shot.parameters)
 
     @cached_property
     def fingerprint(self) -> str:
@@ -94,10 +97,25 @@ class Job:
         """The fields that its maps are made of."""
         return frozenset().union(*(MAPS[name].outputs for name in self.maps))
 
-    def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
-        """The sink for a frame, whose header tells this frame's parameters."""
+    def sequences(self, folder: Path, frame: Frame) -> tuple[ExrSequence, ...]:
+        """The sinks for a frame, one a patch, whose headers tell this frame's parameters."""
         parameters = self.shot.at(frame).parameters
-        return ExrSequence(folder, self.name, parameters, self.compression, self.maps)
+        patches: Iterable[int | None] = range(len(parameters.patches)) if parameters.is_cascade else (None,)
+        return tuple(
+            ExrSequence(folder, self.name, parameters, self.compression, self.maps, patch)
+            for patch in patches
+        )
+
+    def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
+        """The sink for a frame of a sea of one patch. Raises CacheError for another."""
+        if self.shot.parameters.is_cascade:
+            raise CacheError(f"{folder} holds the images of several patches, not of one")
+        return self.sequences(folder, frame)[0]
+
+    def files(self, folder: Path, frame: Frame) -> list[tuple[str, str]]:
+        """Map and file name of each of a frame's images."""
+        sequences = self.sequences(folder, frame)
+        return [(name, sequence.path(frame, name).name) for sequence in sequences for name in self.maps]
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in `bake.json`."""
@@ -143,6 +161,21 @@ class Job:
         if job.fingerprint != data.get("fingerprint"):
             raise ValueError("was changed: its fingerprint is not that of its contents")
         return job
+
+
+def maps_for(parameters: OceanParameters) -> tuple[str, ...]:
+    """The maps that a sea can be baked to: of several patches those that add up."""
+    return tuple(name for name in MAPS if not parameters.is_cascade or MAPS[name].outputs <= ADDING)
+
+
+def _check_maps(maps: tuple[str, ...], parameters: OceanParameters) -> None:
+    for name in maps:
+        if name not in maps_for(parameters):
+            raise ParameterError(
+                "maps", name,
+                "of several patches do not add up, and their sum does not repeat: bake "
+                f"{', '.join(maps_for(parameters))}, of whose sums normals, cusps and foam are made",
+            )  # fmt: skip
 
 
 def made_with() -> dict[str, str]:
@@ -267,7 +300,7 @@ def recovered_job(folder: Path) -> Job:
             shot, compression = Shot.from_dict(metadata["parameters"]), str(metadata["compression"])
         except (ExrError, ParameterError, KeyError):
             continue
-        for maps in _all_choices(tuple(MAPS)):
+        for maps in _all_choices(maps_for(shot.parameters)):
             job = Job(name, uid, shot, maps, compression)
             if job.fingerprint[:8] == match[2]:
                 return job

@@ -109,16 +109,21 @@ class CacheSink:
         """The fields that a frame must have."""
         return self.job.outputs
 
-    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
-        """Write the frame, all or nothing. Returns its images' paths."""
+    def write(self, frame: Frame, *fields: SurfaceFields) -> tuple[Path, ...]:
+        """Write the frame from the fields of each patch, all or nothing. Returns its images' paths."""
         record = record_path(self.folder, frame)
         # an old record must not vouch for new files
         record.unlink(missing_ok=True)
-        paths = self.job.sequence(self.folder, frame).write(frame, fields)
+        sequences = self.job.sequences(self.folder, frame)
+        paths = tuple(
+            path
+            for sequence, of_patch in zip(sequences, fields, strict=True)
+            for path in sequence.write(frame, of_patch)
+        )
         sync_folder(self.folder)
         entries = tuple(
             FileEntry(name, path.name, path.stat().st_size, file_hash(path))
-            for name, path in zip(self.job.maps, paths, strict=True)
+            for name, path in zip(self.job.maps * len(sequences), paths, strict=True)
         )
         made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries, self._asked)
         with whole_file(record) as beside:
@@ -181,10 +186,7 @@ def inspect(folder: Path, job: Job, frame: Frame) -> Finding:
         return Finding(frame, State.MISSING, "it has no record")
     if record.fingerprint != frame_fingerprint(job.shot, frame):
         return Finding(frame, State.STALE, "it was made from other parameters")
-    sequence = job.sequence(folder, frame)
-    wanted = {name: sequence.path(frame, name).name for name in job.maps}
-    listed = {entry.map: entry.name for entry in record.files}
-    if listed != wanted or len(record.files) != len(wanted):
+    if sorted((entry.map, entry.name) for entry in record.files) != sorted(job.files(folder, frame)):
         return Finding(frame, State.DAMAGED, "its record lists other files than the job has")
     for entry in record.files:
         try:
@@ -236,8 +238,7 @@ def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
     """Remove what a killed process had begun to write of these frames."""
     names = set()
     for frame in frames:
-        sequence = job.sequence(folder, frame)
-        names.update(sequence.path(frame, name).name for name in job.maps)
+        names.update(name for _, name in job.files(folder, frame))
         names.add(record_path(folder, frame).name)
     for part in (*folder.glob(f".*{PART}"), *(folder / RECORDS).glob(f".*{PART}")):
         if begun_file(part) in names:

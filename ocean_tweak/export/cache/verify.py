@@ -34,9 +34,12 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
-            problem = _problem(job, job.sequence(folder, frame), frame, seas)
-            if problem:
-                finding = Finding(frame, State.DAMAGED, problem)
+            oceans = seas.oceans(job.shot.at(frame).parameters)
+            for sequence, ocean in zip(job.sequences(folder, frame), oceans, strict=True):
+                problem = _problem(job, sequence, frame, ocean)
+                if problem:
+                    finding = Finding(frame, State.DAMAGED, problem)
+                    break
         yield finding
 
 
@@ -51,9 +54,9 @@ def wave_height(ocean: Ocean, moment: Moment) -> float:
     return 4.0 * float(np.sqrt(variance))
 
 
-def _problem(job: Job, sequence: ExrSequence, frame: Frame, seas: ShotSurfaces) -> str:
+def _problem(job: Job, sequence: ExrSequence, frame: Frame, ocean: Ocean) -> str:
     moment = job.shot.at(frame)
-    samples = moment.parameters.resolution
+    samples = sequence.resolution
     for name in job.maps:
         path = sequence.path(frame, name)
         try:
@@ -64,7 +67,7 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, seas: ShotSurfaces) 
         wanted = {
             "map": name,
             "frame": to_plain(frame),
-            "domain_size": moment.parameters.domain_size,
+            "domain_size": sequence.domain_size,
             "unit": MAPS[name].unit,
         }
         if told != wanted:
@@ -73,7 +76,7 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, seas: ShotSurfaces) 
             return f"{path.name} holds values that are not finite"
         if name == "disp":
             bounds = DAMPED_WAVE_HEIGHTS if moment.parameters.trough_damping else WAVE_HEIGHTS
-            expected = wave_height(seas.ocean(moment.parameters), moment)
+            expected = wave_height(ocean, moment)
             problem = _wrong_height(image, expected, bounds)
             if problem:
                 return f"{path.name} {problem}"

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sea of several patches that can be asked for its surface at any place and time."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs
+from ..foam import FoamModel
+from ..foam_field import foam_model_of
+from ..foam_threshold import Strains, sampled_strains, strain_covariances
+from ..memory import check_memory, memory_need
+from ..ocean import Ocean
+from ..parameters import OceanParameters
+from ..surface_query import Field, SurfacePoints, bilinear, refine_points
+from .foam import foam_at
+from .patch_seas import patch_parameters, rotations
+from .query import find_summed_points
+from .sampling import Components, Key, SummedRows, closed, summed_field, turned_field
+from .statistics import CascadeStatistics, cascade_statistics
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+_SQUEEZE = OUTPUTS["cusp"].needs
+
+#: bytes of squeezed surfaces of earlier moments that are kept for the next frame's foam
+_KEPT = 2**28
+
+
+class Cascade:
+    """The sea of some parameters, whether of one patch or of several. Making one is cheap.
+
+    patches : the `Ocean` of each patch, in axes along its own sides
+    rotations : by which those axes are turned, rad counter-clockwise
+
+    precision, workers : as for an Ocean
+
+    Raises ValueError as Ocean does.
+    """
+
+    def __init__(
+        self, parameters: OceanParameters, precision: str = "single", workers: int | None = None
+    ) -> None:
+        if not isinstance(parameters, OceanParameters):
+            raise TypeError(f"Cascade wants OceanParameters, not {type(parameters).__name__}")
+        check_memory(memory_need(parameters, precision=precision).peak(), f"A sea of {_samples(parameters)}")
+        self.parameters = parameters
+        self.rotations = rotations(parameters)
+        self.patches = tuple(Ocean(patch, precision, workers) for patch in patch_parameters(parameters))
+        self._kept: OrderedDict[Fraction, list[Components]] = OrderedDict()
+
+    @property
+    def spacings(self) -> tuple[float, ...]:
+        """Metres between the samples of each patch."""
+        return tuple(ocean.parameters.domain_size / ocean.parameters.resolution for ocean in self.patches)
+
+    def surfaces(
+        self, time: float | Fraction, outputs: Iterable[str] = ("displacement",)
+    ) -> tuple[SurfaceFields, ...]:
+        """Fields of each patch at a time in s, on its own samples and in its own axes.
+
+        Displacement, velocity, slope and strain of the sea are the sums of theirs, each turned by the patch's
+        rotation; the other fields are not sums.
+        """
+        wanted = checked_outputs(outputs)
+        return tuple(ocean.surface(time, wanted) for ocean in self.patches)
+
+    def fields_at(
+        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, outputs: Iterable[str] = ("displacement",)
+    ) -> SurfaceFields:
+        """Fields of the sum at rest positions x and y in m, of one shape, at a time in s.
+
+        Each array is as long as the places, with the field's channels behind. Displacements and derivatives
+        are bilinear in each patch and add up before a normal or eigenvalue is made of them.
+
+        Raises ValueError for an unknown output or a time that is not finite.
+        """
+        wanted = checked_outputs(outputs)
+        places_x, places_y = _places(x, y, time)
+        shape, px, py = places_x.shape, places_x.ravel(), places_y.ravel()
+        fields: dict[str, RealArray] = {}
+        needs = frozenset().union(*(OUTPUTS[name].needs for name in wanted - {FOAM}))
+        rows = self._rows(px, py, self._components(time, needs))
+        for name in wanted - {FOAM}:
+            channels = (OUTPUTS[name].channels,) if OUTPUTS[name].channels else ()
+            field: RealArray = np.empty((px.size, *channels), self._dtype)
+            OUTPUTS[name].write(rows, field)
+            fields[name] = field.reshape(*shape, *channels)
+        if FOAM in wanted:
+            fields[FOAM] = foam_at(self.foam_model, self._squeeze_at, px, py, time).reshape(shape)
+        return SurfaceFields(float(time), fields)
+
+    def area(
+        self,
+        size: float,
+        resolution: int,
+        time: float | Fraction,
+        outputs: Iterable[str] = ("displacement",),
+        corner: tuple[float, float] = (0.0, 0.0),
+    ) -> SurfaceFields:
+        """Fields of the sum on (N, N) samples [y, x] over a square of some size in m, from its corner.
+
+        The square does not repeat: its far sides do not fit its near ones.
+        """
+        along = size / resolution * np.arange(resolution)
+        return self.fields_at(corner[0] + along, (corner[1] + along)[:, np.newaxis], time, outputs)
+
+    def points_at(
+        self,
+        x: ArrayLike,
+        y: ArrayLike,
+        time: float | Fraction,
+        surface: str = "mesh",
+        velocity: bool = False,
+    ) -> SurfacePoints:
+        """The surface above places x and y in m, of any one shape, at a time in s.
+
+        surface : "mesh" for the sum of the patches' bilinear surfaces, "exact" for the band-limited one,
+            whose cost grows with points times wave vectors
+        velocity : whether it is wanted too
+
+        Raises ValueError for an unknown surface or a time that is not finite.
+        """
+        if surface not in ("mesh", "exact"):
+            raise ValueError(f"surface = {surface!r}: must be mesh or exact")
+        if not self.parameters.is_cascade:
+            return self.patches[0].points_at(x, y, time, surface, velocity)
+        _places(x, y, time)
+        outputs = {"displacement"} | ({"velocity"} if velocity else set())
+        fields: list[Field] = []
+        reach = 0.0
+        for made, spacing, rotation in zip(
+            self.surfaces(time, outputs), self.spacings, self.rotations, strict=True
+        ):
+            reach += float(np.max(np.hypot(made.displacement[..., 0], made.displacement[..., 1])))
+            moving = made.velocity if velocity else None
+            fields.append(turned_field(bilinear(made.displacement, moving, spacing), rotation))
+        points = find_summed_points(x, y, fields, self.spacings, reach, velocity)
+        if surface == "mesh":
+            return points
+        waves = [
+            turned_field(ocean.exact_field(time), rotation)
+            for ocean, rotation in zip(self.patches, self.rotations, strict=True)
+        ]
+        return refine_points(x, y, summed_field(waves), points, self.spacings[-1], velocity)
+
+    def height_at(
+        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, surface: str = "mesh"
+    ) -> NDArray[np.float64]:
+        """Height of the surface in m above places x and y in m, at a time in s; see `points_at`."""
+        return self.points_at(x, y, time, surface).height
+
+    def statistics(self) -> CascadeStatistics:
+        """Wave height, period and wavelength of the sum, and of each patch."""
+        return cascade_statistics(self.parameters, [ocean.statistics() for ocean in self.patches])
+
+    @cached_property
+    def foam_model(self) -> FoamModel:
+        """How foam is born and lives: its threshold follows from the strains of all patches together."""
+        patches = self._of_foam.patches
+
+        def strains_of(drift: tuple[float, float]) -> Strains:
+            parts = [
+                strain_covariances(
+                    ocean.initial_state,
+                    self.parameters.choppiness,
+                    drift,
+                    rotation,
+                    self.parameters.is_cascade,
+                )
+                for ocean, rotation in zip(patches, self.rotations, strict=True)
+            ]
+            gradients, rates = zip(*parts, strict=True)
+            return sampled_strains(np.sum(gradients, axis=0), np.sum(rates, axis=0))
+
+        return foam_model_of(self.parameters, strains_of, self._of_foam.spacings[-1])
+
+    @cached_property
+    def _of_foam(self) -> Cascade:
+        """The sea at the resolution at which foam is made."""
+        resolution = self.parameters.foam.resolution
+        if resolution in (0, self.parameters.resolution):
+            return self
+        first = self.patches[0]
+        return Cascade(self.parameters.at_resolution(resolution), first.precision, first.workers)
+
+    @property
+    def _dtype(self) -> type:
+        return np.float32 if self.patches[0].precision == "single" else np.float64
+
+    def _components(self, time: float | Fraction, needs: Iterable[Key]) -> list[Components]:
+        wanted = closed(needs)
+        if not wanted:
+            return [{} for _ in self.patches]
+        return [ocean.components(time, wanted) for ocean in self.patches]
+
+    def _rows(self, x: Array, y: Array, components: Sequence[Components]) -> SummedRows:
+        return SummedRows(x, y, components, self.spacings, self.rotations)
+
+    def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
+        sea = self._of_foam
+        squeeze = np.empty(x.shape, np.float32)
+        OUTPUTS["cusp"].write(sea._rows(x, y, self._squeezed(time)), squeeze)
+        return squeeze
+
+    def _squeezed(self, time: Fraction) -> list[Components]:
+        """Strains of each patch at a time, of which the last ones are kept: the next frame looks back too."""
+        if time not in self._kept:
+            made = self._of_foam._components(time, _SQUEEZE)
+            size = sum(field.nbytes for patch in made for field in patch.values())
+            while self._kept and (len(self._kept) + 1) * size > _KEPT:
+                self._kept.popitem(last=False)
+            self._kept[time] = made
+        return self._kept[time]
+
+
+def _places(x: ArrayLike, y: ArrayLike, time: float | Fraction) -> tuple[Array, Array]:
+    if not np.isfinite(float(time)):
+        raise ValueError(f"time = {time!r}: must be a finite number of seconds")
+    places_x, places_y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
+    if not (np.all(np.isfinite(places_x)) and np.all(np.isfinite(places_y))):
+        raise ValueError("x and y: must be finite places in m")
+    return places_x, places_y
+
+
+def _samples(parameters: OceanParameters) -> str:
+    sizes = [patch.resolution for patch in parameters.patches] or [parameters.resolution]
+    return " and ".join(f"{size}²" for size in sizes) + " samples"

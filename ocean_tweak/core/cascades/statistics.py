@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a sea of several patches will be: the sum, and what each patch holds of it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..parameters import OceanParameters, Patch
+from ..sea_spectrum import SeaSpectrum
+from ..sea_state import SeaState, together
+from ..statistics import (
+    FLAT,
+    LEAST_RESOLVED_SHARE,
+    Statistics,
+    continuous_state,
+    fetch_warnings,
+    grid_warnings,
+    loop_warnings,
+    picture_warnings,
+)
+from .patch import NO_LONGEST
+from .patch_seas import patch_parameters
+
+#: a patch samples its shortest wave at least so often, and its longest goes at least so often into a side
+LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
+
+#: share of the variance that patches which repeat within the wanted area may hold: as much as the
+#: autocorrelation of the sea has a domain away
+REPEATING_SHARE = 0.1
+
+
+@dataclass(frozen=True)
+class PatchStatistics:
+    """A patch, and the statistics of its band in the sea's axes.
+
+    share : of the sum's variance on the grids, 0…1
+    """
+
+    patch: Patch
+    statistics: Statistics
+    share: float
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data for JSON."""
+        patch = self.patch
+        return {
+            **dataclasses.asdict(patch),
+            "spacing": patch.spacing,
+            "samples_a_wave": patch.samples_a_wave or None,
+            "longest_waves_a_side": patch.longest_waves_a_side,
+            "share": self.share,
+            **{name: getattr(self.statistics, name).to_dict() for name in ("spectrum", "resolved", "seed")},
+        }
+
+
+@dataclass(frozen=True)
+class CascadeStatistics:
+    """What a sea will be.
+
+    total : of the sum: its spectrum is that of all waves, its grid all grids together
+    patches : from long waves to short
+    """
+
+    total: Statistics
+    patches: tuple[PatchStatistics, ...]
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data for JSON: that of the sum, and a list of patches."""
+        return {**self.total.to_dict(), "patches": [patch.to_dict() for patch in self.patches]}
+
+
+def cascade_statistics(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> CascadeStatistics:
+    """Statistics of a sea from those of its patches in their own axes."""
+    patches = parameters.patches or (
+        Patch(domain_size=parameters.domain_size, resolution=parameters.resolution),
+    )
+    in_sea = [_turned(found, patch.rotation) for found, patch in zip(of_patches, patches, strict=True)]
+    whole = parameters.replace(patches=())
+    sea = SeaSpectrum(whole)
+    spectrum = continuous_state(sea)
+    changes = [found.loop_speed_change for found in in_sea if found.loop_speed_change is not None]
+    total = Statistics(
+        spectrum=spectrum,
+        resolved=together([found.resolved for found in in_sea]),
+        seed=together([found.seed for found in in_sea]),
+        wavelengths_per_domain=parameters.domain_size / spectrum.peak_wavelength,
+        sample_spacing=min(patch.spacing for patch in patches),
+        loop_speed_change=max(changes, default=None),
+        warnings=(),
+    )
+    m0 = total.resolved.m0
+    result = tuple(
+        PatchStatistics(patch, found, found.resolved.m0 / m0 if m0 > 0.0 else 0.0)
+        for patch, found in zip(patches, in_sea, strict=True)
+    )
+    warnings = tuple(_warnings(parameters, sea, total, result))
+    return CascadeStatistics(dataclasses.replace(total, warnings=warnings), result)
+
+
+def _turned(found: Statistics, rotation: float) -> Statistics:
+    """Statistics of a patch in the sea's axes."""
+
+    def in_sea(state: SeaState) -> SeaState:
+        direction = math.remainder(state.mean_direction + rotation, math.tau)
+        return dataclasses.replace(state, mean_direction=direction)
+
+    if not rotation:
+        return found
+    spectrum, resolved, seed = map(in_sea, (found.spectrum, found.resolved, found.seed))
+    return dataclasses.replace(found, spectrum=spectrum, resolved=resolved, seed=seed)
+
+
+def _warnings(
+    parameters: OceanParameters, sea: SeaSpectrum, total: Statistics, patches: Sequence[PatchStatistics]
+) -> Iterator[str]:
+    yield from picture_warnings(sea.parameters)
+    if not np.isfinite(total.peak_wavelength):
+        if not (parameters.active_wind_fields or parameters.active_hero_waves):
+            yield FLAT
+        return
+    if not parameters.is_cascade:
+        yield from grid_warnings(sea.parameters, sea, total)
+    else:
+        for index, (found, of_patch) in enumerate(zip(patches, patch_parameters(parameters), strict=True)):
+            yield from (f"Patch {index + 1}: {text}" for text in _patch_warnings(found, of_patch, index == 0))
+        last = patches[-1].patch
+        if total.resolved_share < LEAST_RESOLVED_SHARE:
+            yield (
+                f"The patches together resolve {100.0 * total.resolved_share:.0f} % of the energy, of waves "
+                f"down to {max(last.shortest_wavelength, 2.0 * last.spacing):.3g} m. "
+                "Plan them for a finer detail"
+            )
+    yield from loop_warnings(parameters, total)
+    yield from fetch_warnings(parameters, sea)
+
+
+def _patch_warnings(found: PatchStatistics, parameters: OceanParameters, is_first: bool) -> Iterator[str]:
+    patch = found.patch
+    if patch.shortest_wavelength > 0.0 and patch.samples_a_wave < LEAST_SAMPLES:
+        samples = 2 * math.ceil(0.5 * LEAST_SAMPLES * patch.domain_size / patch.shortest_wavelength)
+        yield (
+            f"its shortest wave, {patch.shortest_wavelength:g} m, has only {patch.samples_a_wave:.2g} "
+            f"samples. Give it {samples} samples or end its band at {LEAST_SAMPLES * patch.spacing:.3g} m"
+        )
+    if patch.longest_wavelength < NO_LONGEST and patch.longest_waves_a_side < LEAST_CELLS:
+        yield (
+            f"its longest wave, {patch.longest_wavelength:g} m, goes only {patch.longest_waves_a_side:.2g} "
+            f"times into its side. Make it at least {LEAST_CELLS * patch.longest_wavelength:.3g} m"
+        )
+    if is_first:
+        yield from grid_warnings(parameters, SeaSpectrum(parameters), found.statistics)
+    elif found.share > REPEATING_SHARE:
+        yield (
+            f"it repeats every {patch.domain_size:g} m with {100.0 * found.share:.0f} % of the energy, and "
+            "that shows. Let the patch before it hold shorter waves too"
+        )
