@@ -97,6 +97,21 @@ def test_a_bad_file_is_refused_and_changes_nothing(active, empty_scene, tmp_path
     assert active.ocean_tweak.to_parameters(empty_scene) == before
 
 
+def test_a_sea_of_several_patches_is_refused(active, core, empty_scene, tmp_path, ocean_object):
+    before = active.ocean_tweak.to_parameters(empty_scene)
+    several = {"patches": [{"domain_size": 400.0, "shortest_wavelength": 20.0},
+                           {"domain_size": 90.0, "longest_wavelength": 20.0}]}  # fmt: skip
+    file = tmp_path / "sea.json"
+    file.write_text(json.dumps(several))
+    with pytest.raises(RuntimeError, match="has 2 patches"):
+        bpy.ops.ocean.import_parameters(filepath=str(file))
+    assert active.ocean_tweak.to_parameters(empty_scene) == before
+    objects = len(bpy.data.objects)
+    with pytest.raises(ValueError, match="has 2 patches"):
+        ocean_object.add(empty_scene, core.OceanParameters.from_json(file.read_text()))
+    assert len(bpy.data.objects) == objects
+
+
 def test_settings_that_are_no_sea_are_not_exported(active, tmp_path):
     active.ocean_tweak.resolution = 33
     with pytest.raises(RuntimeError, match="resolution = 33"):
