@@ -23,13 +23,13 @@ from benchmarks.measure import Timings, interleaved
 from benchmarks.plan import sea
 from benchmarks.rows import Row, ratio_row
 from ocean_tweak import registration
-from ocean_tweak.core import Ocean
 from ocean_tweak.scene import ocean_object
 from ocean_tweak.scene.grid_mesh import Grid, fill
 from ocean_tweak.scene.refresh import refresh_and_tell
 from ocean_tweak.scene.settings import METHODS
 
-CREST = "crest"
+#: of an ocean's settings, all of them on by default
+SWITCHES = ("use_foam", "use_normals", "use_velocity")
 
 Contender = tuple[bpy.types.Scene, bpy.types.Object]
 
@@ -77,12 +77,12 @@ def frame_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
         "Displace with foam": built_in(samples, "DISPLACE", foam=True),
     }
     ours = {f"live, {method.lower()}": live(samples, method) for method in METHODS}
-    crested = with_crest(live(samples, "NODES"))
-    frames = itertools.count(1)
-    sides = {
-        name: to_mesh(contender, frames)
-        for name, contender in {**modifiers, **ours, "crest": crested}.items()
+    foaming = {
+        "live, nodes, with foam": live(samples, "NODES", "use_foam"),
+        "live, nodes, with foam, normals and velocity": live(samples, "NODES", *SWITCHES),
     }
+    frames = itertools.count(1)
+    sides = {name: to_mesh(contender, frames) for name, contender in {**modifiers, **ours, **foaming}.items()}
     timings = interleaved(sides, arguments.rounds)
     remove_scenes()
     side = modifier_resolution(samples) ** 2
@@ -90,9 +90,9 @@ def frame_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
     for mine, theirs in itertools.product(ours, ("Generate", "Displace")):
         judged = samples == arguments.judge and mine == "live, nodes" and theirs == "Generate"
         yield compare(arguments, samples, timings, mine, theirs, remark, "Blender" if judged else None)
-    for theirs in ("Generate with foam", "Displace with foam"):
-        target = "Blender, foam" if samples == arguments.judge and theirs.startswith("Generate") else None
-        yield compare(arguments, samples, timings, "crest", theirs, remark, target)
+    for mine, theirs in itertools.product(foaming, ("Generate with foam", "Displace with foam")):
+        judged = samples == arguments.judge and mine.endswith("foam") and theirs.startswith("Generate")
+        yield compare(arguments, samples, timings, mine, theirs, remark, "Blender, foam" if judged else None)
 
 
 def compare(
@@ -105,8 +105,7 @@ def compare(
     target: str | None,
 ) -> Row:
     """One way of ours against one of the modifier's."""
-    ours = "live, nodes, with a crest attribute" if mine == "crest" else mine
-    name = f"frame → mesh, {samples}², {ours} against Ocean modifier {theirs}"
+    name = f"frame → mesh, {samples}², {mine} against Ocean modifier {theirs}"
     return ratio_row(
         f"Blender, {arguments.place}", name, timings, mine, theirs, faster=True, target=target, remark=remark
     )
@@ -123,12 +122,13 @@ def latency_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
         mesh_of(scene, item)
 
     nodes, displace = live(samples, "NODES"), live(samples, "DISPLACE")
+    whole = live(samples, "NODES", *SWITCHES)
     sides = {
         "Generate": change_modifier,
         "live, nodes, all at once": wind_changer(nodes, winds),
         "live, displace, all at once": wind_changer(displace, winds),
-        "live, nodes, what a window shows first": wind_changer(nodes, winds, coarse=True),
-        "live, nodes, what a window shows next": wind_changer(nodes, winds, coarse=False),
+        "live, nodes, all maps, what a window shows first": wind_changer(whole, winds, coarse=True),
+        "live, nodes, all maps, what a window shows next": wind_changer(whole, winds, coarse=False),
     }
     timings = interleaved(sides, arguments.rounds)
     remove_scenes()
@@ -142,8 +142,8 @@ def wind_changer(
 ) -> Callable[[], None]:
     """Changes the wind and asks for the mesh.
 
-    coarse : as in a window, which shows few samples first, then all of them, and leaves the statistics for
-        later; None does everything at once, as without a window
+    coarse : as in a window, which shows few samples first, then all of them, and leaves the statistics and
+        the history of the foam to a thread; None does everything at once, as without a window
     """
     scene, item = contender
     settings = item.ocean_tweak
@@ -154,7 +154,7 @@ def wind_changer(
         else:
             with settings.quiet():
                 settings.layers[0].wind_speed = next(winds)
-            refresh_and_tell(item, scene, coarse=coarse, statistics=False)
+            refresh_and_tell(item, scene, coarse=coarse, statistics=False, patient=False)
         mesh_of(scene, item)
         if settings.error:
             raise RuntimeError(settings.error)
@@ -197,9 +197,6 @@ def remove_scenes() -> None:
         bpy.data.objects.remove(item)
     for scene in list(bpy.data.scenes)[1:]:
         bpy.data.scenes.remove(scene)
-    bpy.app.handlers.frame_change_pre[:] = [
-        handler for handler in bpy.app.handlers.frame_change_pre if not hasattr(handler, CREST)
-    ]
     bpy.data.orphans_purge()
 
 
@@ -230,35 +227,17 @@ def built_in(samples: int, geometry: str, foam: bool = False) -> Contender:
     return scene, item
 
 
-def live(samples: int, method: str) -> Contender:
-    """Our ocean as Add > Mesh > Ocean Tweak makes it."""
+def live(samples: int, method: str, *switches: str) -> Contender:
+    """Our ocean with these of SWITCHES on; without any it makes what the modifier makes, displacement."""
     scene = new_scene(f"live {method}")
     item = ocean_object.add(scene, sea(samples), method, "LIVE")
+    with item.ocean_tweak.quiet():
+        for name in SWITCHES:
+            setattr(item.ocean_tweak, name, name in switches)
+    refresh_and_tell(item, scene)
     made = len(mesh_of(scene, item).vertices)
     if made != (samples + 1) ** 2:
         raise RuntimeError(f"our ocean has {made} vertices and not {samples + 1}²")
-    return scene, item
-
-
-def with_crest(contender: Contender) -> Contender:
-    """Also makes the crest field of every frame, and puts it on the mesh: what foam starts from."""
-    scene, item = contender
-    samples = item.ocean_tweak.resolution
-    ocean = Ocean(item.ocean_tweak.to_parameters(scene))
-    attribute = item.data.attributes.new(CREST, "FLOAT", "POINT")
-    closed = np.empty((samples + 1, samples + 1), np.float32)
-
-    def make_crest(changed: bpy.types.Scene, _depsgraph: object = None) -> None:
-        if changed != scene:
-            return
-        crest = ocean.frame(changed.frame_current, ("min_eigenvalue",)).min_eigenvalue
-        closed[:-1, :-1] = crest
-        closed[-1], closed[:, -1] = closed[0], closed[:, 0]  # the far edges are the near ones again
-        item.data.attributes[CREST].data.foreach_set("value", closed.reshape(-1))
-        item.data.update_tag()
-
-    setattr(make_crest, CREST, attribute.name)
-    bpy.app.handlers.frame_change_pre.append(make_crest)
     return scene, item
 
 

@@ -59,7 +59,9 @@ TARGETS = {
         "frame change → evaluated mesh at 1024², live, nodes", 6.0, "× faster than Generate", at_least=True
     ),
     "Blender, foam": Target(
-        "the same with foam", 12.0, "× faster than Generate with foam", at_least=True
+        "the same with foam", 12.0, "× faster than Generate with foam", at_least=True,
+        limit="foam with its history: a third of a surface more in each frame, and the samples of all its "
+        "earlier moments fade and drift; the modifier's foam is the folding of the present frame",
     ),
     "bake": Target(
         "bake of `disp` at 1024², two workers", 1.15, "× (compute + encode)/2", needs_two_cores=True
