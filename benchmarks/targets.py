@@ -60,7 +60,7 @@ TARGETS = {
     ),
     "Blender, foam": Target(
         "the same with foam", 12.0, "× faster than Generate with foam", at_least=True,
-        limit="foam with its history: a third of a surface more in each frame, and the samples of all its "
+        what_limits="foam with its history: a third of a surface more in each frame, and the samples of all its "
         "earlier moments fade and drift; the modifier's foam is the folding of the present frame",
     ),
     "bake": Target(
