@@ -60,8 +60,8 @@ TARGETS = {
     ),
     "Blender, foam": Target(
         "the same with foam", 12.0, "× faster than Generate with foam", at_least=True,
-        what_limits="foam with its history: a third of a surface more in each frame, and the samples of all its "
-        "earlier moments fade and drift; the modifier's foam is the folding of the present frame",
+        what_limits="foam with its history: a third of a surface more in each frame, and the samples of all "
+        "its earlier moments fade and drift; the modifier's foam is the folding of the present frame",
     ),
     "bake": Target(
         "bake of `disp` at 1024², two workers", 1.15, "× (compute + encode)/2", needs_two_cores=True
