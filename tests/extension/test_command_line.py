@@ -22,15 +22,6 @@ def params(tmp_path):
     return path
 
 
-def leaves(data, path=""):
-    """Values of nested plain data by path."""
-    if isinstance(data, (dict, list)):
-        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
-            yield from leaves(value, f"{path}.{key}")
-    else:
-        yield path, data
-
-
 def test_info_is_what_python_says(ocean_tweak, extension, params):
     answer = ocean_tweak("info", "--json", "--params", params, "--set", "layers.0.wind_speed=9")
     assert answer.returncode == 0, answer.stderr
@@ -38,12 +29,7 @@ def test_info_is_what_python_says(ocean_tweak, extension, params):
     core = extension("core")
     parameters = core.OceanParameters.from_dict({**SEA, "layers": [{"wind_speed": 9}]})
     assert core.OceanParameters.from_dict(report["parameters"]) == parameters
-    told = dict(leaves(report["statistics"]))
-    expected = dict(leaves(json.loads(json.dumps(core.Ocean(parameters).statistics().to_dict()))))
-    assert told.keys() == expected.keys()
-    for path, value in expected.items():  # sums over arrays elsewhere in memory differ in their last bits
-        close = pytest.approx(value, rel=1e-9) if isinstance(value, float) else value
-        assert told[path] == close, path
+    assert report["statistics"] == json.loads(json.dumps(core.Ocean(parameters).statistics().to_dict()))
 
 
 def test_bake_writes_what_python_computes(ocean_tweak, extension, params, tmp_path):
