@@ -119,6 +119,8 @@ def together(states: Sequence[SeaState]) -> SeaState:
     moving = [state for state in states if state.m0 > 0.0]
     if not moving:
         return states[0]
+    if len(moving) == 1:
+        return moving[0]
     m0 = sum(state.m0 for state in moving)
     m2 = sum(state.m0 * (2.0 * np.pi / state.zero_crossing_period) ** 2 for state in moving)
     vector = sum(

@@ -461,6 +461,16 @@ def test_statistics_of_the_sum_and_of_its_patches() -> None:
     assert found.total.warnings == ()
 
 
+def test_statistics_of_one_patch_are_those_of_its_sea() -> None:
+    whole = SEA.replace(patches=(), resolution=32, domain_size=200.0)
+    for sea in (
+        whole,
+        whole.replace(seed=8),
+        whole.replace(layers=(dataclasses.replace(LAYER, muted=True),)),
+    ):
+        assert Cascade(sea).statistics().total.to_dict() == Ocean(sea).statistics().to_dict()
+
+
 def test_statistics_warn_of_patches_that_are_too_small_or_too_coarse() -> None:
     first, second, third = THREE
     coarse = Cascade(SEA.replace(patches=(first, second, dataclasses.replace(third, resolution=64))))
