@@ -2,6 +2,7 @@
 """In a window a changed setting shows at once with few samples, then with all. The tests are the clock."""
 
 import json
+import threading
 import time
 
 import addon_utils
@@ -70,6 +71,22 @@ def test_few_samples_then_all_then_the_statistics(
     assert run_until(refinement, lambda: not refinement.is_outstanding(item)) is None
     statistics = core.Ocean(sea).statistics().to_dict()
     assert item.ocean_tweak.statistics == json.dumps(statistics) != before
+
+
+def test_the_waves_of_all_samples_are_made_beside_the_window(item, refinement, extension, monkeypatch):
+    run_until(refinement, lambda: not refinement.is_outstanding(item))
+    module, made = extension("core.ocean"), []
+    make = module.initial_state
+
+    def noted(parameters, *arguments):
+        made.append((parameters.resolution, threading.current_thread() is threading.main_thread()))
+        return make(parameters, *arguments)
+
+    monkeypatch.setattr(module, "initial_state", noted)
+    item.ocean_tweak.seed = 11
+    run_until(refinement, lambda: not refinement.is_outstanding(item))
+    assert (COARSE, True) in made  # what is shown at once
+    assert [in_window for resolution, in_window in made if resolution == SAMPLES] == [False]
 
 
 def test_every_change_puts_it_off(item, refinement, monkeypatch, make_parameters, expected, evaluated):
