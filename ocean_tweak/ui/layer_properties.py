@@ -184,7 +184,7 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
     """Take over the parameters' layers; images and recordings that hold the same numbers stay."""
     known_images, known_winds = images(layers), list(_known_winds(layers))
     wanted = list(_listed(parameters))
-    _set_count(layers, len(wanted))
+    set_count(layers, len(wanted))
     for item, (kind, layer) in zip(layers, wanted, strict=True):
         item.kind = kind
         parameter_properties.write(item.group, type(layer), to_plain(layer, brief=True), metres)
@@ -211,7 +211,8 @@ def _listed(parameters: OceanParameters) -> Iterator[tuple[str, Any]]:
         yield from ((key, layer) for layer in getattr(parameters, kind.parameter))
 
 
-def _set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
+def set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
+    """Give a collection so many entries; those that stay are kept."""
     # layers that stay are kept: Blender neither adds to nor removes from a library override
     while len(layers) > count:
         layers.remove(len(layers) - 1)

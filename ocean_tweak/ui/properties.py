@@ -15,7 +15,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from ..core import Foam, OceanParameters, Patch, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.maps import MAPS
@@ -72,6 +72,12 @@ class OCEAN_PG_timing(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Timing, changed, _FROM_SCENE)
 
 
+class OCEAN_PG_patch(bpy.types.PropertyGroup):
+    """One of several patches: how large, how turned, and which wavelengths it holds."""
+
+    __annotations__ = parameter_properties.annotations(Patch, changed)
+
+
 class OCEAN_PG_maps(bpy.types.PropertyGroup):
     """One image a map."""
 
@@ -111,6 +117,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         **parameter_properties.annotations(OceanParameters, changed),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
+        "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
         "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
@@ -202,6 +209,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
+        data["patches"] = [parameter_properties.read(patch, Patch, metres) for patch in self.patches]
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
@@ -239,6 +247,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             if parameters.loop_duration is not None:
                 self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
             layer_properties.write(self.layers, parameters, metres)
+            layer_properties.set_count(self.patches, len(parameters.patches))
+            for patch, values in zip(self.patches, data["patches"], strict=True):
+                parameter_properties.write(patch, Patch, values, metres)
         changed(self, bpy.context)
 
 
@@ -247,6 +258,7 @@ CLASSES = (
     *layer_properties.CLASSES,
     OCEAN_PG_foam,
     OCEAN_PG_timing,
+    OCEAN_PG_patch,
     OCEAN_PG_maps,
     OCEAN_PG_usd,
     OCEAN_PG_ocean,
