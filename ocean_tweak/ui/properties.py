@@ -248,7 +248,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
                 self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
             layer_properties.write(self.layers, parameters, metres)
             layer_properties.set_count(self.patches, len(parameters.patches))
-            for patch, values in zip(self.patches, data["patches"], strict=True):
+            for patch, values in zip(self.patches, data.get("patches", ()), strict=True):
                 parameter_properties.write(patch, Patch, values, metres)
         changed(self, bpy.context)
 
