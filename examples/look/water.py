@@ -47,9 +47,8 @@ def storm_water(name, ripples, patch_size, haze_colour, visibility):
     mixed = shading.node("MixShader", {0: _haze(shading, distance, visibility), 1: water, 2: air}).outputs[0]
     output = shading.node("OutputMaterial")
     shading.tree.links.new(mixed, output.inputs["Surface"])
-    material.cycles.emission_sampling = (
-        "NONE"  # or Cycles sorts a hundred million triangles into a tree of lamps
-    )
+    # or Cycles sorts a hundred million triangles into a tree of lamps
+    material.cycles.emission_sampling = "NONE"
     return material
 
 
