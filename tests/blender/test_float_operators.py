@@ -381,7 +381,7 @@ class Layout:
 
 
 def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, extension):
-    panel = extension("ui.float_panel").OCEAN_PT_float
+    panel = extension("ui.panels.floating").OCEAN_PT_float
 
     def drawn():
         texts = []
