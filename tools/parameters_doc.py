@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from ocean_tweak.core.parameters import (
+    Foam,
     HeroWave,
     OceanParameters,
     Patch,
@@ -38,6 +39,7 @@ CLASSES = {
     WindKey: "in each entry of a wind field's list `keys`",
     Patch: "in each entry of the list `patches`",
     HeroWave: "in each entry of the list `hero_waves`",
+    Foam: "in `foam`",
     Timing: "in `timing`",
 }
 
