@@ -26,7 +26,6 @@ from ..scene.settings import (
     SOURCES,
     VIEWPORT_RESOLUTION,
     OceanObjectError,
-    check_shown,
 )
 from ..scene.units import frame_rate, metres_per_unit
 from . import layer_properties, parameter_properties
@@ -36,6 +35,8 @@ from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
 _FROM_SCENE = ("fps",)
+# patches are always joined, on the samples that are rendered
+_FROM_RESOLUTION = ("joined",)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -114,7 +115,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
-        **parameter_properties.annotations(OceanParameters, changed),
+        **parameter_properties.annotations(OceanParameters, changed, _FROM_RESOLUTION),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
@@ -205,11 +206,12 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         Raises ParameterError naming the field, its value and what is allowed.
         """
         metres = metres_per_unit(scene)
-        data = parameter_properties.read(self, OceanParameters, metres)
+        data = parameter_properties.read(self, OceanParameters, metres, _FROM_RESOLUTION)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
         data["patches"] = [parameter_properties.read(patch, Patch, metres) for patch in self.patches]
+        data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
@@ -228,9 +230,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
 
-        Raises OceanObjectError for other kinds of layers on a library override, and for several patches.
+        Raises OceanObjectError for other kinds of layers on a library override.
         """
-        check_shown(parameters)
         kinds, wanted = [layer.kind for layer in self.layers], layer_properties.kinds(parameters)
         if self.id_data.override_library and wanted != kinds:
             raise OceanObjectError(
@@ -239,7 +240,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             )
         metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
-            parameter_properties.write(self, OceanParameters, data, metres)
+            parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
