@@ -11,36 +11,13 @@ import pytest
 
 from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, Patch
 from ocean_tweak.core.cascades.foam import foam_at
-from ocean_tweak.core.cascades.patch_seas import patch_parameters
 from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.foam import FoamModel
 from ocean_tweak.core.foam_threshold import whitecap_coverage
-from tests.core import direct_sum
-from tests.core.patched_seas import LAYER, SEA, THREE, small
+from tests.core.patched_seas import LAYER, SEA, THREE, small, summed
 from tests.core.test_fields import outputs_from
 
 GENERATOR = np.random.default_rng(11)
-
-
-def summed(parameters: OceanParameters, x: np.ndarray, y: np.ndarray, time: float) -> dict[str, np.ndarray]:
-    """Position and derivatives at rest positions, wave by wave, each turned by its patch's rotation."""
-    result = {c + d: np.zeros(x.shape) for c in "xyz" for d in ("", "_x", "_y", "_t")}
-    for of_patch, patch in zip(patch_parameters(parameters), parameters.patches, strict=True):
-        state = Ocean(of_patch, precision="double").initial_state
-        for kx, ky, omega, a, phase in direct_sum.waves(state):
-            k = np.hypot(kx, ky)
-            angle = np.arctan2(ky, kx) + patch.rotation
-            kx, ky = k * np.cos(angle), k * np.sin(angle)
-            sine, cosine = (a * f(kx * x + ky * y - omega * time + phase) for f in (np.sin, np.cos))
-            result["z"] += cosine
-            for name, rate in (("_x", kx), ("_y", ky), ("_t", -omega)):
-                result["z" + name] -= rate * sine
-            for component, along in (("x", kx), ("y", ky)):
-                factor = parameters.choppiness * along / k
-                result[component] -= factor * sine
-                for name, rate in (("_x", kx), ("_y", ky), ("_t", -omega)):
-                    result[component + name] -= factor * rate * cosine
-    return result
 
 
 @pytest.mark.parametrize("rotation", [0.0, 0.5 * np.pi, -0.5 * np.pi])
