@@ -40,8 +40,8 @@ def add(
     viewport_resolution : samples along each side in the viewport, by default all that the sea has
     repeats : patches side by side along x and y
 
-    Raises ValueError for an unknown method or source, OceanObjectError for a sea of several patches,
-    SequenceError for files that cannot be used and MemoryError for a sea too large; then nothing is added.
+    Raises ValueError for an unknown method or source, SequenceError for files that cannot be used and
+    MemoryError for a sea too large; then nothing is added.
     """
     _check(method, METHODS, "method")
     _check(source, SOURCES, "source")
