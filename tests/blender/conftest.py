@@ -50,6 +50,19 @@ def make_parameters(core):
 
 
 @pytest.fixture
+def ocean(ocean_object, make_parameters, empty_scene):
+    """The small sea as a live ocean, the active object."""
+    item = ocean_object.add(empty_scene, make_parameters())
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+def sea_of(item):
+    """The parameters of an ocean, as its settings have them now."""
+    return item.ocean_tweak.to_parameters(bpy.context.scene)
+
+
+@pytest.fixture
 def expected(core):
     """Where the vertices of a sea must be, in Blender units, straight from the core and arithmetic."""
 
