@@ -161,15 +161,6 @@ class OceanSettings(Protocol):
         """While this is open, a changed property refreshes nothing."""
 
 
-def check_shown(parameters: OceanParameters) -> None:
-    """Raise OceanObjectError for a sea that no ocean object can hold yet."""
-    if parameters.patches:
-        raise OceanObjectError(
-            f"This sea has {len(parameters.patches)} patches of different sizes, an ocean object shows one: "
-            "bake it with the command line, or take its patches away"
-        )
-
-
 def settings_of(item: bpy.types.Object) -> OceanSettings:
     """The ocean settings of an object. Raises RuntimeError when the extension is not enabled."""
     try:

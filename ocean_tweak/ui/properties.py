@@ -26,7 +26,6 @@ from ..scene.settings import (
     SOURCES,
     VIEWPORT_RESOLUTION,
     OceanObjectError,
-    check_shown,
 )
 from ..scene.units import frame_rate, metres_per_unit
 from . import layer_properties, parameter_properties
@@ -228,9 +227,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
 
-        Raises OceanObjectError for other kinds of layers on a library override, and for several patches.
+        Raises OceanObjectError for other kinds of layers or another number of patches on a library override.
         """
-        check_shown(parameters)
         kinds, wanted = [layer.kind for layer in self.layers], layer_properties.kinds(parameters)
         if self.id_data.override_library and wanted != kinds:
             raise OceanObjectError(
