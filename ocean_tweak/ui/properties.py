@@ -15,7 +15,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, OceanParameters, Patch, Timing, Water, WaveLayer
+from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.maps import MAPS
@@ -28,9 +28,10 @@ from ..scene.settings import (
     OceanObjectError,
 )
 from ..scene.units import frame_rate, metres_per_unit
-from . import layer_properties, parameter_properties
+from . import layer_properties, parameter_properties, patch_properties
 from .changes import changed
 from .layer_properties import OCEAN_PG_layer
+from .patch_properties import OCEAN_PG_patch
 from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
@@ -71,12 +72,6 @@ class OCEAN_PG_timing(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Timing, changed, _FROM_SCENE)
 
 
-class OCEAN_PG_patch(bpy.types.PropertyGroup):
-    """One of several patches: how large, how turned, and which wavelengths it holds."""
-
-    __annotations__ = parameter_properties.annotations(Patch, changed)
-
-
 class OCEAN_PG_maps(bpy.types.PropertyGroup):
     """One image a map."""
 
@@ -113,7 +108,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
-        **parameter_properties.annotations(OceanParameters, changed),
+        **parameter_properties.annotations(OceanParameters, changed, updates=patch_properties.OCEAN_UPDATES),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
@@ -129,6 +124,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         ),
         "preset": StringProperty(**_HIDDEN),
         "active_layer": IntProperty(name="Active Layer", options={"HIDDEN"}, **_OVERRIDE),
+        "active_patch": IntProperty(name="Active Patch", options={"HIDDEN"}, **_OVERRIDE),
+        **patch_properties.PLAN,
         "use_loop": BoolProperty(
             name="Loop", **_SHOWN,
             description="Let the sea repeat itself exactly after a number of frames. Changes the speed of "
@@ -208,7 +205,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
-        data["patches"] = [parameter_properties.read(patch, Patch, metres) for patch in self.patches]
+        data["patches"] = patch_properties.read(self.patches, metres)
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
@@ -235,6 +232,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
                 f"A library override keeps its {_listed(kinds)}, this sea has {_listed(wanted)}: "
                 "make the ocean local first"
             )
+        patch_properties.check_count(self, parameters)
         metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
             parameter_properties.write(self, OceanParameters, data, metres)
@@ -245,9 +243,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             if parameters.loop_duration is not None:
                 self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
             layer_properties.write(self.layers, parameters, metres)
-            layer_properties.set_count(self.patches, len(parameters.patches))
-            for patch, values in zip(self.patches, data.get("patches", ()), strict=True):
-                parameter_properties.write(patch, Patch, values, metres)
+            patch_properties.write(self, parameters, metres)
         changed(self, bpy.context)
 
 
