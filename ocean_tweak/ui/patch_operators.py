@@ -134,7 +134,7 @@ class OCEAN_OT_one_patch(_OfPresentPatches, bpy.types.Operator):
         self, parameters: OceanParameters, _context: bpy.types.Context
     ) -> tuple[OceanParameters, int]:
         """A sea without patches keeps the size and the samples of its first."""
-        return parameters.replace(patches=()), 0
+        return parameters.without_patches, 0
 
 
 CLASSES = (OCEAN_OT_plan_patches, OCEAN_OT_patch_add, OCEAN_OT_patch_remove, OCEAN_OT_one_patch)

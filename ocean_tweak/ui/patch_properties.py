@@ -179,6 +179,8 @@ def write(settings: bpy.types.PropertyGroup, parameters: OceanParameters, metres
     set_count(patches, len(parameters.patches))
     for patch, values in zip(patches, parameters.patches, strict=True):
         parameter_properties.write(patch, Patch, to_plain(values, brief=True), metres)
+    for patch in patches[:1]:
+        _give_to_ocean(patch, settings)
     settings.active_patch = min(settings.active_patch, max(len(patches) - 1, 0))
 
 

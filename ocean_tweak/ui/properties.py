@@ -36,6 +36,8 @@ from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
 _FROM_SCENE = ("fps",)
+# an ocean's patches are shown on one grid of its own
+_NOT_KEPT = ("joined",)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -108,7 +110,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
-        **parameter_properties.annotations(OceanParameters, changed, updates=patch_properties.OCEAN_UPDATES),
+        **parameter_properties.annotations(
+            OceanParameters, changed, _NOT_KEPT, updates=patch_properties.OCEAN_UPDATES
+        ),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
@@ -201,7 +205,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         Raises ParameterError naming the field, its value and what is allowed.
         """
         metres = metres_per_unit(scene)
-        data = parameter_properties.read(self, OceanParameters, metres)
+        data = parameter_properties.read(self, OceanParameters, metres, _NOT_KEPT)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
@@ -235,7 +239,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         patch_properties.check_count(self, parameters)
         metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
-            parameter_properties.write(self, OceanParameters, data, metres)
+            parameter_properties.write(self, OceanParameters, data, metres, _NOT_KEPT)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)

@@ -91,7 +91,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
             explanation = f"{preset.title}: {wanted.wind_speed:g} m/s over {wanted.fetch / 1e3:g} km"
         matched = before.replace(layers=(layer, *rest))
         if self.fit_domain:
-            length = Ocean(matched.replace(patches=()).at_resolution(16)).statistics().peak_wavelength
+            length = Ocean(matched.without_patches.at_resolution(16)).statistics().peak_wavelength
             if length > 0.0:
                 matched = _fitted(matched, _round(length * _WAVELENGTHS))
         return matched, explanation

@@ -171,7 +171,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
         core.PictureLayer, core.HeroWave, core.Patch,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
-    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration"}
+    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration", "joined"}
     in_lists = {
         "wind_fields",
         "pictures",

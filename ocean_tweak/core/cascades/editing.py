@@ -57,7 +57,7 @@ def without_patch(parameters: OceanParameters, index: int) -> OceanParameters:
     patches = list(parameters.patches)
     gone = patches.pop(index)
     if not patches:
-        return parameters.replace(patches=())
+        return parameters.without_patches
     if index > 0:
         patches[index - 1] = replace(patches[index - 1], shortest_wavelength=gone.shortest_wavelength)
     else:
@@ -88,7 +88,7 @@ def _halves(parameters: OceanParameters, last: Patch, patches: Sequence[Patch]) 
         if high >= SPARE * LEAST_CELLS * end:
             break
     side = _side(SPARE * LEAST_CELLS * end, min(high, SPARE * _CELLS * end), patches)
-    added = Patch(side, rotation_of(len(patches)), shortest, end, resolution)
+    added = Patch(side, rotation_of(len(patches)), shortest, end, resolution, last.mask)
     return replace(last, shortest_wavelength=end), added
 
 

@@ -186,7 +186,7 @@ def rotation_of(index: int) -> float:
 
 def wavelength_with_share_below(parameters: OceanParameters, share: float) -> float:
     """Length in m of the waves below which a share of the sea's variance is; 0 for a flat sea."""
-    lengths, shares = _shares(SeaSpectrum(parameters.replace(patches=())))
+    lengths, shares = _shares(SeaSpectrum(parameters.without_patches))
     return float(np.interp(share, shares, lengths)) if shares[-1] > 0.0 else 0.0
 
 
