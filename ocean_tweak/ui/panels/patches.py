@@ -26,14 +26,14 @@ class OCEAN_UL_patches(bpy.types.UIList):
     ) -> None:  # fmt: skip
         """Draw the patch's numbers, and a sign where something is wrong with it."""
         scene, found = context.scene, of_patch(settings, index)
-        line = layout.split(factor=0.28)
-        icon = "ERROR" if _warnings(settings, index) else "NONE"
+        line = layout.split(factor=0.33)
+        icon = "ERROR" if _warnings(settings, index) else "BLANK1"
         line.label(text=_length(scene, patch.domain_size), icon=icon, translate=False)
-        line = line.split(factor=0.72)
+        line = line.split(factor=0.66)
         line.label(text=_band(scene, patch), translate=False)
         share = line.row()
         share.alignment = "RIGHT"
-        share.label(text=f"{100.0 * found['share']:.3g} %" if found else "", translate=False)
+        share.label(text=_share(found["share"]) if found else "", translate=False)
 
 
 class OCEAN_PT_patches(SubPanel, bpy.types.Panel):
@@ -74,7 +74,7 @@ def _draw_patch(layout: bpy.types.UILayout, context: bpy.types.Context, index: i
     numbers.prop(patch, "resolution", text="Samples")
     layout.prop(patch, "rotation")
     band = layout.column(align=True)
-    band.prop(patch, "longest_wavelength", text="Waves from")
+    band.prop(patch, "longest_wavelength", text="Waves From")
     band.prop(patch, "shortest_wavelength", text="To")
     facts = layout.box().column(align=True)
     if patch.shortest_wavelength > 0.0 and patch.domain_size > 0.0:
@@ -108,6 +108,11 @@ def _warnings(settings: OceanSettings, index: int) -> list[str]:
     """What the core warns of in one patch."""
     warnings: list[str] = json.loads(settings.statistics)["warnings"] if settings.statistics else []
     return [warning for warning in warnings if warning.startswith(f"Patch {index + 1}:")]
+
+
+def _share(share: float) -> str:
+    """A share of the energy in little room."""
+    return f"{100.0 * share:.3g} %" if share >= 0.001 else "< 0.1 %"
 
 
 def _band(scene: bpy.types.Scene, patch: bpy.types.PropertyGroup) -> str:
