@@ -59,8 +59,9 @@ class OCEAN_OT_plan_patches(_OfPatches, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
-        """The patches that the core plans."""
-        return planned(parameters, wish_of(settings_of(context.active_object), context.scene)), 0
+        """The patches that the core plans, shown on as many samples as the first has."""
+        sea = parameters.without_patches
+        return planned(sea, wish_of(settings_of(context.active_object), context.scene)), 0
 
 
 class OCEAN_OT_patch_add(_OfPatches, bpy.types.Operator):
@@ -125,7 +126,7 @@ class OCEAN_OT_one_patch(_OfPresentPatches, bpy.types.Operator):
 
     bl_idname = "ocean.one_patch"
     bl_description = (
-        "Take all patches away: the sea is one with all waves, of the first one's size and samples"
+        "Take all patches away: the sea is one with all waves, as large and with as many samples as it is now"
     )
     bl_label = "One Patch"
     bl_options = {"REGISTER", "UNDO"}
@@ -133,7 +134,7 @@ class OCEAN_OT_one_patch(_OfPresentPatches, bpy.types.Operator):
     def changed(
         self, parameters: OceanParameters, _context: bpy.types.Context
     ) -> tuple[OceanParameters, int]:
-        """A sea without patches keeps the size and the samples of its first."""
+        """A sea without patches keeps the size and the samples with which it was shown."""
         return parameters.without_patches, 0
 
 

@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The patches of an ocean as properties, which stay a sea while one number is dragged.
 
-Where two bands meet, both ends are one number; and the first patch's size and samples are the ocean's. Each
-is kept twice, and whoever changes one changes the other.
+Where two bands meet, both ends are one number; and the first patch's size is the ocean's. Each is kept twice,
+and whoever changes one changes the other.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
+from bpy.props import FloatProperty, IntProperty, PointerProperty
 
-from ..core import OceanParameters, Patch
+from ..core import OceanParameters, ParameterError, Patch
 from ..core.cascades.plan import WISHES, Wish
 from ..core.plain_data import to_plain
 from ..scene.settings import OceanObjectError
 from ..scene.units import metres_per_unit, shortest_decimal
-from . import parameter_properties
+from . import mask_properties, parameter_properties
 from .changes import changed
 from .layer_properties import set_count
 
@@ -27,8 +28,6 @@ _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
 
 #: a band that is dragged keeps at least this ratio of its ends
 _NARROWEST = 1.01
-#: of one patch, which are those of the ocean too
-_OF_THE_FIRST = ("domain_size", "resolution")
 _MEGABYTE = 10**6
 
 
@@ -76,14 +75,12 @@ def _join_longer(patch: bpy.types.PropertyGroup, settings: bpy.types.PropertyGro
 
 def _give_to_ocean(patch: bpy.types.PropertyGroup, settings: bpy.types.PropertyGroup) -> None:
     if patch == settings.patches[0]:
-        for name in _OF_THE_FIRST:
-            setattr(settings, name, getattr(patch, name))
+        settings.domain_size = patch.domain_size
 
 
 def _give_to_first(_group: bpy.types.PropertyGroup, settings: bpy.types.PropertyGroup) -> None:
     for patch in settings.patches[:1]:
-        for name in _OF_THE_FIRST:
-            setattr(patch, name, getattr(settings, name))
+        patch.domain_size = settings.domain_size
 
 
 def _neighbour(
@@ -104,22 +101,25 @@ def _between(value: float, low: float, high: float) -> float:
     return min(max(value, low), high) if low <= high else math.sqrt(low * high)
 
 
-#: what keeps the ocean's own size and samples those of its first patch
-OCEAN_UPDATES = dict.fromkeys(_OF_THE_FIRST, _quietly(_give_to_first))
+#: what keeps the ocean's own size that of its first patch
+OCEAN_UPDATES = {"domain_size": _quietly(_give_to_first)}
 
 
 class OCEAN_PG_patch(bpy.types.PropertyGroup):
     """One of several patches: how large, how turned, and which wavelengths it holds."""
 
-    __annotations__ = parameter_properties.annotations(
-        Patch,
-        changed,
-        updates={
-            **dict.fromkeys(_OF_THE_FIRST, _quietly(_give_to_ocean)),
-            "shortest_wavelength": _quietly(_join_shorter),
-            "longest_wavelength": _quietly(_join_longer),
-        },
-    )
+    __annotations__ = {
+        **parameter_properties.annotations(
+            Patch,
+            changed,
+            updates={
+                "domain_size": _quietly(_give_to_ocean),
+                "shortest_wavelength": _quietly(_join_shorter),
+                "longest_wavelength": _quietly(_join_longer),
+            },
+        ),
+        "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
+    }
 
 
 def _range(name: str) -> str:
@@ -158,9 +158,20 @@ def wish_of(settings: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> Wish:
     return Wish(finest, area, float(settings.plan_memory * _MEGABYTE))
 
 
-def read(patches: bpy.types.bpy_prop_collection, metres: Any) -> list[dict[str, Any]]:
-    """The patches as they stand in the parameters, not yet validated."""
-    return [parameter_properties.read(patch, Patch, metres) for patch in patches]
+def read(patches: bpy.types.bpy_prop_collection, metres: Fraction) -> list[dict[str, Any]]:
+    """The patches as they stand in the parameters, not yet validated but for their masks.
+
+    Raises ParameterError for a mask that cannot be used.
+    """
+    return [_read(index, patch, metres) for index, patch in enumerate(patches)]
+
+
+def _read(index: int, patch: bpy.types.PropertyGroup, metres: Fraction) -> dict[str, Any]:
+    try:
+        mask = mask_properties.read(patch.mask, metres)
+    except ParameterError as error:
+        raise error.inside(f"patches.{index}") from None
+    return {**parameter_properties.read(patch, Patch, metres), "mask": mask}
 
 
 def check_count(settings: bpy.types.PropertyGroup, parameters: OceanParameters) -> None:
@@ -173,12 +184,13 @@ def check_count(settings: bpy.types.PropertyGroup, parameters: OceanParameters) 
         )
 
 
-def write(settings: bpy.types.PropertyGroup, parameters: OceanParameters, metres: Any) -> None:
+def write(settings: bpy.types.PropertyGroup, parameters: OceanParameters, metres: Fraction) -> None:
     """Take over the parameters' patches, within `settings.quiet()`."""
-    patches = settings.patches
+    patches, images = settings.patches, settings.source_images()
     set_count(patches, len(parameters.patches))
-    for patch, values in zip(patches, parameters.patches, strict=True):
-        parameter_properties.write(patch, Patch, to_plain(values, brief=True), metres)
+    for group, patch in zip(patches, parameters.patches, strict=True):
+        parameter_properties.write(group, Patch, to_plain(patch, brief=True), metres)
+        mask_properties.write(group.mask, patch.mask, metres, images)
     for patch in patches[:1]:
         _give_to_ocean(patch, settings)
     settings.active_patch = min(settings.active_patch, max(len(patches) - 1, 0))

@@ -28,7 +28,7 @@ from ..scene.settings import (
     OceanObjectError,
 )
 from ..scene.units import frame_rate, metres_per_unit
-from . import layer_properties, parameter_properties, patch_properties
+from . import layer_properties, mask_properties, parameter_properties, patch_properties
 from .changes import changed
 from .layer_properties import OCEAN_PG_layer
 from .patch_properties import OCEAN_PG_patch
@@ -36,8 +36,8 @@ from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
 _FROM_SCENE = ("fps",)
-# an ocean's patches are shown on one grid of its own
-_NOT_KEPT = ("joined",)
+# patches are always joined, on the samples that are rendered
+_FROM_RESOLUTION = ("joined",)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -111,7 +111,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     __annotations__ = {
         **parameter_properties.annotations(
-            OceanParameters, changed, _NOT_KEPT, updates=patch_properties.OCEAN_UPDATES
+            OceanParameters, changed, _FROM_RESOLUTION, updates=patch_properties.OCEAN_UPDATES
         ),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
@@ -205,19 +205,35 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         Raises ParameterError naming the field, its value and what is allowed.
         """
         metres = metres_per_unit(scene)
-        data = parameter_properties.read(self, OceanParameters, metres, _NOT_KEPT)
+        data = parameter_properties.read(self, OceanParameters, metres, _FROM_RESOLUTION)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
         data["patches"] = patch_properties.read(self.patches, metres)
+        data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
 
     def source_images(self) -> set[bpy.types.Image]:
-        """The images from which waves are made."""
-        return layer_properties.images(self.layers)
+        """The images from which waves or masks are made."""
+        of_patches = (mask_properties.image_of(patch.mask) for patch in self.patches)
+        return layer_properties.images(self.layers) | {image for image in of_patches if image is not None}
+
+    def mask_objects(self) -> set[bpy.types.Object]:
+        """Those from which the distance of a mask is measured."""
+        found = {mask.object for mask in self._masks() if mask.source == "DISTANCE"}
+        return found - {None}
+
+    def place_masks(self) -> None:
+        """Measure the distances of masks from where their objects are now."""
+        for mask in self._masks():
+            if mask.source == "DISTANCE":
+                mask_properties.place(mask)
+
+    def _masks(self) -> list[bpy.types.PropertyGroup]:
+        return [*layer_properties.masks(self.layers), *(patch.mask for patch in self.patches)]
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
@@ -239,7 +255,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         patch_properties.check_count(self, parameters)
         metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
-            parameter_properties.write(self, OceanParameters, data, metres, _NOT_KEPT)
+            parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)

@@ -74,9 +74,9 @@ def bake(extension, core, tmp_path):
     def write(parameters, first, last, name="sea", directory=tmp_path / "frames", maps=("disp",)):
         directory.mkdir(exist_ok=True)
         sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP", maps)
-        ocean = core.Ocean(parameters)
+        sea = core.grid_sea(parameters)
         for frame in range(first, last + 1):
-            sink.write(frame, ocean.frame(frame, sink.outputs))
+            sink.write(frame, sea.frame(frame, sink.outputs))
         return extension("scene.image_sequence").ImageSequence(directory, name, first, last)
 
     return write

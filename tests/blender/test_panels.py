@@ -107,9 +107,9 @@ def test_the_sea_shows_the_size_of_the_first_patch(draw, item, core, empty_scene
     drawn = draw(item, lambda owner, name: owners.append((name, owner)))
     assert {"OCEAN_UL_patches", "ocean.patch_remove", "ocean.one_patch", "And one more patch"} <= {*drawn}
     first, second = settings.patches
-    for name in ("domain_size", "resolution"):
-        shown = [owner for drawn_name, owner in owners if drawn_name == name and owner != settings.foam]
-        assert shown == [first, second]
+    assert [owner for name, owner in owners if name == "domain_size"] == [first, second]
+    samples = [owner for name, owner in owners if name == "resolution" and owner != settings.foam]
+    assert samples == [settings, second]
     assert {"rotation", "shortest_wavelength", "longest_wavelength"} <= {
         name for name, owner in owners if owner == second
     }

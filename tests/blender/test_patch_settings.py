@@ -7,8 +7,6 @@ import math
 import bpy
 import pytest
 
-SIZES = ("domain_size", "resolution")
-
 
 @pytest.fixture
 def ocean(ocean_object, make_parameters, empty_scene):
@@ -20,14 +18,14 @@ def ocean(ocean_object, make_parameters, empty_scene):
 
 @pytest.fixture
 def three(core, make_parameters):
-    """A small sea of three patches."""
+    """A small sea of three patches, as an ocean object shows it."""
     return make_parameters(
         patches=(
             core.Patch(domain_size=150.0, shortest_wavelength=20.0, resolution=32),
             core.Patch(61.0, 0.97, 8.0, 20.0, 32),
             core.Patch(23.7, 0.37, 3.0, 8.0, 32),
         )
-    )
+    ).on_one_grid(48)
 
 
 @pytest.fixture
@@ -150,8 +148,9 @@ def test_an_override_keeps_its_patches(patched, three, core, tmp_path):
     scene.collection.objects.link(into.objects[0])
     own = into.objects[0].override_create(remap_local_usages=True)
     for patches, has in ((three.patches[:2], "2"), ((), "none")):
+        other = three.replace(patches=patches, joined=0)
         with pytest.raises(ValueError, match=f"keeps its patches: it has 3, this sea has {has}"):
-            own.ocean_tweak.from_parameters(three.replace(patches=patches), scene)
+            own.ocean_tweak.from_parameters(other, scene)
         assert sea(own) == three
     other = three.replace(
         seed=9, patches=(core.Patch(170.0, 0.0, 18.0, 1e6, 32), core.Patch(61.0, 0.9, 8.0, 18.0, 32),
@@ -192,11 +191,10 @@ def test_four_at_most(patched):
         bpy.ops.ocean.patch_add()
 
 
-def test_one_patch_has_the_size_and_samples_of_the_first(patched, three):
+def test_one_patch_has_the_size_of_the_first_and_the_samples_of_the_mesh(patched, three):
     patched.ocean_tweak.patches[0].domain_size = 180.0
-    patched.ocean_tweak.patches[0].resolution = 48
     assert bpy.ops.ocean.one_patch() == {"FINISHED"}
-    assert sea(patched) == three.replace(patches=(), domain_size=180.0, resolution=48)
+    assert sea(patched) == three.without_patches.replace(domain_size=180.0, resolution=48)
 
 
 # --- numbers by hand
@@ -241,16 +239,31 @@ def test_no_end_can_be_dragged_past_another(patched):
 def test_the_first_patch_is_as_large_as_the_ocean(patched):
     settings = patched.ocean_tweak
     first = settings.patches[0]
-    first.domain_size, first.resolution = 260.0, 64
-    assert (settings.domain_size, settings.resolution) == (260.0, 64)
-    settings.domain_size, settings.resolution = 240.0, 48
-    assert (first.domain_size, first.resolution) == (240.0, 48)
-    assert (sea(patched).domain_size, sea(patched).resolution) == (240.0, 48)
-    before = [getattr(settings.patches[1], name) for name in SIZES]
+    first.domain_size = 260.0
+    assert settings.domain_size == 260.0
+    settings.domain_size = 240.0
+    assert first.domain_size == 240.0
     settings.patches[2].domain_size = 20.0
-    assert (settings.domain_size, settings.resolution) == (240.0, 48)
-    assert [getattr(settings.patches[1], name) for name in SIZES] == before
+    assert settings.domain_size == 240.0
+    assert [patch.domain_size for patch in sea(patched).patches] == [240.0, 61.0, 20.0]
+    assert sea(patched).domain_size == 240.0
     assert not settings.error
+
+
+def test_samples_of_the_mesh_are_not_those_of_a_patch(patched, core, ocean_object, empty_scene):
+    """A sea that is not joined is shown on as many as its first patch has."""
+    settings = patched.ocean_tweak
+    settings.resolution = 64
+    settings.patches[0].resolution = 40
+    assert (sea(patched).joined, sea(patched).patches[0].resolution) == (64, 40)
+    apart = sea(patched).replace(joined=0, patches=sea(patched).patches)
+    settings.from_parameters(apart, empty_scene)
+    assert settings.resolution == 40
+    assert sea(patched) == apart.on_one_grid(40)
+    assert bpy.ops.ocean.plan_patches.poll()
+    wish(patched, 2.0, 300.0)
+    assert bpy.ops.ocean.plan_patches() == {"FINISHED"}
+    assert settings.resolution == settings.patches[0].resolution > 40
 
 
 def test_what_is_wrong_is_told(patched):
@@ -266,7 +279,7 @@ def test_what_is_wrong_is_told(patched):
 
 def test_patches_are_not_animated(patched):
     patch = patched.ocean_tweak.patches[0]
-    for name in (*SIZES, "rotation", "shortest_wavelength", "longest_wavelength"):
+    for name in ("domain_size", "resolution", "rotation", "shortest_wavelength", "longest_wavelength"):
         assert not patch.bl_rna.properties[name].is_animatable
     with pytest.raises(TypeError, match="not animatable"):
         patched.keyframe_insert("ocean_tweak.patches[0].domain_size")

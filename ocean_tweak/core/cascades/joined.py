@@ -2,8 +2,11 @@
 """A sea whose waves are added up on the samples of one grid: of patches that are joined, or under masks.
 
 The first patch's own samples are the grid's; the others are read between theirs. Waves shorter than two
-samples of the grid are left out, or they would show as longer ones. Where several patches are joined, the
-square does not repeat: its far sides do not fit its near ones.
+samples of the grid are left out, or they would show as longer ones.
+
+A patch that does not fit the square is made to repeat with it: along the far sides it goes over into what
+lies before the near ones. Both are of the same spectrum and independent, so shares whose squares add up to 1
+keep the variance.
 """
 
 from __future__ import annotations
@@ -31,10 +34,14 @@ from .cascade import Cascade
 from .patch_seas import Part, joined_bands, parts
 from .sampling import Components, Grid, Key, Summed, closed, unweighted, weighted
 
+Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
 #: rows of the grid that are read at once between the samples of another
 _ROWS = 64
+
+#: width in which a patch goes over at the far sides: in its longest waves, and in sides of the square at most
+_BORDER_WAVES, _WIDEST_BORDER = 2.0, 0.1
 
 
 class JoinedSea(GridSea):
@@ -109,21 +116,24 @@ class JoinedSea(GridSea):
         self, ocean: Ocean, part: Part, time: float | Fraction, needs: frozenset[Key]
     ) -> dict[Key, RealArray]:
         """The (N, N) components of a part."""
-        wanted = closed(needs) if part.rotation else needs
+        is_on_grid = self._is_on_grid(part)
+        wanted = needs if is_on_grid else unweighted(closed(needs))
         components = ocean.components(time, unweighted(wanted) if part.masks else wanted)
-        on_grid = components if self._is_on_grid(part) else self._read(components, part)
+        on_grid = components if is_on_grid else self._read(components, part)
         return weighted(on_grid, self._weights(part.masks))
 
     def _read(self, components: Components, part: Part) -> dict[Key, RealArray]:
-        """A patch between its samples, in the sea's axes."""
-        n = self.parameters.resolution
+        """A patch between its samples, in the sea's axes, made to repeat with the square."""
+        n, side = self.parameters.resolution, self.parameters.domain_size
+        longest = self._apart.patches[part.patch].longest_wavelength
+        border = min(_BORDER_WAVES * longest, _WIDEST_BORDER * side)
         grid = Grid(components, part.parameters.domain_size / part.parameters.resolution, part.rotation)
         result: dict[Key, RealArray] = {key: np.empty((n, n), self.dtype) for key in components}
         along = self._spacing * np.arange(n)
         for first in range(0, n, _ROWS):
             rows = slice(first, first + _ROWS)
             x, y = (part.ravel() for part in np.meshgrid(along, along[rows]))
-            for key, value in grid.read(x, y).items():
+            for key, value in _repeating(grid, x, y, side, border).items():
                 result[key][rows] = value.reshape(-1, n)
         return result
 
@@ -132,3 +142,33 @@ class JoinedSea(GridSea):
             made = weights_on_grid(masks, self.parameters.domain_size, self.parameters.resolution)
             self._kept_weights[masks] = Weights(*(part.astype(self.dtype) for part in made))
         return self._kept_weights.get(masks)
+
+
+def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> dict[Key, RealArray]:
+    """A grid at places in a square, near whose far sides it goes over into what lies before the near ones."""
+    along_x, along_y = _shares(x, side, border), _shares(y, side, border)
+    total: dict[Key, RealArray] = {}
+    for share_x, slope_x, back_x in along_x:
+        for share_y, slope_y, back_y in along_y:
+            there = (share_x > 0.0) & (share_y > 0.0)
+            weights = Weights(share_x * share_y, slope_x * share_y, share_x * slope_y)
+            inside = Weights(*(part[there] for part in weights))
+            for key, value in (
+                grid._replace(weights=inside).read(x[there] - back_x, y[there] - back_y).items()
+            ):
+                if key not in total:
+                    total[key] = np.zeros(x.shape, value.dtype)
+                total[key][there] += value
+    return total
+
+
+def _shares(place: Array, side: float, border: float) -> tuple[tuple[Array, Array, float], ...]:
+    """How much counts of what is there and of what is a side before, the derivative of that, and the side.
+
+    Shares are cosine and sine of an angle that rises smoothly from 0 to a quarter turn within the border.
+    """
+    part = np.clip((place - (side - border)) / border, 0.0, 1.0)
+    angle = 0.5 * np.pi * part * part * (3.0 - 2.0 * part)
+    rate = 3.0 * np.pi * part * (1.0 - part) / border
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return (cosine, -sine * rate, 0.0), (sine, cosine * rate, side)

@@ -93,14 +93,10 @@ def _draw_patch(layout: bpy.types.UILayout, context: bpy.types.Context, index: i
 
 
 def of_patch(settings: OceanSettings, index: int) -> dict[str, Any] | None:
-    """What the last change left of one patch's statistics; None where they are not known.
-
-    A patch that is alone has those of the sea.
-    """
+    """What the last change left of one patch's statistics; None where they are not known."""
     if not settings.statistics:
         return None
-    values: dict[str, Any] = json.loads(settings.statistics)
-    patches = values.get("patches", [{"share": 1.0, "resolved": values["resolved"]}])
+    patches: list[dict[str, Any]] = json.loads(settings.statistics).get("patches", [])
     return patches[index] if len(patches) == len(settings.patches) else None
 
 

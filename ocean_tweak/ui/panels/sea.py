@@ -92,12 +92,12 @@ def _wind(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
 
 
 def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
-    """Draw the size and the samples of the ocean, which are those of its first patch where it has several."""
+    """Draw the size, of several patches that of the first, and the samples of the mesh."""
     first = settings.patches[0] if settings.patches else settings
     column = layout.column(align=True)
     column.prop(first, "domain_size", text="Domain")
     column.prop(settings, "viewport_resolution", text="Viewport")
-    column.prop(first, "resolution", text="Render")
+    column.prop(settings, "resolution", text="Render")
     if len(settings.patches) > 1:
         more = len(settings.patches) - 1
         text = "And one more patch" if more == 1 else translated("And {} more patches").format(more)
