@@ -171,7 +171,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
         core.PictureLayer, core.HeroWave, core.Patch,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
-    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration", "joined"}
+    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration", "joined", "mask"}
     in_lists = {
         "wind_fields",
         "pictures",
@@ -221,7 +221,7 @@ def test_a_bake_under_way_shows_how_far_it_is(draw, item, extension):
 def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     drawn = draw(item)
     once = {
-        "fetch_km", "choppiness", "domain_size", "viewport_resolution", "source", "method", "use_foam",
+        "fetch_km", "choppiness", "domain_size", "viewport_resolution", "method", "use_foam",
         "coverage", "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y",
         "dispersion", "gravity", "trough_damping", "orbits", "start_frame", "use_loop", "loop_frames",
         "ocean_time", "spectrum", "peak_enhancement", "depth_factor", "definition", "gain", "spreading",
@@ -229,8 +229,8 @@ def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
         "OCEAN_MT_presets",
     }  # fmt: skip
     assert {name for name in once if drawn.count(name) != 1} == set()
-    # in the first panel and in the active layer's, the water's or the foam's own
-    twice = {"wind_speed", "wind_direction", "swell", "depth", "seed", "resolution"}
+    # in the first panel and in the active layer's, its mask's, the water's or the foam's own
+    twice = {"source", "wind_speed", "wind_direction", "swell", "depth", "seed", "resolution"}
     assert {name for name in twice if drawn.count(name) != 2} == set()
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn

@@ -10,7 +10,7 @@ from bpy.app.translations import pgettext_iface as translated
 from ...core.cascades.patch import NO_LONGEST
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
-from .. import patch_operators
+from .. import mask_operators, patch_operators
 from .drawing import SubPanel, active_settings, length_text, message, row, split
 
 
@@ -76,6 +76,7 @@ def _draw_patch(layout: bpy.types.UILayout, context: bpy.types.Context, index: i
     band = layout.column(align=True)
     band.prop(patch, "longest_wavelength", text="Waves From")
     band.prop(patch, "shortest_wavelength", text="To")
+    mask_operators.draw_mask(layout, patch.mask, index)
     facts = layout.box().column(align=True)
     if patch.shortest_wavelength > 0.0 and patch.domain_size > 0.0:
         samples = patch.shortest_wavelength * patch.resolution / patch.domain_size
