@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -23,6 +23,7 @@ from ..core.shot import ANIMATED
 from ..scene.units import shortest_decimal
 
 _Field = dataclasses.Field[Any]
+_Update = Callable[[Any, bpy.types.Context], None]
 
 # Blender's unit of a core unit: such a property is in Blender units and grows with the scene's unit scale
 _LENGTHS = {"m": "LENGTH", "m/s": "VELOCITY"}
@@ -43,17 +44,22 @@ _STEPS = {"m": 100, "m/s": 10}
 
 def annotations(
     kind: type,
-    update: Callable[[Any, bpy.types.Context], None],
+    update: _Update,
     without: tuple[str, ...] = (),
     animated: bool = True,
+    updates: Mapping[str, _Update] | None = None,
 ) -> dict[str, Any]:
     """Blender properties for the plain fields of a parameter class, and the hidden `exact`.
 
     without : fields that come from elsewhere
     animated : whether those that may change during a shot in any class may do so in this one
+    updates : by field, where a change does more than `update`
     """
-    moving = _ANIMATED if animated else set()
-    properties = {field.name: _property(field, update, moving) for field in _plain_fields(kind, without)}
+    moving, own = _ANIMATED if animated else set(), updates or {}
+    properties = {
+        field.name: _property(field, own.get(field.name, update), moving)
+        for field in _plain_fields(kind, without)
+    }
     return {
         **properties,
         "exact": bpy.props.StringProperty(options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}),
@@ -102,7 +108,7 @@ def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
             yield field
 
 
-def _property(field: _Field, update: Callable[[Any, bpy.types.Context], None], moving: set[str]) -> Any:
+def _property(field: _Field, update: _Update, moving: set[str]) -> Any:
     common = {
         "name": field.name.replace("_", " ").title(),
         "default": field.default,

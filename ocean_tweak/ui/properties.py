@@ -3,8 +3,6 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from fractions import Fraction
-from typing import Any
 
 import bpy
 from bpy.props import (
@@ -17,7 +15,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, OceanParameters, ParameterError, Patch, Timing, Water, WaveLayer
+from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.maps import MAPS
@@ -30,9 +28,10 @@ from ..scene.settings import (
     OceanObjectError,
 )
 from ..scene.units import frame_rate, metres_per_unit
-from . import layer_properties, mask_properties, parameter_properties
+from . import layer_properties, mask_properties, parameter_properties, patch_properties
 from .changes import changed
 from .layer_properties import OCEAN_PG_layer
+from .patch_properties import OCEAN_PG_patch
 from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
@@ -75,15 +74,6 @@ class OCEAN_PG_timing(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Timing, changed, _FROM_SCENE)
 
 
-class OCEAN_PG_patch(bpy.types.PropertyGroup):
-    """One of several patches: how large, how turned, and which wavelengths it holds."""
-
-    __annotations__ = {
-        **parameter_properties.annotations(Patch, changed),
-        "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
-    }
-
-
 class OCEAN_PG_maps(bpy.types.PropertyGroup):
     """One image a map."""
 
@@ -120,7 +110,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
-        **parameter_properties.annotations(OceanParameters, changed, _FROM_RESOLUTION),
+        **parameter_properties.annotations(
+            OceanParameters, changed, _FROM_RESOLUTION, updates=patch_properties.OCEAN_UPDATES
+        ),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
@@ -136,6 +128,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         ),
         "preset": StringProperty(**_HIDDEN),
         "active_layer": IntProperty(name="Active Layer", options={"HIDDEN"}, **_OVERRIDE),
+        "active_patch": IntProperty(name="Active Patch", options={"HIDDEN"}, **_OVERRIDE),
+        **patch_properties.PLAN,
         "use_loop": BoolProperty(
             name="Loop", **_SHOWN,
             description="Let the sea repeat itself exactly after a number of frames. Changes the speed of "
@@ -215,20 +209,12 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
-        data["patches"] = [self._read_patch(index, metres) for index in range(len(self.patches))]
+        data["patches"] = patch_properties.read(self.patches, metres)
         data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
-
-    def _read_patch(self, index: int, metres: Fraction) -> dict[str, Any]:
-        patch = self.patches[index]
-        try:
-            mask = mask_properties.read(patch.mask, metres)
-        except ParameterError as error:
-            raise error.inside(f"patches.{index}") from None
-        return {**parameter_properties.read(patch, Patch, metres), "mask": mask}
 
     def source_images(self) -> set[bpy.types.Image]:
         """The images from which waves or masks are made."""
@@ -258,7 +244,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
 
-        Raises OceanObjectError for other kinds of layers on a library override.
+        Raises OceanObjectError for other kinds of layers or another number of patches on a library override.
         """
         kinds, wanted = [layer.kind for layer in self.layers], layer_properties.kinds(parameters)
         if self.id_data.override_library and wanted != kinds:
@@ -266,6 +252,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
                 f"A library override keeps its {_listed(kinds)}, this sea has {_listed(wanted)}: "
                 "make the ocean local first"
             )
+        patch_properties.check_count(self, parameters)
         metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
             parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
@@ -276,12 +263,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             if parameters.loop_duration is not None:
                 self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
             layer_properties.write(self.layers, parameters, metres)
-            layer_properties.set_count(self.patches, len(parameters.patches))
-            for patch, values in zip(self.patches, data.get("patches", ()), strict=True):
-                parameter_properties.write(patch, Patch, values, metres)
-            images = self.source_images()
-            for group, patch in zip(self.patches, parameters.patches, strict=True):
-                mask_properties.write(group.mask, patch.mask, metres, images)
+            patch_properties.write(self, parameters, metres)
         changed(self, bpy.context)
 
 

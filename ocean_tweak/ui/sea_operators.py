@@ -49,7 +49,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
     beaufort: EnumProperty(name="Wind", items=_beaufort_items(), default="beaufort_05")
     fit_domain: BoolProperty(
         name="Fit Domain", default=True,
-        description="Make the patch as large as these waves want it",
+        description="Make the patch as large as these waves want it, of several the first at least as large",
     )  # fmt: skip
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -93,8 +93,20 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
         if self.fit_domain:
             length = grid_sea(matched.without_patches.at_resolution(16)).statistics().peak_wavelength
             if length > 0.0:
-                matched = matched.replace(domain_size=_round(length * _WAVELENGTHS))
+                matched = _fitted(matched, _round(length * _WAVELENGTHS))
         return matched, explanation
+
+
+def _fitted(parameters: OceanParameters, size: float) -> OceanParameters:
+    """The sea in a domain of this size; the first of several patches is made no smaller.
+
+    That one was made as large as the area in which nothing is to repeat, for more than these waves.
+    """
+    if not parameters.patches:
+        return parameters.replace(domain_size=size)
+    first, *others = parameters.patches
+    larger = dataclasses.replace(first, domain_size=max(size, first.domain_size))
+    return parameters.replace(patches=(larger, *others))
 
 
 def _round(size: float) -> float:

@@ -11,11 +11,11 @@ import pytest
 class Layout:
     """Takes what a panel draws, and remembers it."""
 
-    def __init__(self, drawn):
-        self.drawn = drawn
+    def __init__(self, drawn, look=lambda _owner, _name: None):
+        self.drawn, self.look = drawn, look
 
     def part(self, *_positional, **_named):
-        return Layout(self.drawn)
+        return Layout(self.drawn, self.look)
 
     row = column = box = split = part
 
@@ -48,6 +48,7 @@ class Layout:
     def prop(self, owner, name, **_named):
         assert name in owner.bl_rna.properties
         self.drawn.append(name)
+        self.look(owner, name)
 
     def operator(self, name, **_named):
         module, _, function = name.partition(".")
@@ -63,7 +64,7 @@ class Layout:
 def draw(extension, empty_scene):
     """Draw all panels that show themselves; returns what was drawn."""
 
-    def draw_all(item):
+    def draw_all(item, look=lambda _owner, _name: None):
         drawn = []
         context = SimpleNamespace(
             active_object=item, scene=empty_scene, window_manager=None, region=SimpleNamespace(width=300),
@@ -72,7 +73,7 @@ def draw(extension, empty_scene):
         panels = [cls for cls in extension("ui.panels").CLASSES if issubclass(cls, bpy.types.Panel)]
         for panel in panels:
             if not hasattr(panel, "poll") or panel.poll(context):
-                shown = SimpleNamespace(layout=Layout(drawn))
+                shown = SimpleNamespace(layout=Layout(drawn, look))
                 getattr(panel, "draw_header", lambda *_: None)(shown, context)
                 panel.draw(shown, context)
         return drawn
@@ -96,6 +97,52 @@ def test_blenders_own_ocean_can_be_converted(draw, empty_scene):
     item = bpy.data.objects.new("Old", bpy.data.meshes.new("Old"))
     item.modifiers.new("Ocean", "OCEAN")
     assert "ocean.convert" in draw(item)
+
+
+def test_the_sea_shows_the_size_of_the_first_patch(draw, item, core, empty_scene):
+    """What is edited is the number that counts."""
+    settings = item.ocean_tweak
+    assert "OCEAN_UL_patches" not in draw(item)
+    assert {"plan_finest", "plan_area", "plan_memory", "ocean.plan_patches", "ocean.patch_add"} <= {
+        *draw(item)
+    }
+    patches = (core.Patch(100.0, 0.0, 20.0, 1e6, 32), core.Patch(40.0, 0.9, 4.0, 20.0, 32))
+    settings.from_parameters(settings.to_parameters(empty_scene).replace(patches=patches), empty_scene)
+    settings.active_patch = 1
+    owners = []
+    drawn = draw(item, lambda owner, name: owners.append((name, owner)))
+    assert {"OCEAN_UL_patches", "ocean.patch_remove", "ocean.one_patch", "And one more patch"} <= {*drawn}
+    first, second = settings.patches
+    assert [owner for name, owner in owners if name == "domain_size"] == [first, second]
+    samples = [owner for name, owner in owners if name == "resolution" and owner != settings.foam]
+    assert samples == [settings, second]
+    assert {"rotation", "shortest_wavelength", "longest_wavelength"} <= {
+        name for name, owner in owners if owner == second
+    }
+    # 4 m · 32 / 40 m, and 40 m / 20 m
+    assert drawn[drawn.index("Samples a Wave") + 1] == "3.2"
+    assert drawn[drawn.index("Waves a Side") + 1] == "2"
+    energy = drawn[drawn.index("Energy") + 1]
+    statistics = core.Cascade(settings.to_parameters(empty_scene)).statistics()
+    assert energy == f"{100.0 * statistics.patches[1].share:.3g} %"
+    # in the sea's box and in the patch's
+    assert " ".join(drawn).count("Patch 2: its longest wave, 20 m") == 2
+
+
+def test_patches_in_one_line_each(extension, item, core, empty_scene):
+    settings = item.ocean_tweak
+    patches = (core.Patch(2000.0, 0.0, 20.0, 1e6, 32), core.Patch(40.0, 0.9, 0.0, 20.0, 32))
+    settings.from_parameters(settings.to_parameters(empty_scene).replace(patches=patches), empty_scene)
+    lines = []
+    for index, patch in enumerate(settings.patches):
+        drawn = []
+        context = SimpleNamespace(scene=empty_scene)
+        extension("ui.panels.patches").OCEAN_UL_patches.draw_item(
+            None, context, Layout(drawn), settings, patch, 0, settings, "active_patch", index
+        )
+        lines.append(drawn)
+    assert [line[:2] for line in lines] == [["2 km", "> 20 m"], ["40 m", "< 20 m"]]
+    assert sum(float(line[2].removesuffix(" %")) for line in lines) == pytest.approx(100.0, abs=0.2)
 
 
 def test_every_parameter_can_be_reached(draw, item, core):
@@ -123,12 +170,14 @@ def test_every_parameter_can_be_reached(draw, item, core):
             drawn.update(draw(item))
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
     drawn.update(draw(item))
+    bpy.ops.ocean.patch_add()
+    drawn.update(draw(item))
     fields = [
         core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing, core.WindFieldLayer,
-        core.PictureLayer, core.HeroWave,
+        core.PictureLayer, core.HeroWave, core.Patch,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
-    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration"}
+    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration", "joined", "mask"}
     in_lists = {
         "wind_fields",
         "pictures",
@@ -178,7 +227,7 @@ def test_a_bake_under_way_shows_how_far_it_is(draw, item, extension):
 def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     drawn = draw(item)
     once = {
-        "fetch_km", "choppiness", "domain_size", "viewport_resolution", "source", "method", "use_foam",
+        "fetch_km", "choppiness", "domain_size", "viewport_resolution", "method", "use_foam",
         "coverage", "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y",
         "dispersion", "gravity", "trough_damping", "orbits", "start_frame", "use_loop", "loop_frames",
         "ocean_time", "spectrum", "peak_enhancement", "depth_factor", "definition", "gain", "spreading",
@@ -186,8 +235,8 @@ def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
         "OCEAN_MT_presets",
     }  # fmt: skip
     assert {name for name in once if drawn.count(name) != 1} == set()
-    # in the first panel and in the active layer's, the water's or the foam's own
-    twice = {"wind_speed", "wind_direction", "swell", "depth", "seed", "resolution"}
+    # in the first panel and in the active layer's, its mask's, the water's or the foam's own
+    twice = {"source", "wind_speed", "wind_direction", "swell", "depth", "seed", "resolution"}
     assert {name for name in twice if drawn.count(name) != 2} == set()
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn

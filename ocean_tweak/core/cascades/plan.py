@@ -10,7 +10,7 @@ alike, and stand in no ratio of small whole numbers, so that what repeats in one
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations_with_replacement
@@ -28,6 +28,9 @@ from .statistics import LEAST_CELLS, LEAST_SAMPLES, REPEATING_SHARE
 
 Array = NDArray[np.float64]
 
+#: what can be wished for: least, most and unit
+WISHES = {"finest": (1e-3, 1e4, "m"), "area": (0.1, 1e5, "m"), "memory": (1e6, 1e15, "bytes")}
+
 #: samples along a side that are tried
 RESOLUTIONS = (64, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048, 3072, 4096, 6144, 8192)
 
@@ -39,7 +42,7 @@ _CELLS = (18.0, 12.0, 9.0, LEAST_CELLS)
 _ONE_PATCH = 1024
 
 #: a little more than is promised, which rounding and ratios may take
-_SPARE = 1.06
+SPARE = 1.06
 #: ratios of sides stay away from p/q with whole numbers up to this
 _WHOLE = 8
 #: digits of lengths in m
@@ -65,9 +68,7 @@ class Wish:
     memory: float = 2.0**31
 
     def __post_init__(self) -> None:
-        for name, low, high, unit in (
-            ("finest", 1e-3, 1e4, "m"), ("area", 0.1, 1e5, "m"), ("memory", 1e6, 1e15, "bytes"),
-        ):  # fmt: skip
+        for name, (low, high, unit) in WISHES.items():
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not low <= value <= high:
                 raise ParameterError(f"plan.{name}", value, f"must be from {low:g} to {high:g} {unit}")
@@ -146,14 +147,14 @@ class _Planner:
 
     def _patches(self, wish: Wish, resolutions: tuple[int, ...], cells: float) -> tuple[Patch, ...] | None:
         first, *others = resolutions
-        side = _rounded(max(wish.area, _SPARE * LEAST_CELLS * self._longest))
-        end = _SPARE * LEAST_SAMPLES * side / first
+        side = rounded(max(wish.area, SPARE * LEAST_CELLS * self._longest))
+        end = SPARE * LEAST_SAMPLES * side / first
         if not others:
-            enough = end <= wish.finest * _SPARE
+            enough = end <= wish.finest * SPARE
             return (Patch(side, 0.0, wish.finest, NO_LONGEST, first),) if enough else None
         if end <= wish.finest or self._share_below(end) > REPEATING_SHARE:
             return None
-        return _finer(Patch(side, 0.0, _rounded(end), NO_LONGEST, first), wish.finest, others, cells)
+        return _finer(Patch(side, 0.0, rounded(end), NO_LONGEST, first), wish.finest, others, cells)
 
     def _share_below(self, wavelength: float) -> float:
         """Share of the variance in waves shorter than a length in m."""
@@ -166,17 +167,27 @@ def _finer(first: Patch, finest: float, others: list[int], cells: float) -> tupl
     ratio = (first.shortest_wavelength / finest) ** (1.0 / len(others))
     for index, resolution in enumerate(others, 1):
         longest = patches[-1].shortest_wavelength
-        shortest = _rounded(longest / ratio) if index < len(others) else finest
-        low = _SPARE * cells * longest
+        shortest = rounded(longest / ratio) if index < len(others) else finest
+        low = SPARE * cells * longest
         high = shortest * resolution / LEAST_SAMPLES
         if low > high or shortest >= longest:
             return None
-        side = _odd_side(low, min(high, 0.8 * patches[-1].domain_size), patches)
+        side = odd_side(low, min(high, 0.8 * patches[-1].domain_size), patches)
         if side is None:
             return None
-        rotation = round(_QUARTER * math.fmod(index * _GOLDEN, 1.0), _DIGITS)
-        patches.append(Patch(side, rotation, shortest, longest, resolution))
+        patches.append(Patch(side, rotation_of(index), shortest, longest, resolution))
     return tuple(patches)
+
+
+def rotation_of(index: int) -> float:
+    """Turn in rad of a sea's patch by its number: each stands well away from all others."""
+    return round(_QUARTER * math.fmod(index * _GOLDEN, 1.0), _DIGITS)
+
+
+def wavelength_with_share_below(parameters: OceanParameters, share: float) -> float:
+    """Length in m of the waves below which a share of the sea's variance is; 0 for a flat sea."""
+    lengths, shares = _shares(SeaSpectrum(parameters.without_patches))
+    return float(np.interp(share, shares, lengths)) if shares[-1] > 0.0 else 0.0
 
 
 def _wave_number(omega: float, parameters: OceanParameters) -> float:
@@ -192,13 +203,13 @@ def _shares(sea: SeaSpectrum) -> tuple[Array, Array]:
     return 2.0 * np.pi / k[::-1], np.cumsum(energy) / (total if total > 0.0 else 1.0)
 
 
-def _rounded(length: float) -> float:
+def rounded(length: float) -> float:
     """A length in m with few digits, never shorter."""
     unit = 10.0 ** (math.floor(math.log10(length)) - _DIGITS + 1)
     return float(f"{math.ceil(length / unit - 1e-9) * unit:.{_DIGITS}g}")
 
 
-def _odd_side(low: float, high: float, patches: list[Patch]) -> float | None:
+def odd_side(low: float, high: float, patches: Sequence[Patch]) -> float | None:
     """A side in m between two lengths, the rather large, in no ratio of small whole numbers to the others."""
     if low > high:
         return None
@@ -207,7 +218,7 @@ def _odd_side(low: float, high: float, patches: list[Patch]) -> float | None:
         float(f"{math.floor(side / unit) * unit:.{_DIGITS}g}")
         for side in np.linspace(high, max(low, 0.9 * high), 64)
     ]
-    sides = [side for side in sides if side >= low / _SPARE]
+    sides = [side for side in sides if side >= low / SPARE]
     return max(sides, key=lambda side: min(_oddness(patch.domain_size / side) for patch in patches))
 
 
@@ -224,7 +235,7 @@ def _refusal(planner: _Planner, wish: Wish) -> ParameterError:
         remedies.append(f"memory of {math.ceil(memory / 1e6)} MB")
     finest = _nearest(lambda finest: _fits(planner, finest, wish.area, wish.memory), wish.finest, wish.area)
     if finest is not None:
-        remedies.append(f"a finest wave of {_rounded(finest):g} m")
+        remedies.append(f"a finest wave of {rounded(finest):g} m")
     area = _nearest(lambda area: _fits(planner, wish.finest, area, wish.memory), wish.area, wish.finest)
     if area is not None:
         remedies.append(f"an area of {math.floor(area * 100) / 100:g} m")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab. Panels only draw: nothing here computes a sea."""
 
-from . import details, floating, layers, material, output, scene, sea, spectrum, usd
+from . import details, floating, layers, material, output, patches, scene, sea, spectrum, usd
 from .sea import draw_add_menu
 
 __all__ = ["CLASSES", "draw_add_menu"]
@@ -11,6 +11,7 @@ CLASSES = (
     *sea.CLASSES,
     *scene.CLASSES,
     *layers.CLASSES,
+    *patches.CLASSES,
     *spectrum.CLASSES,
     *details.CLASSES,
     *output.CLASSES,

@@ -11,7 +11,7 @@ from ...core import sea_scales
 from ...core.wind_profile import wind_at_10_m
 from ...scene import cache_place, refinement
 from ...scene.conversion import ocean_modifier
-from ...scene.settings import is_ocean
+from ...scene.settings import OceanSettings, is_ocean
 from ...scene.units import metres_per_unit
 from .. import operators, preset_operators, scene_operators, sea_operators
 from .drawing import OceanPanel, SidebarPanel, active_settings, length_text, message, row, split
@@ -64,10 +64,7 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
         layout.prop(settings, "choppiness", slider=True)
         layout.prop(settings.water, "depth", text="Depth")
         layout.prop(settings, "seed")
-        patch = layout.column(align=True)
-        patch.prop(settings, "domain_size", text="Domain")
-        patch.prop(settings, "viewport_resolution", text="Viewport")
-        patch.prop(settings, "resolution", text="Render")
+        _size(layout, settings)
         layout.row().prop(settings, "source", expand=True)
         _waves(layout, context)
 
@@ -92,6 +89,19 @@ def _wind(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
         column.prop(layer, "peak_period", text="Period")
         column.prop(layer, "wind_direction", text="Direction")
     layout.prop(layer, "swell", slider=True)
+
+
+def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
+    """Draw the size, of several patches that of the first, and the samples of the mesh."""
+    first = settings.patches[0] if settings.patches else settings
+    column = layout.column(align=True)
+    column.prop(first, "domain_size", text="Domain")
+    column.prop(settings, "viewport_resolution", text="Viewport")
+    column.prop(settings, "resolution", text="Render")
+    if len(settings.patches) > 1:
+        more = len(settings.patches) - 1
+        text = "And one more patch" if more == 1 else translated("And {} more patches").format(more)
+        layout.label(text=text, icon="MESH_GRID")
 
 
 def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

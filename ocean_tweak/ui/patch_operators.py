@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The list of patches: planned, added, removed, taken away."""
+
+import bpy
+from bpy.app.translations import pgettext_rpt as translated
+
+from ..core import OceanParameters, ParameterError
+from ..core.cascades.editing import with_another_patch, without_patch
+from ..core.cascades.patch import MOST_PATCHES
+from ..core.cascades.plan import planned
+from ..scene.settings import OceanObjectError, settings_of
+from .active_ocean import OfActiveOcean, refuse
+from .patch_properties import wish_of
+
+
+class _OfPatches(OfActiveOcean):
+    """Operators that change the list as a whole, through the parameters."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """The list can be changed."""
+        if not super().poll(context):
+            return False
+        if context.active_object.override_library:
+            cls.poll_message_set("A library override keeps its patches: make the ocean local first")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Change the list as a whole, or not at all."""
+        settings = settings_of(context.active_object)
+        try:
+            before = settings.to_parameters(context.scene)
+            after, active = self.changed(before, context)
+            settings.from_parameters(after, context.scene)
+        except (ParameterError, OceanObjectError) as error:
+            return refuse(self, error)
+        settings.active_patch = active
+        if before.trough_damping != after.trough_damping:
+            self.report(
+                {"INFO"}, translated("Trough Damping is 0 now: patches do not know each other's troughs")
+            )
+        return {"FINISHED"}
+
+    def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
+        """The sea with other patches, and the number of the one that is active then."""
+        raise NotImplementedError
+
+
+class OCEAN_OT_plan_patches(_OfPatches, bpy.types.Operator):
+    """Make patches for the finest detail, the area without repetition and the memory that are set."""
+
+    bl_idname = "ocean.plan_patches"
+    bl_description = (
+        "Make as many patches as it takes, up to four, for the finest detail, the area without repetition "
+        "and the memory above. The patches that are there go"
+    )
+    bl_label = "Plan Patches"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
+        """The patches that the core plans, shown on as many samples as the first has."""
+        sea = parameters.without_patches
+        return planned(sea, wish_of(settings_of(context.active_object), context.scene)), 0
+
+
+class OCEAN_OT_patch_add(_OfPatches, bpy.types.Operator):
+    """Add a patch of shorter waves."""
+
+    bl_idname = "ocean.patch_add"
+    bl_description = (
+        "Add a patch behind the last: it takes the shorter half of that one's octaves or, where these are "
+        "too few or have no end, goes on with shorter waves"
+    )
+    bl_label = "Add Patch"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There is room for one more."""
+        if not super().poll(context):
+            return False
+        if len(settings_of(context.active_object).patches) >= MOST_PATCHES:
+            cls.poll_message_set("A sea has four patches at most")
+            return False
+        return True
+
+    def changed(
+        self, parameters: OceanParameters, _context: bpy.types.Context
+    ) -> tuple[OceanParameters, int]:
+        """The new one is active."""
+        after = with_another_patch(parameters)
+        return after, len(after.patches) - 1
+
+
+class _OfPresentPatches(_OfPatches):
+    """Operators that need patches."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There are some."""
+        if not super().poll(context):
+            return False
+        if not settings_of(context.active_object).patches:
+            cls.poll_message_set("This ocean has no list of patches: plan them, or add one")
+            return False
+        return True
+
+
+class OCEAN_OT_patch_remove(_OfPresentPatches, bpy.types.Operator):
+    """Remove the active patch."""
+
+    bl_idname = "ocean.patch_remove"
+    bl_description = "Remove the active patch; the one before it, or behind the first, takes over its waves"
+    bl_label = "Remove Patch"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
+        """The one that took over is active."""
+        index = min(settings_of(context.active_object).active_patch, len(parameters.patches) - 1)
+        return without_patch(parameters, index), max(index - 1, 0)
+
+
+class OCEAN_OT_one_patch(_OfPresentPatches, bpy.types.Operator):
+    """Take the patches away."""
+
+    bl_idname = "ocean.one_patch"
+    bl_description = (
+        "Take all patches away: the sea is one with all waves, as large and with as many samples as it is now"
+    )
+    bl_label = "One Patch"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def changed(
+        self, parameters: OceanParameters, _context: bpy.types.Context
+    ) -> tuple[OceanParameters, int]:
+        """A sea without patches keeps the size and the samples with which it was shown."""
+        return parameters.without_patches, 0
+
+
+CLASSES = (OCEAN_OT_plan_patches, OCEAN_OT_patch_add, OCEAN_OT_patch_remove, OCEAN_OT_one_patch)
