@@ -244,13 +244,13 @@ class Cascade:
 
     def _summed(self, x: Array, y: Array, components: Sequence[Components]) -> Summed:
         known: dict[tuple[Mask, ...], Weights] = {}
-        grids = []
+        found = []
         for part, of_part in zip(self._parts, components, strict=True):
             if part.masks and part.masks not in known:
                 known[part.masks] = weights(part.masks, self.parameters.domain_size, x, y)
-            spacing = part.parameters.domain_size / part.parameters.resolution
-            grids.append(Grid(of_part, spacing, part.rotation, known.get(part.masks)))
-        return Summed(grid.read(x, y) for grid in grids)
+            grid = Grid(of_part, part.parameters.domain_size, part.rotation)
+            found.append(grid.read(x, y, known.get(part.masks)))
+        return Summed(found)
 
     def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         sea = self._of_foam

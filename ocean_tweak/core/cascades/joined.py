@@ -12,6 +12,7 @@ keep the variance.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from functools import cached_property
 
@@ -127,14 +128,23 @@ class JoinedSea(GridSea):
         n, side = self.parameters.resolution, self.parameters.domain_size
         longest = self._apart.patches[part.patch].longest_wavelength
         border = min(_BORDER_WAVES * longest, _WIDEST_BORDER * side)
-        grid = Grid(components, part.parameters.domain_size / part.parameters.resolution, part.rotation)
+        grid = Grid(components, part.parameters.domain_size, part.rotation)
         result: dict[Key, RealArray] = {key: np.empty((n, n), self.dtype) for key in components}
         along = self._spacing * np.arange(n)
-        for first in range(0, n, _ROWS):
-            rows = slice(first, first + _ROWS)
-            x, y = (part.ravel() for part in np.meshgrid(along, along[rows]))
-            for key, value in _repeating(grid, x, y, side, border).items():
-                result[key][rows] = value.reshape(-1, n)
+        inner = int(np.searchsorted(along, side - border))
+
+        def fill(rows: slice, columns: slice, within: bool) -> None:
+            x, y = (place.ravel() for place in np.meshgrid(along[columns], along[rows]))
+            found = grid.read(x, y) if within else _repeating(grid, x, y, side, border)
+            for key, value in found.items():
+                result[key][rows, columns] = value.reshape(result[key][rows, columns].shape)
+
+        blocks = [slice(first, min(first + _ROWS, inner)) for first in range(0, inner, _ROWS)]
+        beyond = slice(inner, n)
+        areas = [(rows, slice(0, inner), True) for rows in blocks]
+        areas += [(slice(0, inner), beyond, False), (beyond, slice(0, n), False)]
+        with ThreadPoolExecutor(self.workers) as pool:
+            list(pool.map(lambda area: fill(*area), areas))
         return result
 
     def _weights(self, masks: tuple[Mask, ...]) -> Weights | None:
@@ -153,9 +163,7 @@ def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> di
             there = (share_x > 0.0) & (share_y > 0.0)
             weights = Weights(share_x * share_y, slope_x * share_y, share_x * slope_y)
             inside = Weights(*(part[there] for part in weights))
-            for key, value in (
-                grid._replace(weights=inside).read(x[there] - back_x, y[there] - back_y).items()
-            ):
+            for key, value in grid.read(x[there] - back_x, y[there] - back_y, inside).items():
                 if key not in total:
                     total[key] = np.zeros(x.shape, value.dtype)
                 total[key][there] += value

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,22 +63,54 @@ def into_patch(x: Array, y: Array, rotation: float) -> tuple[Array, Array]:
 
 
 class Reader:
-    """Reads periodic (N, N) fields, [y, x] from the origin, at places in their own axes: bilinear."""
+    """Reads periodic fields, [y, x] from the origin, at places in their own axes: bilinear.
 
-    def __init__(self, x: Array, y: Array, spacing: float, resolution: int) -> None:
-        n = resolution
-        column, row = x / spacing, y / spacing
-        j, i = np.floor(column).astype(np.intp), np.floor(row).astype(np.intp)
-        self._u, self._v = (column - j).astype(np.float32), (row - i).astype(np.float32)
-        j, i = j % n, i % n
-        right, up = np.where(j + 1 < n, j + 1, 0), np.where(i + 1 < n, i + 1, 0)
-        self._corners = i * n + j, i * n + right, up * n + j, up * n + right
+    The fields are `padded`, so that no neighbour of a sample has to be looked for at the other side.
+    """
+
+    def __init__(self, x: Array, y: Array, size: float, resolution: int) -> None:
+        (j, self._u), (i, self._v) = (_cells(place, size, resolution) for place in (x, y))
+        self._row = resolution + 1
+        i *= self._row
+        i += j
+        self._first = i
 
     def read(self, field: RealArray) -> RealArray:
-        """One number a place, of the field's precision."""
-        p00, p01, p10, p11 = (field.ravel()[corner] for corner in self._corners)
-        bottom = p00 + self._u * (p01 - p00)
-        return bottom + self._v * (p10 + self._u * (p11 - p10) - bottom)
+        """One number a place, of the field's precision, from a flat padded field."""
+        p00, p01, p10, p11 = (
+            np.take(field[offset:], self._first) for offset in (0, 1, self._row, self._row + 1)
+        )
+        p01 -= p00
+        p01 *= self._u
+        p01 += p00  # between the two of the row
+        p11 -= p10
+        p11 *= self._u
+        p11 += p10
+        p11 -= p01
+        p11 *= self._v
+        p11 += p01
+        return p11
+
+
+def _cells(place: Array, size: float, resolution: int) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
+    """The cell of each place along an axis, and how far in it the place is, 0…1."""
+    part = place / size
+    part -= np.floor(part)
+    part *= resolution
+    cell = part.astype(np.intp)
+    np.minimum(cell, resolution - 1, out=cell)  # of a place that was rounded up to the far side
+    part -= cell
+    return cell, part.astype(np.float32)
+
+
+def padded(field: RealArray) -> RealArray:
+    """Flat (N+1)² of a periodic (N, N) field: its last row and column are the first ones again."""
+    n = len(field)
+    result = np.empty((n + 1, n + 1), field.dtype)
+    result[:n, :n] = field
+    result[n, :n] = field[0]
+    result[:, n] = result[:, 0]
+    return result.ravel()
 
 
 def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray]:
@@ -101,27 +132,27 @@ def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray
     return result
 
 
-class Grid(NamedTuple):
-    """Periodic components of some waves, (N, N) each, in their own axes.
+class Grid:
+    """Periodic components of some waves, read in the sea's axes.
 
-    spacing : of the samples, m
-    rotation : of the axes against the sea's, rad counter-clockwise
-    weights : of the places that are asked for, in the sea's axes; None for 1 everywhere
+    components : (N, N) each, in axes of their own
+    size : of the square that they fill, m
+    rotation : of its axes against the sea's, rad counter-clockwise
     """
 
-    components: Components
-    spacing: float
-    rotation: float
-    weights: Weights | None = None
+    def __init__(self, components: Components, size: float, rotation: float) -> None:
+        self._resolution = len(next(iter(components.values()), ()))
+        self._fields = {key: padded(field) for key, field in components.items()}
+        self._size = size
+        self._rotation = rotation
 
-    def read(self, x: Array, y: Array) -> dict[Key, RealArray]:
-        """At places in the sea's axes: turned into those, and weighted."""
-        if not self.components:
+    def read(self, x: Array, y: Array, weights: Weights | None = None) -> dict[Key, RealArray]:
+        """At places in m, of one flat shape, times weights of theirs."""
+        if not self._fields:
             return {}
-        resolution = len(next(iter(self.components.values())))
-        reader = Reader(*into_patch(x, y, self.rotation), self.spacing, resolution)
-        found = {key: reader.read(field) for key, field in self.components.items()}
-        return weighted(turned(found, self.rotation), self.weights)
+        reader = Reader(*into_patch(x, y, self._rotation), self._size, self._resolution)
+        found = {key: reader.read(field) for key, field in self._fields.items()}
+        return weighted(turned(found, self._rotation), weights)
 
 
 class Summed:
