@@ -7,10 +7,14 @@ import bpy
 
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
-from ..nodes.versioned import is_of_kind, node_group
-from . import water_material
+from ..nodes.versioned import node_group
+from . import patch_objects, water_material
+from .patch_objects import camera_surface_of
+from .plan import plan_of
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit
+
+__all__ = ["add_camera_surface", "camera_surface_of", "remove_camera_surface"]
 
 _BUDGET = 200_000
 
@@ -54,16 +58,8 @@ def add_camera_surface(
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
     _make_room(ocean)
+    patch_objects.refresh(ocean, plan_of(settings_of(ocean), scene))
     return surface
-
-
-def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
-    """The surface that shows an ocean around a camera; None where its own mesh does."""
-    for child in ocean.children:
-        groups = [modifier.node_group for modifier in child.modifiers if modifier.type == "NODES"]
-        if any(is_of_kind(group, CAMERA_SURFACE) for group in groups):
-            return child
-    return None
 
 
 def remove_camera_surface(ocean: bpy.types.Object) -> None:
@@ -74,6 +70,7 @@ def remove_camera_surface(ocean: bpy.types.Object) -> None:
         bpy.data.objects.remove(surface)
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
+    patch_objects.remove(ocean)
     _make_room(ocean, is_there=False)
 
 
