@@ -6,6 +6,7 @@ from .ocean import Ocean
 from .parameters import (
     Foam,
     HeroWave,
+    Mask,
     OceanParameters,
     ParameterError,
     Patch,
@@ -18,11 +19,13 @@ from .parameters import (
 )
 from .raster import Raster
 from .sea_state_match import layer_for_sea_state
+from .seas import grid_sea
 
 __all__ = [
     "Cascade",
     "Foam",
     "HeroWave",
+    "Mask",
     "Ocean",
     "OceanParameters",
     "ParameterError",
@@ -34,5 +37,6 @@ __all__ = [
     "WaveLayer",
     "WindFieldLayer",
     "WindKey",
+    "grid_sea",
     "layer_for_sea_state",
 ]

@@ -18,9 +18,10 @@ from .cascades.cascade import Cascade
 from .cascades.patch_seas import ADDING
 from .fields import FOAM, SurfaceFields
 from .frames import Frame
+from .grid_sea import GridSea
 from .memory import check_memory, memory_need
-from .ocean import Ocean
 from .parameters import OceanParameters
+from .seas import grid_sea
 from .shot import Moment, Shot
 
 
@@ -48,25 +49,31 @@ class ShotSurfaces:
 
     def __init__(self, shot: Shot) -> None:
         self.shot = shot
-        self._sea: Cascade | None = None
+        self._parameters: OceanParameters | None = None
+        self._seas: tuple[GridSea, ...] = ()
 
-    def oceans(self, parameters: OceanParameters) -> tuple[Ocean, ...]:
-        """The patches of the sea of a moment: the last one where its parameters are the same."""
-        if self._sea is None or self._sea.parameters != parameters:
-            self._sea = Cascade(parameters, workers=1)
-        return self._sea.patches
+    def seas(self, parameters: OceanParameters) -> tuple[GridSea, ...]:
+        """The grids of the sea of a moment: the last ones where its parameters are the same.
+
+        They are its patches, or all of it on one grid.
+        """
+        if self._parameters != parameters:
+            cascade = Cascade(parameters, workers=1).patches if parameters.is_cascade else None
+            self._seas = cascade or (grid_sea(parameters, workers=1),)
+            self._parameters = parameters
+        return self._seas
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each patch in a frame; velocity is per second of the shot."""
+        """Fields of each grid in a frame; velocity is per second of the shot."""
         moment: Moment = self.shot.at(frame)
-        made = tuple(ocean.surface(moment.time, outputs) for ocean in self.oceans(moment.parameters))
+        made = tuple(sea.surface(moment.time, outputs) for sea in self.seas(moment.parameters))
         for fields in made:
             if "velocity" in fields and moment.rate != 1.0:
                 fields.velocity[...] *= moment.rate
         return made
 
     def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:
-        """Fields of a frame of a sea of one patch. Raises ValueError for another."""
+        """Fields of a frame of a sea on one grid. Raises ValueError for another."""
         if self.shot.parameters.is_cascade:
             raise ValueError("this sea has several patches: their fields are those of frames()")
         (fields,) = self.frames(frame, outputs)
@@ -101,8 +108,8 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
         try:
             for frame in frames:
                 if not under_way:  # made once, before the workers ask for it
-                    for ocean in with_memory.oceans(shot.at(frame).parameters):
-                        ocean.initial_state  # noqa: B018
+                    for sea in with_memory.seas(shot.at(frame).parameters):
+                        sea.prepare()
                 foam = with_memory.frame(frame, {FOAM}).foam if FOAM in sink.outputs else None
                 under_way.append(pool.submit(make, frame, foam))
                 if len(under_way) > workers:
@@ -116,6 +123,8 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
 
 def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:
     """Raise for what cannot be baked, or not on this machine."""
+    if parameters.is_cascade and parameters.is_masked:
+        raise ValueError("masks: lie over the sea and not over its patches, which repeat; join the patches")
     if parameters.is_cascade and not sink.outputs <= ADDING:
         others = ", ".join(sorted(sink.outputs - ADDING))
         raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")

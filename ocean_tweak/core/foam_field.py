@@ -76,12 +76,10 @@ def foam_model_of(
 class FoamField:
     """Foam at any time, at the sea's resolution; quickest when times ascend."""
 
-    def __init__(
-        self, parameters: OceanParameters, state: InitialState, cusp_at: Callable[[Fraction], RealArray]
-    ) -> None:
-        """`state` and `cusp_at`, the squeeze at a time, are those of the resolution at which foam is made."""
-        self.model = foam_model(parameters, state)
-        self._resolution = parameters.resolution
+    def __init__(self, model: FoamModel, resolution: int, cusp_at: Callable[[Fraction], RealArray]) -> None:
+        """`model` and `cusp_at`, the squeeze at a time, are those of the samples on which foam is made."""
+        self.model = model
+        self._resolution = resolution
         self._history = FoamHistory(self.model, cusp_at)
 
     def at(self, time: float | Fraction) -> RealArray:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cascades.patch_seas import patch_parameters
+from .cascades.patch_seas import joined_bands, parts
 from .fields import FOAM, OUTPUTS, memory_groups
 from .noise_synthesis.source import side
 from .parameters import OceanParameters
@@ -50,13 +50,9 @@ def memory_need(
     parameters: OceanParameters, outputs: Iterable[str] = ("displacement",), precision: str = "single"
 ) -> MemoryNeed:
     """Bytes that a sea needs for the outputs asked for; one of several patches has all of them at once."""
-    if parameters.is_cascade:
-        needs = [memory_need(patch, outputs, precision) for patch in patch_parameters(parameters)]
-        return MemoryNeed(
-            sum(need.state for need in needs),
-            max(need.building for need in needs),
-            sum(need.surface for need in needs),
-        )
+    outputs = frozenset(outputs)
+    if parameters.is_sum:
+        return _need_of_parts(parameters, outputs, precision)
     n = parameters.resolution
     half_plane = n * (n // 2 + 1)
     real = 4 if precision == "single" else 8
@@ -68,9 +64,8 @@ def memory_need(
     building += max(
         (16 * _PICTURE_ARRAYS * side(layer) ** 2 for layer in parameters.active_pictures), default=0
     )
-    everything = frozenset(outputs)
-    wanted = everything - {FOAM}
-    fields = _foam_bytes(parameters) if FOAM in everything else 0
+    wanted = outputs - {FOAM}
+    fields = _foam_bytes(parameters) if FOAM in outputs else 0
     fields += sum(int(np.prod(OUTPUTS[name].shape(n))) * real for name in wanted)
     gradient = not parameters.active_wind_fields
     columns = max((_columns(group, gradient) for group in memory_groups(wanted)), default=0)
@@ -85,6 +80,24 @@ def memory_need(
         building = max(building, 40 * n * n)
         surface += making + (3 if moving else 1) * (8 * n * n + MOST_CLASSES * half_plane * 2 * real)
     return MemoryNeed(state, building, surface)
+
+
+def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
+    """That of all parts, and on one grid of the components that are added up there."""
+    apart = joined_bands(parameters) if parameters.joined else parameters
+    needs = [memory_need(part.parameters, outputs - {FOAM}, precision) for part in parts(apart)]
+    surface = sum(need.surface for need in needs)
+    if not parameters.is_cascade:
+        keys = max(
+            (
+                len({key for name in group for key in OUTPUTS[name].needs})
+                for group in memory_groups(outputs - {FOAM})
+            ),
+            default=0,
+        )
+        surface += 3 * keys * parameters.resolution**2 * (4 if precision == "single" else 8)
+        surface += _foam_bytes(parameters) if FOAM in outputs else 0
+    return MemoryNeed(sum(need.state for need in needs), max(need.building for need in needs), surface)
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:

@@ -14,10 +14,11 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from . import constants
-from .cascades.patch import MOST_PATCHES, Patch, check_patches, resampled
+from .cascades.patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
 from .errors import ParameterError
 from .hero_waves.group import check_hero_waves, is_held
 from .hero_waves.parameters import HeroWave
+from .masks.parameters import Mask
 from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
 from .validation import Validated, choice, integer, nested, number, rational, switch
@@ -27,6 +28,7 @@ from .wave_particles.parameters import WindFieldLayer, WindKey
 __all__ = [
     "Foam",
     "HeroWave",
+    "Mask",
     "OceanParameters",
     "ParameterError",
     "Patch",
@@ -184,6 +186,7 @@ class WaveLayer(Validated):
         -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
         "Blender's whole numbers",
     )  # fmt: skip
+    mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -291,14 +294,19 @@ class OceanParameters(Validated):
     pictures: tuple[PictureLayer, ...] = nested(PictureLayer, many=True, empty=True)
     wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
     patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
+    joined: int = integer(
+        0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them apart",
+        "as the resolution of a sea", left_out=True,
+    )  # fmt: skip
     hero_waves: tuple[HeroWave, ...] = nested(HeroWave, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_joined(self.joined, self.patches)
         if self.patches:  # one place tells the size of the first patch, on which pictures and wind fields are
-            object.__setattr__(self, "resolution", self.patches[0].resolution)
+            object.__setattr__(self, "resolution", self.joined or self.patches[0].resolution)
             object.__setattr__(self, "domain_size", self.patches[0].domain_size)
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
@@ -311,11 +319,29 @@ class OceanParameters(Validated):
         check_hero_waves(self.hero_waves, self.domain_size, self.resolution)
         on_the_first = [name for name in ("pictures", "wind_fields", "hero_waves") if getattr(self, name)]
         check_patches(self.patches, self.trough_damping, on_the_first)
+        if self.is_masked and self.trough_damping > 0.0:
+            raise ParameterError(
+                "trough_damping", self.trough_damping,
+                "must be 0 in a sea with masks, whose waves do not know the troughs of the others",
+            )  # fmt: skip
 
     @property
     def is_cascade(self) -> bool:
-        """Whether it takes a `Cascade` to make it: it has several patches, or one that is turned."""
-        return len(self.patches) > 1 or any(patch.rotation for patch in self.patches)
+        """Whether it has several grids: more than one patch, or one that is turned, and not joined."""
+        return not self.joined and (len(self.patches) > 1 or any(patch.rotation for patch in self.patches))
+
+    @property
+    def is_masked(self) -> bool:
+        """Whether a mask lies over some of its waves."""
+        own: tuple[WaveLayer | PictureLayer | WindFieldLayer | Patch, ...] = (
+            *self.active_layers, *self.active_pictures, *self.active_wind_fields, *self.patches,
+        )  # fmt: skip
+        return any(layer.mask is not None for layer in own)
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether its waves are added up in places, not as coefficients: those of patches, or under masks."""
+        return bool(self.joined) or self.is_cascade or self.is_masked
 
     @property
     def band(self) -> tuple[float, float] | None:
@@ -345,10 +371,13 @@ class OceanParameters(Validated):
     def replace(self, **changes: Any) -> OceanParameters:
         """A copy with some fields changed, validated anew.
 
-        Of a sea of patches, another resolution is that of the first; the others keep their ratio to it.
+        Of a sea of patches, another resolution is that of the first, and the others keep their ratio to it;
+        of joined ones, it is that of their one grid.
         """
         if self.patches and "patches" not in changes:
-            if "resolution" in changes:
+            if "resolution" in changes and self.joined:
+                changes["joined"] = changes["resolution"]
+            elif "resolution" in changes:
                 changes["patches"] = resampled(self.patches, changes["resolution"])
             if changes.get("domain_size", self.domain_size) != self.domain_size:
                 raise ParameterError(
@@ -365,6 +394,17 @@ class OceanParameters(Validated):
             for wave in self.hero_waves
         )
         return self.replace(resolution=resolution, hero_waves=waves)
+
+    def on_one_grid(self, resolution: int) -> OceanParameters:
+        """The same sea on the samples of one grid over the domain, also of several patches."""
+        if not self.is_cascade:
+            return self.at_resolution(resolution)
+        return self.replace(joined=resolution, patches=self.patches).at_resolution(resolution)
+
+    @property
+    def without_patches(self) -> OceanParameters:
+        """The sea of one patch, as large and with as many samples, that has the same spectrum."""
+        return self.replace(patches=(), joined=0)
 
     def to_dict(self, brief: bool = False) -> dict[str, Any]:
         """Plain dictionaries, lists and numbers, as they stand in a JSON file.

@@ -56,9 +56,9 @@ def to_plain(value: Any, brief: bool = False) -> Any:
 
 
 def _is_unused(field: dataclasses.Field[Any], value: object) -> bool:
-    """An empty list that may be empty is left out: the JSON of a sea without it, and so the fingerprint of
-    its frames, stays what it was before there was such a list."""
-    return bool(field.metadata.get("empty")) and value == ()
+    """What is not there is left out, where its field says so: the JSON of a sea without it, and so the
+    fingerprint of its frames, stays what it was before there was such a thing."""
+    return bool(field.metadata.get("left_out")) and not value
 
 
 def from_plain(cls: type, data: object) -> Any:
@@ -91,7 +91,7 @@ def _nested_value(field: dataclasses.Field[Any], value: object) -> object:
     if nested is None:
         return value
     if not field.metadata.get("many"):
-        return from_plain(nested, value)
+        return None if value is None and field.metadata.get("optional") else from_plain(nested, value)
     if not isinstance(value, list):
         return value
     items = []

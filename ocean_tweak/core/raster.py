@@ -22,6 +22,9 @@ from .errors import ParameterError
 #: samples along a side, and channels of a sample
 LARGEST_SIDE, MOST_CHANNELS = 4096, 4
 
+#: shares of red, green and blue in a grey that looks as bright (ITU-R BT.709)
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
 #: how numbers are written, smallest first, and the factor by which they are multiplied before
 _ENCODINGS: dict[str, tuple[np.dtype[Any], float]] = {
     "uint8": (np.dtype("<u1"), 255.0),
@@ -65,6 +68,15 @@ class Raster:
     def __repr__(self) -> str:
         rows, columns, channels = self.shape
         return f"Raster({self.name!r}, {rows} x {columns} x {channels}, {self.sha256[:8]})"
+
+    def grey(self) -> Raster:
+        """One channel: the luminance of a colour picture; the fourth is transparency, which is left out.
+
+        Rasters of one or two channels stay as they are.
+        """
+        if self.shape[2] not in (3, 4):
+            return self
+        return Raster(self.values[..., :3].astype(np.float64) @ _LUMINANCE, self.name)
 
     def brief(self) -> dict[str, Any]:
         """What tells it from others, without its numbers: for headers, where these would be too long."""

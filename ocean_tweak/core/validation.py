@@ -24,13 +24,18 @@ def number(default: float, minimum: float, maximum: float, unit: str, descriptio
     )  # fmt: skip
 
 
-def integer(default: int, minimum: int, maximum: int, description: str, why: str = "") -> Any:
-    """A whole-number dataclass field with its range."""
+def integer(
+    default: int, minimum: int, maximum: int, description: str, why: str = "", left_out: bool = False
+) -> Any:
+    """A whole-number dataclass field with its range.
+
+    left_out : where it is 0, JSON has no such key
+    """
     return dataclasses.field(
         default=default,
         metadata={
             "kind": int, "minimum": minimum, "maximum": maximum,
-            "unit": "", "description": description, "why": why,
+            "unit": "", "description": description, "why": why, "left_out": left_out,
         },
     )  # fmt: skip
 
@@ -156,16 +161,23 @@ def _checked_raster(name: str, value: object, meta: Any) -> Raster:
     return value
 
 
-def nested(kind: type, many: bool = False, empty: bool = False, most: int = 64) -> Any:
+def nested(
+    kind: type, many: bool = False, empty: bool = False, most: int = 64, optional: bool = False
+) -> Any:
     """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them.
 
     empty : the tuple may be empty, and is by default
     most : how many it may hold
+    optional : there may be none of it, which is the default
     """
-    default: object = kind() if not many else () if empty else (kind(),)
+    default: object = None if optional else kind() if not many else () if empty else (kind(),)
     return dataclasses.field(
-        default=default, metadata={"nested": kind, "many": many, "empty": empty, "most": most}
-    )
+        default=default,
+        metadata={
+            "nested": kind, "many": many, "empty": empty, "most": most,
+            "optional": optional, "left_out": empty or optional,
+        },
+    )  # fmt: skip
 
 
 def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,14 +15,26 @@ from ..fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs
 from ..foam import FoamModel
 from ..foam_field import foam_model_of
 from ..foam_threshold import Strains, sampled_strains, strain_covariances
+from ..masks.parameters import Mask
+from ..masks.weights import Weights, weights
 from ..memory import check_memory, memory_need
 from ..ocean import Ocean
 from ..parameters import OceanParameters
 from ..surface_query import Field, SurfacePoints, bilinear, refine_points
 from .foam import foam_at
-from .patch_seas import patch_parameters, rotations
+from .patch_seas import Part, parts, patch_parameters, rotations
 from .query import find_summed_points
-from .sampling import Components, Key, SummedRows, closed, summed_field, turned_field
+from .sampling import (
+    Components,
+    Grid,
+    Key,
+    Summed,
+    closed,
+    summed_field,
+    turned_field,
+    unweighted,
+    weighted_field,
+)  # fmt: skip
 from .statistics import CascadeStatistics, cascade_statistics
 
 Array = NDArray[np.float64]
@@ -37,8 +49,10 @@ _KEPT = 2**28
 class Cascade:
     """The sea of some parameters, whether of one patch or of several. Making one is cheap.
 
-    patches : the `Ocean` of each patch, in axes along its own sides
+    patches : the `Ocean` of each patch, in axes along its own sides, without masks
     rotations : by which those axes are turned, rad counter-clockwise
+
+    Patches that are joined are apart here: any place has all of their waves.
 
     precision, workers : as for an Ocean
 
@@ -50,11 +64,24 @@ class Cascade:
     ) -> None:
         if not isinstance(parameters, OceanParameters):
             raise TypeError(f"Cascade wants OceanParameters, not {type(parameters).__name__}")
+        if parameters.joined:
+            parameters = parameters.replace(joined=0, patches=parameters.patches)
         check_memory(memory_need(parameters, precision=precision).peak(), f"A sea of {_samples(parameters)}")
         self.parameters = parameters
         self.rotations = rotations(parameters)
-        self.patches = tuple(Ocean(patch, precision, workers) for patch in patch_parameters(parameters))
+        self._parts = parts(parameters)
+        self._oceans = tuple(Ocean(part.parameters, precision, workers) for part in self._parts)
         self._kept: OrderedDict[Fraction, list[Components]] = OrderedDict()
+
+    @cached_property
+    def patches(self) -> tuple[Ocean, ...]:
+        """The sea of each patch; where no mask parts them, they are what the sum is made of."""
+        if not self.parameters.is_masked:
+            return self._oceans
+        first = self._oceans[0]
+        return tuple(
+            Ocean(patch, first.precision, first.workers) for patch in patch_parameters(self.parameters)
+        )
 
     @property
     def spacings(self) -> tuple[float, ...]:
@@ -87,11 +114,11 @@ class Cascade:
         shape, px, py = places_x.shape, places_x.ravel(), places_y.ravel()
         fields: dict[str, RealArray] = {}
         needs = frozenset().union(*(OUTPUTS[name].needs for name in wanted - {FOAM}))
-        rows = self._rows(px, py, self._components(time, needs))
+        sums = self._summed(px, py, self._components(time, needs))
         for name in wanted - {FOAM}:
             channels = (OUTPUTS[name].channels,) if OUTPUTS[name].channels else ()
             field: RealArray = np.empty((px.size, *channels), self._dtype)
-            OUTPUTS[name].write(rows, field)
+            OUTPUTS[name].write(sums, field)
             fields[name] = field.reshape(*shape, *channels)
         if FOAM in wanted:
             fields[FOAM] = foam_at(self.foam_model, self._squeeze_at, px, py, time).reshape(shape)
@@ -130,26 +157,37 @@ class Cascade:
         """
         if surface not in ("mesh", "exact"):
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
-        if not self.parameters.is_cascade:
-            return self.patches[0].points_at(x, y, time, surface, velocity)
+        if not self.parameters.is_sum:
+            return self._oceans[0].points_at(x, y, time, surface, velocity)
         _places(x, y, time)
         outputs = {"displacement"} | ({"velocity"} if velocity else set())
         fields: list[Field] = []
         reach = 0.0
-        for made, spacing, rotation in zip(
-            self.surfaces(time, outputs), self.spacings, self.rotations, strict=True
-        ):
+        for ocean, part in zip(self._oceans, self._parts, strict=True):
+            made = ocean.surface(time, outputs)
             reach += float(np.max(np.hypot(made.displacement[..., 0], made.displacement[..., 1])))
             moving = made.velocity if velocity else None
-            fields.append(turned_field(bilinear(made.displacement, moving, spacing), rotation))
-        points = find_summed_points(x, y, fields, self.spacings, reach, velocity)
+            spacing = part.parameters.domain_size / part.parameters.resolution
+            fields.append(self._in_sea(bilinear(made.displacement, moving, spacing), part))
+        spacings = [part.parameters.domain_size / part.parameters.resolution for part in self._parts]
+        points = find_summed_points(x, y, fields, spacings, reach, velocity)
         if surface == "mesh":
             return points
-        waves = [
-            turned_field(ocean.exact_field(time), rotation)
-            for ocean, rotation in zip(self.patches, self.rotations, strict=True)
-        ]
-        return refine_points(x, y, summed_field(waves), points, self.spacings[-1], velocity)
+        return refine_points(x, y, self.exact_field(time), points, min(spacings), velocity)
+
+    def exact_field(self, time: float | Fraction) -> Field:
+        """The band-limited surface of the sum, whose cost grows with points times wave vectors."""
+        return summed_field(
+            [
+                self._in_sea(ocean.exact_field(time), part)
+                for ocean, part in zip(self._oceans, self._parts, strict=True)
+            ]
+        )
+
+    def _in_sea(self, field: Field, part: Part) -> Field:
+        """A part's own surface in the sea's axes, under its masks."""
+        weights_at = partial(weights, part.masks, self.parameters.domain_size) if part.masks else None
+        return weighted_field(turned_field(field, part.rotation), weights_at)
 
     def height_at(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, surface: str = "mesh"
@@ -164,7 +202,7 @@ class Cascade:
     @cached_property
     def foam_model(self) -> FoamModel:
         """How foam is born and lives: its threshold follows from the strains of all patches together."""
-        patches = self._of_foam.patches
+        oceans = self._of_foam._oceans
 
         def strains_of(drift: tuple[float, float]) -> Strains:
             parts = [
@@ -172,10 +210,10 @@ class Cascade:
                     ocean.initial_state,
                     self.parameters.choppiness,
                     drift,
-                    rotation,
+                    part.rotation,
                     self.parameters.is_cascade,
                 )
-                for ocean, rotation in zip(patches, self.rotations, strict=True)
+                for ocean, part in zip(oceans, self._of_foam._parts, strict=True)
             ]
             gradients, rates = zip(*parts, strict=True)
             return sampled_strains(np.sum(gradients, axis=0), np.sum(rates, axis=0))
@@ -188,26 +226,36 @@ class Cascade:
         resolution = self.parameters.foam.resolution
         if resolution in (0, self.parameters.resolution):
             return self
-        first = self.patches[0]
+        first = self._oceans[0]
         return Cascade(self.parameters.at_resolution(resolution), first.precision, first.workers)
 
     @property
     def _dtype(self) -> type:
-        return np.float32 if self.patches[0].precision == "single" else np.float64
+        return np.float32 if self._oceans[0].precision == "single" else np.float64
 
     def _components(self, time: float | Fraction, needs: Iterable[Key]) -> list[Components]:
         wanted = closed(needs)
         if not wanted:
-            return [{} for _ in self.patches]
-        return [ocean.components(time, wanted) for ocean in self.patches]
+            return [{} for _ in self._oceans]
+        return [
+            ocean.components(time, unweighted(wanted) if part.masks else wanted)
+            for ocean, part in zip(self._oceans, self._parts, strict=True)
+        ]
 
-    def _rows(self, x: Array, y: Array, components: Sequence[Components]) -> SummedRows:
-        return SummedRows(x, y, components, self.spacings, self.rotations)
+    def _summed(self, x: Array, y: Array, components: Sequence[Components]) -> Summed:
+        known: dict[tuple[Mask, ...], Weights] = {}
+        grids = []
+        for part, of_part in zip(self._parts, components, strict=True):
+            if part.masks and part.masks not in known:
+                known[part.masks] = weights(part.masks, self.parameters.domain_size, x, y)
+            spacing = part.parameters.domain_size / part.parameters.resolution
+            grids.append(Grid(of_part, spacing, part.rotation, known.get(part.masks)))
+        return Summed(grid.read(x, y) for grid in grids)
 
     def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         sea = self._of_foam
         squeeze = np.empty(x.shape, np.float32)
-        OUTPUTS["cusp"].write(sea._rows(x, y, self._squeezed(time)), squeeze)
+        OUTPUTS["cusp"].write(sea._summed(x, y, self._squeezed(time)), squeeze)
         return squeeze
 
     def _squeezed(self, time: Fraction) -> list[Components]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from ..errors import ParameterError
-from ..validation import Validated, integer, number
+from ..masks.parameters import Mask
+from ..validation import Validated, integer, nested, number
 
 #: of a sea
 MOST_PATCHES = 4
@@ -41,6 +42,7 @@ class Patch(Validated):
     resolution: int = integer(
         512, 16, 8192, "Samples along each side of the patch, an even number", "as the resolution of a sea"
     )
+    mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -90,6 +92,14 @@ def check_bands(patches: Sequence[Patch]) -> None:
             f"patches.{index} ends at {end:g} m and patches.{index + 1} begins at {begin:g} m: {fault}. "
             f"Give patches.{index}.shortest_wavelength and patches.{index + 1}.longest_wavelength one value",
         )  # fmt: skip
+
+
+def check_joined(joined: int, patches: Sequence[Patch]) -> None:
+    """Raise ParameterError for samples of one grid that are not those of a sum of patches."""
+    if joined % 2 or 0 < joined < 16:
+        raise ParameterError("joined", joined, "must be 0 or an even number from 16 to 8192")
+    if joined and not patches:
+        raise ParameterError("joined", joined, "must be 0 in a sea without patches, which is on one grid")
 
 
 def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first: Sequence[str]) -> None:

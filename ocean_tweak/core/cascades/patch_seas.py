@@ -3,13 +3,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
 
 from .. import random
 from ..initial_state import layer_seed
-from ..parameters import OceanParameters, Patch, WaveLayer
+from ..parameters import Mask, OceanParameters, Patch, WaveLayer
 
 _LARGEST_SEED = 2**31 - 1
+
+#: samples along the shortest wave of a patch that is read between its samples for a grid: bilinear, a tenth
+#: of that wave's variance is lost, and less of longer ones
+_SAMPLES_A_WAVE = 8.0
+_FEWEST, _MOST = 16, 8192
+
+#: the fields that hold layers of any kind
+_LAYERS = ("layers", "pictures", "wind_fields")
 
 
 #: outputs of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
@@ -24,12 +35,15 @@ def rotations(parameters: OceanParameters) -> tuple[float, ...]:
 def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
     """The parameters of each patch, in axes that lie along its sides; a sea without patches is its only one.
 
-    A wind towards θ blows towards θ - rotation there. Each patch has random numbers of its own, or waves at a
-    band's end, of which two patches hold a part each, would be alike in both. The first keeps those of a
-    sea of one patch, and holds the pictures, wind fields and hero waves.
+    Masks are left out, and patches are apart even where they are joined. A wind towards θ blows towards
+    θ - rotation there. Each patch has random numbers of its own, or waves at a band's end, of which two
+    patches hold a part each, would be alike in both. The first keeps those of a sea of one patch, and holds
+    the pictures, wind fields and hero waves.
     """
+    parameters = _without_masks(parameters)
     if not parameters.patches:
         return (parameters,)
+    parameters = parameters.replace(joined=0, patches=parameters.patches)
     return tuple(_of_patch(parameters, index, patch) for index, patch in enumerate(parameters.patches))
 
 
@@ -46,3 +60,89 @@ def _in_patch(parameters: OceanParameters, layer: WaveLayer, index: int, rotatio
         seed = random.combine(layer_seed(parameters, layer), index) & _LARGEST_SEED
         layer = replace(layer, seed=seed)
     return layer
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some waves of a sea, which have a grid and a weight of their own. The sea is the sum of its parts.
+
+    parameters : of a sea of one patch, in axes along the patch's sides
+    rotation : by which those are turned, rad counter-clockwise
+    masks : whose product is the weight, in the sea's axes
+    patch : the number of the patch
+    """
+
+    parameters: OceanParameters
+    rotation: float
+    masks: tuple[Mask, ...]
+    patch: int
+
+
+def parts(parameters: OceanParameters) -> tuple[Part, ...]:
+    """The parts of a sea: of each patch, the waves under each mask."""
+    found = []
+    patches = parameters.patches or (None,)
+    seas = patch_parameters(parameters)
+    for index, (sea, patch, rotation) in enumerate(zip(seas, patches, rotations(parameters), strict=True)):
+        of_patch = (patch.mask,) if patch is not None and patch.mask is not None else ()
+        found += [
+            Part(under, rotation, of_patch if mask is None else (*of_patch, mask), index)
+            for mask, under in _by_mask(parameters, sea)
+        ]
+    return tuple(found)
+
+
+def joined_bands(parameters: OceanParameters) -> OceanParameters:
+    """A joined sea's patches apart, without the waves shorter than two samples of its one grid.
+
+    The first has the grid's samples, the others as many as reading between them takes.
+    """
+    shortest = 2.0 * parameters.domain_size / parameters.resolution
+    first, *others = parameters.patches
+    if not first.rotation:
+        first = replace(first, resolution=parameters.resolution)
+    else:
+        first = _readable(first, shortest)
+    kept = (_readable(patch, shortest) for patch in others if patch.longest_wavelength > shortest)
+    return parameters.replace(joined=0, patches=(first, *kept))
+
+
+def _readable(patch: Patch, shortest: float) -> Patch:
+    end = max(patch.shortest_wavelength, shortest)
+    wanted = 2 * math.ceil(0.5 * _SAMPLES_A_WAVE * patch.domain_size / end)
+    return replace(patch, shortest_wavelength=end, resolution=min(max(wanted, _FEWEST), _MOST))
+
+
+def _by_mask(
+    parameters: OceanParameters, sea: OceanParameters
+) -> Iterable[tuple[Mask | None, OceanParameters]]:
+    """The masks of a sea's layers, and with each a patch of the sea whose other layers are muted."""
+    own = [layer for name in _LAYERS for layer in getattr(parameters, name) if not layer.muted]
+    masks = list(dict.fromkeys(layer.mask for layer in own))
+    if len(masks) < 2:
+        return [(masks[0] if masks else None, sea)]
+    if None in masks:  # with the waves that are everywhere
+        masks.insert(0, masks.pop(masks.index(None)))
+    return [(mask, _only(parameters, sea, mask, index == 0)) for index, mask in enumerate(masks)]
+
+
+def _only(
+    parameters: OceanParameters, sea: OceanParameters, mask: Mask | None, with_hero_waves: bool
+) -> OceanParameters:
+    changes: dict[str, Any] = {} if with_hero_waves else {"hero_waves": ()}
+    for name in _LAYERS:
+        changes[name] = tuple(
+            replace(layer, muted=layer.muted or given.mask != mask)
+            for given, layer in zip(getattr(parameters, name), getattr(sea, name), strict=False)
+        )
+    return sea.replace(**changes)
+
+
+def _without_masks(parameters: OceanParameters) -> OceanParameters:
+    if not parameters.is_masked:
+        return parameters
+    changes = {
+        name: tuple(replace(layer, mask=None) for layer in getattr(parameters, name))
+        for name in (*_LAYERS, "patches")
+    }
+    return parameters.replace(**changes)

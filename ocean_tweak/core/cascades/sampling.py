@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..masks.weights import Weights
 from ..surface_query import Field, Values
 from ..synthesis import X, Y, Z
 
@@ -31,6 +33,26 @@ def closed(wanted: Iterable[Key]) -> frozenset[Key]:
         if not keys.isdisjoint(group):
             keys.update(group)
     return frozenset(keys)
+
+
+def unweighted(wanted: Iterable[Key]) -> frozenset[Key]:
+    """The components wanted and those of which a weight's own change makes a part: ∂(w d) = w ∂d + d ∂w."""
+    keys = frozenset(wanted)
+    return keys | {(component, "") for component, derivative in keys if derivative in ("x", "y")}
+
+
+def weighted(values: Mapping[Key, RealArray], weights: Weights | None) -> dict[Key, RealArray]:
+    """Components times weights of the same shape, in the axes of the weights' derivatives."""
+    if weights is None:
+        return dict(values)
+    result: dict[Key, RealArray] = {
+        key: weights.value.astype(field.dtype) * field for key, field in values.items()
+    }
+    for (component, derivative), field in result.items():
+        if derivative in ("x", "y"):
+            change = weights.by_x if derivative == "x" else weights.by_y
+            field += change.astype(field.dtype) * values[component, ""]
+    return result
 
 
 def into_patch(x: Array, y: Array, rotation: float) -> tuple[Array, Array]:
@@ -79,29 +101,40 @@ def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray
     return result
 
 
-class SummedRows:
-    """Components of a whole sea at some places, as the writers of `fields.OUTPUTS` read them."""
+class Grid(NamedTuple):
+    """Periodic components of some waves, (N, N) each, in their own axes.
 
-    def __init__(
-        self,
-        x: Array,
-        y: Array,
-        patches: Sequence[Components],
-        spacings: Sequence[float],
-        rotations: Sequence[float],
-    ) -> None:
+    spacing : of the samples, m
+    rotation : of the axes against the sea's, rad counter-clockwise
+    weights : of the places that are asked for, in the sea's axes; None for 1 everywhere
+    """
+
+    components: Components
+    spacing: float
+    rotation: float
+    weights: Weights | None = None
+
+    def read(self, x: Array, y: Array) -> dict[Key, RealArray]:
+        """At places in the sea's axes: turned into those, and weighted."""
+        if not self.components:
+            return {}
+        resolution = len(next(iter(self.components.values())))
+        reader = Reader(*into_patch(x, y, self.rotation), self.spacing, resolution)
+        found = {key: reader.read(field) for key, field in self.components.items()}
+        return weighted(turned(found, self.rotation), self.weights)
+
+
+class Summed:
+    """Sums of components, as the writers of `fields.OUTPUTS` read them."""
+
+    def __init__(self, parts: Iterable[Mapping[Key, RealArray]]) -> None:
         self._sums: dict[Key, RealArray] = {}
-        for components, spacing, rotation in zip(patches, spacings, rotations, strict=True):
-            if not components:
-                continue
-            resolution = len(next(iter(components.values())))
-            reader = Reader(*into_patch(x, y, rotation), spacing, resolution)
-            read = {key: reader.read(field) for key, field in components.items()}
-            for key, value in turned(read, rotation).items():
+        for values in parts:
+            for key, value in values.items():
                 self._sums[key] = self._sums[key] + value if key in self._sums else value
 
     def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
-        """(places,) displacement's component in m or its derivative; in `out` if given."""
+        """Displacement's component in m or its derivative; in `out` if given."""
         result = self._sums[component, derivative]
         if out is None:
             return result
@@ -126,6 +159,20 @@ def turned_field(field: Field, rotation: float) -> Field:
         return turned_values, None if velocity is None else vectors(velocity)
 
     return in_sea
+
+
+def weighted_field(field: Field, weights_at: Callable[[Array, Array], Weights] | None) -> Field:
+    """A surface times weights, both in the sea's axes."""
+    if weights_at is None:
+        return field
+
+    def under(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
+        (value, by_x, by_y), velocity = field(x, y, with_velocity)
+        weight, along_x, along_y = (part[:, np.newaxis] for part in weights_at(x, y))
+        values = Values(weight * value, weight * by_x + along_x * value, weight * by_y + along_y * value)
+        return values, None if velocity is None else weight * velocity
+
+    return under
 
 
 def summed_field(fields: Sequence[Field]) -> Field:

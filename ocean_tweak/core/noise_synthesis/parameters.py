@@ -11,15 +11,13 @@ from fractions import Fraction
 import numpy as np
 
 from ..errors import ParameterError
+from ..masks.parameters import Mask
 from ..raster import Raster
-from ..validation import Validated, choice, integer, number, raster, switch
+from ..validation import Validated, choice, integer, nested, number, raster, switch
 
 FILTERS = ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE")
 FILTER_GAINS = ("PHYSICAL", "PAPER")
 ANIMATIONS = ("DISPERSION", "DOMINANT_BAND", "TRANSLATION")
-
-#: shares of red, green and blue in a grey that looks as bright (ITU-R BT.709)
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 #: how far from a whole number of patches a loop's translation may be: rounding, no more
 _WHOLE = 1e-6
@@ -94,6 +92,7 @@ class PictureLayer(Validated):
         -1, -1, 2**31 - 1, "Seed of the white noise; -1 derives it from the ocean's seed and the id",
         "Blender's whole numbers",
     )  # fmt: skip
+    mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
         if isinstance(self.picture, Raster):
@@ -115,10 +114,7 @@ def _grey(picture: Raster) -> Raster:
 
     Raises ParameterError, naming the picture, where it holds no waves.
     """
-    channels = picture.shape[2]
-    if channels in (3, 4):
-        values = picture.values[..., :3].astype(np.float64) @ _LUMINANCE
-        picture = Raster(values, picture.name)
+    picture = picture.grey()
     if np.ptp(picture.values) == 0.0:
         what = f"picture ({picture.name})" if picture.name else "picture"
         raise ParameterError(

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..grid import WaveVectorGrid
+from ..splines import spline_weights
 from .shape import RadiusClasses, bump
 
 Array = NDArray[np.float64]
@@ -97,11 +98,8 @@ def deposit(x: Array, y: Array, weights: Sequence[Array], grid: WaveVectorGrid) 
 
 def _spline(places: Array, n: int, domain_size: float) -> tuple[NDArray[np.intp], Array]:
     """The three samples around each place, (3, places), and the quadratic B-spline's weights there."""
-    position = places * (n / domain_size)
-    nearest = np.rint(position)
-    off = position - nearest
-    samples = (nearest.astype(np.intp) + np.array([[-1], [0], [1]])) % n
-    return samples, np.stack((0.5 * (0.5 - off) ** 2, 0.75 - off * off, 0.5 * (0.5 + off) ** 2))
+    samples, weight = spline_weights(places * (n / domain_size))
+    return samples % n, weight
 
 
 class Points(NamedTuple):

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import ParameterError
+from ..masks.parameters import Mask
 from ..raster import Raster
 from ..validation import Validated, choice, integer, nested, number, raster, switch
 
@@ -103,6 +104,7 @@ class WindFieldLayer(Validated):
         -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
         "Blender's whole numbers",
     )  # fmt: skip
+    mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()

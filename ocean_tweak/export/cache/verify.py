@@ -34,7 +34,7 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
-            oceans = seas.oceans(job.shot.at(frame).parameters)
+            oceans = seas.seas(job.shot.at(frame).parameters)
             for sequence, ocean in zip(job.sequences(folder, frame), oceans, strict=True):
                 problem = _problem(job, sequence, frame, ocean)
                 if problem:

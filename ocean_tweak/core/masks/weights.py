@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The weights of masks: from 0 to 1 over the sea, by which displacement and velocity are multiplied.
+
+A weight belongs to the water at rest, lies over the domain and repeats with it. It is continuous and has
+continuous derivatives, which the slopes and strains of a masked sea need: ∂(w d) = w ∂d + d ∂w.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..splines import spline_slopes, spline_weights
+from .parameters import Mask
+
+Array = NDArray[np.float64]
+
+#: rows of a square of weights that are made at once
+_ROWS = 128
+
+
+class Weights(NamedTuple):
+    """Of places: w, and its derivatives by x and y in 1/m; one shape."""
+
+    value: Array
+    by_x: Array
+    by_y: Array
+
+
+def weights(masks: Sequence[Mask], domain_size: float, x: Array, y: Array) -> Weights:
+    """The product of some masks at rest positions x and y in m, of shapes that broadcast."""
+    shape = np.broadcast_shapes(x.shape, y.shape)
+    total = Weights(np.ones(shape), np.zeros(shape), np.zeros(shape))
+    for mask in masks:
+        own = _SOURCES[mask.source](mask, domain_size, x, y)
+        if mask.inverted:
+            own = Weights(1.0 - own.value, -own.by_x, -own.by_y)
+        total = Weights(
+            total.value * own.value,
+            total.by_x * own.value + total.value * own.by_x,
+            total.by_y * own.value + total.value * own.by_y,
+        )
+    return total
+
+
+def weights_on_grid(masks: Sequence[Mask], domain_size: float, resolution: int) -> Weights:
+    """The same on the (N, N) samples [y, x] of the domain."""
+    along: Array = domain_size / resolution * np.arange(resolution, dtype=np.float64)
+    parts = [
+        weights(masks, domain_size, along, along[first : first + _ROWS, np.newaxis])
+        for first in range(0, resolution, _ROWS)
+    ]
+    return Weights(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+def _by_image(mask: Mask, domain_size: float, x: Array, y: Array) -> Weights:
+    """A quadratic B-spline through the texels, whose centres are half a texel in; it stays in 0…1."""
+    assert mask.image is not None
+    texels = np.clip(mask.image.values[..., 0].astype(np.float64), 0.0, 1.0)
+    rows, columns = texels.shape
+    column, row = x / domain_size * columns - 0.5, y / domain_size * rows - 0.5
+    (j, along_x), (i, along_y) = spline_weights(column), spline_weights(row)
+    slope_x, slope_y = spline_slopes(column), spline_slopes(row)
+    shape = np.broadcast_shapes(x.shape, y.shape)
+    value, by_x, by_y = (np.zeros(shape) for _ in range(3))
+    for b in range(3):
+        for a in range(3):
+            texel = texels[i[b] % rows, j[a] % columns]
+            value += texel * along_y[b] * along_x[a]
+            by_x += texel * along_y[b] * slope_x[a]
+            by_y += texel * slope_y[b] * along_x[a]
+    return Weights(value, by_x * (columns / domain_size), by_y * (rows / domain_size))
+
+
+def _by_distance(mask: Mask, domain_size: float, x: Array, y: Array) -> Weights:
+    """A smooth step over the distance from the nearest of the places that repeat with the domain."""
+    dx, dy = (
+        (p - at + 0.5 * domain_size) % domain_size - 0.5 * domain_size for p, at in ((x, mask.x), (y, mask.y))
+    )
+    distance = np.hypot(dx, dy)
+    part = np.clip((distance - mask.near) / (mask.far - mask.near), 0.0, 1.0)
+    rate = 6.0 * part * (1.0 - part) / (mask.far - mask.near) / np.maximum(distance, 1e-12)
+    return Weights(part * part * (3.0 - 2.0 * part), rate * dx, rate * dy)
+
+
+_SOURCES = {"IMAGE": _by_image, "DISTANCE": _by_distance}

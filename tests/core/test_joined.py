@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Several patches on the samples of one grid: their sum, without the waves that the grid cannot hold."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, ParameterError, Patch, WaveLayer, grid_sea
+from ocean_tweak.core.bake import ShotSurfaces
+from ocean_tweak.core.cascades.patch_seas import joined_bands
+from ocean_tweak.core.foam_threshold import whitecap_coverage
+from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core.shot import Shot
+from tests.core.test_cascades import summed
+
+LAYER = WaveLayer(wind_speed=10.0, wind_direction=0.4, fetch=100e3)
+PATCHES = (
+    Patch(600.0, 0.0, 20.0, 1e6, 128),
+    Patch(151.0, 0.7, 5.0, 20.0, 128),
+    Patch(33.0, 1.2, 0.9, 5.0, 160),
+)
+APART = OceanParameters(seed=3, layers=(LAYER,), patches=PATCHES)
+#: samples of 128 before the border of two 20 m waves
+INSIDE = 119
+GENERATOR = np.random.default_rng(2)
+
+
+def joined(samples: int, **changes: object) -> OceanParameters:
+    return APART.replace(**changes).on_one_grid(samples)
+
+
+def test_the_grid_is_that_of_the_first_patch() -> None:
+    sea = joined(256)
+    assert (sea.resolution, sea.domain_size, sea.joined) == (256, 600.0, 256)
+    assert not sea.is_cascade
+    assert sea.at_resolution(64).joined == 64
+    assert sea.at_resolution(64).patches == PATCHES
+    assert sea.without_patches == OceanParameters(seed=3, layers=(LAYER,), resolution=256, domain_size=600.0)
+    assert OceanParameters.from_json(sea.to_json()) == sea
+    assert "joined" not in APART.to_json()
+
+
+def test_waves_too_short_for_the_grid_are_left_out() -> None:
+    """Two samples of a 2.34 m grid are 4.69 m: of the third patch's band from 5 to 0.9 m a part stays."""
+    bands = [patch.band for patch in joined_bands(joined(256)).patches]
+    assert bands == [(20.0, 1e6), (5.0, 20.0), (pytest.approx(4.6875), 5.0)]
+    assert [patch.band for patch in joined_bands(joined(128)).patches] == [
+        (20.0, 1e6), (pytest.approx(9.375), 20.0),
+    ]  # fmt: skip
+    assert [patch.band for patch in joined_bands(joined(32)).patches] == [(20.0, 1e6)]
+
+
+def test_patches_are_read_at_eight_samples_a_wave() -> None:
+    """Linear interpolation keeps (2 + cos 2π/8)/3 = 0.902 of the shortest wave's variance along an axis."""
+    for patch in joined_bands(joined(1024)).patches[1:]:
+        assert 8.0 <= patch.samples_a_wave < 9.0
+
+
+def test_it_is_the_sum_of_the_waves() -> None:
+    """Of few waves added up one by one: 1 - cos(2π/16) = 0.076 is what a line misses of the shortest wave."""
+    layer = dataclasses.replace(LAYER, wind_speed=6.0)
+    patches = (Patch(120.0, 0.0, 16.0, 1e6, 32), Patch(37.0, -0.9, 6.0, 16.0, 32))
+    sea = OceanParameters(layers=(layer,), patches=patches).on_one_grid(64)
+    index = GENERATOR.integers(0, 57, (60, 2))
+    places = 120.0 / 64 * index
+    bands = joined_bands(sea)
+    sums = summed(bands, *places.T, 1.5)
+    first = summed(bands.replace(patches=bands.patches[:1]), *places.T, 1.5)
+    found = grid_sea(sea, "double").surface(1.5).displacement[index[:, 1], index[:, 0]]
+    for component, name in enumerate("xyz"):
+        of_second = np.std(sums[name] - first[name])
+        assert of_second > 0.02
+        assert np.std(found[:, component] - sums[name]) < 0.08 * of_second  # it is read linearly
+
+
+def test_each_field_is_that_of_the_sum() -> None:
+    """At the grid's samples, as the sea of the same bands tells it for any place."""
+    sea = joined(128)
+    outputs = {"displacement", "velocity", "slope", "strain", "normal", "cusp", "jacobian", "min_eigenvector"}
+    found = grid_sea(sea).surface(4.0, outputs)
+    along = 600.0 / 128 * np.arange(INSIDE)
+    there = Cascade(joined_bands(sea)).fields_at(along, along[:, np.newaxis], 4.0, outputs)
+    for name in outputs:
+        inside = getattr(found, name)[:INSIDE, :INSIDE]
+        np.testing.assert_allclose(inside, getattr(there, name), atol=3e-5, err_msg=name)
+
+
+def test_the_square_repeats_without_a_seam() -> None:
+    """Derivatives by differences across the far sides are those of the fields, as they are inside."""
+    sea = joined(512, choppiness=0.0)
+    fields = grid_sea(sea, "double").surface(4.0, {"displacement", "slope"})
+    spacing = 600.0 / 512
+    for axis, name in ((1, "x"), (0, "y")):
+        height = np.moveaxis(fields.displacement[..., 2], axis, 0)
+        slope = np.moveaxis(fields.slope[..., 1 - axis], axis, 0)
+        along = (height[(np.arange(512) + 1) % 512] - height) / spacing
+        error = np.sqrt(np.mean((along - 0.5 * (slope + np.roll(slope, -1, 0))) ** 2, axis=1))
+        assert error[[-1, 0, -20]].max() < 1.2 * error[50:400].max(), name
+        assert error[50:400].max() < 0.2 * np.std(slope)
+
+
+def test_the_border_is_as_high_as_the_rest() -> None:
+    """What the second patch has there: shares whose squares add up to 1 keep the variance."""
+    inside, border = [], []
+    for seed in range(40):
+        sea = joined(128, seed=seed, choppiness=0.0)
+        first = grid_sea(sea.replace(patches=(dataclasses.replace(PATCHES[0], shortest_wavelength=20.0),)))
+        height = (grid_sea(sea).surface(0.0).displacement - first.surface(0.0).displacement)[..., 2]
+        border.append(np.mean(height[INSIDE:] ** 2))
+        inside.append(np.mean(height[:INSIDE] ** 2))
+    assert np.mean(border) == pytest.approx(np.mean(inside), rel=0.06)
+
+
+def test_the_variance_is_that_of_the_waves_that_it_holds() -> None:
+    """Of many seeds; what bilinear reading loses of the second patch is a tenth at most."""
+    wanted, found = 0.0, 0.0
+    for seed in range(12):
+        sea = joined(128, seed=seed, choppiness=0.0)
+        statistics = grid_sea(sea).statistics()
+        wanted += statistics.seed.m0
+        found += float(np.var(grid_sea(sea).surface(0.0).displacement[..., 2]))
+    assert found == pytest.approx(wanted, rel=0.02)
+    whole = Cascade(APART).statistics().total.resolved.m0
+    assert statistics.resolved.m0 < whole
+
+
+def test_one_patch_joined_is_that_patch() -> None:
+    sea = joined(32)
+    (first,) = joined_bands(sea).patches
+    alone = Ocean(sea.replace(joined=0, patches=(first,)))
+    np.testing.assert_array_equal(grid_sea(sea).surface(1.0).displacement, alone.surface(1.0).displacement)
+
+
+def test_a_first_patch_may_be_turned() -> None:
+    turned = (dataclasses.replace(PATCHES[0], rotation=0.3), *PATCHES[1:])
+    sea = OceanParameters(seed=3, layers=(LAYER,), patches=turned).on_one_grid(64)
+    found = grid_sea(sea).surface(2.0).displacement
+    along = 600.0 / 64 * np.arange(57)  # before the border of a tenth of the side
+    there = Cascade(joined_bands(sea)).fields_at(along, along[:, np.newaxis], 2.0).displacement
+    np.testing.assert_allclose(found[:57, :57], there, atol=3e-5)
+
+
+def test_foam_covers_as_much_as_at_sea() -> None:
+    sea = OceanParameters(
+        seed=3, layers=(WaveLayer(wind_speed=16.0, fetch=200e3),), patches=PATCHES, foam=Foam(half_life=0.0)
+    ).on_one_grid(160)
+    shares = []
+    for seed in range(4):
+        field = grid_sea(sea.replace(seed=seed)).surface(50.0, {"foam"}).foam
+        shares.append(np.mean(field >= 0.5))
+    assert np.mean(shares) == pytest.approx(whitecap_coverage(16.0), rel=0.25)
+
+
+def test_foam_of_a_frame_alone_is_that_of_a_sequence() -> None:
+    sea = joined(64, foam=Foam(half_life=0.5))
+    one = grid_sea(sea)
+    for time in (1.0, 1.125, 1.5):
+        in_sequence = one.surface(time, {"foam"}).foam
+    np.testing.assert_array_equal(in_sequence, grid_sea(sea).surface(1.5, {"foam"}).foam)
+
+
+def test_the_height_above_a_place_is_that_of_the_mesh() -> None:
+    sea = grid_sea(joined(96), "double")
+    moved = sea.surface(2.0).displacement[10:80:13, 9:80:11].reshape(-1, 3)
+    rest = 600.0 / 96 * np.stack(np.meshgrid(np.arange(9, 80, 11), np.arange(10, 80, 13)), axis=-1)
+    x, y = (rest.reshape(-1, 2) + moved[:, :2]).T
+    np.testing.assert_allclose(sea.height_at(x, y, 2.0), moved[:, 2], atol=1e-4)
+    exact = sea.points_at(x, y, 2.0, surface="exact")
+    assert np.abs(exact.height - moved[:, 2]).max() < 0.1 * np.std(moved[:, 2])
+
+
+def test_a_shot_is_joined_like_its_sea() -> None:
+    shot = Shot(joined(64))
+    (fields,) = ShotSurfaces(shot).frames(5, {"displacement", "foam"})
+    there = grid_sea(shot.at(5).parameters).surface(shot.at(5).time, {"displacement", "foam"})
+    np.testing.assert_array_equal(fields.displacement, there.displacement)
+    np.testing.assert_array_equal(fields.foam, there.foam)
+
+
+@pytest.mark.parametrize(("samples", "patches"), [(15, PATCHES), (33, PATCHES), (64, ())])
+def test_what_cannot_be_joined_is_refused(samples: int, patches: tuple[Patch, ...]) -> None:
+    with pytest.raises(ParameterError, match=r"^joined"):
+        OceanParameters(patches=patches, joined=samples)
+
+
+def test_patches_apart_have_no_one_grid() -> None:
+    with pytest.raises(ValueError, match="use Cascade"):
+        grid_sea(APART)
+    with pytest.raises(ValueError, match="grid_sea"):
+        Ocean(joined(64))
+
+
+def test_memory_is_told() -> None:
+    apart = memory_need(joined_bands(joined(256)), {"displacement"})
+    together = memory_need(joined(256), {"displacement"})
+    assert together.state == apart.state
+    assert together.surface == apart.surface + 3 * 3 * 256**2 * 4

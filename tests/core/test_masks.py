@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Masks: weights between 0 and 1, and seas whose waves are only where they let them."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import (
+    Cascade,
+    Mask,
+    Ocean,
+    OceanParameters,
+    ParameterError,
+    Patch,
+    PictureLayer,
+    Raster,
+    WaveLayer,
+    WindFieldLayer,
+    grid_sea,
+)
+from ocean_tweak.core.masks.weights import weights, weights_on_grid
+
+SIZE, SAMPLES = 240.0, 64
+GENERATOR = np.random.default_rng(5)
+HARBOUR = Mask(x=60.0, y=90.0, near=20.0, far=80.0)
+IMAGE = Mask(source="IMAGE", image=Raster(GENERATOR.uniform(size=(5, 7)), "coast"))
+STORM = WaveLayer(wind_speed=12.0, fetch=30e3, wind_direction=0.3)
+RIPPLES = WaveLayer(wind_speed=5.0, fetch=5e3, wind_direction=-1.0)
+
+
+def sea(**changes: object) -> OceanParameters:
+    masked = dataclasses.replace(STORM, mask=HARBOUR)
+    parameters = OceanParameters(
+        resolution=SAMPLES, domain_size=SIZE, seed=4, layers=(masked, RIPPLES), choppiness=0.8
+    )
+    return parameters.replace(**changes)
+
+
+def only(parameters: OceanParameters, number: int) -> OceanParameters:
+    """The sea of one of its layers, everywhere."""
+    layers = tuple(
+        dataclasses.replace(layer, mask=None, muted=index != number)
+        for index, layer in enumerate(parameters.layers)
+    )
+    return parameters.replace(layers=layers)
+
+
+# weights
+
+
+@pytest.mark.parametrize(
+    ("distance", "weight"), [(0.0, 0.0), (20.0, 0.0), (35.0, 5 / 32), (50.0, 0.5), (80.0, 1.0), (100.0, 1.0)]
+)
+def test_a_distance_is_a_smooth_step(distance: float, weight: float) -> None:
+    """3t² - 2t³ between near and far: 5/32 at a quarter of the way."""
+    angle = GENERATOR.uniform(0.0, 2.0 * np.pi, 9)
+    x, y = HARBOUR.x + distance * np.cos(angle), HARBOUR.y + distance * np.sin(angle)
+    np.testing.assert_allclose(weights((HARBOUR,), SIZE, x, y).value, weight, atol=1e-12)
+    inverted = dataclasses.replace(HARBOUR, inverted=True)
+    np.testing.assert_allclose(weights((inverted,), SIZE, x, y).value, 1.0 - weight, atol=1e-12)
+
+
+def test_an_image_is_its_texels_smoothed() -> None:
+    """A quadratic B-spline: 3/4 of a texel and an eighth of its neighbours along each axis, at its centre."""
+    rows, columns = 5, 7
+    x, y = (np.arange(columns) + 0.5) / columns * SIZE, (np.arange(rows) + 0.5) / rows * SIZE
+    texels = IMAGE.image.values[..., 0].astype(float)
+    smoothed = 0.75 * texels + 0.125 * (np.roll(texels, 1, 0) + np.roll(texels, -1, 0))
+    smoothed = 0.75 * smoothed + 0.125 * (np.roll(smoothed, 1, 1) + np.roll(smoothed, -1, 1))
+    np.testing.assert_allclose(weights((IMAGE,), SIZE, x, y[:, np.newaxis]).value, smoothed, atol=1e-12)
+    plain = Mask(source="IMAGE", image=Raster(np.full((3, 3), 0.4)))
+    places = GENERATOR.uniform(-SIZE, 2 * SIZE, (2, 50))
+    np.testing.assert_allclose(weights((plain,), SIZE, *places).value, 0.4, atol=1e-7)
+
+
+def test_brighter_than_white_is_white() -> None:
+    bright = Mask(source="IMAGE", image=Raster([[2.0, -1.0]]))
+    found = weights((bright,), SIZE, np.linspace(0.0, SIZE, 200), np.zeros(200)).value
+    assert found.min() >= 0.0
+    assert found.max() <= 1.0
+    assert found.max() > 0.7
+
+
+@pytest.mark.parametrize(
+    "masks", [(HARBOUR,), (IMAGE,), (HARBOUR, dataclasses.replace(IMAGE, inverted=True))]
+)
+def test_derivatives_are_those_of_the_weight(masks: tuple[Mask, ...]) -> None:
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 200))
+    found = weights(masks, SIZE, x, y)
+    step = 1e-4
+    for by, (dx, dy) in ((found.by_x, (step, 0.0)), (found.by_y, (0.0, step))):
+        ahead, behind = (weights(masks, SIZE, x + s * dx, y + s * dy).value for s in (1, -1))
+        np.testing.assert_allclose(by, (ahead - behind) / (2 * step), atol=2e-6)
+
+
+@pytest.mark.parametrize("mask", [HARBOUR, IMAGE])
+def test_it_repeats_with_the_domain(mask: Mask) -> None:
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 50))
+    here, there = weights((mask,), SIZE, x, y), weights((mask,), SIZE, x + 3 * SIZE, y - SIZE)
+    np.testing.assert_allclose(here, there, atol=1e-9)
+
+
+def test_a_grid_has_the_weights_of_its_samples() -> None:
+    along = SIZE / 160 * np.arange(160)
+    there = weights((HARBOUR, IMAGE), SIZE, along, along[:, np.newaxis])
+    np.testing.assert_array_equal(weights_on_grid((HARBOUR, IMAGE), SIZE, 160), there)
+
+
+# masked seas
+
+
+def test_the_sea_is_the_weighted_sum_of_its_layers() -> None:
+    weight = weights_on_grid((HARBOUR,), SIZE, SAMPLES).value[..., np.newaxis]
+    storm, ripples = (
+        Ocean(only(sea(), number), "double").surface(3.0, {"displacement", "velocity"}) for number in (0, 1)
+    )
+    found = grid_sea(sea(), "double").surface(3.0, {"displacement", "velocity"})
+    for name in ("displacement", "velocity"):
+        expected = weight * getattr(storm, name) + getattr(ripples, name)
+        np.testing.assert_allclose(getattr(found, name), expected, atol=1e-12)
+
+
+def test_slopes_and_strains_are_those_of_the_masked_surface() -> None:
+    """By differences of the displacement itself, between samples: the exact surface of the sum."""
+    cascade = Cascade(sea(layers=(dataclasses.replace(STORM, mask=IMAGE), RIPPLES)), "double")
+    field = cascade.exact_field(2.0)
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 40))
+    values, _ = field(x, y, False)
+    step = 1e-3
+    for by, (dx, dy) in ((values.by_x, (step, 0.0)), (values.by_y, (0.0, step))):
+        (ahead, *_), _ = field(x + dx, y + dy, False)
+        (behind, *_), _ = field(x - dx, y - dy, False)
+        np.testing.assert_allclose(by, (ahead - behind) / (2 * step), atol=1e-5)
+
+
+def test_a_grid_has_the_slopes_and_strains_of_the_masked_surface() -> None:
+    outputs = {"slope", "strain", "jacobian", "cusp"}
+    parameters = sea()
+    found = grid_sea(parameters, "double").surface(2.0, outputs)
+    along = SIZE / SAMPLES * np.arange(SAMPLES)
+    x, y = (part.ravel() for part in np.meshgrid(along, along))
+    values, _ = Cascade(parameters, "double").exact_field(2.0)(x, y, False)
+    by_x, by_y = (part.reshape(SAMPLES, SAMPLES, 3) for part in (values.by_x, values.by_y))
+    np.testing.assert_allclose(found.slope, np.stack((by_x[..., 2], by_y[..., 2]), axis=-1), atol=1e-8)
+    gradient = np.stack((by_x[..., :2], by_y[..., :2]), axis=-1) + np.eye(2)
+    np.testing.assert_allclose(found.jacobian, np.linalg.det(gradient), atol=1e-8)
+    symmetric = 0.5 * (gradient + np.swapaxes(gradient, -1, -2))
+    least = np.linalg.eigvalsh(symmetric)[..., 0]
+    np.testing.assert_allclose(found.cusp, np.maximum(1.0 - least, 0.0), atol=1e-8)
+
+
+@pytest.mark.parametrize("mask", [HARBOUR, IMAGE])
+def test_the_displacement_is_continuous(mask: Mask) -> None:
+    """Over texels, over the mask's edge and over the domain's: a step of δ moves it by a rate times δ."""
+    cascade = Cascade(sea(layers=(dataclasses.replace(STORM, mask=mask),)), "double")
+    along = np.linspace(-0.2 * SIZE, 1.2 * SIZE, 30_001)
+    moved = cascade.fields_at(along, 0.4 * SIZE + 0.1 * along, 1.0).displacement
+    jumps = np.abs(np.diff(moved, axis=0)).max()
+    rates = np.abs(np.diff(moved[::10], axis=0)).max() / 10.0
+    assert jumps < 3.0 * rates
+
+
+def test_calm_in_the_harbour() -> None:
+    calm = dataclasses.replace(STORM, mask=HARBOUR)
+    cascade = Cascade(sea(layers=(calm,)))
+    inside = cascade.fields_at(
+        HARBOUR.x + np.array([-9.0, 0.0, 12.0]), HARBOUR.y, 5.0, {"displacement", "foam"}
+    )
+    assert np.all(inside.displacement == 0.0)
+    assert np.all(inside.foam == 0.0)
+    outside = cascade.fields_at(HARBOUR.x + np.array([81.0, 110.0]), HARBOUR.y, 5.0).displacement
+    whole = Cascade(sea(layers=(STORM,))).fields_at(HARBOUR.x + np.array([81.0, 110.0]), HARBOUR.y, 5.0)
+    np.testing.assert_array_equal(outside, whole.displacement)
+
+
+def test_a_patch_has_a_mask_of_its_own() -> None:
+    patches = (Patch(SIZE, 0.0, 12.0, 1e6, 64), Patch(61.0, 0.5, 3.0, 12.0, 64, IMAGE))
+    parameters = sea(layers=(STORM, RIPPLES)).replace(patches=patches)
+    free = parameters.replace(patches=(patches[0], dataclasses.replace(patches[1], mask=None)))
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 60))
+    weight = weights((IMAGE,), SIZE, x, y).value[:, np.newaxis]
+    found = Cascade(parameters, "double").fields_at(x, y, 1.0).displacement
+    both = Cascade(free, "double").fields_at(x, y, 1.0).displacement
+    first = Ocean(parameters.replace(patches=patches[:1]).replace(patches=(patches[0],)), "double")
+    long = Cascade(first.parameters, "double").fields_at(x, y, 1.0).displacement
+    np.testing.assert_allclose(found, long + weight * (both - long), atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["pictures", "wind_fields"])
+def test_layers_of_all_kinds_have_masks(kind: str) -> None:
+    layer = {
+        "pictures": PictureLayer(mask=HARBOUR, noise_resolution=64, significant_wave_height=1.0),
+        "wind_fields": WindFieldLayer(mask=HARBOUR, wind_speed=14.0),
+    }[kind]
+    free = dataclasses.replace(layer, mask=None)
+    fields = [
+        grid_sea(sea(layers=(RIPPLES,)).replace(**{kind: found})).surface(20.0).displacement
+        for found in ((layer,), (free,), ())
+    ]
+    weight = weights_on_grid((HARBOUR,), SIZE, SAMPLES).value[..., np.newaxis]
+    assert np.abs(fields[1] - fields[2]).max() > 0.05
+    np.testing.assert_allclose(fields[0], fields[2] + weight * (fields[1] - fields[2]), atol=2e-5)
+
+
+def test_the_height_above_a_place_is_that_of_the_masked_surface() -> None:
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 50))
+    points = Cascade(sea(), "double").points_at(x, y, 2.0, surface="exact", velocity=True)
+    values, velocity = Cascade(sea(), "double").exact_field(2.0)(points.rest[:, 0], points.rest[:, 1], True)
+    np.testing.assert_allclose(points.rest[:, 0] + values.value[:, 0], x, atol=1e-4)
+    np.testing.assert_allclose(points.height, values.value[:, 2], atol=1e-9)
+    np.testing.assert_allclose(points.velocity, velocity, atol=1e-9)
+
+
+def test_a_sample_is_found_above_the_place_to_which_it_was_moved() -> None:
+    masked = grid_sea(sea(), "double")
+    moved = masked.surface(2.0).displacement[5:60:9, 3:60:7].reshape(-1, 3)
+    rest = SIZE / SAMPLES * np.stack(np.meshgrid(np.arange(3, 60, 7), np.arange(5, 60, 9)), axis=-1)
+    x, y = (rest.reshape(-1, 2) + moved[:, :2]).T
+    np.testing.assert_allclose(masked.height_at(x, y, 2.0), moved[:, 2], atol=1e-4)
+
+
+def test_a_muted_mask_masks_nothing() -> None:
+    muted = sea(layers=(dataclasses.replace(STORM, mask=HARBOUR, muted=True), RIPPLES))
+    assert not muted.is_masked
+    assert isinstance(grid_sea(muted), Ocean)
+
+
+def test_waves_are_those_of_the_sea_without_masks() -> None:
+    """Statistics and seeds: a mask takes no layer's waves, it only says where they are."""
+    free = only(sea(), 0).replace(layers=(STORM, RIPPLES))
+    assert grid_sea(sea()).statistics().resolved == Ocean(free).statistics().resolved
+
+
+# values
+
+
+def test_masks_are_json_and_left_out_where_there_are_none() -> None:
+    parameters = sea(layers=(dataclasses.replace(STORM, mask=IMAGE), RIPPLES))
+    assert OceanParameters.from_json(parameters.to_json()) == parameters
+    assert "mask" not in OceanParameters(layers=(STORM,)).to_json()
+    assert parameters != sea()
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"source": "IMAGE"}, "image"),
+        ({"near": 90.0}, "near"),
+        ({"far": 0.0}, "far"),
+        ({"x": float("nan")}, "x"),
+        ({"source": "OBJECT"}, "source"),
+        ({"source": "IMAGE", "image": Raster(np.zeros((2, 2, 2)))}, "image"),
+    ],
+)
+def test_what_is_no_mask_is_refused(changes: dict[str, object], named: str) -> None:
+    with pytest.raises(ParameterError, match=rf"^{named}"):
+        dataclasses.replace(HARBOUR, **changes)
+
+
+def test_troughs_are_not_damped_under_masks() -> None:
+    with pytest.raises(ParameterError, match=r"trough_damping = 0.5: must be 0 in a sea with masks"):
+        sea(trough_damping=0.5)
+
+
+def test_an_ocean_refuses_masks_and_says_what_makes_them() -> None:
+    with pytest.raises(ValueError, match="grid_sea"):
+        Ocean(sea())
