@@ -50,7 +50,7 @@ def refresh(ocean: bpy.types.Object, plan: Plan, coarse: bool = False) -> None:
     if coarse or ocean.library is not None:
         return
     surface = camera_surface_of(ocean)
-    if surface is None or not plan.parameters.is_cascade:
+    if surface is None or not plan.parameters.patches:
         remove(ocean)
         made = {}
     else:
