@@ -39,10 +39,10 @@ _OCTAVES = math.log2(MOST_WAVES / FEWEST_WAVES)
 #: of the largest ripples of an ocean of 400 m and 512 samples, m: Ripple Distance is meant for these
 _USUAL_TILE = 12.5
 _GUST_SIZE = 240.0  # m
-#: what waves that the mesh leaves out add to alpha², of their slope variance. Waves' slopes are Gaussian, GGX
-#: has longer tails: up to slope 1 its variance is alpha² (ln(1 + 1/alpha²) + ...), two to three times alpha².
-#: With this share a calm sea was within 3 % as bright as with its waves in the mesh; with 1, 8 % darker
-_BELL_SHARE = 0.4
+#: what waves that the mesh leaves out add to alpha², of their slope variance σ². Far water is as bright as
+#: its slopes along the line of sight are steep in the mean: GGX has E|s| = alpha, and with Gaussian slopes of
+#: the variance σ²/2 besides alpha + σ²/4alpha, so alpha² grows by σ²/2 (without other roughness by σ²/π)
+_BELL_SHARE = 0.5
 #: their wavelengths as a share of the tile, where their speed is taken
 _TYPICAL_WAVE = 1.0 / 24.0
 
