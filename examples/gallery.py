@@ -69,15 +69,20 @@ def build(extension: Extension, mood: str, engine: str, arguments: argparse.Name
     if arguments.rings is not None:
         modifier = bpy.data.objects["Ocean Horizon"].modifiers[0]
         extension.module("nodes.modifier_inputs").set_input(modifier, "Rings", arguments.rings)
+    set_quality(scene, arguments.width, arguments.samples)
     scene.render.use_motion_blur = not arguments.still
-    scene.render.resolution_x, scene.render.resolution_y = arguments.width, arguments.width * 27 // 64
+
+
+def set_quality(scene: bpy.types.Scene, width: int, samples: int) -> None:
+    """How large and how clean pictures are; the height is 27/64 of the width."""
+    scene.render.resolution_x, scene.render.resolution_y = width, width * 27 // 64
     scene.cycles.device = "CPU"
-    scene.cycles.samples = arguments.samples
+    scene.cycles.samples = samples
     scene.cycles.adaptive_threshold = 0.015
     scene.cycles.max_bounces = 4
     scene.cycles.use_denoising = True
     scene.cycles.denoiser = "OPENIMAGEDENOISE"
-    scene.eevee.taa_render_samples = arguments.samples
+    scene.eevee.taa_render_samples = samples
 
 
 def render(scene: bpy.types.Scene, frame: int, path: Path) -> None:

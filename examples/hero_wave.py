@@ -11,14 +11,13 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from ocean_tweak.core import Ocean, OceanParameters
 
-from .wind_fields import shaded
+from .from_above import GALLERY, save_side_by_side, shaded
 
 EXAMPLE = Path(__file__).with_name("hero-wave.json")
-PICTURE = Path(__file__).resolve().parent.parent / "docs" / "gallery" / "hero-wave.jpg"
+PICTURE = GALLERY / "hero-wave.jpg"
 
 SIDE, STRIP = 360, 110
 #: seconds from the focus
@@ -51,10 +50,7 @@ def main() -> int:
         above[SIDE - 1 - row] = _LINE
         gap = np.full((6, SIDE, 3), 255, np.uint8)
         columns += [np.concatenate([above, gap, profile(fields.displacement[..., 2], row, highest)])]
-    between = np.full((len(columns[0]), 8, 3), 255, np.uint8)
-    parts = [part for column in columns for part in (between, column)][1:]
-    Image.fromarray(np.concatenate(parts, axis=1)).save(PICTURE, quality=70)
-    print(f"written: {PICTURE}, {PICTURE.stat().st_size / 1024:.0f} kB")
+    save_side_by_side(columns, PICTURE, quality=70)
     return 0
 
 

@@ -74,9 +74,8 @@ def elevation(scene: bpy.types.Scene, frame: int) -> np.ndarray:
 def render(scene: bpy.types.Scene, frames: list[int], folder: Path) -> None:
     """Render still frames of a scene."""
     scene.render.image_settings.file_format = "PNG"
-    bpy.context.window.scene = (
-        scene  # any other scene would be rendered at the frame of the one in the window
-    )
+    # any other scene would be rendered at the frame of the one in the window
+    bpy.context.window.scene = scene
     for frame in frames:
         started = time.perf_counter()
         scene.frame_set(frame)

@@ -26,6 +26,7 @@ from extension import enable
 SIZE = 192  # pixels
 QUALITY = 88
 SAMPLES = 256  # of the sea along each side: more cannot be seen
+PATCH = 400.0  # m, of seas of several patches
 SEEN = 1200.0  # m of water around the camera
 MOST_RINGS = 40
 #: wave heights in m up to which a mood serves
@@ -58,15 +59,18 @@ def build(extension, parameters) -> None:
     moods = extension.module("scene.moods")
     bpy.ops.wm.read_homefile(use_empty=True)
     scene = bpy.context.scene
+    if parameters.patches:  # so near, the sea of one patch looks the same
+        parameters = parameters.without_patches.replace(domain_size=PATCH)
     height = core.Ocean(parameters.replace(resolution=64)).statistics().significant_wave_height
     key = next(name for limit, name in MOODS if height <= limit)
     mood = dataclasses.replace(moods.MOODS[key], eye=2.0, least_eye=0.0, crest_distance=18.0)
     made = stage.build(scene, key, stage.Wishes(buoy=False))
+    of_mood = mood.sea(parameters.timing)
+    turn = of_mood.layers[0].wind_direction
     turned = tuple(
-        dataclasses.replace(layer, wind_direction=layer.wind_direction + moods.VIEW + mood.wind)
-        for layer in parameters.layers
+        dataclasses.replace(layer, wind_direction=layer.wind_direction + turn) for layer in parameters.layers
     )
-    sea = parameters.replace(resolution=SAMPLES, layers=turned, seed=mood.seed)
+    sea = parameters.replace(resolution=SAMPLES, layers=turned, seed=of_mood.seed)
     settings = made.ocean.ocean_tweak
     settings.viewport_resolution = SAMPLES
     settings.from_parameters(sea, scene)

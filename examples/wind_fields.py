@@ -8,27 +8,17 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
 from ocean_tweak.core.wave_particles.presets import WIND_FIELDS, wind_field
 from ocean_tweak.core.wave_particles.wind import winds_at
 
-PICTURES = Path(__file__).resolve().parent.parent / "docs" / "gallery"
+from .from_above import GALLERY, save_side_by_side, shaded
 
 SIZE, RESOLUTION = 200.0, 400
-_LIGHT = np.array([-0.55, 0.35, 0.76])
-_DEEP, _BRIGHT = np.array([8.0, 38.0, 60.0]), np.array([190.0, 220.0, 228.0])
-
-
-def shaded(normal: NDArray[np.floating]) -> NDArray[np.uint8]:
-    """A picture (N, N, 3) of the sea from above, lit from one side; its first row is the top."""
-    light = np.clip((normal @ (_LIGHT / np.linalg.norm(_LIGHT)) - 0.45) / 0.55, 0.0, 1.0)[..., np.newaxis]
-    return np.asarray(_DEEP + light * (_BRIGHT - _DEEP), np.uint8)[::-1]
 
 
 def arrows(parameters: OceanParameters, across: int = 14) -> NDArray[np.uint8]:
@@ -61,11 +51,7 @@ def main() -> int:
         )  # fmt: skip
         normal = Ocean(parameters).surface(0.0, {"normal"}).normal
         columns.append(np.concatenate([arrows(parameters), shaded(normal)]))
-    path = PICTURES / "wind-fields.jpg"
-    gap = np.full((2 * RESOLUTION, 8, 3), 255, np.uint8)
-    parts = [part for column in columns for part in (gap, column)][1:]
-    Image.fromarray(np.concatenate(parts, axis=1)).save(path, quality=75)
-    print(f"written: {path}, {path.stat().st_size / 1024:.0f} kB")
+    save_side_by_side(columns, GALLERY / "wind-fields.jpg", quality=75)
     return 0
 
 

@@ -10,7 +10,9 @@ from fractions import Fraction
 from typing import Any
 
 from ocean_tweak.core.parameters import (
+    Foam,
     HeroWave,
+    Mask,
     OceanParameters,
     Patch,
     PictureLayer,
@@ -38,6 +40,8 @@ CLASSES = {
     WindKey: "in each entry of a wind field's list `keys`",
     Patch: "in each entry of the list `patches`",
     HeroWave: "in each entry of the list `hero_waves`",
+    Mask: "in the `mask` of a layer of any kind but hero waves, or of a patch",
+    Foam: "in `foam`",
     Timing: "in `timing`",
 }
 

@@ -7,7 +7,7 @@ import math
 
 import bpy
 
-from .shading import Shading
+from ocean_tweak.nodes.shading import Shading
 
 #: linear scene colours, relative luminance; the ramp runs over sin(elevation)
 OVERCAST = (
@@ -26,7 +26,7 @@ def storm_sky(name: str, glow_azimuth: float) -> bpy.types.World:
     if world.node_tree is None:  # a world has nodes from the start since Blender 5.0
         world.use_nodes = True
     shading = Shading(world.node_tree)
-    direction = shading.node("TexCoord").outputs["Generated"]
+    direction = shading.node("ShaderNodeTexCoord").outputs["Generated"]
     _, _, up = shading.separate(direction)
     above = shading.math("MAXIMUM", up, 0.0)
 
@@ -40,10 +40,12 @@ def storm_sky(name: str, glow_azimuth: float) -> bpy.types.World:
     )
     reflected = shading.vector("ADD", gradient, _glow(shading, facing, above))
     # rough water shows no cloud detail; only what the camera sees is worth the price of fractal noise
-    is_seen = shading.node("LightPath").outputs["Is Camera Ray"]
-    backgrounds = [shading.node("Background", {"Color": colour}).outputs[0] for colour in (reflected, seen)]
-    mixed = shading.node("MixShader", {0: is_seen, 1: backgrounds[0], 2: backgrounds[1]}).outputs[0]
-    output = shading.node("OutputWorld")
+    is_seen = shading.node("ShaderNodeLightPath").outputs["Is Camera Ray"]
+    backgrounds = [
+        shading.node("ShaderNodeBackground", {"Color": colour}).outputs[0] for colour in (reflected, seen)
+    ]
+    mixed = shading.mix_shaders(is_seen, *backgrounds)
+    output = shading.node("ShaderNodeOutputWorld")
     shading.tree.links.new(mixed, output.inputs["Surface"])
     world.cycles.sampling_method = "NONE"  # broad and soft: shadow rays would cost more than they give
     return world
@@ -54,7 +56,7 @@ def _clouds(shading, direction, above):
     x, y, _ = shading.separate(direction)
     away = shading.math("ADD", above, 0.09)
     plane = shading.combine(shading.math("DIVIDE", x, away), shading.math("DIVIDE", y, away))
-    large = shading.noise(plane, 0.55, detail=7.0, roughness=0.56, distortion=0.35)
+    large = shading.noise(plane, 0.55, Detail=7.0, Roughness=0.56, Distortion=0.35)
     contrast = shading.smooth(above, 0.0, 0.12, 0.25, 1.0)
     shade = shading.smooth(large, 0.33, 0.70, -0.42, 0.50)
     return shading.math("ADD", shading.math("MULTIPLY", shade, contrast), 1.0)
@@ -63,14 +65,14 @@ def _clouds(shading, direction, above):
 def _facing(shading, direction, azimuth):
     """How much a direction points to where the clouds open, 0 … 1."""
     towards = (math.cos(azimuth), math.sin(azimuth), 0.0)
-    facing = shading.vector("DOT_PRODUCT", direction, towards, output="Value")
+    facing = shading.number("DOT_PRODUCT", direction, towards)
     return shading.math("POWER", shading.math("MAXIMUM", facing, 0.0), 9.0)
 
 
 def _ragged_edge(shading, direction, above):
     """Elevation, disturbed so that the light ends in shreds of cloud."""
     ragged = shading.noise(
-        shading.vector("MULTIPLY", direction, (1.0, 1.0, 5.0)), 2.6, detail=6.0, roughness=0.6
+        shading.vector("MULTIPLY", direction, (1.0, 1.0, 5.0)), 2.6, Detail=6.0, Roughness=0.6
     )
     return shading.math("ADD", above, shading.math("MULTIPLY_ADD", ragged, 0.16, -0.08))
 

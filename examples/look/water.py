@@ -12,7 +12,7 @@ import math
 
 import bpy
 
-from .shading import Shading
+from ocean_tweak.nodes.shading import Shading
 
 BODY = (0.006, 0.034, 0.042)  # light that comes back out of deep water
 CREST = (0.012, 0.052, 0.050)  # light that has passed through a crest
@@ -31,8 +31,8 @@ def storm_water(name, ripples, patch_size, haze_colour, visibility):
     if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
         material.use_nodes = True
     shading = Shading(material.node_tree)
-    distance = shading.node("CameraData").outputs["View Distance"]
-    _, _, height = shading.separate(shading.node("NewGeometry").outputs["Position"])
+    distance = shading.node("ShaderNodeCameraData").outputs["View Distance"]
+    _, _, height = shading.separate(shading.node("ShaderNodeNewGeometry").outputs["Position"])
 
     inputs = {
         "Base Color": (*BODY, 1.0),
@@ -42,14 +42,13 @@ def storm_water(name, ripples, patch_size, haze_colour, visibility):
         "Emission Color": (*CREST, 1.0),
         "Emission Strength": shading.math("MULTIPLY", shading.smooth(height, 1.0, 13.0), 0.35),
     }
-    water = shading.node("BsdfPrincipled", inputs).outputs[0]
-    air = shading.node("Emission", {"Color": (*haze_colour, 1.0), "Strength": 1.0}).outputs[0]
-    mixed = shading.node("MixShader", {0: _haze(shading, distance, visibility), 1: water, 2: air}).outputs[0]
-    output = shading.node("OutputMaterial")
+    water = shading.node("ShaderNodeBsdfPrincipled", inputs).outputs[0]
+    air = shading.node("ShaderNodeEmission", {"Color": (*haze_colour, 1.0), "Strength": 1.0}).outputs[0]
+    mixed = shading.mix_shaders(_haze(shading, distance, visibility), water, air)
+    output = shading.node("ShaderNodeOutputMaterial")
     shading.tree.links.new(mixed, output.inputs["Surface"])
-    material.cycles.emission_sampling = (
-        "NONE"  # or Cycles sorts a hundred million triangles into a tree of lamps
-    )
+    # or Cycles sorts a hundred million triangles into a tree of lamps
+    material.cycles.emission_sampling = "NONE"
     return material
 
 
@@ -57,7 +56,7 @@ def _haze(shading, distance, visibility):
     """Share of the air in what the camera sees, 1 - exp(-3.9 d / visibility) (Koschmieder 1924)."""
     thickness = shading.math("MULTIPLY", distance, -math.log(50.0) / visibility)
     haze = shading.math("SUBTRACT", 1.0, shading.math("EXPONENT", thickness))
-    return shading.math("MULTIPLY", haze, shading.node("LightPath").outputs["Is Camera Ray"])
+    return shading.math("MULTIPLY", haze, shading.node("ShaderNodeLightPath").outputs["Is Camera Ray"])
 
 
 def _roughness(shading, distance):
@@ -71,14 +70,14 @@ def _ripple_normal(shading, ripples, patch_size, distance):
     heights = [_layer(shading, ripples, rest, stretch, turn) for stretch, turn in ((1.0, 0.0), (1.618, 0.35))]
     nearness = shading.smooth(distance, 40.0, 400.0, 1.0, 0.0)
     bump = {"Height": shading.math("ADD", *heights), "Distance": 1.0, "Strength": nearness}
-    return shading.node("Bump", bump).outputs[0]
+    return shading.node("ShaderNodeBump", bump).outputs[0]
 
 
 def _layer(shading, ripples, rest, stretch, turn):
     """Heights of one layer, m. It travels with the wind, at the speed of its typical ripple in deep water."""
     size = stretch * ripples.size
     mapping = shading.node(
-        "Mapping", {"Vector": rest, "Rotation": (0.0, 0.0, turn), "Scale": (1.0 / size,) * 3}
+        "ShaderNodeMapping", {"Vector": rest, "Rotation": (0.0, 0.0, turn), "Scale": (1.0 / size,) * 3}
     )
     speed = math.sqrt(9.81 * stretch * ripples.typical_length / (2.0 * math.pi))
     for axis, share in ((0, math.cos(turn)), (1, math.sin(turn))):
@@ -86,14 +85,14 @@ def _layer(shading, ripples, rest, stretch, turn):
         driver = mapping.inputs["Location"].driver_add("default_value", axis).driver
         driver.expression = f"frame * {-share * speed / (size * ripples.fps):.8f}"
     texture = shading.node(
-        "TexImage", {"Vector": mapping.outputs[0]}, image=ripples.image, interpolation="Cubic"
+        "ShaderNodeTexImage", {"Vector": mapping.outputs[0]}, image=ripples.image, interpolation="Cubic"
     )
-    red = shading.node("SeparateColor", {0: texture.outputs[0]}).outputs[0]
+    red = shading.node("ShaderNodeSeparateColor", {0: texture.outputs[0]}).outputs[0]
     return shading.math("MULTIPLY", red, stretch / math.sqrt(2.0))
 
 
 def _rest_position(shading, patch_size):
     """Where the water was before it was displaced, m: ripples ride on waves, and go on from tile to tile."""
-    uv = shading.node("UVMap").outputs[0]
-    tile = shading.node("ObjectInfo").outputs["Location"]
+    uv = shading.node("ShaderNodeUVMap").outputs[0]
+    tile = shading.node("ShaderNodeObjectInfo").outputs["Location"]
     return shading.vector("ADD", shading.scale(uv, patch_size), tile)

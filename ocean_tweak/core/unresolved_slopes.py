@@ -54,8 +54,11 @@ def unresolved_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of the waves shorter than the grid can hold, dimensionless.
 
     The grid holds a square of wave vectors: its modes and half a cell around them. Of pictures, what they
-    hold and the grid does not. Of a sea of patches, the waves shorter than the last one holds.
+    hold and the grid does not. Of a sea of patches, the waves shorter than the last one holds, or than the
+    one grid on which they are joined.
     """
+    if parameters.joined:
+        return unresolved_slope_variance(parameters.without_patches)
     if parameters.patches:
         *longer, last = patch_parameters(parameters)
         sharp = last.patches[0].shortest_wavelength

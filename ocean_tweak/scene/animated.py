@@ -80,9 +80,8 @@ def set_keys(item: bpy.types.Object, first_frame: int, samples: Mapping[str, Seq
     _remove_animation(item)
     for path, values in samples.items():
         data_path = _GROUP + re.sub(r"\.(\d+)", r"[\1]", path)
-        item.keyframe_insert(
-            data_path, frame=first_frame
-        )  # makes action, slot and curve where there are none
+        # makes action, slot and curve where there are none
+        item.keyframe_insert(data_path, frame=first_frame)
         points = next(curve for curve in curves_of(item) if curve.data_path == data_path).keyframe_points
         points.add(len(values) - len(points))
         frames = first_frame + np.arange(len(values))

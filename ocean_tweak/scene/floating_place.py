@@ -16,7 +16,8 @@ import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 from numpy.typing import NDArray
 
-from ..core import Ocean, OceanParameters
+from ..core import OceanParameters, grid_sea
+from ..core.grid_sea import GridSea
 from ..core.surface_query import bilinear, find_points
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
@@ -65,7 +66,7 @@ def water_at(ocean: bpy.types.Object, scene: bpy.types.Scene, frame: int) -> Wat
     settings = shown_settings(ocean, scene.view_layers[0].depsgraph)
     plan = plan_of(settings, scene)
     if settings.source == "LIVE":
-        displacement = _ocean(plan.parameters).surface(plan.time).displacement
+        displacement = _sea(plan.parameters).surface(plan.time).displacement
     else:
         displacement = _baked(settings, frame)
     return Water(displacement, plan.parameters.domain_size / len(displacement))
@@ -111,8 +112,8 @@ def _world_normal(ocean: Matrix, normal: Vector) -> Vector:
 
 # the sea of the frame before is most often that of the next one too
 @lru_cache(maxsize=2)
-def _ocean(parameters: OceanParameters) -> Ocean:
-    return Ocean(parameters)
+def _sea(parameters: OceanParameters) -> GridSea:
+    return grid_sea(parameters)
 
 
 def _baked(settings: OceanSettings, frame: int) -> RealArray:

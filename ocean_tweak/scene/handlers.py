@@ -79,6 +79,23 @@ def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
 
 
 @persistent
+def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let masks follow their objects where these, or the ocean, are moved by hand."""
+    if depsgraph is None or not depsgraph.id_type_updated("OBJECT"):
+        return
+    moved = {
+        update.id.original
+        for update in depsgraph.updates
+        if isinstance(update.id, bpy.types.Object) and update.is_updated_transform
+    }
+    for item in oceans_in(scene) if moved else ():
+        settings, library = settings_of(item), item.library
+        objects = settings.mask_objects()
+        if library is None and objects and moved & {item, *objects}:
+            settings.place_masks()
+
+
+@persistent
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels. Its node
     groups may be of another version."""
@@ -119,6 +136,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
+    ("depsgraph_update_post", refresh_for_masks),
     ("load_post", refresh_after_load),
     ("undo_post", refresh_after_undo),
     ("redo_post", refresh_after_undo),

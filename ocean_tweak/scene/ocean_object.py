@@ -10,7 +10,7 @@ from .cache_place import new_uid
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
 from .maps import MAPS
 from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
-from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, check_shown, settings_of
+from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
 
 __all__ = ["EXPECTED_ERRORS", "add", "refresh", "refresh_and_tell", "use_live", "use_sequence"]
 
@@ -40,10 +40,9 @@ def add(
     viewport_resolution : samples along each side in the viewport, by default all that the sea has
     repeats : patches side by side along x and y
 
-    Raises ValueError for an unknown method or source, OceanObjectError for a sea of several patches,
-    SequenceError for files that cannot be used and MemoryError for a sea too large; then nothing is added.
+    Raises ValueError for an unknown method or source, SequenceError for files that cannot be used and
+    MemoryError for a sea too large; then nothing is added.
     """
-    check_shown(parameters)
     _check(method, METHODS, "method")
     _check(source, SOURCES, "source")
     if source == "SEQUENCE" and sequence is None:

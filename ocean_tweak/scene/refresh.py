@@ -148,8 +148,7 @@ def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
 
 def waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
     """What makes the waves of all the viewport's samples, before any surface of them; as `foam_job`."""
-    ocean = evaluation.sea_of(plan_of(settings_of(item), scene).viewport_sea()).ocean
-    return lambda: ocean.initial_state
+    return evaluation.sea_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
 
 
 def foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:

@@ -152,22 +152,19 @@ class OceanSettings(Protocol):
         """Take over a sea; the scene is not changed."""
 
     def source_images(self) -> set[bpy.types.Image]:
-        """The images from which waves are made."""
+        """The images from which waves or masks are made."""
+
+    def mask_objects(self) -> set[bpy.types.Object]:
+        """Those from which the distance of a mask is measured."""
+
+    def place_masks(self) -> None:
+        """Measure the distances of masks from where their objects are now."""
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
 
     def quiet(self) -> AbstractContextManager[None]:
         """While this is open, a changed property refreshes nothing."""
-
-
-def check_shown(parameters: OceanParameters) -> None:
-    """Raise OceanObjectError for a sea that no ocean object can hold yet."""
-    if parameters.patches:
-        raise OceanObjectError(
-            f"This sea has {len(parameters.patches)} patches of different sizes, an ocean object shows one: "
-            "bake it with the command line, or take its patches away"
-        )
 
 
 def settings_of(item: bpy.types.Object) -> OceanSettings:

@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ParameterError, PictureLayer, Raster
+from ..core import ParameterError, Raster
 from ..core.raster import LARGEST_SIDE
 from ..export.pictures import read_picture
 from .live_image import mark_as_data
@@ -182,10 +182,7 @@ def _raster(texels: NDArray[np.float32], name: str, channels: int) -> Raster:
         return Raster(texels[..., :channels], name)
     colour = texels[..., :3]
     is_grey = bool((colour == colour[..., :1]).all())
-    raster = Raster(colour[..., :1] if is_grey or texels.shape[2] < 3 else colour, name)
-    grey = PictureLayer(picture=raster).picture
-    assert grey is not None
-    return grey
+    return Raster(colour[..., :1] if is_grey or texels.shape[2] < 3 else colour, name).grey()
 
 
 def _new_image(raster: Raster) -> bpy.types.Image:

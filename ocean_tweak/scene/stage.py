@@ -14,12 +14,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Ocean, OceanParameters, Timing
+from ..core import OceanParameters, Timing, grid_sea
 from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
 from . import ocean_object, water_material
 from .buoy import DIAMETER, new_buoy
+from .camera_surface import add_camera_surface
 from .floating import Ride, float_on
 from .moods import MOODS, VIEW, Mood
 from .settings import VIEWPORT_RESOLUTION
@@ -72,17 +73,21 @@ def build(
     chosen, target = MOODS[mood], collection or scene.collection
     is_empty = not scene.objects
     parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
+    parameters = parameters.on_one_grid(parameters.resolution)  # as an ocean object shows patches
     ocean = _add_ocean(scene, parameters, target)
     material = water_material.water_material(chosen.water)
     water_material.set_air(material, chosen.visibility, chosen.sky().haze)
     water_material.assign(ocean, material)
     water_material.describe(ocean, parameters, scene)
-    rings = chosen.rings if wishes.engine == "CYCLES" else min(chosen.rings, _EEVEE_RINGS)
-    add_horizon(ocean, parameters, scene, target, rings)
+    if chosen.rings:
+        rings = chosen.rings if wishes.engine == "CYCLES" else min(chosen.rings, _EEVEE_RINGS)
+        add_horizon(ocean, parameters, scene, target, rings)
     place = camera_place(chosen, parameters)
     camera = new_camera(chosen, place, ocean, scene)
     target.objects.link(camera)
     kept = _set_up(scene, chosen, wishes, camera, target, is_empty)
+    if not chosen.rings:
+        add_camera_surface(ocean, scene)
     if wishes.buoy:
         _add_buoy(scene, chosen, place, ocean, target)
     return Made(ocean, camera, kept)
@@ -133,9 +138,9 @@ def add_horizon(
 
 def camera_place(mood: Mood, parameters: OceanParameters) -> NDArray[np.float64]:
     """Where a camera sees the highest wave of the first frame before it: x, y and z in m, in the patch."""
-    ocean = Ocean(parameters)
-    elevation = ocean.surface(parameters.timing.time(parameters.timing.start_frame)).displacement[..., 2]
-    height = ocean.statistics().seed.significant_wave_height
+    sea = grid_sea(parameters)
+    elevation = sea.surface(parameters.timing.time(parameters.timing.start_frame)).displacement[..., 2]
+    height = sea.statistics().seed.significant_wave_height
     samples, domain = len(elevation), parameters.domain_size
     row, column = divmod(int(elevation.argmax()), samples)
     distance = mood.crest_distance * height

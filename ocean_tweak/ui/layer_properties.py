@@ -33,8 +33,9 @@ from ..core.plain_data import to_plain
 from ..scene import source_images, wind_recording
 from ..scene.settings import LAYER_KINDS
 from ..scene.units import metres_per_unit, shortest_decimal
-from . import parameter_properties
+from . import mask_properties, parameter_properties
 from .changes import changed
+from .mask_properties import OCEAN_PG_mask
 
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
 _SHOWN = {"options": set(), "update": changed, **_OVERRIDE}
@@ -94,6 +95,7 @@ class OCEAN_PG_wind_field(bpy.types.PropertyGroup):
             name="Objects", type=bpy.types.Collection, options=set(), **_OVERRIDE,
             description="Collection whose force fields of the type Wind are recorded; none for all",
         ),
+        "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
         "show_vectors": BoolProperty(
             name="Show Wind", options=set(), **_OVERRIDE,
             description="Draw the wind of this frame as arrows over the patch, while the ocean is active",
@@ -111,6 +113,7 @@ class OCEAN_PG_picture(bpy.types.PropertyGroup):
             description="Picture whose trace the waves bear; without one, white noise. "
             "It covers one patch, of a colour picture the luminance",
         ),
+        "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
     }  # fmt: skip
 
 
@@ -125,6 +128,7 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
 
     __annotations__ = {
         **parameter_properties.annotations(WaveLayer, changed),
+        "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
         # Blender has no property that is always shown in kilometres; this is the fetch itself
         "fetch_km": FloatProperty(
             name="Fetch", min=0.001, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
@@ -171,8 +175,14 @@ def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> dict[str, l
 
 
 def images(layers: bpy.types.bpy_prop_collection) -> set[bpy.types.Image]:
-    """Those from which waves are made."""
-    return {image for image in map(source_image, layers) if image is not None}
+    """Those from which waves are made, or masks."""
+    found = [*map(source_image, layers), *(mask_properties.image_of(mask) for mask in masks(layers))]
+    return {image for image in found if image is not None}
+
+
+def masks(layers: bpy.types.bpy_prop_collection) -> list[bpy.types.PropertyGroup]:
+    """Those of layers that can have one."""
+    return [layer.group.mask for layer in layers if hasattr(layer.group, "mask")]
 
 
 def source_image(layer: bpy.types.PropertyGroup) -> bpy.types.Image | None:
@@ -188,6 +198,8 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
     for item, (kind, layer) in zip(layers, wanted, strict=True):
         item.kind = kind
         parameter_properties.write(item.group, type(layer), to_plain(layer, brief=True), metres)
+        if hasattr(layer, "mask"):
+            mask_properties.write(item.group.mask, layer.mask, metres, known_images)
         if isinstance(layer, WindFieldLayer):
             _write_wind(item.wind_field, layer, known_winds, known_images)
         elif isinstance(layer, PictureLayer):
@@ -221,12 +233,16 @@ def set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
 
 
 def _read_waves(layer: bpy.types.PropertyGroup, metres: Fraction) -> dict[str, Any]:
-    return parameter_properties.read(layer, WaveLayer, metres)
+    return {
+        **parameter_properties.read(layer, WaveLayer, metres),
+        "mask": mask_properties.read(layer.mask, metres),
+    }
 
 
 def _read_picture(layer: bpy.types.PropertyGroup, metres: Fraction) -> object:
     group = layer.picture
     values = parameter_properties.read(group, PictureLayer, metres)
+    values["mask"] = mask_properties.read(group.mask, metres)
     if group.image is not None:
         values["picture"] = source_images.raster_of(group.image, 1)
     return source_images.made_layer(PictureLayer, tuple(values.items()))
@@ -236,6 +252,7 @@ def _read_wind_field(layer: bpy.types.PropertyGroup, metres: Fraction) -> object
     group = layer.wind_field
     values = parameter_properties.read(group, WindFieldLayer, metres)
     values["keys"] = _keys(group)
+    values["mask"] = mask_properties.read(group.mask, metres)
     return source_images.made_layer(WindFieldLayer, tuple(values.items()))
 
 
@@ -333,4 +350,10 @@ def _image_of(raster: Any, known: set[bpy.types.Image]) -> bpy.types.Image:
     return image
 
 
-CLASSES = (OCEAN_PG_wind_field, OCEAN_PG_picture, OCEAN_PG_hero_wave, OCEAN_PG_layer)
+CLASSES = (
+    *mask_properties.CLASSES,
+    OCEAN_PG_wind_field,
+    OCEAN_PG_picture,
+    OCEAN_PG_hero_wave,
+    OCEAN_PG_layer,
+)

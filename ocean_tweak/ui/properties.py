@@ -3,6 +3,8 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any
 
 import bpy
 from bpy.props import (
@@ -15,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, OceanParameters, Patch, Timing, Water, WaveLayer
+from ..core import Foam, OceanParameters, ParameterError, Patch, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.maps import MAPS
@@ -26,16 +28,17 @@ from ..scene.settings import (
     SOURCES,
     VIEWPORT_RESOLUTION,
     OceanObjectError,
-    check_shown,
 )
 from ..scene.units import frame_rate, metres_per_unit
-from . import layer_properties, parameter_properties
+from . import layer_properties, mask_properties, parameter_properties
 from .changes import changed
 from .layer_properties import OCEAN_PG_layer
 from .usd_properties import OCEAN_PG_usd
 
 # the frame rate is the scene's
 _FROM_SCENE = ("fps",)
+# patches are always joined, on the samples that are rendered
+_FROM_RESOLUTION = ("joined",)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -75,7 +78,10 @@ class OCEAN_PG_timing(bpy.types.PropertyGroup):
 class OCEAN_PG_patch(bpy.types.PropertyGroup):
     """One of several patches: how large, how turned, and which wavelengths it holds."""
 
-    __annotations__ = parameter_properties.annotations(Patch, changed)
+    __annotations__ = {
+        **parameter_properties.annotations(Patch, changed),
+        "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
+    }
 
 
 class OCEAN_PG_maps(bpy.types.PropertyGroup):
@@ -114,7 +120,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
-        **parameter_properties.annotations(OceanParameters, changed),
+        **parameter_properties.annotations(OceanParameters, changed, _FROM_RESOLUTION),
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
@@ -205,19 +211,43 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         Raises ParameterError naming the field, its value and what is allowed.
         """
         metres = metres_per_unit(scene)
-        data = parameter_properties.read(self, OceanParameters, metres)
+        data = parameter_properties.read(self, OceanParameters, metres, _FROM_RESOLUTION)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data.update(layer_properties.read(self.layers, metres))
-        data["patches"] = [parameter_properties.read(patch, Patch, metres) for patch in self.patches]
+        data["patches"] = [self._read_patch(index, metres) for index in range(len(self.patches))]
+        data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"]["fps"] = str(frame_rate(scene))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
 
+    def _read_patch(self, index: int, metres: Fraction) -> dict[str, Any]:
+        patch = self.patches[index]
+        try:
+            mask = mask_properties.read(patch.mask, metres)
+        except ParameterError as error:
+            raise error.inside(f"patches.{index}") from None
+        return {**parameter_properties.read(patch, Patch, metres), "mask": mask}
+
     def source_images(self) -> set[bpy.types.Image]:
-        """The images from which waves are made."""
-        return layer_properties.images(self.layers)
+        """The images from which waves or masks are made."""
+        of_patches = (mask_properties.image_of(patch.mask) for patch in self.patches)
+        return layer_properties.images(self.layers) | {image for image in of_patches if image is not None}
+
+    def mask_objects(self) -> set[bpy.types.Object]:
+        """Those from which the distance of a mask is measured."""
+        found = {mask.object for mask in self._masks() if mask.source == "DISTANCE"}
+        return found - {None}
+
+    def place_masks(self) -> None:
+        """Measure the distances of masks from where their objects are now."""
+        for mask in self._masks():
+            if mask.source == "DISTANCE":
+                mask_properties.place(mask)
+
+    def _masks(self) -> list[bpy.types.PropertyGroup]:
+        return [*layer_properties.masks(self.layers), *(patch.mask for patch in self.patches)]
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
@@ -228,9 +258,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
 
-        Raises OceanObjectError for other kinds of layers on a library override, and for several patches.
+        Raises OceanObjectError for other kinds of layers on a library override.
         """
-        check_shown(parameters)
         kinds, wanted = [layer.kind for layer in self.layers], layer_properties.kinds(parameters)
         if self.id_data.override_library and wanted != kinds:
             raise OceanObjectError(
@@ -239,7 +268,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             )
         metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
         with self.quiet():
-            parameter_properties.write(self, OceanParameters, data, metres)
+            parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
@@ -250,6 +279,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             layer_properties.set_count(self.patches, len(parameters.patches))
             for patch, values in zip(self.patches, data.get("patches", ()), strict=True):
                 parameter_properties.write(patch, Patch, values, metres)
+            images = self.source_images()
+            for group, patch in zip(self.patches, parameters.patches, strict=True):
+                mask_properties.write(group.mask, patch.mask, metres, images)
         changed(self, bpy.context)
 
 

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A whole scene at one press, and the water material for an ocean."""
+"""A whole scene at one press."""
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty
 
-from ..core import ParameterError
-from ..scene import ocean_object, stage, water_material
+from ..scene import ocean_object, stage
 from ..scene.moods import MOODS
-from ..scene.settings import is_ocean, settings_of
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import refuse
+from .adding import InObjectMode, make_active
 
 _ENGINES = [
     ("CYCLES", "Cycles", "Path tracing, with motion blur from the water's velocity"),
@@ -17,7 +16,7 @@ _ENGINES = [
 ]
 
 
-class OCEAN_OT_add_scene(bpy.types.Operator):
+class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
     """Add a sea with all that makes a picture of it."""
 
     bl_idname = "ocean.add_scene"
@@ -51,12 +50,6 @@ class OCEAN_OT_add_scene(bpy.types.Operator):
     )
     use_buoy: BoolProperty(name="Buoy", description="Let a buoy float before the camera", default=True)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Objects are added in Object Mode."""
-        cls.poll_message_set("Switch to Object Mode to add an ocean")
-        return context.mode == "OBJECT"
-
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make it, and say what the scene has kept."""
         old = context.scene
@@ -75,7 +68,8 @@ class OCEAN_OT_add_scene(bpy.types.Operator):
             return refuse(self, error)
         if self.use_new_scene and context.window is not None:
             context.window.scene = scene
-        _select(context, scene, made.ocean)
+        layer = scene.view_layers[0] if scene != context.scene else context.view_layer
+        make_active(made.ocean, layer)
         if scene.camera == made.camera and isinstance(context.space_data, bpy.types.SpaceView3D):
             context.space_data.region_3d.view_perspective = "CAMERA"
         said = translated("{mood}: {engine}, motion blur on").format(
@@ -85,76 +79,6 @@ class OCEAN_OT_add_scene(bpy.types.Operator):
             said += "; " + translated("kept the scene's {list}").format(list=", ".join(made.kept))
         self.report({"INFO"}, said)
         return {"FINISHED"}
-
-
-class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
-    """Put the water material on the active ocean."""
-
-    bl_idname = "ocean.use_water_material"
-    bl_description = "Put the water material on the active ocean's first slot"
-    bl_label = "Water Material"
-    bl_options = {"REGISTER", "UNDO"}
-
-    water: EnumProperty(
-        name="Water",
-        items=[(key, label, description) for key, (label, description, _) in water_material.WATERS.items()],
-        default="OCEANIC",
-        description="What is dissolved and afloat in the water",
-    )
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Make the material where the file has none, and assign it."""
-        item, scene = context.active_object, context.scene
-        try:
-            parameters = settings_of(item).to_parameters(scene)
-        except ParameterError as error:
-            return refuse(self, error)
-        water_material.assign(item, water_material.water_material(self.water))
-        water_material.describe(item, parameters, scene)
-        return {"FINISHED"}
-
-
-class _SidebarPanel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ocean Tweak"
-
-
-class OCEAN_PT_start_scene(_SidebarPanel, bpy.types.Panel):
-    """A whole scene, where no ocean is active."""
-
-    bl_idname = "OCEAN_PT_start_scene"
-    bl_label = "Scene"
-    bl_parent_id = "OCEAN_PT_start"
-    bl_options = {"HIDE_HEADER"}
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw one button a mood."""
-        self.layout.label(text="With sky and camera:")
-        column = self.layout.column(align=True)
-        for key, mood in MOODS.items():
-            column.operator(OCEAN_OT_add_scene.bl_idname, text=mood.label, icon="SCENE_DATA").mood = key
-
-
-class OCEAN_PT_material(_SidebarPanel, bpy.types.Panel):
-    """The active ocean's material."""
-
-    bl_idname = "OCEAN_PT_material"
-    bl_label = "Material"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Shown for an active ocean."""
-        return is_ocean(context.active_object)
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw what the ocean has, and the button that gives it water."""
-        material = context.active_object.active_material
-        if material is not None:
-            self.layout.label(text=material.name, icon="MATERIAL")
-        operator = OCEAN_OT_use_water_material.bl_idname
-        self.layout.operator_menu_enum(operator, "water", text="Water Material", icon="MATFLUID")
 
 
 def draw_add_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
@@ -171,15 +95,4 @@ def _new_scene(like: bpy.types.Scene) -> bpy.types.Scene:
     return scene
 
 
-def _select(context: bpy.types.Context, scene: bpy.types.Scene, item: bpy.types.Object) -> None:
-    layer = scene.view_layers[0] if scene != context.scene else context.view_layer
-    layer.update()  # it does not know yet what has just been linked
-    for other in layer.objects:
-        other.select_set(False, view_layer=layer)
-    # an excluded collection keeps its objects out of the view layer
-    if item.name in layer.objects:
-        item.select_set(True, view_layer=layer)
-        layer.objects.active = item
-
-
-CLASSES = (OCEAN_OT_add_scene, OCEAN_OT_use_water_material, OCEAN_PT_start_scene, OCEAN_PT_material)
+CLASSES = (OCEAN_OT_add_scene,)

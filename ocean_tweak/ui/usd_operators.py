@@ -17,6 +17,7 @@ from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from ..scene.usd_process import UsdCheck, UsdExport
 from .active_ocean import OfActiveOcean, refuse
+from .adding import InObjectMode, make_active
 from .beside_window import BesideWindow, StopsProcess
 from .usd_properties import draw_choices
 
@@ -36,7 +37,14 @@ class _NeedsUsd:
         return super().poll(context)
 
 
-class OCEAN_OT_export_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
+class _UsdBesideWindow(_NeedsUsd, BesideWindow):
+    """Operators that export an ocean or check its layers: one at a time."""
+
+    processes = usd_process
+    busy = "This ocean is being exported or checked: wait, or stop it with Esc"
+
+
+class OCEAN_OT_export_usd(_UsdBesideWindow, bpy.types.Operator):
     """Write the active ocean as USD layers."""
 
     bl_idname = "ocean.export_usd"
@@ -46,9 +54,7 @@ class OCEAN_OT_export_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
     )
     bl_label = "Export USD"
     bl_options = {"REGISTER"}
-    processes = usd_process
     doing = "Exporting"
-    busy = "This ocean is being exported or checked: wait, or stop it with Esc"
 
     def begin(self, context: bpy.types.Context) -> UsdExport:
         """Write the scene's frames."""
@@ -108,7 +114,7 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
             return refuse(self, str(error).removeprefix("Error: ").strip())
 
 
-class OCEAN_OT_verify_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
+class OCEAN_OT_verify_usd(_UsdBesideWindow, bpy.types.Operator):
     """Read the USD layers of the active ocean back."""
 
     bl_idname = "ocean.verify_usd"
@@ -118,9 +124,7 @@ class OCEAN_OT_verify_usd(_NeedsUsd, BesideWindow, bpy.types.Operator):
     )
     bl_label = "Verify USD"
     bl_options = {"REGISTER"}
-    processes = usd_process
     doing = "Checking"
-    busy = OCEAN_OT_export_usd.busy
 
     def begin(self, context: bpy.types.Context) -> UsdCheck:
         """Read what the ocean's settings say."""
@@ -152,17 +156,7 @@ class OCEAN_OT_stop_usd(StopsProcess, bpy.types.Operator):
     idle = "The active object is not being exported"
 
 
-class _InObjectMode:
-    """Operators that add an object."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Objects are added in Object Mode."""
-        cls.poll_message_set("Switch to Object Mode to add an ocean")
-        return context.mode == "OBJECT"
-
-
-class OCEAN_OT_import_usd(_NeedsUsd, _InObjectMode, bpy.types.Operator, ImportHelper):
+class OCEAN_OT_import_usd(_NeedsUsd, InObjectMode, bpy.types.Operator, ImportHelper):
     """Add the sea that USD layers were made from."""
 
     bl_idname = "ocean.import_usd"
@@ -189,12 +183,7 @@ class OCEAN_OT_import_usd(_NeedsUsd, _InObjectMode, bpy.types.Operator, ImportHe
             )
         except (library.UsdError, OSError, *ocean_object.EXPECTED_ERRORS) as error:
             return refuse(self, error)
-        for other in context.selected_objects:
-            other.select_set(False)
-        # an excluded collection keeps its objects out of the view layer
-        if item.name in context.view_layer.objects:
-            item.select_set(True)
-            context.view_layer.objects.active = item
+        make_active(item, context.view_layer)
         return {"FINISHED"}
 
 

@@ -50,6 +50,19 @@ def make_parameters(core):
 
 
 @pytest.fixture
+def ocean(ocean_object, make_parameters, empty_scene):
+    """The small sea as a live ocean, the active object."""
+    item = ocean_object.add(empty_scene, make_parameters())
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+def sea_of(item):
+    """The parameters of an ocean, as its settings have them now."""
+    return item.ocean_tweak.to_parameters(bpy.context.scene)
+
+
+@pytest.fixture
 def expected(core):
     """Where the vertices of a sea must be, in Blender units, straight from the core and arithmetic."""
 
@@ -74,9 +87,9 @@ def bake(extension, core, tmp_path):
     def write(parameters, first, last, name="sea", directory=tmp_path / "frames", maps=("disp",)):
         directory.mkdir(exist_ok=True)
         sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP", maps)
-        ocean = core.Ocean(parameters)
+        sea = core.grid_sea(parameters)
         for frame in range(first, last + 1):
-            sink.write(frame, ocean.frame(frame, sink.outputs))
+            sink.write(frame, sea.frame(frame, sink.outputs))
         return extension("scene.image_sequence").ImageSequence(directory, name, first, last)
 
     return write

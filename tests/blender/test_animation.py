@@ -13,13 +13,6 @@ from .surfaces import read
 TOLERANCE = 1e-4  # m
 
 
-@pytest.fixture
-def ocean(ocean_object, make_parameters, empty_scene):
-    item = ocean_object.add(empty_scene, make_parameters())
-    bpy.context.view_layer.objects.active = item
-    return item
-
-
 def key(item, path, values):
     """Key values at frames, linear between them; a path inside the settings."""
     owner, _, name = f"ocean_tweak.{path}".rpartition(".")

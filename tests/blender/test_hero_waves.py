@@ -7,16 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-
-@pytest.fixture
-def ocean(ocean_object, make_parameters, empty_scene):
-    item = ocean_object.add(empty_scene, make_parameters())
-    bpy.context.view_layer.objects.active = item
-    return item
-
-
-def sea_of(item):
-    return item.ocean_tweak.to_parameters(bpy.context.scene)
+from .conftest import sea_of
 
 
 @pytest.fixture

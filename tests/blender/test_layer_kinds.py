@@ -7,20 +7,9 @@ import bpy
 import numpy as np
 import pytest
 
-from .conftest import DOMAIN, positions_of
+from .conftest import DOMAIN, positions_of, sea_of
 
 TOLERANCE = 1e-4  # m
-
-
-@pytest.fixture
-def ocean(ocean_object, make_parameters, empty_scene):
-    item = ocean_object.add(empty_scene, make_parameters())
-    bpy.context.view_layer.objects.active = item
-    return item
-
-
-def sea_of(item):
-    return item.ocean_tweak.to_parameters(bpy.context.scene)
 
 
 @pytest.fixture

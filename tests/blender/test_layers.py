@@ -5,13 +5,6 @@ import bpy
 import pytest
 
 
-@pytest.fixture
-def ocean(ocean_object, make_parameters, empty_scene):
-    item = ocean_object.add(empty_scene, make_parameters())
-    bpy.context.view_layer.objects.active = item
-    return item
-
-
 def layers(item):
     return item.ocean_tweak.to_parameters(bpy.context.scene).layers
 

@@ -97,19 +97,17 @@ def test_a_bad_file_is_refused_and_changes_nothing(active, empty_scene, tmp_path
     assert active.ocean_tweak.to_parameters(empty_scene) == before
 
 
-def test_a_sea_of_several_patches_is_refused(active, core, empty_scene, tmp_path, ocean_object):
-    before = active.ocean_tweak.to_parameters(empty_scene)
-    several = {"patches": [{"domain_size": 400.0, "shortest_wavelength": 20.0},
-                           {"domain_size": 90.0, "longest_wavelength": 20.0}]}  # fmt: skip
+def test_a_sea_of_several_patches_is_imported_and_exported(active, core, empty_scene, tmp_path):
+    """Apart in the file it came from; on the samples that are rendered from then on."""
+    patches = [{"domain_size": 90.0, "shortest_wavelength": 20.0, "resolution": 32},
+               {"domain_size": 30.0, "longest_wavelength": 20.0, "resolution": 48}]  # fmt: skip
     file = tmp_path / "sea.json"
-    file.write_text(json.dumps(several))
-    with pytest.raises(RuntimeError, match="has 2 patches"):
-        bpy.ops.ocean.import_parameters(filepath=str(file))
-    assert active.ocean_tweak.to_parameters(empty_scene) == before
-    objects = len(bpy.data.objects)
-    with pytest.raises(ValueError, match="has 2 patches"):
-        ocean_object.add(empty_scene, core.OceanParameters.from_json(file.read_text()))
-    assert len(bpy.data.objects) == objects
+    file.write_text(json.dumps({"patches": patches}))
+    bpy.ops.ocean.import_parameters(filepath=str(file))
+    shown = active.ocean_tweak.to_parameters(empty_scene)
+    assert shown == core.OceanParameters.from_json(file.read_text()).on_one_grid(32)
+    assert bpy.ops.ocean.export_parameters(filepath=str(tmp_path / "again.json")) == {"FINISHED"}
+    assert core.OceanParameters.from_json((tmp_path / "again.json").read_text()) == shown
 
 
 def test_settings_that_are_no_sea_are_not_exported(active, tmp_path):

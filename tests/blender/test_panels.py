@@ -55,6 +55,9 @@ class Layout:
         self.drawn.append(name)
         return SimpleNamespace()
 
+    def operator_menu_enum(self, name, _property, **_named):
+        return self.operator(name)
+
 
 @pytest.fixture
 def draw(extension, empty_scene):
@@ -68,7 +71,7 @@ def draw(extension, empty_scene):
         )  # fmt: skip
         panels = [cls for cls in extension("ui.panels").CLASSES if issubclass(cls, bpy.types.Panel)]
         for panel in panels:
-            if panel.poll(context):
+            if not hasattr(panel, "poll") or panel.poll(context):
                 shown = SimpleNamespace(layout=Layout(drawn))
                 getattr(panel, "draw_header", lambda *_: None)(shown, context)
                 panel.draw(shown, context)
@@ -83,7 +86,10 @@ def item(ocean_object, make_parameters, empty_scene):
 
 
 def test_without_an_ocean_there_is_a_way_to_one(draw):
-    assert draw(None) == ["No ocean is active", "mesh.ocean_tweak_add", "ocean.add_scene"]
+    scenes = ["With sky and camera:", *["ocean.add_scene"] * 3]  # calm, fresh breeze, storm
+    floating = [f"object.ocean_tweak_float{end}" for end in ("", "_bake", "_remove")]
+    offered = ["No ocean is active", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
+    assert draw(None) == offered
 
 
 def test_blenders_own_ocean_can_be_converted(draw, empty_scene):

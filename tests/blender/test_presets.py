@@ -7,6 +7,8 @@ import random
 import bpy
 import pytest
 
+from .conftest import sea_of
+
 
 @pytest.fixture
 def ocean(ocean_object, make_parameters, empty_scene):
@@ -23,16 +25,12 @@ def own_folder(extension, tmp_path, monkeypatch):
     return tmp_path
 
 
-def sea(item):
-    return item.ocean_tweak.to_parameters(bpy.context.scene)
-
-
 def test_a_preset_is_the_sea_and_the_shot_keeps_its_timing(ocean, extension):
     assert bpy.ops.ocean.apply_preset(key="beaufort_05") == {"FINISHED"}
     preset = extension("core.presets").built_in()["beaufort_05"].parameters
-    assert sea(ocean).layers[0].wind_speed == 9.4
-    assert sea(ocean).timing.start_frame == 101
-    assert sea(ocean).replace(timing=preset.timing) == preset
+    assert sea_of(ocean).layers[0].wind_speed == 9.4
+    assert sea_of(ocean).timing.start_frame == 101
+    assert sea_of(ocean).replace(timing=preset.timing) == preset
 
 
 def test_a_preset_brings_its_layers(ocean, extension):
@@ -40,31 +38,31 @@ def test_a_preset_brings_its_layers(ocean, extension):
     for key in ("crossing_seas", "beaufort_01"):
         assert bpy.ops.ocean.apply_preset(key=key) == {"FINISHED"}
         assert not ocean.ocean_tweak.error
-        assert sea(ocean).layers == presets[key].parameters.layers
+        assert sea_of(ocean).layers == presets[key].parameters.layers
 
 
 def test_undo_takes_a_preset_back(ocean, window):
-    before = sea(ocean)
+    before = sea_of(ocean)
     name = ocean.name
     with window.override():
         bpy.ops.ed.undo_push(message="before")
         bpy.ops.ocean.apply_preset(key="harbour")
-        assert sea(bpy.data.objects[name]) != before
+        assert sea_of(bpy.data.objects[name]) != before
         bpy.ops.ed.undo_push(message="applied")
         bpy.ops.ed.undo()
-    assert sea(bpy.data.objects[name]) == before
+    assert sea_of(bpy.data.objects[name]) == before
 
 
 def test_a_life_of_an_own_preset(ocean, own_folder, extension, tmp_path_factory):
     presets = extension("scene.user_presets")
     assert bpy.ops.ocean.save_preset(title="Bay at Dawn", text="Calm") == {"FINISHED"}
     assert [file.name for file in own_folder.iterdir()] == ["bay_at_dawn.json"]
-    mine = sea(ocean)
+    mine = sea_of(ocean)
     with pytest.raises(RuntimeError, match="another preset already"):
         bpy.ops.ocean.save_preset(title="Bay at Dawn")
     bpy.ops.ocean.apply_preset(key="harbour")
     assert bpy.ops.ocean.apply_preset(key="user:bay_at_dawn") == {"FINISHED"}
-    assert sea(ocean) == mine
+    assert sea_of(ocean) == mine
 
     assert bpy.ops.ocean.rename_preset(key="user:bay_at_dawn", title="Dusk é 2") == {"FINISHED"}
     (key,) = presets.own_presets()
@@ -77,7 +75,7 @@ def test_a_life_of_an_own_preset(ocean, own_folder, extension, tmp_path_factory)
     assert not presets.own_presets()
     assert bpy.ops.ocean.import_preset(filepath=str(exported)) == {"FINISHED"}
     assert bpy.ops.ocean.apply_preset(key=key) == {"FINISHED"}
-    assert sea(ocean) == mine
+    assert sea_of(ocean) == mine
 
 
 @pytest.mark.parametrize("operator", ["rename_preset", "delete_preset"])
@@ -98,7 +96,7 @@ def test_mutated_presets_never_half_apply(ocean, own_folder, extension, tmp_path
     chance = random.Random(11)
     texts = [preset.to_json() for preset in extension("core.presets").built_in().values()]
     file = tmp_path_factory.mktemp("in") / "mutated.json"
-    before = sea(ocean)
+    before = sea_of(ocean)
     refused = 0
     for number in range(60):
         data = bytearray(chance.choice(texts).encode())
@@ -114,7 +112,7 @@ def test_mutated_presets_never_half_apply(ocean, own_folder, extension, tmp_path
         except RuntimeError:
             refused += 1
             assert len(list(own_folder.iterdir())) == count, number
-        assert sea(ocean) == before
+        assert sea_of(ocean) == before
     assert 20 < refused < 58
     for kept in own_folder.iterdir():
         json.loads(kept.read_text(encoding="utf-8"))

@@ -41,13 +41,37 @@ def awkward_sea(core, seed):
     chance = random.Random(seed)
     fps = Fraction(chance.choice(["24", "24000/1001", "25", "12.5", "29.97"]))
     longest = 1e5 + chance.random()
-    layers = [awkward(core.WaveLayer, chance, longest_wavelength=longest) for _ in range(1 + seed % 3)]
+    masks = [awkward_mask(core, chance) if index == seed % 4 else None for index in range(1 + seed % 3)]
+    layers = [awkward(core.WaveLayer, chance, longest_wavelength=longest, mask=mask) for mask in masks]
     timing = core.Timing(fps=fps, start_frame=9)
+    given = {"resolution": SAMPLES, "joined": 0}
+    if seed % 2:
+        given |= {"joined": SAMPLES, "patches": awkward_patches(core, chance)}
+    if seed % 2 or any(masks):
+        given["trough_damping"] = 0.0
     return awkward(
-        core.OceanParameters, chance, resolution=SAMPLES, layers=tuple(layers), timing=timing,
+        core.OceanParameters, chance, layers=tuple(layers), timing=timing,
         water=awkward(core.Water, chance), foam=awkward(core.Foam, chance, resolution=20 + 2 * seed),
-        loop_duration=Fraction(720) / fps,
+        loop_duration=Fraction(720) / fps, **given,
     )  # fmt: skip
+
+
+def awkward_mask(core, chance):
+    near = chance.uniform(0.0, 50.0)
+    if chance.random() < 0.5:
+        return awkward(core.Mask, chance, source="DISTANCE", near=near, far=near + chance.random())
+    values = [[chance.random() for _ in range(3)] for _ in range(2)]
+    return awkward(
+        core.Mask, chance, source="IMAGE", image=core.Raster(values, f"Coast {near}"), near=near, far=99.1
+    )
+
+
+def awkward_patches(core, chance):
+    end = chance.uniform(5.0, 20.0)
+    first = awkward(core.Patch, chance, shortest_wavelength=end, resolution=48)
+    mask = awkward_mask(core, chance)
+    second = awkward(core.Patch, chance, shortest_wavelength=end / 3, longest_wavelength=end, resolution=32)
+    return first, dataclasses.replace(second, mask=mask)
 
 
 @pytest.mark.parametrize("seed", range(12))

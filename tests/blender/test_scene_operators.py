@@ -52,6 +52,18 @@ def test_everything_is_there(quick, empty_scene, mood):
     assert {"displacement", "foam", "st"} <= names
 
 
+def test_to_the_horizon_is_a_sea_of_patches_on_a_camera_surface(quick, empty_scene):
+    bpy.ops.ocean.add_scene(mood="HORIZON", engine="CYCLES")
+    ocean = ocean_of(empty_scene)
+    assert ocean.ocean_tweak.error == ""
+    assert len(ocean.ocean_tweak.patches) == 4
+    names = [item.name for item in empty_scene.objects]
+    assert any("Camera Surface" in name for name in names)
+    assert not any(name.endswith("Horizon") for name in names)
+    assert ocean.hide_render
+    assert 1.5 < empty_scene.camera.location.z < 6.0
+
+
 def test_the_buoy_floats(quick, empty_scene):
     bpy.ops.ocean.add_scene(mood="FRESH_BREEZE")
     buoy = by_name(empty_scene, "Buoy")

@@ -5,22 +5,13 @@ import bpy
 import numpy as np
 import pytest
 
-
-@pytest.fixture
-def ocean(ocean_object, make_parameters, empty_scene):
-    item = ocean_object.add(empty_scene, make_parameters())
-    bpy.context.view_layer.objects.active = item
-    return item
-
-
-def sea(item):
-    return item.ocean_tweak.to_parameters(bpy.context.scene)
+from .conftest import sea_of
 
 
 @pytest.mark.parametrize(("height", "period"), [(2.0, 7.0), (2.5, 14.0), (0.4, 2.5)])
 def test_waves_of_a_height_and_a_period(ocean, core, height, period):
     assert bpy.ops.ocean.match_sea_state(by="WAVES", height=height, period=period) == {"FINISHED"}
-    state = core.Ocean(sea(ocean)).statistics()
+    state = core.Ocean(sea_of(ocean)).statistics()
     assert state.spectrum.significant_wave_height == pytest.approx(height, rel=0.01)
     assert state.spectrum.peak_period == pytest.approx(period, rel=0.01)
     assert 4.0 < state.wavelengths_per_domain < 5.0
@@ -31,9 +22,9 @@ def test_a_beaufort_number(ocean, core):
     assert bpy.ops.ocean.match_sea_state(by="BEAUFORT", beaufort="beaufort_07", fit_domain=False) == {
         "FINISHED"
     }
-    state = core.Ocean(sea(ocean)).statistics()
+    state = core.Ocean(sea_of(ocean)).statistics()
     assert state.spectrum.significant_wave_height == pytest.approx(4.0, rel=0.03)
-    assert sea(ocean).domain_size == 150.0
+    assert sea_of(ocean).domain_size == 150.0
 
 
 def test_match_wants_an_ocean(empty_scene):
@@ -75,7 +66,7 @@ def test_what_carries_over(blenders_ocean):
     before = corners(blenders_ocean)
     assert bpy.ops.ocean.convert() == {"FINISHED"}
     item = bpy.context.active_object
-    converted = sea(item)
+    converted = sea_of(item)
     assert item.ocean_tweak.is_ocean
     assert (converted.resolution, converted.domain_size, converted.seed) == (64, 90.0, 3)
     assert converted.choppiness == pytest.approx(0.8)

@@ -10,14 +10,9 @@ import bpy
 import numpy as np
 import pytest
 
+from .conftest import sea_of
+
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-
-
-@pytest.fixture
-def ocean(ocean_object, make_parameters, empty_scene):
-    item = ocean_object.add(empty_scene, make_parameters())
-    bpy.context.view_layer.objects.active = item
-    return item
 
 
 @pytest.fixture
@@ -30,10 +25,6 @@ def picture(ocean):
 def wind(ocean):
     bpy.ops.ocean.layer_add(kind="WIND_FIELD")
     return ocean.ocean_tweak.layers[1].wind_field
-
-
-def sea_of(item):
-    return item.ocean_tweak.to_parameters(bpy.context.scene)
 
 
 def png(path, values):

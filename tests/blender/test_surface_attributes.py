@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from .conftest import SAMPLES, evaluated_mesh
+from .conftest import DOMAIN, SAMPLES, evaluated_mesh
 from .surfaces import ALL_MAPS, assert_alike, read, wanted
 
 # method, source, quads of the mesh: another number than that of the samples keeps attributes from the mesh
@@ -50,6 +50,20 @@ def test_everything_is_the_core_s(add, core, make_parameters, empty_scene, way, 
         side = (WAYS[way][2] or SAMPLES) + 1
         found = at_samples(read(evaluated_mesh(item), side, side), SAMPLES)
         assert_alike(found, wanted(core, parameters, frame, metres), metres)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_patches_are_shown_joined(add, core, make_parameters, empty_scene, way):
+    """On as many samples as are rendered; the ocean keeps its patches."""
+    patches = core.Patch(DOMAIN, 0.0, 20.0, 1e6, 24), core.Patch(44.0, 0.7, 9.0, 20.0, 32)
+    parameters = make_parameters(patches=patches).on_one_grid(SAMPLES)
+    item = add(parameters, way)
+    empty_scene.frame_set(4)
+    side = (WAYS[way][2] or SAMPLES) + 1
+    found = at_samples(read(evaluated_mesh(item), side, side), SAMPLES)
+    assert_alike(found, wanted(core, parameters, 4))
+    assert not item.ocean_tweak.error
+    assert item.ocean_tweak.to_parameters(empty_scene) == parameters
 
 
 @pytest.mark.parametrize("way", WAYS)

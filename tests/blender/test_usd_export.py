@@ -1,59 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Oceans as USD layers from Blender, and back: what the layers hold, and what is refused with its reason."""
+"""Oceans as USD layers from Blender: what the layers hold, and what is refused with its reason."""
 
-import importlib.util
 import os
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
 
+from . import usd_assets
 from .conftest import DOMAIN, SAMPLES, vertices
-from .test_panels import Layout
+from .usd_assets import FRAMES, TOLERANCE, add_ocean, contents, needs_usd, value
 
-TOLERANCE = 1e-4  # m
-FRAMES = (1, 2, 3)
-needs_usd = pytest.mark.skipif(importlib.util.find_spec("pxr") is None, reason="this Blender has no OpenUSD")
-
-
-@pytest.fixture
-def saved(empty_scene, tmp_path, monkeypatch):
-    """A file that has been saved, with three frames."""
-    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
-    empty_scene.frame_start, empty_scene.frame_end = FRAMES[0], FRAMES[-1]
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
-    return bpy.context.scene
-
-
-@pytest.fixture
-def ocean(saved, ocean_object, make_parameters, core):
-    return add_ocean(saved, ocean_object, make_parameters(foam=core.Foam(half_life=0.05)))
-
-
-def add_ocean(scene, ocean_object, parameters, **more):
-    item = ocean_object.add(scene, parameters, **more)
-    bpy.context.view_layer.objects.active = item
-    item.ocean_tweak.usd.proxy = 0
-    return item
-
-
-@pytest.fixture
-def process(extension):
-    return extension("scene.usd_process")
-
-
-def value(path, attribute, frame=None, mesh="geo/sea/surface"):
-    """An attribute of the mesh, as a program reads it that opens the asset."""
-    from pxr import Usd
-
-    stage = Usd.Stage.Open(str(path))
-    stage.Reload()
-    prim = stage.GetDefaultPrim().GetPath()
-    time = Usd.TimeCode.Default() if frame is None else Usd.TimeCode(frame)
-    return np.array(stage.GetAttributeAtPath(f"{prim}/{mesh}.{attribute}").Get(time), np.float64)
+# fixtures for every test here
+saved, ocean, process = usd_assets.saved, usd_assets.ocean, usd_assets.process
 
 
 def image_of(path, frame):
@@ -73,10 +34,6 @@ def record(path):
     stage = Usd.Stage.Open(str(path))
     stage.Reload()
     return stage.GetDefaultPrim().GetCustomDataByKey("ocean_tweak")
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def flat():
@@ -127,49 +84,6 @@ def test_choices_of_the_panel_are_those_of_the_layers(ocean, tmp_path):
         "attributes": "velocities,foam", "proxy": 8, "variants": "32,16", "frames": "1-3,1.5,2.5",
     }  # fmt: skip
     assert {name: said[name] for name in expected} == expected
-
-
-def test_defaults_and_texts_are_the_command_lines(ocean, extension):
-    usd, package = ocean.ocean_tweak.usd, extension("export.usd.package").Package
-    usd.property_unset("proxy")
-    for name in ("up_axis", "half", "proxy"):
-        assert getattr(usd, name) == getattr(package, name)
-    assert tuple(usd.tiles) == package.tiles
-    assert usd.attributes == set(package.attributes)
-    assert usd.metres_per_unit == package.metres_per_unit
-    parser = extension("cli.arguments").make_parser(in_blender=True)
-    (commands,) = (action for action in parser._actions if action.dest == "run" or action.choices)
-    helps = {action.dest: action.help for action in commands.choices["usd"]._actions}
-    for name in (
-        "up_axis",
-        "metres_per_unit",
-        "subframes",
-        "attributes",
-        "half",
-        "tiles",
-        "proxy",
-        "variants",
-    ):
-        text = usd.bl_rna.properties[name].description
-        assert helps[name].lower().startswith(text.lower())
-
-
-def test_without_openusd_the_buttons_say_what_to_install(ocean, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pxr", None)
-    for name in ("export_usd", "export_usd_as", "verify_usd", "import_usd"):
-        operator = getattr(bpy.ops.ocean, name)
-        assert not operator.poll()
-        with pytest.raises(RuntimeError, match=r"no OpenUSD: install it with 'pip install usd-core'"):
-            operator()
-
-
-@needs_usd
-def test_without_an_ocean_there_is_nothing_to_export(empty_scene):
-    for operator in (bpy.ops.ocean.export_usd, bpy.ops.ocean.export_usd_as, bpy.ops.ocean.verify_usd):
-        with pytest.raises(RuntimeError, match="Select an ocean first"):
-            operator()
-    assert not bpy.ops.ocean.stop_usd.poll()
-    assert bpy.ops.ocean.import_usd.poll()
 
 
 @needs_usd
@@ -311,133 +225,6 @@ def test_verify_names_what_is_lost(ocean, tmp_path):
     ocean.ocean_tweak.usd.file = "//elsewhere/sea.usd"
     with pytest.raises(RuntimeError, match="no such file"):
         bpy.ops.ocean.verify_usd()
-
-
-@needs_usd
-def test_import_makes_the_same_sea_again(ocean, saved, tmp_path):
-    usd = ocean.ocean_tweak.usd
-    usd.form, usd.up_axis, usd.metres_per_unit, usd.tiles = "points", "Y", 0.01, (2, 1)
-    usd.file = "//usd/my bay.usd"
-    bpy.ops.ocean.export_usd()
-    wanted, shown = ocean.ocean_tweak.to_parameters(saved), {}
-    for frame in FRAMES:
-        saved.frame_set(frame)
-        shown[frame] = vertices(ocean)
-    bpy.data.objects.remove(ocean)
-    saved.render.fps = 30
-    assert bpy.ops.ocean.import_usd(filepath=str(tmp_path / "usd" / "my bay.usd")) == {"FINISHED"}
-    item = bpy.context.active_object
-    assert item.name == "my_bay"
-    assert item.select_get()
-    assert item.ocean_tweak.to_parameters(saved) == wanted
-    assert saved.render.fps == 24
-    assert (item.ocean_tweak.repeats_x, item.ocean_tweak.repeats_y) == (2, 1)
-    item.ocean_tweak.repeats_x = 1
-    for frame in FRAMES:
-        saved.frame_set(frame)
-        np.testing.assert_allclose(vertices(item), shown[frame], atol=1e-6)
-
-
-@needs_usd
-def test_an_animated_sea_goes_there_and_back(ocean, saved, tmp_path):
-    saved.unit_settings.scale_length = 0.5
-    settings = ocean.ocean_tweak
-    settings.usd.form, settings.use_ocean_time = "points", True
-    layer = settings.layers[0]
-    for frame, wind, time in ((0, 14.0, 0.0), (1, 14.0, 0.1), (4, 22.0, 0.7)):
-        layer.wind_speed, settings.ocean_time = wind, time
-        layer.keyframe_insert("wind_speed", frame=frame)
-        settings.keyframe_insert("ocean_time", frame=frame)
-    assert bpy.ops.ocean.export_usd() == {"FINISHED"}
-    asset, shown = tmp_path / "usd" / "Ocean" / "Ocean.usd", {}
-    for frame in FRAMES:
-        saved.frame_set(frame)
-        bpy.context.view_layer.update()
-        shown[frame] = vertices(ocean)
-        points = value(asset, "points", frame) / 0.5
-        np.testing.assert_allclose(points, shown[frame].reshape(-1, 3), atol=TOLERANCE)
-    bpy.data.objects.remove(ocean)
-    assert bpy.ops.ocean.import_usd(filepath=str(asset)) == {"FINISHED"}
-    item = bpy.context.active_object
-    assert item.ocean_tweak.use_ocean_time
-    for frame in FRAMES:
-        saved.frame_set(frame)
-        bpy.context.view_layer.update()
-        np.testing.assert_allclose(vertices(item), shown[frame], atol=TOLERANCE)
-    assert np.abs(shown[1] - shown[3]).max() > 0.1
-
-
-@needs_usd
-def test_layers_that_are_not_ours_cannot_be_imported(saved, tmp_path):
-    from pxr import Usd
-
-    foreign = tmp_path / "foreign.usda"
-    Usd.Stage.CreateNew(str(foreign)).Save()
-    (tmp_path / "broken.usd").write_bytes(b"no layer")
-    cases = (
-        ("foreign.usda", "holds no sea of Ocean Tweak"),
-        ("none.usd", "no such file"),
-        ("broken.usd", "."),
-    )
-    for name, said in cases:
-        with pytest.raises(RuntimeError, match=said):
-            bpy.ops.ocean.import_usd(filepath=str(tmp_path / name))
-    assert not saved.objects
-
-
-@needs_usd
-def test_undo_takes_an_import_back(ocean, saved, tmp_path, window):
-    ocean.ocean_tweak.usd.form = "points"
-    bpy.ops.ocean.export_usd()
-    with window.override():
-        bpy.ops.ed.undo_push(message="before")
-        bpy.ops.ocean.import_usd(filepath=str(tmp_path / "usd" / "Ocean" / "Ocean.usd"))
-        assert len(bpy.data.objects) == 2
-        bpy.ops.ed.undo_push(message="Import Sea from USD")
-        bpy.ops.ed.undo()
-    assert [item.name for item in bpy.data.objects] == ["Ocean"]
-
-
-def drawn_by(draw, item):
-    drawn = []
-    context = SimpleNamespace(
-        active_object=item, scene=bpy.context.scene, region=SimpleNamespace(width=300),
-        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
-    )  # fmt: skip
-    draw(SimpleNamespace(layout=Layout(drawn)), context)
-    return drawn
-
-
-def test_the_panel_and_the_browser_show_the_choices(ocean, extension):
-    panel, browser = extension("ui.panels.usd").OCEAN_PT_usd, extension("ui.usd_operators")
-    always = {"form", "up_axis", "metres_per_unit", "subframes", "tiles", "proxy", "variants", "force"}
-    for draw in (panel.draw, browser.OCEAN_OT_export_usd_as.draw):
-        ocean.ocean_tweak.usd.form = "clips"
-        assert always | {"attributes", "half"} <= set(drawn_by(draw, ocean))
-        ocean.ocean_tweak.usd.form = "displacement"
-        drawn = set(drawn_by(draw, ocean))
-        assert always <= drawn
-        assert not {"attributes", "half", "use_bake"} & drawn
-    for draw in (browser.draw_export_menu, browser.draw_import_menu):
-        assert len(drawn_by(draw, ocean)) == 1
-
-
-def test_the_panel_shows_how_far_it_is_and_what_is_missing(ocean, extension, process, monkeypatch):
-    draw = extension("ui.panels.usd").OCEAN_PT_usd.draw
-    monkeypatch.setitem(sys.modules, "pxr", None)
-    assert "pip install usd-core" in " ".join(drawn_by(draw, ocean))
-    export = SimpleNamespace(done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)
-    monkeypatch.setitem(process._running, ocean.session_uid, export)
-    drawn = drawn_by(draw, ocean)
-    assert "3 / 12, 1:02" in drawn
-    assert "ocean.stop_usd" in drawn
-    assert "ocean.export_usd" not in drawn
-
-
-def test_the_menus_offer_both_ways(package):
-    for menu, name in (("export", "draw_export_menu"), ("import", "draw_import_menu")):
-        functions = getattr(bpy.types, f"TOPBAR_MT_file_{menu}").draw._draw_funcs
-        assert name in [function.__name__ for function in functions]
 
 
 def test_paths_can_be_relative(ocean, process):

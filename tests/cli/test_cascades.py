@@ -128,12 +128,6 @@ def test_maps_that_are_no_sums_are_refused(
     assert not (tmp_path / "cache").exists()
 
 
-def test_usd_wants_one_patch(params: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    command = ["usd", "--params", str(params), "--frames", "1", "--form", "points"]
-    assert main([*command, "--out", str(tmp_path / "sea.usd")]) == 2
-    assert "patches" in capsys.readouterr().err
-
-
 def test_info_tells_each_patch(params: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["info", "--params", str(params)]) == 0
     said = capsys.readouterr().out

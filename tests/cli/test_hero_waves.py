@@ -3,22 +3,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.export.exr import read_image
+from tests.cli.commands import EXAMPLES, baked_heights, described
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "hero-wave.json"
+EXAMPLE = EXAMPLES / "hero-wave.json"
 
 
 def test_info_says_when_and_where_and_how_fast(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["info", "--json", "--params", str(EXAMPLE)]) == 0
-    (report,) = json.loads(capsys.readouterr().out).values()
-    (wave,) = report["hero_waves"]
+    (wave,) = described(capsys, "--params", str(EXAMPLE))["hero_waves"]
     assert (wave["x"], wave["y"], wave["time"], wave["frame"]) == (200.0, 200.0, 12.0, 289.0)
     assert wave["phase_speed"] == pytest.approx(9.679, rel=1e-3)  # √(g·60 m/2π)
     assert wave["group_speed"] == pytest.approx(4.839, rel=1e-3)
@@ -29,9 +26,7 @@ def test_info_says_when_and_where_and_how_fast(capsys: pytest.CaptureFixture[str
 
 
 def test_info_of_a_sea_without_them_is_what_it_was(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["info", "--json", "--params", str(EXAMPLE), "--set", "hero_waves.0.muted=true"]) == 0
-    (report,) = json.loads(capsys.readouterr().out).values()
-    assert "hero_waves" not in report
+    assert "hero_waves" not in described(capsys, "--params", str(EXAMPLE), "--set", "hero_waves.0.muted=true")
 
 
 def test_what_does_not_fit_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
@@ -41,15 +36,10 @@ def test_what_does_not_fit_is_refused(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_a_baked_frame_holds_the_crest(tmp_path: Path) -> None:
-    code = main(
-        [
-            "bake", "--params", str(EXAMPLE), "--frames", "289", "--out", str(tmp_path),
-            "--set", "resolution=64", "--set", "layers.0.muted=true", "--set", "choppiness=0",
-        ]
+    (height,) = baked_heights(
+        tmp_path, "--params", str(EXAMPLE), "--frames", "289",
+        "--set", "resolution=64", "--set", "layers.0.muted=true", "--set", "choppiness=0",
     )  # fmt: skip
-    assert code == 0
-    (path,) = tmp_path.glob("*/v*/*_disp.*.exr")
-    height = read_image(path)[0][..., 2]
     row, column = np.unravel_index(np.argmax(height), height.shape)
     assert column == 32
     assert row in (31, 32)  # rows of a picture begin at its top

@@ -10,22 +10,16 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.pictures import read_picture
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from tests.cli.commands import EXAMPLES, baked_heights
 
 
 def test_the_word_stands_in_the_water(tmp_path: Path) -> None:
     """At the first frame the example's sea holds its picture, and two seconds later no longer so."""
-    code = main(
-        [
-            "bake", "--params", str(EXAMPLES / "from-image.json"), "--frames", "1,49", "--out", str(tmp_path),
-            "--set", "resolution=256", "--set", "layers.0.muted=true", "--set", "choppiness=0",
-        ]
+    heights = baked_heights(
+        tmp_path, "--params", str(EXAMPLES / "from-image.json"), "--frames", "1,49",
+        "--set", "resolution=256", "--set", "layers.0.muted=true", "--set", "choppiness=0",
     )  # fmt: skip
-    assert code == 0
-    heights = [read_image(path)[0][..., 2] for path in sorted(tmp_path.glob("*/v*/*_disp.*.exr"))]
     picture = read_picture(EXAMPLES / "sea.png", 1).values[..., 0].astype(float)
     index = np.fft.fftfreq(256, 1 / 256)
     k = np.hypot(index, index[:, np.newaxis])

@@ -11,15 +11,9 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters
-from ocean_tweak.export.exr import read_image
+from tests.cli.commands import EXAMPLES, baked_heights, described
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "wind-front.json"
-
-
-def described(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, object]:
-    assert main(["info", "--json", *arguments]) == 0
-    (report,) = json.loads(capsys.readouterr().out).values()
-    return report
+EXAMPLE = EXAMPLES / "wind-front.json"
 
 
 def test_the_example_is_what_its_script_makes() -> None:
@@ -40,16 +34,11 @@ def test_info_tells_of_the_winds_waves(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_the_front_crosses_the_patch(tmp_path: Path) -> None:
-    code = main(
-        [
-            "bake", "--params", str(EXAMPLE), "--frames", "289,577", "--out", str(tmp_path),
-            "--set", "resolution=128", "--set", "layers.0.muted=true", "--workers", "2",
-        ]
+    heights = baked_heights(
+        tmp_path, "--params", str(EXAMPLE), "--frames", "289,577",
+        "--set", "resolution=128", "--set", "layers.0.muted=true", "--workers", "2",
     )  # fmt: skip
-    assert code == 0
-    early, late = (
-        np.std(read_image(path)[0][..., 2], axis=0) for path in sorted(tmp_path.glob("*/v*/*_disp.*.exr"))
-    )
+    early, late = (np.std(height, axis=0) for height in heights)
     ahead = slice(70, 90)  # 130 to 170 m: at 12 s the front is at 96 m
     assert late[ahead].mean() > 0.1
     assert early[ahead].mean() < 0.2 * late[ahead].mean()

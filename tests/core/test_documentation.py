@@ -17,6 +17,7 @@ from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.initial_state import initial_state
+from ocean_tweak.core.validation import Validated
 from tools import parameters_doc
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,6 +28,7 @@ PAPERS = {
     "Mastin, Watterberg and Mareda (1987)": 10,
     "Li and Wang (2016)": 25,
     "Hero waves": 0,
+    "Foam": 0,
 }
 
 
@@ -135,6 +137,11 @@ def test_tables_of_parameters_are_current() -> None:
     assert parameters_doc.updated(document) == document, "out of date: run make docs"
     for field in ("`resolution`", "`surface_tension`", "`peak_enhancement`", "`start_frame`"):
         assert f"| {field} |" in document
+
+
+def test_every_kind_of_parameters_has_a_table() -> None:
+    kinds = {kind for kind in Validated.__subclasses__() if kind.__module__.startswith("ocean_tweak.")}
+    assert set(parameters_doc.CLASSES) == kinds
 
 
 def test_tables_are_made_from_the_fields() -> None:

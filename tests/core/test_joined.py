@@ -14,7 +14,7 @@ from ocean_tweak.core.cascades.patch_seas import joined_bands
 from ocean_tweak.core.foam_threshold import whitecap_coverage
 from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.shot import Shot
-from tests.core.test_cascades import summed
+from tests.core.patched_seas import summed
 
 LAYER = WaveLayer(wind_speed=10.0, wind_direction=0.4, fetch=100e3)
 PATCHES = (

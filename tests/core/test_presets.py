@@ -7,10 +7,11 @@ import dataclasses
 import json
 import random
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing
+from ocean_tweak.core import Cascade, Ocean, OceanParameters, ParameterError, Timing
 from ocean_tweak.core.presets import Preset, built_in
 
 from ..reference import rows
@@ -20,9 +21,9 @@ TABLE = {
     "open_sea": "default", "shallow_storm": "shallow storm", "wind_chop": "chop to swell", "gale": "gale",
     "hurricane": "hurricane", **{f"beaufort_{n:02d}": f"Beaufort {n}" for n in range(2, 12)},
 }  # fmt: skip
-#: from the models' formulas, by hand: 2.5 m and 0.59 m, 2 m and 2.14 m, in energy
+#: from the models' formulas, by hand: 2.5 m and 0.59 m, 2 m and 2.14 m, 2.16 m and 1.2 m, in energy
 OTHERS = {"beaufort_01": (0.03, 0.7), "harbour": (0.17, 1.4), "long_swell": (2.57, 14.0),
-          "crossing_seas": (2.93, 11.0), "drawn_out_swell": (5.65, 10.3)}  # fmt: skip
+          "crossing_seas": (2.93, 11.0), "drawn_out_swell": (5.65, 10.3), "horizon": (2.47, 6.4)}  # fmt: skip
 
 
 @pytest.mark.parametrize("key", TABLE)
@@ -36,7 +37,7 @@ def test_presets_are_the_tables_seas(key: str) -> None:
 
 @pytest.mark.parametrize("key", OTHERS)
 def test_the_other_presets(key: str) -> None:
-    statistics = Ocean(built_in()[key].parameters.replace(resolution=128)).statistics()
+    statistics = Cascade(built_in()[key].parameters.replace(resolution=128)).statistics().total
     height, period = OTHERS[key]
     assert statistics.spectrum.significant_wave_height == pytest.approx(height, abs=0.006)
     assert statistics.spectrum.peak_period == pytest.approx(period, abs=0.06)
@@ -51,7 +52,7 @@ def test_every_preset_is_tested_and_warns_of_nothing() -> None:
             if preset.parameters.resolution < 1024
             else preset.parameters.replace(resolution=512)
         )
-        statistics = Ocean(small).statistics()
+        statistics = Cascade(small).statistics().total
         assert not statistics.warnings, (key, statistics.warnings)
         assert statistics.wavelengths_per_domain > 3.5
 
@@ -127,3 +128,10 @@ def test_300_mutated_presets_are_read_or_refused() -> None:
             assert Preset.from_json(preset.to_json()) == preset
             assert json.loads(preset.to_json())["title"] == preset.title
     assert min(outcomes.values()) > 10, outcomes
+
+
+def test_the_example_to_the_horizon_is_the_preset() -> None:
+    """One press in Blender and the example on the command line make one sea."""
+    text = (Path(__file__).parents[2] / "examples" / "horizon.json").read_text(encoding="utf-8")
+    example = OceanParameters.from_json(text)
+    assert built_in()["horizon"].for_shot(example) == example

@@ -16,11 +16,14 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
-from ocean_tweak.core import Ocean, Water, dispersion, spectra
+from ocean_tweak.core import OceanParameters, Water, dispersion, spectra
 from ocean_tweak.core.noise_synthesis import filters, source
+from ocean_tweak.core.sea_spectrum import SeaSpectrum
 from ocean_tweak.core.spreading import directional_spreading
+from ocean_tweak.core.wave_particles.wind import winds_at
 
 from . import chen, horvath, lantz, li_wang, mastin
+from .measures import elevation
 from .pages import PAGES
 
 Array = NDArray[np.float64]
@@ -45,11 +48,6 @@ def grey(axes: Axes, image: Array, title: str, low: float | None = None, high: f
     axes.set_axis_off()
 
 
-def elevation(sea: object, time: float = 0.0) -> Array:
-    """Heights of a sea, m."""
-    return Ocean(sea).surface(time).displacement[..., 2].astype(float)  # type: ignore[arg-type]
-
-
 # Horvath
 
 
@@ -70,10 +68,7 @@ def horvath_spectra() -> Figure:
     figure, axes = plt.subplots(figsize=(6, 3.2))
     omega = np.linspace(0.15, 1.6, 600)
     for name, sea in horvath.SHALLOW.items():
-        curve = Ocean(sea).parameters
-        from ocean_tweak.core.sea_spectrum import SeaSpectrum
-
-        axes.plot(omega, SeaSpectrum(curve).frequency_spectrum(omega), label=name)
+        axes.plot(omega, SeaSpectrum(sea).frequency_spectrum(omega), label=name)
     axes.set(xlabel="ω, rad/s", ylabel="S, m²·s/rad", title="25 m/s over 300 km, 15 m deep")
     axes.legend()
     return figure
@@ -196,6 +191,9 @@ def mastin_images() -> Figure:
     return figure
 
 
+# Lantz
+
+
 def lantz_tiles() -> Figure:
     """Nine patches side by side."""
     figure, axes = plt.subplots(figsize=(4.4, 4.6))
@@ -203,6 +201,63 @@ def lantz_tiles() -> Figure:
     for edge in (64, 128):
         axes.axvline(edge, color="tab:orange", lw=0.5, ls=":")
         axes.axhline(edge, color="tab:orange", lw=0.5, ls=":")
+    return figure
+
+
+# Li & Wang
+
+
+def levels(axes: Axes, field: Array, limit: float) -> None:
+    """Heights of a patch in m as grey levels, from −limit to limit."""
+    side = li_wang.SIDE
+    axes.imshow(field, cmap="gray", origin="lower", extent=(0, side, 0, side), vmin=-limit, vmax=limit)
+
+
+def side_by_side(seas: dict[str, OceanParameters], time: float) -> Figure:
+    """Heights of several seas."""
+    figure, all_axes = plt.subplots(1, len(seas), figsize=(3.2 * len(seas), 3.4))
+    for axes, (title, sea) in zip(all_axes, seas.items(), strict=True):
+        field = elevation(sea, time)
+        levels(axes, field, float(np.abs(field).max()))
+        axes.set_title(title)
+    return figure
+
+
+def li_wang_fronts() -> Figure:
+    """Figure 4 b and d."""
+    fronts = li_wang.FRONTS
+    return side_by_side({"arc (fig. 4b)": fronts["ARC"], "parallel (fig. 4d)": fronts["PARALLEL"]}, 25.0)
+
+
+def li_wang_splitting() -> Figure:
+    """Figure 5."""
+    seas = li_wang.SPLITTING
+    return side_by_side({"without splitting (fig. 5a)": seas[False], "with (fig. 5b)": seas[True]}, 25.0)
+
+
+def li_wang_tiles() -> Figure:
+    """Figure 7 b: four patches side by side."""
+    figure, axes = plt.subplots(figsize=(4.2, 4.2))
+    field = elevation(li_wang.WINDS["the same everywhere"], 60.0)
+    limit = 2.5 * float(np.std(field))
+    grey(axes, np.tile(field, (2, 2)), "2 x 2 patches (fig. 7b)", -limit, limit)
+    axes.axvline(256, lw=0.4, ls=":")
+    axes.axhline(256, lw=0.4, ls=":")
+    return figure
+
+
+def li_wang_winds() -> Figure:
+    """Figure 9: the winds above, their seas below."""
+    figure, all_axes = plt.subplots(2, 3, figsize=(9, 6.4))
+    places = li_wang.SIDE / 8 * np.arange(8)
+    x, y = (axis.ravel() for axis in np.meshgrid(places, places))
+    for (above, below), (kind, sea) in zip(all_axes.T, li_wang.WINDS.items(), strict=True):
+        _, (winds,) = winds_at(sea.wind_fields[0], x, y, li_wang.SIDE)
+        above.quiver(*winds.T.reshape(2, 8, 8), pivot="middle")
+        above.set_title(kind)
+        above.set_aspect("equal")
+        field = elevation(sea, 60.0)
+        levels(below, field, 2.5 * float(np.std(field)))
     return figure
 
 
@@ -218,7 +273,12 @@ FIGURES: dict[str, dict[str, Callable[[], Figure]]] = {
     "chen-2014": {"profiles": chen_profiles, "developing": chen_developing},
     "mastin-1987": {"fractal": mastin_fractal, "spectrum": mastin_spectrum, "images": mastin_images},
     "lantz": {"tiles": lantz_tiles},
-    "li-wang-2016": li_wang.figures(plt),
+    "li-wang-2016": {
+        "fronts": li_wang_fronts,
+        "splitting": li_wang_splitting,
+        "tiles": li_wang_tiles,
+        "winds": li_wang_winds,
+    },
 }
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, Raster, Water, WaveLayer
 
-from .chen import bound, direct_sum
+from .measures import bound, direct_sum, seam_steps
 from .pages import Table
 
 Array = NDArray[np.float64]
@@ -91,14 +91,7 @@ def crests() -> Table:
 
 def tiling() -> Table:
     """Steps of height from sample to sample, inside a patch and over its rim."""
-    elevation = Ocean(PATCH, "double").surface(5.0).displacement[..., 2]
-    inside = np.sqrt(np.mean(np.diff(elevation, axis=1) ** 2))
-    over = np.sqrt(np.mean((elevation[:, 0] - elevation[:, -1]) ** 2))
-    return [
-        ["step from sample to sample", "rms"],
-        ["inside the patch", f"{inside:.3f} m"],
-        ["from one patch to the next", f"{over:.3f} m"],
-    ]
+    return seam_steps(Ocean(PATCH, "double").surface(5.0).displacement[..., 2])
 
 
 TABLES = {"transforms": transforms, "crests": crests, "tiling": tiling}

@@ -3,18 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import dataclasses
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ocean_tweak.core import Ocean, OceanParameters, Raster, WaveLayer, WindFieldLayer, WindKey
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, WindFieldLayer
+from ocean_tweak.core.wave_particles import presets
 from ocean_tweak.core.wave_particles.wind_waves import WindWaves
 
+from .measures import elevation, seam_steps
 from .pages import Table
-
-Array = NDArray[np.float64]
 
 SIDE = 400.0
 
@@ -42,33 +41,20 @@ FRONTS = {front: sea(one_origin(front=front)) for front in ("ARC", "PARALLEL")}
 SPLITTING = {splitting: sea(one_origin(splitting=splitting, split_angle=0.3)) for splitting in (False, True)}
 
 
-def _winds(kind: str) -> Raster:
-    """16 x 16 vectors of figure 9's three fields."""
-    vectors = np.zeros((16, 16, 2))
-    if kind == "the same everywhere":
-        vectors[..., 0] = 10.0
-    elif kind == "apart, to the left and to the right":
-        vectors[:, :8, 0], vectors[:, 8:, 0] = -10.0, 10.0
-    else:
-        vectors[..., 0] = np.linspace(4.0, 14.0, 16)[:, np.newaxis]
-    return Raster(vectors, kind)
-
-
-#: figure 9
+#: figure 9, around 10 m/s
 WINDS = {
     kind: sea(
-        WindFieldLayer(
-            keys=(WindKey(vectors=_winds(kind)),), columns=16, rows=16, particles=5, split_angle=0.1,
-            life=8.0, steepness=0.1, calm=2.0, start_time=-120.0,
+        dataclasses.replace(
+            field(10.0), columns=16, rows=16, particles=5, split_angle=0.1, life=8.0, steepness=0.1, calm=2.0,
+            start_time=-120.0,
         )
     )
-    for kind in ("the same everywhere", "apart, to the left and to the right", "weak below, strong above")
+    for kind, field in {
+        "the same everywhere": presets.uniform,
+        "apart, to the left and to the right": presets.opposed_halves,
+        "weak below, strong above": presets.varying_speed,
+    }.items()
 }  # fmt: skip
-
-
-def elevation(parameters: OceanParameters, time: float) -> Array:
-    """Heights in m."""
-    return Ocean(parameters).surface(time).displacement[..., 2].astype(float)
 
 
 def relations() -> Table:
@@ -112,14 +98,7 @@ def splitting() -> Table:
 
 def seams() -> Table:
     """Figure 7 in numbers: steps from sample to sample within and between patches."""
-    field = elevation(WINDS["the same everywhere"], 60.0)
-    inside = np.sqrt(np.mean(np.diff(field, axis=1) ** 2))
-    over = np.sqrt(np.mean((field[:, 0] - field[:, -1]) ** 2))
-    return [
-        ["step from sample to sample", "rms"],
-        ["inside the patch", f"{inside:.3f} m"],
-        ["from one patch to the next", f"{over:.3f} m"],
-    ]
+    return seam_steps(elevation(WINDS["the same everywhere"], 60.0))
 
 
 def fields() -> Table:
@@ -133,52 +112,3 @@ def fields() -> Table:
 
 
 TABLES = {"relations": relations, "splitting": splitting, "seams": seams, "fields": fields}
-
-
-def figures(plt: Any) -> dict[str, Callable[[], Any]]:
-    """The plots, drawn with matplotlib's pyplot."""
-
-    def side_by_side(seas: dict[str, OceanParameters], time: float) -> Any:
-        figure, all_axes = plt.subplots(1, len(seas), figsize=(3.2 * len(seas), 3.4))
-        for axes, (title, parameters) in zip(all_axes, seas.items(), strict=True):
-            field = elevation(parameters, time)
-            limit = float(np.abs(field).max())
-            axes.imshow(
-                field, cmap="gray", origin="lower", extent=(0, SIDE, 0, SIDE), vmin=-limit, vmax=limit
-            )
-            axes.set_title(title)
-        return figure
-
-    def fronts() -> Any:
-        return side_by_side({"arc (fig. 4b)": FRONTS["ARC"], "parallel (fig. 4d)": FRONTS["PARALLEL"]}, 25.0)
-
-    def split() -> Any:
-        named = {"without splitting (fig. 5a)": SPLITTING[False], "with (fig. 5b)": SPLITTING[True]}
-        return side_by_side(named, 25.0)
-
-    def winds() -> Any:
-        figure, all_axes = plt.subplots(2, 3, figsize=(9, 6.4))
-        for (above, below), (kind, parameters) in zip(all_axes.T, WINDS.items(), strict=True):
-            vectors = parameters.wind_fields[0].keys[0].vectors
-            above.quiver(vectors.values[::2, ::2, 0], vectors.values[::2, ::2, 1], pivot="middle")
-            above.set_title(kind)
-            above.set_aspect("equal")
-            field = elevation(parameters, 60.0)
-            limit = 2.5 * float(np.std(field))
-            below.imshow(
-                field, cmap="gray", origin="lower", extent=(0, SIDE, 0, SIDE), vmin=-limit, vmax=limit
-            )
-        return figure
-
-    def tiles() -> Any:
-        figure, axes = plt.subplots(figsize=(4.2, 4.2))
-        field = elevation(WINDS["the same everywhere"], 60.0)
-        limit = 2.5 * float(np.std(field))
-        axes.imshow(np.tile(field, (2, 2)), cmap="gray", origin="lower", vmin=-limit, vmax=limit)
-        axes.axvline(256, lw=0.4, ls=":")
-        axes.axhline(256, lw=0.4, ls=":")
-        axes.set_title("2 x 2 patches (fig. 7b)")
-        axes.set_axis_off()
-        return figure
-
-    return {"fronts": fronts, "splitting": split, "tiles": tiles, "winds": winds}

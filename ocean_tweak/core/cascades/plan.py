@@ -91,7 +91,7 @@ class _Planner:
     """Finds patches for a sea's spectrum."""
 
     def __init__(self, parameters: OceanParameters) -> None:
-        self._parameters = parameters.replace(patches=())
+        self._parameters = parameters.without_patches
         sea = SeaSpectrum(self._parameters)
         self._longest = 0.0
         if np.isfinite(sea.peak_frequency):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..parameters import OceanParameters, Patch
+from ..plain_data import to_plain
 from ..sea_spectrum import SeaSpectrum
 from ..sea_state import SeaState, together
 from ..statistics import (
@@ -49,7 +50,7 @@ class PatchStatistics:
         """Plain data for JSON."""
         patch = self.patch
         return {
-            **dataclasses.asdict(patch),
+            **to_plain(patch, brief=True),
             "spacing": patch.spacing,
             "samples_a_wave": patch.samples_a_wave or None,
             "longest_waves_a_side": patch.longest_waves_a_side,

@@ -169,12 +169,19 @@ def maps_for(parameters: OceanParameters) -> tuple[str, ...]:
 
 
 def _check_maps(maps: tuple[str, ...], parameters: OceanParameters) -> None:
+    if parameters.is_cascade and parameters.is_masked:
+        raise ParameterError(
+            "joined", parameters.joined,
+            "masks lie over the sea and not over its patches, which repeat: say of how many samples the one "
+            "grid shall be on which the patches are joined, such as 1024",
+        )  # fmt: skip
     for name in maps:
         if name not in maps_for(parameters):
             raise ParameterError(
                 "maps", name,
                 "of several patches do not add up, and their sum does not repeat: bake "
-                f"{', '.join(maps_for(parameters))}, of whose sums normals, cusps and foam are made",
+                f"{', '.join(maps_for(parameters))}, of whose sums normals and cusps are made, or join the "
+                "patches on one grid, by joined=1024",
             )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...core import Ocean
 from ...core.bake import ShotSurfaces
 from ...core.frames import Frame
+from ...core.grid_sea import GridSea
 from ...core.plain_data import to_plain
 from ...core.propagation import propagate
 from ...core.shot import Moment
@@ -34,18 +35,20 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
-            oceans = seas.seas(job.shot.at(frame).parameters)
-            for sequence, ocean in zip(job.sequences(folder, frame), oceans, strict=True):
-                problem = _problem(job, sequence, frame, ocean)
+            grids = seas.seas(job.shot.at(frame).parameters)
+            for sequence, sea in zip(job.sequences(folder, frame), grids, strict=True):
+                problem = _problem(job, sequence, frame, sea)
                 if problem:
                     finding = Finding(frame, State.DAMAGED, problem)
                     break
         yield finding
 
 
-def wave_height(ocean: Ocean, moment: Moment) -> float:
-    """Hs in m of the waves of a moment, from their amplitudes: no surface is made."""
-    state = ocean.initial_state
+def wave_height(sea: GridSea, moment: Moment) -> float:
+    """Hs in m of the waves of a moment: of one sum from their amplitudes, or else of the surface."""
+    if not isinstance(sea, Ocean):
+        return _height_of(sea.surface(moment.time).displacement)
+    state = sea.initial_state
     weight = state.grid.multiplicity[0]
     variance = 0.0
     for columns in state.grid.column_blocks():
@@ -54,7 +57,7 @@ def wave_height(ocean: Ocean, moment: Moment) -> float:
     return 4.0 * float(np.sqrt(variance))
 
 
-def _problem(job: Job, sequence: ExrSequence, frame: Frame, ocean: Ocean) -> str:
+def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: GridSea) -> str:
     moment = job.shot.at(frame)
     samples = sequence.resolution
     for name in job.maps:
@@ -76,15 +79,19 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, ocean: Ocean) -> str
             return f"{path.name} holds values that are not finite"
         if name == "disp":
             bounds = DAMPED_WAVE_HEIGHTS if moment.parameters.trough_damping else WAVE_HEIGHTS
-            expected = wave_height(ocean, moment)
+            expected = wave_height(sea, moment)
             problem = _wrong_height(image, expected, bounds)
             if problem:
                 return f"{path.name} {problem}"
     return ""
 
 
+def _height_of(displacement: NDArray[np.floating]) -> float:
+    return 4.0 * float(np.std(displacement[..., 2], dtype=np.float64))
+
+
 def _wrong_height(displacement: NDArray[np.float32], expected: float, bounds: tuple[float, float]) -> str:
-    height = 4.0 * float(np.std(displacement[..., 2], dtype=np.float64))
+    height = _height_of(displacement)
     low, high = (share * expected for share in bounds)
     if low - _FLAT <= height <= high + _FLAT:
         return ""

@@ -73,11 +73,10 @@ class Package:
         if not self.frames:
             raise ParameterError("frames", "", "must hold at least one frame")
         _check_name(self.name)
-        if self.shot.parameters.is_cascade:
-            raise ParameterError(
-                "patches", f"{len(self.shot.parameters.patches)} entries",
-                "have no layers of their own: write a sea of one patch, or bake the patches as images",
-            )  # fmt: skip
+        parameters = self.shot.parameters
+        if parameters.is_cascade:  # layers have one grid
+            joined = parameters.on_one_grid(parameters.resolution)
+            object.__setattr__(self, "shot", replace(self.shot, parameters=joined))
         self.shot.check(self.frames)
         for resolution in self.resolutions:
             self.at(resolution)

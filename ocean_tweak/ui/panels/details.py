@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import asset_operators, camera_operators, operators, scene_operators
+from .. import asset_operators, camera_operators, material_operators, parameter_operators
 from .drawing import SubPanel, active_settings, split
 
 
@@ -20,7 +20,7 @@ class OCEAN_PT_water(SubPanel, bpy.types.Panel):
         column = layout.column(align=True)
         for name in ("depth", "gravity", "density", "surface_tension"):
             column.prop(settings.water, name)
-        layout.operator(scene_operators.OCEAN_OT_use_water_material.bl_idname, icon="MATERIAL")
+        layout.operator(material_operators.OCEAN_OT_use_water_material.bl_idname, icon="MATERIAL")
 
 
 class OCEAN_PT_shape(SubPanel, bpy.types.Panel):
@@ -107,8 +107,12 @@ class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the buttons."""
         buttons = self.layout.row(align=True)
-        buttons.operator(operators.OCEAN_OT_import_parameters.bl_idname, text="Import", icon="IMPORT")
-        buttons.operator(operators.OCEAN_OT_export_parameters.bl_idname, text="Export", icon="EXPORT")
+        buttons.operator(
+            parameter_operators.OCEAN_OT_import_parameters.bl_idname, text="Import", icon="IMPORT"
+        )
+        buttons.operator(
+            parameter_operators.OCEAN_OT_export_parameters.bl_idname, text="Export", icon="EXPORT"
+        )
         self.layout.operator(asset_operators.OCEAN_OT_install_assets.bl_idname, icon="ASSET_MANAGER")
 
 

@@ -6,7 +6,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core.hero_waves.outlook import hero_wave_outlooks
 from ...scene.settings import LAYER_KINDS
-from .. import layer_operators, wind_operators
+from .. import layer_operators, mask_operators, wind_operators
 from .drawing import SubPanel, active_settings, length_text, message, row, split
 
 
@@ -80,7 +80,10 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
             buttons.operator(move, text="", icon=f"TRIA_{direction}").direction = direction
         if settings.active_layer < len(settings.layers):
             layer = settings.layers[settings.active_layer]
-            _DRAWERS[layer.kind](split(self.layout, animated=True), layer.group, context)
+            layout = split(self.layout, animated=True)
+            _DRAWERS[layer.kind](layout, layer.group, context)
+            if hasattr(layer.group, "mask"):
+                mask_operators.draw_mask(layout, layer.group.mask)
 
 
 def _draw_waves(

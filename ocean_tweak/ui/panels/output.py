@@ -7,7 +7,7 @@ from bpy.app.translations import pgettext_iface as translated
 from ...scene import bake_process, cache_place
 from ...scene.maps import MAPS
 from ...scene.shots import scene_frames
-from .. import bake_operators, operators
+from .. import bake_operators, sequence_operators
 from .drawing import OceanPanel, active_settings, message, progress_bar, row, split
 
 
@@ -35,7 +35,7 @@ class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
         if settings.source == "SEQUENCE":
             _sequence(layout, context)
         choose = "Choose Another" if settings.sequence_maps.disp else "Use Baked Sequence"
-        layout.operator(operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
+        layout.operator(sequence_operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
 
 
 def _bake_label(context: bpy.types.Context) -> str:
@@ -64,7 +64,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         layout.operator(bake_operators.OCEAN_OT_take_cache_along.bl_idname, icon="DUPLICATE")
     layout.prop(settings, "out_of_range")
     if settings.error:
-        layout.operator(operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
+        layout.operator(sequence_operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
 
 
 CLASSES = (OCEAN_PT_bake,)

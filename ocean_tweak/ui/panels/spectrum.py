@@ -12,7 +12,9 @@ _FRACTIONS = 12.0  # height of the picture in units of a button
 
 
 class _OfWaves(SubPanel):
-    """Shown where the active layer is a wave system."""
+    """Inside the spectrum's panel, shown where the active layer is a wave system."""
+
+    bl_parent_id = "OCEAN_PT_spectrum"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -54,12 +56,10 @@ class OCEAN_PT_spreading(_OfWaves, bpy.types.Panel):
 
     bl_idname = "OCEAN_PT_spreading"
     bl_label = "Spreading"
-    bl_parent_id = "OCEAN_PT_spectrum"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the model, and the one that is mixed in."""
-        layout, settings = split(self.layout), active_settings(context)
-        layer = active_waves(settings)
+        layout, layer = split(self.layout), active_waves(active_settings(context))
         _props(layout, layer, "spreading", "swell", "spreading_mix")
         if layer.spreading_mix > 0.0:
             _props(layout, layer, "second_spreading")
@@ -72,12 +72,10 @@ class OCEAN_PT_band(_OfWaves, bpy.types.Panel):
 
     bl_idname = "OCEAN_PT_band"
     bl_label = "Band and Seed"
-    bl_parent_id = "OCEAN_PT_spectrum"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the band's ends and the seed."""
-        layout, settings = split(self.layout), active_settings(context)
-        layer = active_waves(settings)
+        layout, layer = split(self.layout), active_waves(active_settings(context))
         _props(layout, layer, "shortest_wavelength", "longest_wavelength", "band_softness")
         _props(layout, layer, "band_inverted", "seed")
 

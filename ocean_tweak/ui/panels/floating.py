@@ -3,28 +3,24 @@
 
 import bpy
 
-from ..nodes.floating import RIDE_INPUTS
-from ..nodes.modifier_inputs import input_property
-from ..scene import floating
-from . import float_operators
+from ...nodes.floating import RIDE_INPUTS
+from ...nodes.modifier_inputs import input_property
+from ...scene import floating
+from .. import float_operators
+from .drawing import SidebarPanel, split
 
 
-class OCEAN_PT_float(bpy.types.Panel):
+class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
     """How the active object floats."""
 
     bl_idname = "OCEAN_PT_float"
     bl_label = "Float on Ocean"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ocean Tweak"
     bl_order = 100
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the inputs of the active object's carrier, or the button that gives it one."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = split(self.layout)
         item = context.active_object
         carrier = item if item is None or floating.is_carrier(item) else floating.carrier_of(item)
         modifier = floating.carrier_modifier(carrier) if carrier is not None else None

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reading the weights of a vertex group into a mask."""
+
+import bpy
+from bpy.app.translations import pgettext_rpt as translated
+from bpy.props import IntProperty
+
+from ..core import ParameterError
+from ..scene import source_images
+from ..scene.settings import OceanObjectError, settings_of
+from ..scene.vertex_weights import weights_seen
+from .active_ocean import OfActiveOcean, refuse
+
+
+class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
+    """Read the weights of a mesh over or under the water into a mask."""
+
+    bl_idname = "ocean.read_weights"
+    bl_description = (
+        "Read the weights of the mask's mesh as they are seen from above the domain into an image. "
+        "Read again when they were painted or moved"
+    )
+    bl_label = "Read Weights"
+    bl_options = {"REGISTER", "UNDO"}
+
+    patch: IntProperty(
+        name="Patch", default=-1, min=-1, options={"SKIP_SAVE"},
+        description="Number of the patch whose mask it is, from 0; -1 for the active layer's",
+    )  # fmt: skip
+    samples: IntProperty(
+        name="Samples", default=128, min=2, max=1024,
+        description="Samples of the image along each side of the domain",
+    )  # fmt: skip
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read, or change nothing."""
+        group = self._mask(context)
+        if group is None:
+            return refuse(self, "The active layer has no mask: choose waves, a picture or a wind field")
+        try:
+            seen = weights_seen(
+                context.active_object, group.mesh, group.vertex_group, context.scene, self.samples
+            )
+        except (OceanObjectError, ParameterError) as error:
+            return refuse(self, error)
+        # an image of an earlier reading that nobody else shows is replaced
+        before = group.image
+        group.image = source_images.image_of(seen, [] if before is None else [before])
+        if before is not None and before != group.image and before.users == 0:
+            bpy.data.images.remove(before)
+        group.source = "VERTEX_GROUP"
+        covered = 100.0 * float(seen.values.mean())
+        self.report(
+            {"INFO"}, translated("The weights let {share:.0f} % of the waves through").format(share=covered)
+        )
+        return {"FINISHED"}
+
+    def _mask(self, context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
+        settings = settings_of(context.active_object)
+        if self.patch >= 0:
+            return settings.patches[self.patch].mask if self.patch < len(settings.patches) else None
+        if settings.active_layer >= len(settings.layers):
+            return None
+        return getattr(settings.layers[settings.active_layer].group, "mask", None)
+
+
+def draw_mask(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, patch: int = -1) -> None:
+    """Draw a mask's settings.
+
+    patch : number of the patch whose mask it is; -1 for the active layer's
+    """
+    layout.prop(group, "source")
+    if group.source == "NONE":
+        return
+    if group.source == "IMAGE":
+        layout.template_ID(group, "image", new="image.new", open="image.open")
+    elif group.source == "VERTEX_GROUP":
+        layout.prop(group, "mesh")
+        if group.mesh is not None:
+            layout.prop_search(group, "vertex_group", group.mesh, "vertex_groups")
+        text = "Read Again" if group.image is not None else "Read Weights"
+        layout.operator(OCEAN_OT_read_weights.bl_idname, text=text, icon="FILE_REFRESH").patch = patch
+    else:
+        column = layout.column(align=True)
+        column.prop(group, "object")
+        places = column.column(align=True)
+        places.active = group.object is None
+        places.prop(group, "x")
+        places.prop(group, "y")
+        column = layout.column(align=True)
+        column.prop(group, "near")
+        column.prop(group, "far")
+    layout.prop(group, "inverted")
+
+
+CLASSES = (OCEAN_OT_read_weights,)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parameters of the active ocean from files and to files."""
+
+from pathlib import Path
+
+import bpy
+from bpy.app.translations import pgettext_rpt as translated
+from bpy.props import BoolProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from ..core import OceanParameters, ParameterError
+from ..core.parameters import parse_json
+from ..core.shot import Shot
+from ..export.pictures import with_pictures
+from ..scene.settings import OceanObjectError, settings_of
+from ..scene.shots import animate, shot_of
+from ..scene.source_images import open_image
+from ..scene.units import frame_rate, set_frame_rate
+from .active_ocean import OfActiveOcean, refuse
+
+# far beyond any sea with its pictures; keeps a file chosen by mistake from filling the memory
+_LARGEST_JSON = 64_000_000
+
+
+def apply_parameters(context: bpy.types.Context, parameters: OceanParameters, use_frame_rate: bool) -> None:
+    """Give the active ocean a sea, or change nothing. Raises OceanObjectError for one it cannot show."""
+    scene = context.scene
+    before = frame_rate(scene)
+    if use_frame_rate:
+        set_frame_rate(scene, parameters.timing.fps)
+    try:
+        settings_of(context.active_object).from_parameters(parameters, scene)
+    except OceanObjectError:
+        set_frame_rate(scene, before)
+        raise
+
+
+class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper):
+    """Give the active ocean the parameters of a JSON file, and keys where these change during the shot."""
+
+    bl_idname = "ocean.import_parameters"
+    bl_description = (
+        "Give the active ocean the parameters of a JSON file, and keys where these change during the shot"
+    )
+    bl_label = "Import Parameters"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    use_frame_rate: BoolProperty(
+        name="Set Frame Rate",
+        description="Give the scene the file's frame rate, so that every frame shows the file's waves",
+        default=True,
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Read the file and apply it as a whole, or not at all."""
+        try:
+            path = Path(self.filepath)
+            data = with_pictures(OceanParameters, parse_json(_read_text(path)), path.parent, open_image)
+            shot = Shot.from_dict(data)
+            apply_parameters(context, shot.parameters, self.use_frame_rate)
+            animate(context.active_object, context.scene, shot)
+        except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
+            return refuse(self, error)
+        return {"FINISHED"}
+
+
+class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper):
+    """Write the parameters of the active ocean to a JSON file, a sample a frame where they are animated."""
+
+    bl_idname = "ocean.export_parameters"
+    bl_description = (
+        "Write the parameters of the active ocean to a JSON file, a sample a frame where they are animated"
+    )
+    bl_label = "Export Parameters"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Write the file; settings that are no sea are refused."""
+        try:
+            shot = shot_of(context.active_object, context.scene)
+            Path(self.filepath).write_text(shot.to_json() + "\n", encoding="utf-8")
+        except (ParameterError, OSError) as error:
+            return refuse(self, error)
+        self.report({"INFO"}, translated("Parameters written to {file}").format(file=self.filepath))
+        return {"FINISHED"}
+
+
+def _read_text(path: Path) -> str:
+    with path.open("rb") as file:
+        data = file.read(_LARGEST_JSON + 1)
+    if len(data) > _LARGEST_JSON:
+        raise ParameterError("file", str(path), f"is larger than {_LARGEST_JSON // 10**6} MB: not parameters")
+    return data.decode("utf-8")
+
+
+CLASSES = (OCEAN_OT_import_parameters, OCEAN_OT_export_parameters)

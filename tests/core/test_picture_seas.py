@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures as layers of a sea: beside wave layers, in its statistics, its foam and its shots."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core.errors import ParameterError
+from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.noise_synthesis.parameters import PictureLayer
+from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from tests.core.pictures import L, drawing, single_wave
+
+FLAT = WaveLayer(muted=True)
+
+
+def sea(*pictures: PictureLayer, **changes: object) -> OceanParameters:
+    given = {
+        "resolution": 64,
+        "domain_size": L,
+        "seed": 3,
+        "layers": (FLAT,),
+        "pictures": pictures,
+        **changes,
+    }
+    return OceanParameters(**given)
+
+
+def test_a_sea_of_pictures_alone() -> None:
+    fields = Ocean(sea(PictureLayer(wind_speed=7.0))).surface(1.0, OUTPUTS)
+    assert 0.5 < 4 * fields.displacement[..., 2].std() < 2.0
+    assert Ocean(sea()).surface(1.0).displacement.max() == 0.0
+
+
+def test_pictures_add_to_the_wave_layers() -> None:
+    wind = WaveLayer(wind_speed=8.0)
+    pictures = (
+        PictureLayer(wind_speed=6.0),
+        PictureLayer(filter="FRACTAL", animation="TRANSLATION", wind_direction=0.5),
+        PictureLayer(filter="FRACTAL", animation="DOMINANT_BAND", fractal_dimension=3.0),
+    )
+    together = sea(*pictures, layers=(wind,))
+    alone = [together.replace(pictures=()), *(
+        together.replace(layers=(FLAT,), pictures=tuple(replace(p, muted=i != one) for i, p in
+        enumerate(together.pictures))) for one in range(3)
+    )]  # fmt: skip
+    for output in ("displacement", "velocity", "slope"):
+        total, *parts = (
+            getattr(Ocean(p, "double").surface(2.3, (output,)), output) for p in (together, *alone)
+        )
+        np.testing.assert_allclose(total, sum(parts), atol=1e-11)
+
+
+def test_several_layers_have_noise_of_their_own() -> None:
+    twins = sea(PictureLayer(wind_speed=7.0), PictureLayer(wind_speed=7.0))
+    assert [layer.id for layer in twins.pictures] == [0, 1]
+    first, second = (
+        Ocean(twins.replace(pictures=(layer,))).surface(0.0).displacement[..., 2] for layer in twins.pictures
+    )
+    assert abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.3
+    same = sea(PictureLayer(wind_speed=7.0, seed=5), seed=99)
+    again = sea(PictureLayer(wind_speed=7.0, seed=5, id=4), seed=1)
+    np.testing.assert_array_equal(*(Ocean(p).surface(0.0).displacement for p in (same, again)))
+
+
+def test_json_holds_the_picture() -> None:
+    parameters = sea(PictureLayer(picture=Raster(drawing(9, 7), "ring.png"), filter="FRACTAL"))
+    assert OceanParameters.from_json(parameters.to_json()) == parameters
+    assert parameters.to_dict(brief=True)["pictures"][0]["picture"]["name"] == "ring.png"
+    with pytest.raises(ParameterError, match=r"pictures\.0\.filter = 'FRACTAL2'"):
+        OceanParameters.from_dict({"pictures": [{"filter": "FRACTAL2"}]})
+    with pytest.raises(ParameterError, match=r"pictures\.1\.id = 3: is the id of another"):
+        sea(PictureLayer(id=3), PictureLayer(id=3))
+    with pytest.raises(ParameterError, match=r"pictures\.0\.translation_speed"):
+        sea(PictureLayer(animation="TRANSLATION"), loop_duration=10)
+
+
+def test_statistics_count_pictures() -> None:
+    """Hs of a layer and two pictures is the root of the sum of squares; the seed's is what the field has."""
+    ring = PictureLayer(picture=Raster(drawing()), filter="FRACTAL", significant_wave_height=2.0)
+    wind = WaveLayer(definition="SEA_STATE", significant_wave_height=1.5, peak_period=4.0)
+    noise = PictureLayer(wind_speed=7.0)
+    found = Ocean(sea(ring, noise, layers=(wind,))).statistics()
+    expected = np.sqrt(2.0**2 + 1.5**2 + (0.02460 * 49) ** 2)
+    assert found.significant_wave_height == pytest.approx(expected, rel=2e-3)
+    for layer in (ring, replace(ring, animation="TRANSLATION"), replace(noise, animation="DOMINANT_BAND")):
+        parameters = sea(layer, layers=(wind,))
+        ocean = Ocean(parameters, "double")
+        moments = [ocean.surface(t).displacement[..., 2].var() for t in np.arange(40) * 7.0]
+        assert np.mean(moments) == pytest.approx(ocean.statistics().seed.m0, rel=0.1)
+
+
+def test_periods_are_those_that_a_place_sees() -> None:
+    """Waves of 20 m that move at 4 m/s pass every 5 s, whatever gravity would have them do."""
+    moving = single_wave(0, 10, 64, animation="TRANSLATION", translation_speed=4.0)
+    found = Ocean(sea(moving)).statistics()
+    assert found.peak_wavelength == pytest.approx(20.0, rel=0.02)
+    assert found.seed.peak_period == pytest.approx(5.0)
+    assert found.seed.zero_crossing_period == pytest.approx(5.0)
+    assert found.seed.mean_direction == pytest.approx(0.0)
+    still = Ocean(sea(replace(moving, translation_speed=0.0))).statistics()
+    assert still.to_dict()["seed"]["peak_period"] is None
+    assert still.warnings == ()
+
+
+def test_warnings_do_not_misfire() -> None:
+    """A picture has its height in every seed and patch; noise with the wind's height does not."""
+    picture = PictureLayer(picture=Raster(drawing(32, 32)), filter="FRACTAL")
+    assert Ocean(sea(picture)).statistics().warnings == ()
+    (warning,) = Ocean(sea(PictureLayer(wind_speed=15.0, noise_resolution=64))).statistics().warnings
+    assert "holds only 0.93 of the longest waves (216 m)" in warning
+    (warning,) = Ocean(sea()).statistics().warnings
+    assert "flat" in warning
+    smooth = PictureLayer(
+        picture=Raster(np.tile(np.sin(np.arange(64) * np.pi / 32), (64, 1))), wind_speed=0.5
+    )
+    warnings = Ocean(sea(smooth)).statistics().warnings
+    assert any("Picture 0: its filter leaves nothing" in warning for warning in warnings)
+
+
+def test_loop_speeds_are_told() -> None:
+    layer = PictureLayer(filter="FRACTAL", animation="DOMINANT_BAND", dominant_rate=1.0, surrounding_rate=1.0)
+    found = Ocean(sea(layer, loop_duration=8)).statistics()
+    assert found.loop_speed_change == pytest.approx(1 - np.pi / 4)  # one turn in 8 s
+
+
+def test_foam_follows_the_strains_of_pictures() -> None:
+    """Noise through the physical filter is a wind sea: its foam covers what that wind's should."""
+    parameters = sea(PictureLayer(wind_speed=14.0), domain_size=600.0)
+    foam = Ocean(parameters).surface(20.0, ("foam",)).foam
+    assert 0.0 < np.mean(foam > 0.5) < 0.2
+    assert np.all(Ocean(sea(PictureLayer(filter="FRACTAL"))).surface(3.0, ("foam",)).foam == 0.0)
+
+
+def test_finest_waves_become_roughness() -> None:
+    """What a coarse grid leaves out, a fine one has as slopes."""
+    noise = PictureLayer(wind_speed=7.0, noise_resolution=256)
+    coarse, fine = sea(noise), sea(noise, resolution=256)
+    slopes = Ocean(fine, "double").surface(0.0, ("slope",)).slope
+    assert unresolved_slope_variance(fine) == pytest.approx(0.0, abs=1e-9)
+    total = total_slope_variance(fine)
+    assert np.mean(np.sum(slopes**2, axis=-1)) == pytest.approx(total, rel=0.1)
+    resolved = Ocean(coarse).statistics().resolved.mean_square_slope
+    assert unresolved_slope_variance(coarse) == pytest.approx(total - resolved, rel=1e-6)
+
+
+def test_a_shot_keeps_its_pictures() -> None:
+    """What is animated moves, the picture stays as it is: the same object, not its numbers read anew."""
+    parameters = sea(PictureLayer(picture=Raster(drawing()), filter="FRACTAL"), layers=(WaveLayer(),))
+    shot = Shot(parameters, Animation(1, (("layers.0.gain", (0.0, 1.0)),)))
+    moved = shot.at(2).parameters
+    assert moved.layers[0].gain == 1.0
+    assert moved.pictures[0].picture is parameters.pictures[0].picture
+    with pytest.raises(ParameterError, match=r"pictures\.0\.gain.*each keeps its waves"):
+        Animation(1, (("pictures.0.gain", (0.0, 1.0)),))
