@@ -8,6 +8,8 @@ spacing, turned, and multiplied by its weight on the ocean's mesh.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import bpy
 
 from .averaged import AVERAGED
@@ -23,11 +25,12 @@ _INPUTS = (
     Plug("Geometry", "NodeSocketGeometry", None, "The grid with the sums of the patches before"),
     OCEAN_INPUT,
     Plug("Patch", "NodeSocketObject", None, "One patch; without one nothing is added"),
-    Plug("Surface", "NodeSocketGeometry", None, "The ocean's mesh, which has the weights"),
-    Plug("Corner", "NodeSocketVector", None, "Its first vertex at rest, where the grid has its origin"),
-    Plug("Spacing", "NodeSocketVector", None, "Between its vertices"),
-    Plug("Columns", "NodeSocketInt", 2, "Its vertices along x"),
-    Plug("Rows", "NodeSocketInt", 2, "Its vertices along y"),
+    Plug(
+        "Corner", "NodeSocketVector", None, "Its mesh's first vertex at rest, where the grid has its origin"
+    ),
+    Plug("Spacing", "NodeSocketVector", None, "Between the vertices of its mesh"),
+    Plug("Columns", "NodeSocketInt", 2, "Its mesh's vertices along x"),
+    Plug("Rows", "NodeSocketInt", 2, "Its mesh's vertices along y"),
     Plug("Weight", "NodeSocketString", "", "Attribute of the ocean's mesh that the patch is multiplied by"),
     Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     Plug("Fade", "NodeSocketBool", True, "Average by the size of the cells"),
@@ -39,7 +42,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, _INPUTS, _OUTPUTS)
     ocean, patch = Spaces(build, build.given("Ocean")), Spaces(build, build.given("Patch"))
     facts = build.group(node_group(GRID_FACTS), {"Geometry": patch.mesh})
-    before = _sums_before(build)
+    before = _sums_before(build, ocean.mesh)
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     in_ocean = build.vector("ADD", position, build.given("Corner"))
     in_patch = patch.point_of_ocean(ocean.point_of_asker(in_ocean))
@@ -62,7 +65,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish(build.switch("GEOMETRY", is_there, build.given("Geometry"), grid))
 
 
-def _sums_before(build: Builder) -> bpy.types.Node:
+def _sums_before(build: Builder, mesh: Socket) -> bpy.types.Node:
     """Keeps the sums and the weight, whose names are used anew."""
     node = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
     values = {name: output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in CARRIED}
@@ -70,11 +73,11 @@ def _sums_before(build: Builder) -> bpy.types.Node:
         node.capture_items.new("VECTOR", name)
         build.tree.links.new(value, node.inputs[name])
     node.capture_items.new("FLOAT", "Weight")
-    build.tree.links.new(_weight(build), node.inputs["Weight"])
+    build.tree.links.new(_weight(build, mesh), node.inputs["Weight"])
     return node
 
 
-def _weight(build: Builder) -> Socket:
+def _weight(build: Builder, mesh: Socket) -> Socket:
     """What the ocean's mesh says at the vertex, 1 where it says nothing."""
     attribute = build.add("GeometryNodeInputNamedAttribute", data_type="FLOAT")
     build.tree.links.new(build.given("Weight"), attribute.inputs["Name"])
@@ -82,15 +85,17 @@ def _weight(build: Builder) -> Socket:
     inputs = {
         "Value": output(attribute, "Attribute"),
         "Place": build.vector("DIVIDE", position, build.given("Spacing")),
-        "Geometry": build.given("Surface"),
+        "Geometry": mesh,
         **{name: build.given(name) for name in ("Columns", "Rows")},
     }
     there, _, _ = coordinates(build, output(build.group(node_group(CELL), inputs), "Value"))
-    known = sample_index(build, build.given("Surface"), output(attribute, "Exists"), 0, "BOOLEAN")
+    known = sample_index(build, mesh, output(attribute, "Exists"), 0, "BOOLEAN")
     return build.switch("FLOAT", known, 1.0, there)
 
 
-def _turned(build: Builder, turned: object, weight: Socket) -> dict[str, Socket]:
+def _turned(
+    build: Builder, turned: Callable[[Socket | tuple[float, float, float]], Socket], weight: Socket
+) -> dict[str, Socket]:
     """What was read, in the ocean's axes and multiplied: vectors R v, strain R G Rᵀ."""
 
     def told(name: str) -> Socket:

@@ -172,8 +172,8 @@ def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
     facts = {name: output(sea.facts, name) for name in ("Columns", "Rows", "Spacing")}
     shared = {**facts, "Size": size, "Fade": build.given("Fade")}
     position = output(build.add("GeometryNodeInputPosition"), "Position")
-    mesh = output(sea.facts, "Geometry")
-    own = {"Surface": ocean_carried(build, mesh, is_one), "Place": position, "Moving": is_one}
+    mesh = ocean_carried(build, output(sea.facts, "Geometry"), is_one)
+    own = {"Surface": mesh, "Place": position, "Moving": is_one}
     grid = output(build.group(node_group(AVERAGED), {"Geometry": grid, **shared, **own}), "Geometry")
     foam, cusp, _ = coordinates(build, _told(build, OTHERS))
     for name, value in ((FOAM, foam), (CUSP, cusp)):
@@ -184,7 +184,7 @@ def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
     grid = build.store(grid, SLOPES, combined(build, x, y, lost), "FLOAT_VECTOR")
     # a mesh's normals are of its present shape already
     grid = build.store(grid, OTHERS, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
-    whole = {**shared, "Ocean": build.given("Ocean"), "Surface": mesh, "Corner": sea.corner}
+    whole = {**shared, "Ocean": build.given("Ocean"), "Corner": sea.corner}
     for number, name in enumerate(PATCH_INPUTS, start=1):
         inputs = {**whole, "Patch": build.given(name), "Weight": WEIGHT.format(number)}
         grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
