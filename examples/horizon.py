@@ -23,7 +23,7 @@ from gallery import render, save_jpeg, set_quality
 
 PARAMETERS = Path(__file__).resolve().with_suffix(".json")
 #: height over the sea at rest in m, and degrees below the horizon; None for what the scene comes with
-VIEWS = {"2m": None, "300m": (300.0, 13.0)}
+VIEWS = {"2m": None, "300m": (300.0, 9.0)}
 
 
 def main() -> None:

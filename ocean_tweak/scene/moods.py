@@ -94,7 +94,7 @@ MOODS = {
     "HORIZON": Mood(
         "To the Horizon", "9 m/s and a swell, from ripples before the camera to the horizon",
         waves=partial(_preset_sea, "horizon"), water="OCEANIC",
-        sun=_degrees(40.0), sun_elevation=_degrees(24.0), clouds=0.5, overcast=0.0, visibility=40e3,
+        sun=_degrees(40.0), sun_elevation=_degrees(24.0), clouds=0.5, overcast=0.0, visibility=150e3,
         eye=0.0, least_eye=2.0, crest_distance=14.0, tilt=_degrees(4.0), rings=0,
     ),
 }  # fmt: skip
