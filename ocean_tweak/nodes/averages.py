@@ -15,14 +15,16 @@ import bpy
 
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, coordinates, named_attribute
-from .names import CUSP, DISPLACEMENT, FOAM, VELOCITY
+from .names import CUSP, DISPLACEMENT, FOAM, SLOPE, STRAIN, VELOCITY
 from .surface import CELL
 from .versioned import GroupKind, node_group
 
-#: slopes along x and y and the sum of their squares; foam and cusp: three numbers are read at once
-SLOPES, WHITE = "ocean_tweak_slopes", "ocean_tweak_white"
+#: slopes along x and y and the sum of their squares; foam and cusp of an ocean, strain of a patch: three
+#: numbers are read at once
+SLOPES, OTHERS = "ocean_tweak_slopes", "ocean_tweak_others"
 #: what is averaged
-CARRIED = (DISPLACEMENT, VELOCITY, SLOPES, WHITE)
+MOVING = (DISPLACEMENT, VELOCITY, SLOPES)
+CARRIED = (*MOVING, OTHERS)
 #: how far up a normal at least points, so that a fold does not count for a whole sea
 _LEAST_UPWARDS = 0.2
 
@@ -31,10 +33,11 @@ _MESH = (
     Plug("Columns", "NodeSocketInt", 2, "Vertices along x"),
     Plug("Rows", "NodeSocketInt", 2, "Vertices along y"),
 )
+IS_MOVING = Plug("Moving", "NodeSocketBool", True, "Displacement, velocity and slopes are wanted too")
 
 
-def with_carried(build: Builder, ocean: Socket) -> Socket:
-    """An ocean's mesh with all that is averaged."""
+def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
+    """An ocean's mesh with what is averaged: foam and cusp, and where that is wanted how it moves."""
     normal = output(build.add("GeometryNodeInputNormal"), "Normal")
     x, y, z = coordinates(build, normal)
     up = build.math("MAXIMUM", z, _LEAST_UPWARDS)
@@ -46,7 +49,19 @@ def with_carried(build: Builder, ocean: Socket) -> Socket:
     )  # fmt: skip
     sloped = build.store(ocean, SLOPES, output(of_point, "Value"), "FLOAT_VECTOR")
     white = (output(named_attribute(build, name, "FLOAT"), "Attribute") for name in (FOAM, CUSP))
-    return build.store(sloped, WHITE, combined(build, *white), "FLOAT_VECTOR")
+    either = build.switch("GEOMETRY", moving, ocean, sloped)
+    return build.store(either, OTHERS, combined(build, *white), "FLOAT_VECTOR")
+
+
+def patch_carried(build: Builder, patch: Socket) -> Socket:
+    """The mesh of one patch of a sea with what is averaged: how it moves, and its strain."""
+    slope, strain = (
+        output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in (SLOPE, STRAIN)
+    )
+    x, y, _ = coordinates(build, slope)
+    squares = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    sloped = build.store(patch, SLOPES, combined(build, x, y, squares), "FLOAT_VECTOR")
+    return build.store(sloped, OTHERS, strain, "FLOAT_VECTOR")
 
 
 def read(build: Builder, mesh: bpy.types.Node | dict[str, Socket], name: str, place: Socket) -> Socket:
@@ -62,7 +77,7 @@ def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, _MESH, _MESH)
+    build = Builder(tree, (*_MESH, IS_MOVING), _MESH)
     given = {plug.name: build.given(plug.name) for plug in _MESH}
     counts = [
         build.integer("ADD", build.integer("DIVIDE_FLOOR", given[name], 2), 1) for name in ("Columns", "Rows")
@@ -75,13 +90,15 @@ def _build(tree: bpy.types.NodeTree) -> None:
     ratio = build.vector("DIVIDE", cells(build, given["Columns"], given["Rows"]), cells(build, *counts))
     middle = build.vector("MULTIPLY", build.vector("ADD", number, (0.5, 0.5, 0.0)), ratio)
     place = build.vector("SUBTRACT", middle, (0.5, 0.5, 0.0))
-    averages = output(grid, "Mesh")
-    for name in CARRIED:
-        averages = build.store(averages, name, read(build, given, name, place), "FLOAT_VECTOR")
+    averages = moving = output(grid, "Mesh")
+    for name in MOVING:
+        moving = build.store(moving, name, read(build, given, name, place), "FLOAT_VECTOR")
+    averages = build.switch("GEOMETRY", build.given("Moving"), averages, moving)
+    averages = build.store(averages, OTHERS, read(build, given, OTHERS, place), "FLOAT_VECTOR")
     build.finish_with({"Geometry": averages, "Columns": counts[0], "Rows": counts[1]})
 
 
-AVERAGES = GroupKind("Ocean Tweak Averages", 1, _build)
+AVERAGES = GroupKind("Ocean Tweak Averages", 2, _build)
 
 
 def halvings(build: Builder, columns: Socket, rows: Socket) -> Socket:

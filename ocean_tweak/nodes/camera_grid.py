@@ -39,6 +39,19 @@ OUTPUTS = (
 )
 
 
+def finest_spacing(wanted: float, budget: int, reach: float, half: int) -> float:
+    """The wanted size of the smallest cells, or a larger one with which levels keep enough cells.
+
+    budget : vertices
+    reach : how far the grid goes
+    half : cells that a level keeps from its middle to its edge
+    """
+    # n levels of m cells have (3n + 1)m² + (6 - 2n)m + 1 vertices
+    levels = (budget - 1 - half**2 - 6 * half) // (3 * half**2 - 2 * half)
+    levels = min(max(levels, 1), MOST_LEVELS)
+    return max(wanted, reach / ((half - 1) * 2.0 ** (levels - 1)))
+
+
 class _Level(NamedTuple):
     """Of a vertex or a face: in which level, and where the levels' middles lie in its cells.
 
@@ -75,9 +88,18 @@ def _build(tree: bpy.types.NodeTree) -> None:
     kept = build.change(
         "GeometryNodeDeleteGeometry", placed, {"Selection": _left_out(build, spacing, side)}, domain="FACE"
     )
-    inputs = {"Selection": output(captured, "Seam"), "Distance": build.math("MULTIPLY", spacing, 0.01)}
+    reached = _reach(build, spacing, levels)
+    inputs = {"Selection": output(captured, "Seam"), "Distance": _same(build, spacing, reached)}
     whole = build.change("GeometryNodeMergeByDistance", kept, inputs)
-    build.finish_with({"Geometry": whole, "Half": half, "Reached": _reach(build, spacing, levels)})
+    build.finish_with({"Geometry": whole, "Half": half, "Reached": reached})
+
+
+def _same(build: Builder, spacing: Socket, reached: Socket) -> Socket:
+    """How near to each other vertices are one: Blender finds none nearer than a float's last digit there."""
+    center = alone(build, "LENGTH", build.given("Center"))
+    farthest = build.math("ADD", center, build.math("MULTIPLY", reached, 2.0))
+    digit = build.math("MULTIPLY", farthest, 2.0**-23)
+    return build.math("MAXIMUM", build.math("MULTIPLY", spacing, 0.01), digit)
 
 
 def _levels(build: Builder, spacing: Socket) -> Socket:
@@ -199,4 +221,4 @@ def _in_strip(
     return column, row, _level(build, spacing, number)
 
 
-CAMERA_GRID = GroupKind("Ocean Tweak Camera Grid", 1, _build)
+CAMERA_GRID = GroupKind("Ocean Tweak Camera Grid", 2, _build)

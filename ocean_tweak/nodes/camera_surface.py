@@ -13,13 +13,24 @@ from typing import NamedTuple
 
 import bpy
 
-from . import averages
-from .averages import AVERAGES, CARRIED, SLOPES, WHITE, read, with_carried
+from ..core.cascades.patch import MOST_PATCHES
+from .averaged import AVERAGED
+from .averages import OTHERS, SLOPES, ocean_carried
 from .building import Builder, Plug, Socket, output
 from .camera_grid import CAMERA_GRID
+from .camera_patch import CAMERA_PATCH
 from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
 from .frame_warnings import joined_text
-from .names import CUSP, DISPLACEMENT, FOAM, SLOPE_VARIANCE, TEXTURE_COORDINATES, VELOCITY
+from .names import (
+    CUSP,
+    DISPLACEMENT,
+    FOAM,
+    SHORTEST_WAVE,
+    SLOPE_VARIANCE,
+    TEXTURE_COORDINATES,
+    VELOCITY,
+    WEIGHT,
+)
 from .sample import OCEAN_INPUT, Spaces
 from .surface import GRID_FACTS
 from .versioned import GroupKind, node_group
@@ -27,8 +38,10 @@ from .versioned import GroupKind, node_group
 EARTH_RADIUS = 6_371_000.0  # m
 #: a camera lower than this part of the radius, 2 m, or under water sees as far as from there
 _LEAST_HEIGHT = 2.0 / EARTH_RADIUS
-#: cells of the lattice in a cell of the averages: what is left is at least four cells long
-_LATTICE_CELLS = 2.0
+#: cells of the lattice in the shortest wave that is left
+SHORTEST_CELLS = 4.0
+#: of the sea's patches, where it has several
+PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, MOST_PATCHES + 1))
 
 INPUTS = (
     OCEAN_INPUT,
@@ -41,6 +54,15 @@ INPUTS = (
     Plug("Planet Radius", "NodeSocketFloat", EARTH_RADIUS, "Of that globe, in Blender units"),
     Plug("Fade", "NodeSocketBool", True, "Let waves too short for the grid become roughness"),
     Plug("Material", "NodeSocketMaterial", None, "Of the surface"),
+    *(
+        Plug(
+            name,
+            "NodeSocketObject",
+            None,
+            "Mesh of one patch of a sea of several; none shows the ocean's own",
+        )
+        for name in PATCH_INPUTS
+    ),
 )
 
 
@@ -49,13 +71,11 @@ class _Sea(NamedTuple):
 
     facts : of its mesh
     corner : its first vertex at rest
-    period : its size along x and y, and 1
     eye : the camera, from the corner
     """
 
     facts: bpy.types.Node
     corner: Socket
-    period: Socket
     eye: Socket
 
 
@@ -69,8 +89,12 @@ def _build(tree: bpy.types.NodeTree) -> None:
     flat = build.change("GeometryNodeSetShadeSmooth", output(grid, "Geometry"))
     away = build.vector("SUBTRACT", output(build.add("GeometryNodeInputPosition"), "Position"), sea.eye)
     laid = build.store(flat, TEXTURE_COORDINATES, _texture_coordinates(build, sea), "FLOAT2", "CORNER")
-    moving = _averaged(build, laid, sea, _level(build, sea, grid, away))
-    shown = _finished(build, moving, spaces, sea, away)
+    sized = build.add("GeometryNodeCaptureAttribute", {"Geometry": laid}, domain="POINT")
+    sized.capture_items.new("FLOAT", "Size")
+    build.tree.links.new(_size(build, grid, away), sized.inputs["Size"])
+    size = sized.outputs["Size"]
+    moving = _summed(build, output(sized, "Geometry"), sea, size)
+    shown = _finished(build, moving, spaces, sea, away, size)
     painted = build.change("GeometryNodeSetMaterial", shown, {"Material": build.given("Material")})
     warns = _warnings(build, sea, reach, output(grid, "Reached"))
     # nobody asks a group for its warnings unless something hangs on them
@@ -80,10 +104,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
 def _sea(build: Builder, spaces: Spaces) -> _Sea:
     facts = build.group(node_group(GRID_FACTS), {"Geometry": spaces.mesh})
     corner = output(facts, "Corner")
-    counts = averages.cells(build, output(facts, "Columns"), output(facts, "Rows"))
-    period = build.vector("MULTIPLY", output(facts, "Spacing"), counts)
     eye = build.vector("SUBTRACT", spaces.point_of_ocean(_camera(build)), corner)
-    return _Sea(facts, corner, period, eye)
+    return _Sea(facts, corner, eye)
 
 
 def _camera(build: Builder) -> Socket:
@@ -127,8 +149,8 @@ def _texture_coordinates(build: Builder, sea: _Sea) -> Socket:
     return output(of_point, "Value")
 
 
-def _level(build: Builder, sea: _Sea, grid: bpy.types.Node, away: Socket) -> Socket:
-    """How often the surface is halved where a vertex is: a fraction, 0 where the lattice is fine enough.
+def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
+    """Of the lattice's cells where a vertex is, without steps.
 
     A level of the lattice begins where the distance is half of its m cells, less half a cell: so
     2 distance/(m - 1) is never less than the cells' size, and has no step where the levels meet.
@@ -136,101 +158,66 @@ def _level(build: Builder, sea: _Sea, grid: bpy.types.Node, away: Socket) -> Soc
     x, y, _ = coordinates(build, alone(build, "ABSOLUTE", away))
     cells = build.integer("SUBTRACT", output(grid, "Half"), 1)
     size = build.math("DIVIDE", build.math("MULTIPLY", build.math("MAXIMUM", x, y), 2.0), cells)
-    size = build.math("MAXIMUM", size, build.given("Finest Spacing"))
-    step_x, step_y, _ = coordinates(build, output(sea.facts, "Spacing"))
-    ratio = build.math("DIVIDE", size, build.math("MINIMUM", step_x, step_y))
-    level = build.math("LOGARITHM", build.math("MULTIPLY", ratio, _LATTICE_CELLS), 2.0)
-    most = _most_levels(build, sea)
-    held = build.math("MINIMUM", build.math("MAXIMUM", level, 0.0), most)
-    return build.switch("FLOAT", build.given("Fade"), 0.0, held)
+    return build.math("MAXIMUM", size, build.given("Finest Spacing"))
 
 
-def _most_levels(build: Builder, sea: _Sea) -> Socket:
-    return averages.halvings(build, *(output(sea.facts, name) for name in ("Columns", "Rows")))
+def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
+    """The grid with what it shows: foam and cusp of the ocean's mesh, the rest of the patches or of the mesh.
 
-
-def _averaged(build: Builder, grid: Socket, sea: _Sea, level: Socket) -> Socket:
-    """The grid with what it shows of the ocean: between two averages where the level is a fraction."""
+    Under the names of what is averaged are, in the ocean's axes, displacement, velocity, slopes with the
+    variance that they lack, and strain.
+    """
+    info = build.add("GeometryNodeObjectInfo", {"Object": build.given(PATCH_INPUTS[0])})
+    is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
+    facts = {name: output(sea.facts, name) for name in ("Columns", "Rows", "Spacing")}
+    shared = {**facts, "Size": size, "Fade": build.given("Fade")}
     position = output(build.add("GeometryNodeInputPosition"), "Position")
-    periods = alone(build, "FRACTION", build.vector("DIVIDE", position, sea.period))
-    once = build.add("GeometryNodeCaptureAttribute", {"Geometry": grid}, domain="POINT")
-    for kind, name, value in (("FLOAT", "Level", level), ("VECTOR", "Periods", periods)):
-        once.capture_items.new(kind, name)
-        build.tree.links.new(value, once.inputs[name])
-    end = build.add("GeometryNodeRepeatOutput")
-    end.repeat_items.clear()
-    counts = [output(sea.facts, name) for name in ("Columns", "Rows")]
-    before = {"Geometry": with_carried(build, output(sea.facts, "Geometry"))}
-    before |= dict(zip(("Columns", "Rows"), counts, strict=True))
-    kinds = {"Geometry": "GEOMETRY", "Columns": "INT", "Rows": "INT", "Grid": "GEOMETRY"}
-    for name, kind in kinds.items():
-        end.repeat_items.new(kind, name)
-    begin = build.add("GeometryNodeRepeatInput")
-    begin.pair_with_output(end)
-    for name, value in {**before, "Grid": output(once, "Geometry")}.items():
-        connect(build, begin.inputs[name], value)
-    fading = build.integer("ADD", whole_number(build, _most_levels(build, sea), "ROUND"), 1)
-    connect(build, begin.inputs["Iterations"], build.switch("INT", build.given("Fade"), 1, fading))
-
-    mesh = {name: begin.outputs[name] for name in before}
-    off = build.math(
-        "ABSOLUTE", build.math("SUBTRACT", once.outputs["Level"], begin.outputs["Iteration"]), None
-    )
-    share = build.math("SUBTRACT", 1.0, off)
-    place = _place(build, once.outputs["Periods"], counts, mesh)
-    part = begin.outputs["Grid"]
-    for name in CARRIED:
-        told = output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
-        more = build.scaled(read(build, mesh, name, place), share)
-        inputs = {
-            "Name": name, "Value": build.vector("ADD", told, more),
-            "Selection": build.compare("GREATER_THAN", share, 0.0, "FLOAT"),
-        }  # fmt: skip
-        part = build.change(
-            "GeometryNodeStoreNamedAttribute", part, inputs, data_type="FLOAT_VECTOR", domain="POINT"
-        )
-    after = build.group(node_group(AVERAGES), mesh)
-    for name in before:
-        connect(build, end.inputs[name], output(after, name))
-    connect(build, end.inputs["Grid"], part)
-    return end.outputs["Grid"]
-
-
-def _place(build: Builder, periods: Socket, counts: list[Socket], mesh: dict[str, Socket]) -> Socket:
-    """A vertex in cells of a mesh of averages, whose samples stand for places half a cell in."""
-    half = build.vector("DIVIDE", (0.5, 0.5, 0.0), averages.cells(build, *counts))
-    number = averages.cells(build, mesh["Columns"], mesh["Rows"])
-    middle = build.vector("MULTIPLY", build.vector("ADD", periods, half), number)
-    return build.vector("SUBTRACT", middle, (0.5, 0.5, 0.0))
-
-
-def _finished(build: Builder, grid: Socket, spaces: Spaces, sea: _Sea, away: Socket) -> Socket:
-    """The grid with its attributes and normals, moved to where the water is."""
-
-    def told(name: str) -> Socket:
-        return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
-
-    x, y, squares = coordinates(build, told(SLOPES))
+    mesh = ocean_carried(build, output(sea.facts, "Geometry"), is_one)
+    own = {"Surface": mesh, "Place": position, "Moving": is_one}
+    grid = output(build.group(node_group(AVERAGED), {"Geometry": grid, **shared, **own}), "Geometry")
+    foam, cusp, _ = coordinates(build, _told(build, OTHERS))
+    for name, value in ((FOAM, foam), (CUSP, cusp)):
+        grid = build.store(grid, name, value, "FLOAT")
+    x, y, squares = coordinates(build, _told(build, SLOPES))
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
     lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
+    grid = build.store(grid, SLOPES, combined(build, x, y, lost), "FLOAT_VECTOR")
+    # a mesh's normals are of its present shape already
+    grid = build.store(grid, OTHERS, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
+    whole = {**shared, "Ocean": build.given("Ocean"), "Corner": sea.corner}
+    for number, name in enumerate(PATCH_INPUTS, start=1):
+        inputs = {**whole, "Patch": build.given(name), "Weight": WEIGHT.format(number)}
+        grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
+    return grid
+
+
+def _told(build: Builder, name: str) -> Socket:
+    return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
+
+
+def _finished(build: Builder, grid: Socket, spaces: Spaces, sea: _Sea, away: Socket, size: Socket) -> Socket:
+    """The grid with its attributes and normals, moved to where the water is."""
+    x, y, lost = coordinates(build, _told(build, SLOPES))
     lost = build.switch("FLOAT", build.given("Fade"), 0.0, lost)
-    foam, cusp, _ = coordinates(build, told(WHITE))
-    for name, value in ((SLOPE_VARIANCE, lost), (FOAM, foam), (CUSP, cusp)):
+    shortest = build.math("MULTIPLY", size, SHORTEST_CELLS)
+    shortest = build.switch("FLOAT", build.given("Fade"), 0.0, shortest)
+    for name, value in ((SLOPE_VARIANCE, lost), (SHORTEST_WAVE, shortest)):
         grid = build.store(grid, name, value, "FLOAT")
     drop, tilt = _curved(build, away)
     tilt_x, tilt_y, _ = coordinates(build, tilt)
+    xx, yy, shear = coordinates(build, _told(build, OTHERS))
     tangents = (
-        combined(build, 1.0, 0.0, build.math("ADD", x, tilt_x)),
-        combined(build, 0.0, 1.0, build.math("ADD", y, tilt_y)),
+        combined(build, build.math("ADD", xx, 1.0), shear, build.math("ADD", x, tilt_x)),
+        combined(build, shear, build.math("ADD", yy, 1.0), build.math("ADD", y, tilt_y)),
     )
     normal = {"Custom Normal": spaces.normal_of_asker(*tangents)}
     grid = build.change("GeometryNodeSetMeshNormal", grid, normal, mode="FREE", domain="POINT")
     place = build.vector("ADD", output(build.add("GeometryNodeInputPosition"), "Position"), sea.corner)
-    place = build.vector("ADD", build.vector("ADD", place, drop), told(DISPLACEMENT))
+    place = build.vector("ADD", build.vector("ADD", place, drop), _told(build, DISPLACEMENT))
     grid = build.change("GeometryNodeSetPosition", grid, {"Position": spaces.point_of_asker(place)})
     for name in (DISPLACEMENT, VELOCITY):
-        grid = build.store(grid, name, spaces.direction_of_asker(told(name)), "FLOAT_VECTOR")
-    for name in (SLOPES, WHITE):
+        grid = build.store(grid, name, spaces.direction_of_asker(_told(build, name)), "FLOAT_VECTOR")
+    for name in (SLOPES, OTHERS):
         grid = build.change("GeometryNodeRemoveAttribute", grid, {"Name": name})
     return grid
 
@@ -268,4 +255,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", *shown)
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 1, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 2, _build)

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from . import (
+    averaged,
     averages,
     camera_grid,
+    camera_patch,
     camera_surface,
     floating,
     frame_warnings,
@@ -36,6 +38,8 @@ ALL_KINDS = (
     horizon.HORIZON,
     camera_grid.CAMERA_GRID,
     averages.AVERAGES,
+    averaged.AVERAGED,
+    camera_patch.CAMERA_PATCH,
     camera_surface.CAMERA_SURFACE,
     water.WATER,
 )

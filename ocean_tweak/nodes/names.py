@@ -10,6 +10,16 @@ DISPLACEMENT, VELOCITY, FOAM, CUSP = "displacement", "velocity", "foam", "cusp"
 #: point attribute of a surface around the camera: mean square slope of the waves that it leaves out
 SLOPE_VARIANCE = "slope_variance"
 
+#: point attribute of such a surface: length of the shortest waves that it holds where it is, Blender units
+SHORTEST_WAVE = "shortest_wave"
+
+#: point attributes of the mesh of one patch of a sea of several, in its own axes, besides displacement and
+#: velocity: slope along x and y, and Dx by x, Dy by y and their shear
+SLOPE, STRAIN = "slope", "strain"
+
+#: point attributes of an ocean's mesh by which patches 1, 2, … are multiplied; 1 where there is none
+WEIGHT = "ocean_tweak_weight_{}"
+
 #: corner attribute: position / domain size + ½ / samples, going on over the repeats
 TEXTURE_COORDINATES = "st"
 

@@ -61,13 +61,16 @@ class Spaces:
 
     def size_of_ocean(self, direction: tuple[float, float, float]) -> Socket:
         """How long a unit of the asker's is in the ocean's space."""
-        inputs = {"Direction": direction, "Transform": self._inverse}
-        turned = output(self._build.add("FunctionNodeTransformDirection", inputs), "Direction")
-        return alone(self._build, "LENGTH", turned)
+        return alone(self._build, "LENGTH", self.direction_of_ocean(direction))
 
     def direction_of_asker(self, direction: Socket | tuple[float, float, float]) -> Socket:
         """The ocean's direction in the asker's space."""
         inputs = {"Direction": direction, "Transform": self.transform}
+        return output(self._build.add("FunctionNodeTransformDirection", inputs), "Direction")
+
+    def direction_of_ocean(self, direction: Socket | tuple[float, float, float]) -> Socket:
+        """The asker's direction in the ocean's space."""
+        inputs = {"Direction": direction, "Transform": self._inverse}
         return output(self._build.add("FunctionNodeTransformDirection", inputs), "Direction")
 
     def normal_of_asker(

@@ -14,10 +14,14 @@ leaves the water is (1 - r)R/(1 - rR), r = 0.47 the share that a flat surface th
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import bpy
 
+from ..core.surface_detail import FEWEST_WAVES, MOST_WAVES
 from .building import Panel, Plug, Socket
-from .names import CUSP, FOAM, SLOPE_VARIANCE
+from .names import CUSP, FOAM, SHORTEST_WAVE, SLOPE_VARIANCE
 from .shading import Shading
 from .versioned import GroupKind
 from .water_foam import foam_cover, foam_shader
@@ -28,11 +32,17 @@ _SURFACE_FACTOR = 0.33
 
 #: ripples: size of their tile in samples of the mesh, turn in rad, share of the slope variance
 _RIPPLES = ((16.0, 0.0, 0.36), (8.3, 0.42, 0.27), (3.1, -0.35, 0.17))
+#: turns in rad of the tiles for waves that a surface around the camera leaves out: each tile has as many
+#: octaves, the first from two samples on
+_LEFT_OUT = (0.21, -0.27)
+_OCTAVES = math.log2(MOST_WAVES / FEWEST_WAVES)
+#: of the largest ripples of an ocean of 400 m and 512 samples, m: Ripple Distance is meant for these
+_USUAL_TILE = 12.5
 _GUST_SIZE = 240.0  # m
-#: what waves that the mesh leaves out add to alpha², of their slope variance. Waves' slopes are Gaussian, GGX
-#: has longer tails: up to slope 1 its variance is alpha² (ln(1 + 1/alpha²) + ...), two to three times alpha².
-#: With this share a calm sea was within 3 % as bright as with its waves in the mesh; with 1, 8 % darker
-_BELL_SHARE = 0.4
+#: what waves that the mesh leaves out add to alpha², of their slope variance σ². Far water is as bright as
+#: its slopes along the line of sight are steep in the mean: GGX has E|s| = alpha, and with Gaussian slopes of
+#: the variance σ²/2 besides alpha + σ²/4alpha, so alpha² grows by σ²/2 (without other roughness by σ²/π)
+_BELL_SHARE = 0.5
 #: their wavelengths as a share of the tile, where their speed is taken
 _TYPICAL_WAVE = 1.0 / 24.0
 
@@ -100,6 +110,21 @@ OUTPUTS = (
 )
 
 
+class _Ripples(NamedTuple):
+    """A tile of waves that the mesh has not.
+
+    size : of the tile, m
+    turn : rad, away from the wind
+    share : of the slope variance
+    reach : m, where half of them are roughness
+    """
+
+    size: Socket
+    turn: float
+    share: Socket | float
+    reach: Socket
+
+
 def _build(tree: bpy.types.NodeTree) -> None:
     shade = Shading(tree)
     given = shade.interface(OUTPUTS, (WATER_PANEL, FOAM_PANEL, SURFACE_PANEL, AIR_PANEL)).outputs
@@ -125,10 +150,46 @@ def _surface(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socke
     variance = shade.math("MULTIPLY", shade.value(SLOPES, "OBJECT"), given["Slopes"])
     uneven = shade.smooth(gust(shade, at, _GUST_SIZE), 0.0, 1.0, 0.25, 1.75)
     variance = shade.math("MULTIPLY", variance, shade.mix(given["Gusts"], 1.0, uneven))
-    total, drawn = None, 0.0
+    ripples = []
     for samples, turn, share in _RIPPLES:
         size = shade.math("MULTIPLY", at.spacing, samples)
         reach = shade.math("MULTIPLY", given["Ripple Distance"], samples / _RIPPLES[0][0])
+        ripples.append(_Ripples(size, turn, share, reach))
+    pattern, left = _drawn(shade, given, at, variance, ripples)
+    lost = shade.math("MULTIPLY", shade.value(SLOPE_VARIANCE), given["Slopes"])
+    more, lost = _drawn(shade, given, at, lost, _left_out(shade, given, at))
+    total = shade.vector("ADD", pattern, more)
+    left = shade.math("ADD", left, shade.math("MULTIPLY", lost, _BELL_SHARE))
+    roughness = shade.math("POWER", shade.math("MAXIMUM", left, 0.0), 0.25)
+    return _normal(shade, given, total), shade.math("MINIMUM", roughness, 1.0)
+
+
+def _left_out(shade: Shading, given: dict[str, Socket], at: Place) -> list[_Ripples]:
+    """The waves that a surface around the camera leaves out: from two samples up to its own shortest.
+
+    Each octave of them has the same slopes, as in the equilibrium range (Phillips 1958).
+    """
+    shortest = shade.math("MULTIPLY", shade.value(SHORTEST_WAVE), at.metres)
+    octaves = shade.math(
+        "LOGARITHM", shade.math("DIVIDE", shortest, shade.math("MULTIPLY", at.spacing, 2.0)), 2.0
+    )
+    whole = shade.math("MAXIMUM", octaves, 1e-3)
+    ripples = []
+    for number, turn in enumerate(_LEFT_OUT):
+        held = shade.math("SUBTRACT", octaves, number * _OCTAVES)
+        held = shade.math("MINIMUM", shade.math("MAXIMUM", held, 0.0), _OCTAVES)
+        size = shade.math("MULTIPLY", at.spacing, 2.0 * FEWEST_WAVES * 2.0 ** (_OCTAVES * (number + 1)))
+        reach = shade.math("MULTIPLY", given["Ripple Distance"], shade.math("DIVIDE", size, _USUAL_TILE))
+        ripples.append(_Ripples(size, turn, shade.math("DIVIDE", held, whole), reach))
+    return ripples
+
+
+def _drawn(
+    shade: Shading, given: dict[str, Socket], at: Place, variance: Socket, ripples: list[_Ripples]
+) -> tuple[Socket, Socket]:
+    """The slopes of what is drawn of a variance, and what is left of that for the roughness."""
+    total, drawn = None, 0.0
+    for size, turn, share, reach in ripples:
         ratio = shade.math("DIVIDE", at.distance, reach)
         near = shade.math("DIVIDE", 1.0, shade.math("MULTIPLY_ADD", ratio, ratio, 1.0))
         part = shade.math("MULTIPLY", shade.math("MULTIPLY", near, share), given["Ripples"], clamp=True)
@@ -136,11 +197,7 @@ def _surface(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socke
         pattern = slopes(shade, tile(shade, at, size, turn, _travelled(shade, given, size)), strength)
         total = pattern if total is None else shade.vector("ADD", total, pattern)
         drawn = shade.math("ADD", drawn, part)
-    left = shade.math("MULTIPLY", variance, shade.math("SUBTRACT", 1.0, drawn, clamp=True))
-    lost = shade.math("MULTIPLY", shade.value(SLOPE_VARIANCE), given["Slopes"])
-    left = shade.math("ADD", left, shade.math("MULTIPLY", lost, _BELL_SHARE))
-    roughness = shade.math("POWER", shade.math("MAXIMUM", left, 0.0), 0.25)
-    return _normal(shade, given, total), shade.math("MINIMUM", roughness, 1.0)
+    return total, shade.math("MULTIPLY", variance, shade.math("SUBTRACT", 1.0, drawn, clamp=True))
 
 
 def _travelled(shade: Shading, given: dict[str, Socket], size: Socket) -> Socket:
@@ -208,4 +265,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 2, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 3, _build, "ShaderNodeTree")

@@ -5,14 +5,23 @@ from __future__ import annotations
 
 import bpy
 
+from ..core import OceanParameters
+from ..nodes.camera_grid import finest_spacing
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
-from ..nodes.versioned import is_of_kind, node_group
-from . import water_material
+from ..nodes.versioned import node_group
+from . import patch_objects, water_material
+from .patch_objects import camera_surface_of
+from .plan import plan_of
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit
 
+__all__ = ["add_camera_surface", "camera_surface_of", "remove_camera_surface"]
+
 _BUDGET = 200_000
+#: cells that a ring of the surface keeps from its middle to its edge, up to the horizon of a camera at 125 m
+_LEAST_CELLS = 32
+_FARTHEST = 40e3  # m
 
 
 def add_camera_surface(
@@ -26,7 +35,8 @@ def add_camera_surface(
     In renders both are hidden. In the viewport the ocean is a box, so that it can still be chosen.
 
     The surface is the ocean's child, in the same collections, with the same material. Near the camera it
-    has two cells a sample of the ocean: all of its waves.
+    has two cells a sample of the ocean, or of the finest of its patches: all of its waves. Where the budget
+    is too small for that and the horizon, its cells are larger, up to two a sample of the first patch.
 
     camera : None for the scene's, whichever that is
     budget : vertices, at most
@@ -47,23 +57,22 @@ def add_camera_surface(
     modifier.node_group = node_group(CAMERA_SURFACE)
     inputs = {
         "Ocean": ocean,
-        "Finest Spacing": 0.5 * parameters.domain_size / parameters.resolution / metres,
+        "Finest Spacing": _finest_spacing(parameters, budget) / metres,
         "Vertex Budget": budget,
         "Planet Radius": EARTH_RADIUS / metres,
         "Material": ocean.material_slots[0].material if ocean.material_slots else None,
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
     _make_room(ocean)
+    patch_objects.refresh(ocean, plan_of(settings_of(ocean), scene))
     return surface
 
 
-def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
-    """The surface that shows an ocean around a camera; None where its own mesh does."""
-    for child in ocean.children:
-        groups = [modifier.node_group for modifier in child.modifiers if modifier.type == "NODES"]
-        if any(is_of_kind(group, CAMERA_SURFACE) for group in groups):
-            return child
-    return None
+def _finest_spacing(parameters: OceanParameters, budget: int) -> float:
+    """Of the surface near the camera, m."""
+    first = parameters.domain_size / parameters.resolution
+    finest = min((first, *(patch.spacing for patch in parameters.patches)))
+    return min(finest_spacing(0.5 * finest, budget, _FARTHEST, _LEAST_CELLS), 0.5 * first)
 
 
 def remove_camera_surface(ocean: bpy.types.Object) -> None:
@@ -74,6 +83,7 @@ def remove_camera_surface(ocean: bpy.types.Object) -> None:
         bpy.data.objects.remove(surface)
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
+    patch_objects.remove(ocean)
     _make_room(ocean, is_there=False)
 
 

@@ -21,8 +21,8 @@ RealArray = NDArray[np.float32]
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
 _MOST_SURFACE_BYTES = 256 * 2**20
-# of one ocean: for the viewport, for the render, and the coarse one while a parameter is dragged
-_SEAS_OF_AN_OCEAN = 3
+# of one ocean: for the viewport, for the render, the coarse one while a parameter is dragged, four patches
+_SEAS_OF_AN_OCEAN = 7
 # s after the foam that was made last, within which the next one is quickly made
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept

@@ -11,10 +11,10 @@ from bpy.app.handlers import persistent
 
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
-from . import bake_process, evaluation, live_image, refinement, source_images, usd_process
+from . import bake_process, evaluation, live_image, patch_objects, refinement, source_images, usd_process
 from .animated import is_animated, shown_settings
 from .refinement import show
-from .refresh import check_files, refresh_and_tell, refresh_render
+from .refresh import check_files, refresh_and_tell, refresh_patches, refresh_render
 from .settings import all_oceans, oceans_in, settings_of
 
 # scene settings that change an ocean and have no update callback of ours
@@ -32,14 +32,20 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
                 show(item, scene)
         else:  # Blender reads the files itself
             check_files(item, scene)
+            if not is_animated(item):
+                refresh_patches(item, scene)
 
 
 @persistent
 def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
     for item in oceans_in(scene):
-        if settings_of(item).source == "LIVE" and is_animated(item):
+        if not is_animated(item):
+            continue
+        if settings_of(item).source == "LIVE":
             show(item, scene, shown=shown_settings(item, depsgraph))
+        else:
+            refresh_patches(item, scene, shown_settings(item, depsgraph))
 
 
 @persistent
@@ -98,6 +104,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     _forget_all()
     _subscribe()
     renew_groups(ALL_KINDS)
+    patch_objects.remove_left()
     refresh_live_oceans()
 
 

@@ -10,7 +10,16 @@ import bpy
 import numpy as np
 
 from ..core import ParameterError
-from . import evaluation, grid_mesh, image_sequence, live_image, modifiers, ownership, vertex_attributes
+from . import (
+    evaluation,
+    grid_mesh,
+    image_sequence,
+    live_image,
+    modifiers,
+    ownership,
+    patch_objects,
+    vertex_attributes,
+)
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
 from .maps import ATTRIBUTES, MAPS, Fields, outputs_of
@@ -71,12 +80,31 @@ def refresh(
             set_changed(scene.render, use_lock_interface=True)
         else:
             _refresh_baked(item, settings, plan, scene)
+        patch_objects.refresh(item, plan, coarse)
         check_files(item, scene)
         if text is not None:
             evaluation.keep_statistics(plan.parameters, text)
             set_changed(settings, statistics=text)
         set_changed(settings, error="")
     return complete
+
+
+def refresh_patches(
+    item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings | None = None
+) -> None:
+    """Show the present frame on the meshes of the patches, where an ocean has such; all else stays.
+
+    They are live even where files move the ocean's own mesh. What is wrong is kept in `error`.
+
+    shown : the settings as animation makes them, where it does
+    """
+    with _turn:
+        if not patch_objects.patches_of(item):
+            return
+        try:
+            patch_objects.refresh(item, plan_of(shown or settings_of(item), scene))
+        except EXPECTED_ERRORS as error:
+            tell(item, error)
 
 
 def refresh_render(

@@ -62,14 +62,14 @@ def describe(
             if is_far(child):
                 _set_properties(child, {**values, SLOPES: total_slope_variance(parameters)})
             elif _NEAR in child:
-                _set_properties(child, values)
+                _set_properties(child, {**values, **_finest(parameters)})
 
 
 def describe_near(
     item: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene | None = None
 ) -> None:
-    """Tell the material about another mesh that shows an ocean's waves."""
-    _set_properties(item, {**_values(item, parameters, scene), _NEAR: 1.0})
+    """Tell the material about another mesh that shows an ocean's waves, of all its patches."""
+    _set_properties(item, {**_values(item, parameters, scene), **_finest(parameters), _NEAR: 1.0})
 
 
 def describe_far(
@@ -97,6 +97,15 @@ def _values(
         DEPTH: parameters.water.depth,
         METRES: _metres(item, scene),
     }
+
+
+def _finest(parameters: OceanParameters) -> dict[str, float]:
+    """What samples hold where each of several patches has its own: two go into the shortest wave."""
+    if not parameters.patches:
+        return {}
+    apart, last = parameters.replace(joined=0, patches=parameters.patches), parameters.patches[-1]
+    spacing = max(last.spacing, 0.5 * last.shortest_wavelength)
+    return {SPACING: spacing, SLOPES: unresolved_slope_variance(apart)}
 
 
 def _metres(item: bpy.types.Object, scene: bpy.types.Scene | None) -> float:

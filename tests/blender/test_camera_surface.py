@@ -6,83 +6,26 @@ import math
 import bpy
 import numpy as np
 import pytest
-from mathutils import Vector
-from mathutils.bvhtree import BVHTree
 
+from . import camera_views
+from .camera_views import (
+    BUDGET,
+    away,
+    coarseness,
+    faces_along_edges,
+    flat_sheet,
+    heights,
+    moved_to,
+    numbers,
+    places,
+)
 from .conftest import DOMAIN, SAMPLES, evaluated_mesh
-from .sheets import new_sheet, wave
+from .sheets import wave
+
+# fixtures for the tests here
+around, camera, sheet = camera_views.around, camera_views.camera, camera_views.sheet
 
 RADIUS = 6_371_000.0  # m
-BUDGET = 6000
-
-
-@pytest.fixture
-def camera(empty_scene):
-    item = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    item.location = (31.3, -17.2, 6.0)
-    empty_scene.collection.objects.link(item)
-    empty_scene.camera = item
-    return item
-
-
-@pytest.fixture
-def around(extension, empty_scene):
-    """A surface of its own around the camera, with inputs by name."""
-
-    def make(ocean, **inputs):
-        item = bpy.data.objects.new("Around", bpy.data.meshes.new("Around"))
-        empty_scene.collection.objects.link(item)
-        modifier = item.modifiers.new("Around", "NODES")
-        kind = extension("nodes.camera_surface").CAMERA_SURFACE
-        modifier.node_group = extension("nodes.versioned").node_group(kind)
-        values = {name.replace("_", " ").title(): value for name, value in inputs.items()}
-        set_inputs = extension("nodes.modifier_inputs").set_inputs
-        set_inputs(modifier, {"Ocean": ocean, "Vertex Budget": BUDGET, **values})
-        return item
-
-    return make
-
-
-@pytest.fixture
-def sheet(empty_scene):
-    return lambda field, size, **named: new_sheet(empty_scene, field, size, **named)
-
-
-def flat_sheet(sheet):
-    return sheet(np.zeros((8, 8, 3)), 8.0)
-
-
-def numbers(mesh, name, count):
-    """(vertices, count): a point attribute."""
-    flat = np.empty(len(mesh.vertices) * count, np.float32)
-    mesh.attributes[name].data.foreach_get("vector" if count > 1 else "value", flat)
-    return flat.reshape(-1, count).astype(np.float64)
-
-
-def places(item):
-    return numbers(evaluated_mesh(item), "position", 3)
-
-
-def moved_to(item, *place):
-    item.location = place
-    bpy.context.view_layer.update()
-
-
-def away(points, camera):
-    """The larger of the distances along x and y."""
-    return np.abs(points[:, :2] - np.array(camera.location)[:2]).max(axis=1)
-
-
-def coarseness(mesh):
-    """Cells from the middle of a level to its edge: a level's edge is as long as 2m of its cells."""
-    faces_of = faces_along_edges(mesh)
-    return int(np.count_nonzero(faces_of == 1)) // 8
-
-
-def faces_along_edges(mesh):
-    edges = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("edge_index", edges)
-    return np.bincount(edges, minlength=len(mesh.edges))
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0), (3.1, -2.2), (0.49, 5.01), (-1000.3, 777.7)])
@@ -108,6 +51,16 @@ def test_no_crack_and_no_more_vertices_than_allowed(around, sheet, camera, place
     assert areas.min() > 0.02  # half of a cell of a quarter
     assert areas.astype(np.float64).sum() == pytest.approx(np.prod((high - low)[:2]), rel=1e-5)
     assert all(face.normal.z > 0.0 for face in mesh.polygons)
+
+
+def test_no_crack_far_away_where_cells_are_small(around, sheet, camera):
+    item = around(flat_sheet(sheet), vertex_budget=20_000, finest_spacing=0.01, curvature=False)
+    moved_to(camera, 31.3, -17.2, 10.0)
+    mesh = evaluated_mesh(item)
+    points = numbers(mesh, "position", 3)
+    assert away(points, camera).max() > 10e3
+    assert len(np.unique(points, axis=0)) == len(points)
+    assert not item.modifiers[0].node_warnings
 
 
 def test_it_reaches_the_horizon(around, sheet, camera):
@@ -238,13 +191,6 @@ def test_of_an_ocean_that_is_turned(around, ocean_object, core, make_parameters,
     np.testing.assert_allclose(inside[:, 2], found, atol=1e-3)
 
 
-def heights(item, points):
-    """Of the surface above or below points (x, y), straight down."""
-    tree = BVHTree.FromObject(item, bpy.context.evaluated_depsgraph_get())
-    down = Vector((0.0, 0.0, -1.0))
-    return np.array([tree.ray_cast(Vector((x, y, 100.0)), down)[0].z for x, y in points])
-
-
 def test_on_a_flight_heights_stay_within_what_interpolation_allows(around, sheet, camera):
     """One wave of height A along x: between points a apart a straight line is up to A k² a²/8 off."""
     size, samples, height = 64.0, 64, 0.5
@@ -328,65 +274,6 @@ def test_the_helper(extension, ocean_object, make_parameters, camera, empty_scen
     assert np.abs(shown[item.name]).max() > 0.1
     with pytest.raises(extension("scene.settings").OceanObjectError, match="is no ocean"):
         add(item, empty_scene)
-
-
-@pytest.fixture
-def brightness(empty_scene, camera, tmp_path):
-    """Mean of the far and of the near half of what the camera sees, under a sky brighter at the horizon."""
-    world = empty_scene.world = bpy.data.worlds.new("Sky")
-    if world.node_tree is None:
-        world.use_nodes = True
-    nodes, links = world.node_tree.nodes, world.node_tree.links
-    place, parts, strength = (
-        nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "SeparateXYZ", "MapRange")
-    )
-    links.new(place.outputs["Generated"], parts.inputs[0])
-    links.new(parts.outputs["Z"], strength.inputs[0])
-    strength.inputs[3].default_value, strength.inputs[4].default_value = 1.0, 0.4
-    background = next(node for node in nodes if node.type == "BACKGROUND")
-    background.inputs[0].default_value = (1.0, 1.0, 1.0, 1.0)
-    links.new(strength.outputs[0], background.inputs[1])
-    render = empty_scene.render
-    render.engine, render.filepath = "CYCLES", str(tmp_path / "seen.exr")
-    render.resolution_x, render.resolution_y = 64, 12
-    render.image_settings.file_format = "OPEN_EXR"
-    cycles = empty_scene.cycles
-    cycles.samples, cycles.seed, cycles.device, cycles.use_denoising = 24, 1, "CPU", False
-    camera.rotation_euler.x = math.radians(79.0)
-    camera.data.angle, camera.data.clip_end = math.radians(50.0), 1000.0
-    moved_to(camera, 1.3, -1.2, 15.0)
-
-    def seen():
-        bpy.ops.render.render(write_still=True)
-        image = bpy.data.images.load(render.filepath)
-        pixels = np.empty(4 * 64 * 12, np.float32)
-        image.pixels.foreach_get(pixels)
-        bpy.data.images.remove(image)
-        return pixels.reshape(2, -1, 4)[::-1, :, 0].mean(axis=1)
-
-    return seen
-
-
-def test_brightness_stays_when_waves_become_roughness(
-    extension, ocean_object, core, make_parameters, empty_scene, brightness
-):
-    layer = core.WaveLayer(wind_speed=4.0, fetch=20e3)
-    parameters = make_parameters(domain_size=40.0, layers=(layer,))
-    ocean = ocean_object.add(empty_scene, parameters)
-    water = extension("scene.water_material")
-    material = water.water_material()
-    water.assign(ocean, material)
-    group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
-    for name in ("Ripples", "Gusts", "Foam Amount"):  # patterns of their own
-        group.inputs[name].default_value = 0.0
-    item = extension("scene.camera_surface").add_camera_surface(ocean, empty_scene)
-    set_inputs = extension("nodes.modifier_inputs").set_inputs
-    settings = {"To Horizon": False, "Reach": 170.0, "Curvature": False}
-    set_inputs(item.modifiers[0], {**settings, "Fade": False, "Vertex Budget": 500_000})
-    in_mesh = brightness()
-    set_inputs(item.modifiers[0], {"Fade": True, "Vertex Budget": 5000})
-    item.update_tag()
-    assert brightness() == pytest.approx(in_mesh, rel=0.05)
 
 
 def test_the_button_makes_it_and_takes_it_away(extension, ocean_object, make_parameters, empty_scene, window):

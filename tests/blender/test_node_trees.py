@@ -26,6 +26,8 @@ KINDS = {
     "grid": ("nodes.grid", lambda module: module.GRID),
     "camera-grid": ("nodes.camera_grid", lambda module: module.CAMERA_GRID),
     "averages": ("nodes.averages", lambda module: module.AVERAGES),
+    "averaged": ("nodes.averaged", lambda module: module.AVERAGED),
+    "camera-patch": ("nodes.camera_patch", lambda module: module.CAMERA_PATCH),
     "camera-surface": ("nodes.camera_surface", lambda module: module.CAMERA_SURFACE),
     "grid-facts": ("nodes.surface", lambda module: module.GRID_FACTS),
     "cell": ("nodes.surface", lambda module: module.CELL),

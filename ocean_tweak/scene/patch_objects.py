@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hidden meshes that show the patches of a sea of several, one each, to the surface around the camera.
+
+They are points alone, as the nodes want them: no renderer sees them. Each holds all samples of its patch in
+the patch's own axes and is turned as the patch is. They are live, whatever moves the ocean's own mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import OceanParameters
+from ..core.cascades.patch_seas import ADDING, patch_parameters, rotations
+from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
+from ..nodes.modifier_inputs import set_inputs
+from ..nodes.names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY
+from ..nodes.versioned import is_of_kind
+from . import evaluation
+from .grid_mesh import Grid
+from .plan import Plan
+from .settings import is_ocean
+
+_NUMBER = "ocean_tweak_patch"
+#: Blender's type of each attribute
+_TYPES = {DISPLACEMENT: "FLOAT_VECTOR", VELOCITY: "FLOAT_VECTOR", SLOPE: "FLOAT2", STRAIN: "FLOAT_VECTOR"}
+
+
+def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
+    """The surface that shows an ocean around a camera; None where its own mesh does."""
+    return next((child for child in ocean.children if _modifier_of(child) is not None), None)
+
+
+def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
+    """The meshes of an ocean's patches by their number, from 1."""
+    return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
+
+
+def refresh(ocean: bpy.types.Object, plan: Plan, coarse: bool = False) -> None:
+    """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
+
+    coarse : a parameter is dragged: they wait until all samples are wanted
+
+    Raises MemoryError for a patch too large.
+    """
+    # a linked ocean shows what its own file holds: Blender drops changes to it
+    if coarse or ocean.library is not None:
+        return
+    surface = camera_surface_of(ocean)
+    if surface is None or not plan.parameters.patches:
+        remove(ocean)
+        made = {}
+    else:
+        made = dict(_refreshed(ocean, plan))
+    if surface is not None:
+        set_inputs(
+            _modifier_of(surface), {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
+        )
+
+
+def remove(ocean: bpy.types.Object) -> None:
+    """Take the meshes of an ocean's patches away."""
+    _remove(child for child in ocean.children if _NUMBER in child)
+
+
+def remove_left() -> None:
+    """Take away those whose ocean was deleted: nobody can choose them."""
+    _remove(item for item in bpy.data.objects if _NUMBER in item and not is_ocean(item.parent))
+
+
+def _modifier_of(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
+    modifiers = (modifier for modifier in surface.modifiers if modifier.type == "NODES")
+    return next((each for each in modifiers if is_of_kind(each.node_group, CAMERA_SURFACE)), None)
+
+
+def _refreshed(ocean: bpy.types.Object, plan: Plan) -> Iterator[tuple[int, bpy.types.Object]]:
+    """The patches by their number; those that are one too many go."""
+    present = patches_of(ocean)
+    patches = patch_parameters(plan.parameters)
+    kept = {present[number].name for number in range(1, len(patches) + 1) if number in present}
+    _remove(child for child in ocean.children if _NUMBER in child and child.name not in kept)
+    for number, (patch, rotation) in enumerate(zip(patches, rotations(plan.parameters), strict=True), 1):
+        item = present.get(number) or _new(ocean, number)
+        if item.rotation_euler.z != np.float32(rotation):
+            item.rotation_euler.z = rotation
+        if item.data.users > 1:  # of a duplicate
+            item.data = item.data.copy()
+        if item.data.library is None:
+            _write(item.data, patch, plan)
+        yield number, item
+
+
+def _new(ocean: bpy.types.Object, number: int) -> bpy.types.Object:
+    name = f"{ocean.name} Patch {number}"
+    item = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    item[_NUMBER] = number
+    item.parent = ocean
+    item.hide_viewport = item.hide_render = item.hide_select = True
+    for collection in ocean.users_collection:
+        collection.objects.link(item)
+    return item
+
+
+def _write(mesh: bpy.types.Mesh, patch: OceanParameters, plan: Plan) -> None:
+    """Put the plan's moment of a patch on its points."""
+    grid = Grid(patch.domain_size * plan.scale, patch.resolution, patch.resolution)
+    if len(mesh.vertices) != grid.vertices:
+        mesh.clear_geometry()
+        mesh.vertices.add(grid.vertices)
+    fields, _ = evaluation.sea_of(patch).fields(plan.time, ADDING, plan.is_whole)
+    displacement = (fields["displacement"] * np.float32(plan.scale)).reshape(-1, 3)
+    values = {
+        DISPLACEMENT: displacement,
+        VELOCITY: fields["velocity"] * np.float32(plan.scale * plan.rate),
+        SLOPE: fields["slope"],
+        STRAIN: fields["strain"],
+    }
+    for name, value in values.items():
+        attribute = mesh.attributes.get(name) or mesh.attributes.new(name, _TYPES[name], "POINT")
+        attribute.data.foreach_set("vector", np.ascontiguousarray(value).reshape(-1))
+    places: NDArray[np.float32] = grid.positions()
+    places += displacement
+    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
+    mesh.update_tag()
+
+
+def _remove(items: Iterator[bpy.types.Object]) -> None:
+    for item in [item for item in items if item.library is None]:
+        mesh = item.data
+        bpy.data.objects.remove(item)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
