@@ -64,33 +64,4 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
         return getattr(settings.layers[settings.active_layer].group, "mask", None)
 
 
-def draw_mask(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, patch: int = -1) -> None:
-    """Draw a mask's settings.
-
-    patch : number of the patch whose mask it is; -1 for the active layer's
-    """
-    layout.prop(group, "source")
-    if group.source == "NONE":
-        return
-    if group.source == "IMAGE":
-        layout.template_ID(group, "image", new="image.new", open="image.open")
-    elif group.source == "VERTEX_GROUP":
-        layout.prop(group, "mesh")
-        if group.mesh is not None:
-            layout.prop_search(group, "vertex_group", group.mesh, "vertex_groups")
-        text = "Read Again" if group.image is not None else "Read Weights"
-        layout.operator(OCEAN_OT_read_weights.bl_idname, text=text, icon="FILE_REFRESH").patch = patch
-    else:
-        column = layout.column(align=True)
-        column.prop(group, "object")
-        places = column.column(align=True)
-        places.active = group.object is None
-        places.prop(group, "x")
-        places.prop(group, "y")
-        column = layout.column(align=True)
-        column.prop(group, "near")
-        column.prop(group, "far")
-    layout.prop(group, "inverted")
-
-
 CLASSES = (OCEAN_OT_read_weights,)

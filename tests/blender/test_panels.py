@@ -50,6 +50,10 @@ class Layout:
         self.drawn.append(name)
         self.look(owner, name)
 
+    def prop_search(self, owner, name, source, items, **_named):
+        assert items in source.bl_rna.properties
+        self.prop(owner, name)
+
     def operator(self, name, **_named):
         module, _, function = name.partition(".")
         assert hasattr(bpy.types, f"{module.upper()}_OT_{function}")
@@ -120,8 +124,8 @@ def test_the_sea_shows_the_size_of_the_first_patch(draw, item, core, empty_scene
         name for name, owner in owners if owner == second
     }
     # 4 m · 32 / 40 m, and 40 m / 20 m
-    assert drawn[drawn.index("Samples a Wave") + 1] == "3.2"
-    assert drawn[drawn.index("Waves a Side") + 1] == "2"
+    assert drawn[drawn.index("Shortest Has") + 1] == "3.2 samples"
+    assert drawn[drawn.index("Longest Fits") + 1] == "2 times"
     energy = drawn[drawn.index("Energy") + 1]
     statistics = core.Cascade(settings.to_parameters(empty_scene)).statistics()
     assert energy == f"{100.0 * statistics.patches[1].share:.3g} %"
@@ -143,6 +147,64 @@ def test_patches_in_one_line_each(extension, item, core, empty_scene):
         lines.append(drawn)
     assert [line[:2] for line in lines] == [["2 km", "> 20 m"], ["40 m", "< 20 m"]]
     assert sum(float(line[2].removesuffix(" %")) for line in lines) == pytest.approx(100.0, abs=0.2)
+
+
+def test_layers_in_one_line_each_have_the_scenes_units(extension, item, empty_scene):
+    settings = item.ocean_tweak
+    settings.layers[0].definition = "SEA_STATE"
+    settings.layers[0].significant_wave_height, settings.layers[0].peak_period = 2.5, 8.0
+    bpy.context.view_layer.objects.active = item
+    for kind in ("WIND_FIELD", "HERO_WAVE"):
+        bpy.ops.ocean.layer_add(kind=kind)
+    settings.layers[1].wind_field.wind_speed, settings.layers[2].hero_wave.crest_height = 9.0, 3.0
+
+    def lines():
+        drawn = []
+        context = SimpleNamespace(scene=empty_scene)
+        for layer in settings.layers:
+            extension("ui.panels.layers").OCEAN_UL_layers.draw_item(
+                None, context, Layout(drawn), settings, layer, 0, settings, "active_layer"
+            )
+        return [text for text in drawn if text != "muted"]
+
+    assert lines() == ["2.5 m, 8 s", "Wind field, 9 m/s", "Hero wave, 3 m, 0 s"]
+    empty_scene.unit_settings.scale_length = 0.01
+    settings.layers[0].significant_wave_height, settings.layers[1].wind_field.wind_speed = 250.0, 900.0
+    settings.layers[2].hero_wave.crest_height = 300.0
+    assert lines() == ["2.5 m, 8 s", "Wind field, 9 m/s", "Hero wave, 3 m, 0 s"]
+
+
+def test_a_mask_says_what_it_lacks(draw, item):
+    mask = item.ocean_tweak.layers[0].mask
+
+    def waits():
+        return " ".join(draw(item)).partition("The sea waits for ")[2]
+
+    mask.source = "IMAGE"
+    assert waits().startswith("an image: choose one")
+    mask.source = "VERTEX_GROUP"
+    assert waits().startswith("weights: choose a mesh")
+    mesh = bpy.data.objects.new("Beach", bpy.data.meshes.new("Beach"))
+    mask.mesh = mesh
+    assert waits().startswith("weights: choose the mesh's vertex group")
+    mask.vertex_group = mesh.vertex_groups.new(name="Deep").name
+    assert waits().startswith("weights: press Read Weights")
+    mask.image = bpy.data.images.new("Read", 4, 4)
+    assert waits() == ""
+    mask.source = "DISTANCE"
+    assert waits() == ""
+
+
+def test_a_number_and_its_unit_stay_in_one_line(extension):
+    """Wherever the line breaks; the text itself stays as it is."""
+    text = "The domain of 400 m holds 2.9 of the waves (138 m) and 73 % of the energy: 12 m/s, 4 samples"
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    for width in range(150, 500, 7):
+        drawn = []
+        context = SimpleNamespace(region=SimpleNamespace(width=width), preferences=preferences)
+        extension("ui.panels.drawing").message(Layout(drawn), context, text)
+        assert " ".join(drawn) == text
+        assert not any(line.startswith(("m ", "m)", "% ", "m/s")) for line in drawn)
 
 
 def test_every_parameter_can_be_reached(draw, item, core):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What panels share: where they stand, rows of label and text, and texts that wrap."""
 
+import re
 import textwrap
 
 import bpy
@@ -12,6 +13,9 @@ from ...scene.settings import OceanSettings, is_ocean, settings_of
 CATEGORY = "Ocean Tweak"
 _LABEL_SHARE = 0.4  # of the width, as Blender's own split layouts
 _LETTER = 7.0  # pixels, at a scale of 1
+# a number and its unit stay in one line
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:[kcm]?m|s|%|m/s)(?![^\W_]))")
 
 
 class SidebarPanel:
@@ -75,9 +79,10 @@ def message(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, a
     box = layout.box().column(align=True)
     box.alert = alert
     box.scale_y = 0.8
-    for index, line in enumerate(textwrap.wrap(translated(text), max(int(width / _LETTER) - 9, 16))):
+    whole = _BEFORE_UNIT.sub(_NO_BREAK, translated(text))
+    for index, line in enumerate(textwrap.wrap(whole, max(int(width / _LETTER) - 9, 16))):
         icon = ("ERROR" if alert else "INFO") if index == 0 else "BLANK1"
-        box.label(text=line, icon=icon, translate=False)
+        box.label(text=line.replace(_NO_BREAK, " "), icon=icon, translate=False)
 
 
 def progress_bar(layout: bpy.types.UILayout, process: CommandProcess, stop: str) -> None:
@@ -97,3 +102,9 @@ def length_text(scene: bpy.types.Scene, metres: float) -> str:
     """A length in the scene's system of units."""
     system = "IMPERIAL" if scene.unit_settings.system == "IMPERIAL" else "METRIC"
     return bpy.utils.units.to_string(system, "LENGTH", metres, precision=3)
+
+
+def speed_text(scene: bpy.types.Scene, metres_per_second: float) -> str:
+    """A speed in the scene's system of units."""
+    system = "IMPERIAL" if scene.unit_settings.system == "IMPERIAL" else "METRIC"
+    return bpy.utils.units.to_string(system, "VELOCITY", metres_per_second, precision=3)

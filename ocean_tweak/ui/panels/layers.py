@@ -6,8 +6,10 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core.hero_waves.outlook import hero_wave_outlooks
 from ...scene.settings import LAYER_KINDS
-from .. import layer_operators, mask_operators, wind_operators
-from .drawing import SubPanel, active_settings, length_text, message, row, split
+from ...scene.units import metres_per_unit
+from .. import layer_operators, wind_operators
+from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
+from .masks import draw_mask
 
 
 class OCEAN_UL_layers(bpy.types.UIList):
@@ -16,37 +18,41 @@ class OCEAN_UL_layers(bpy.types.UIList):
     bl_idname = "OCEAN_UL_layers"
 
     def draw_item(  # Blender wants each argument by itself
-        self, _context: bpy.types.Context, layout: bpy.types.UILayout, _data: object,
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, _data: object,
         layer: bpy.types.PropertyGroup, _icon: int, _active_data: object, _active_property: str,
     ) -> None:  # fmt: skip
         """Draw the layer's wind, its waves or its picture."""
         group = layer.group
         line = layout.row(align=True)
         line.active = not group.muted
-        line.label(text=_TITLES[layer.kind](group), icon=LAYER_KINDS[layer.kind].icon, translate=False)
+        line.label(
+            text=_TITLES[layer.kind](group, context.scene), icon=LAYER_KINDS[layer.kind].icon, translate=False
+        )
         line.prop(group, "muted", text="", icon="HIDE_ON" if group.muted else "HIDE_OFF", emboss=False)
 
 
-def _waves_title(layer: bpy.types.PropertyGroup) -> str:
+def _waves_title(layer: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
+    metres = float(metres_per_unit(scene))
     if layer.definition == "WIND":
-        return f"{layer.wind_speed:.3g} m/s, {layer.fetch_km:.3g} km"
-    return f"{layer.significant_wave_height:.3g} m, {layer.peak_period:.3g} s"
+        return f"{speed_text(scene, layer.wind_speed * metres)}, {layer.fetch_km:.3g} km"
+    return f"{length_text(scene, layer.significant_wave_height * metres)}, {layer.peak_period:.3g} s"
 
 
-def _wind_title(group: bpy.types.PropertyGroup) -> str:
+def _wind_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
     if group.source == "UNIFORM":
-        return f"Wind field, {group.wind_speed:.3g} m/s"
+        return f"Wind field, {speed_text(scene, group.wind_speed * float(metres_per_unit(scene)))}"
     if group.source == "IMAGE" and group.image is not None:
         return f"Wind field, {group.image.name}"
     return "Wind field, recorded" if group.source == "RECORDING" else "Wind field"
 
 
-def _picture_title(group: bpy.types.PropertyGroup) -> str:
+def _picture_title(group: bpy.types.PropertyGroup, _scene: bpy.types.Scene) -> str:
     return "White noise" if group.image is None else f"Picture, {group.image.name}"
 
 
-def _hero_title(group: bpy.types.PropertyGroup) -> str:
-    return f"Hero wave, {group.crest_height:.3g} high, {group.time:.4g} s"
+def _hero_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
+    height = length_text(scene, group.crest_height * float(metres_per_unit(scene)))
+    return f"Hero wave, {height}, {group.time:.4g} s"
 
 
 _TITLES = {
@@ -83,7 +89,7 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
             layout = split(self.layout, animated=True)
             _DRAWERS[layer.kind](layout, layer.group, context)
             if hasattr(layer.group, "mask"):
-                mask_operators.draw_mask(layout, layer.group.mask)
+                draw_mask(layout, context, layer.group.mask)
 
 
 def _draw_waves(
@@ -100,7 +106,9 @@ def _draw_waves(
 def _draw_wind_field(
     layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
 ) -> None:
-    layout.row().prop(group, "source", expand=True)
+    sources = layout.row()
+    sources.use_property_split = False  # beside a label there is no room for the three names
+    sources.prop(group, "source", expand=True)
     if group.source == "UNIFORM":
         _props(layout.column(align=True), group, "wind_speed", "wind_direction")
     elif group.source == "IMAGE":
@@ -132,7 +140,8 @@ def _draw_picture(
     if group.image is not None:
         _image_notes(layout, context, group.image)
     else:
-        _props(layout, group, "noise_resolution", "seed")
+        layout.prop(group, "noise_resolution", text="Noise Res.")
+        _props(layout, group, "seed")
     _props(layout, group, "filter")
     physical = False
     if group.filter == "MODIFIED_PIERSON_MOSKOWITZ":

@@ -10,12 +10,13 @@ from bpy.app.translations import pgettext_iface as translated
 from ...core.cascades.patch import NO_LONGEST
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
-from .. import mask_operators, patch_operators
+from .. import patch_operators
 from .drawing import SubPanel, active_settings, length_text, message, row, split
+from .masks import draw_mask
 
 
 class OCEAN_UL_patches(bpy.types.UIList):
-    """A line a patch: its size, its waves and their share of the energy."""
+    """A line a patch: its size, its shortest waves and their share of the energy."""
 
     bl_idname = "OCEAN_UL_patches"
 
@@ -26,11 +27,12 @@ class OCEAN_UL_patches(bpy.types.UIList):
     ) -> None:  # fmt: skip
         """Draw the patch's numbers, and a sign where something is wrong with it."""
         scene, found = context.scene, of_patch(settings, index)
-        line = layout.split(factor=0.33)
-        icon = "ERROR" if _warnings(settings, index) else "BLANK1"
-        line.label(text=_length(scene, patch.domain_size), icon=icon, translate=False)
-        line = line.split(factor=0.66)
-        line.label(text=_band(scene, patch), translate=False)
+        line = layout.split(factor=0.3)
+        line.label(text=_length(scene, patch.domain_size), translate=False)
+        line = line.split(factor=0.6)
+        # a sign takes the room of three digits, and finds it only here
+        icon = "ERROR" if _warnings(settings, index) else "NONE"
+        line.label(text=_band(scene, patch), icon=icon, translate=False)
         share = line.row()
         share.alignment = "RIGHT"
         share.label(text=_share(found["share"]) if found else "", translate=False)
@@ -46,8 +48,9 @@ class OCEAN_PT_patches(SubPanel, bpy.types.Panel):
         """Draw what to plan for, and what there is."""
         layout, settings = split(self.layout), active_settings(context)
         plan = layout.column(align=True)
-        for name in ("plan_finest", "plan_area", "plan_memory"):
-            plan.prop(settings, name)
+        plan.prop(settings, "plan_finest")
+        plan.prop(settings, "plan_area", text="No Repeats In")  # the whole name is cut in a narrow sidebar
+        plan.prop(settings, "plan_memory")
         layout.operator(patch_operators.OCEAN_OT_plan_patches.bl_idname, icon="MESH_GRID")
         if not settings.patches:
             layout.operator(patch_operators.OCEAN_OT_patch_add.bl_idname, icon="ADD")
@@ -76,13 +79,14 @@ def _draw_patch(layout: bpy.types.UILayout, context: bpy.types.Context, index: i
     band = layout.column(align=True)
     band.prop(patch, "longest_wavelength", text="Waves From")
     band.prop(patch, "shortest_wavelength", text="To")
-    mask_operators.draw_mask(layout, patch.mask, index)
+    draw_mask(layout, context, patch.mask, index)
     facts = layout.box().column(align=True)
     if patch.shortest_wavelength > 0.0 and patch.domain_size > 0.0:
         samples = patch.shortest_wavelength * patch.resolution / patch.domain_size
-        row(facts, "Samples a Wave", f"{samples:.3g}")
+        row(facts, "Shortest Has", translated("{:.3g} samples").format(samples))
     if not _has_all_long_waves(context.scene, patch):
-        row(facts, "Waves a Side", f"{patch.domain_size / patch.longest_wavelength:.3g}")
+        times = patch.domain_size / patch.longest_wavelength
+        row(facts, "Longest Fits", translated("{:.3g} times").format(times))
     found = of_patch(settings, index)
     if found is None:
         return
@@ -109,15 +113,16 @@ def _warnings(settings: OceanSettings, index: int) -> list[str]:
 
 def _share(share: float) -> str:
     """A share of the energy in little room."""
-    return f"{100.0 * share:.3g} %" if share >= 0.001 else "< 0.1 %"
+    return f"{100.0 * share:.3g} %" if share >= 0.001 else "<0.1 %"
 
 
 def _band(scene: bpy.types.Scene, patch: bpy.types.PropertyGroup) -> str:
-    shortest = _length(scene, patch.shortest_wavelength)
+    """Where the band ends; it begins where that of the line above ends, and both find no room."""
+    if patch.shortest_wavelength > 0.0:
+        return f"> {_length(scene, patch.shortest_wavelength)}"
     if _has_all_long_waves(scene, patch):
-        return translated("all waves") if patch.shortest_wavelength == 0.0 else f"> {shortest}"
-    longest = _length(scene, patch.longest_wavelength)
-    return f"< {longest}" if patch.shortest_wavelength == 0.0 else f"{longest} – {shortest}"
+        return translated("all waves")
+    return f"< {_length(scene, patch.longest_wavelength)}"
 
 
 def _has_all_long_waves(scene: bpy.types.Scene, patch: bpy.types.PropertyGroup) -> bool:

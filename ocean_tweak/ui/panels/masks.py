@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mask's settings, in the panels of what it masks."""
+
+import bpy
+
+from ..mask_operators import OCEAN_OT_read_weights
+from .drawing import message
+
+
+def draw_mask(
+    layout: bpy.types.UILayout, context: bpy.types.Context, group: bpy.types.PropertyGroup, patch: int = -1
+) -> None:
+    """Draw a mask's settings, and what it lacks: without that the whole sea stands still.
+
+    patch : number of the patch whose mask it is; -1 for the active layer's
+    """
+    layout.prop(group, "source")
+    if group.source == "NONE":
+        return
+    if group.source == "IMAGE":
+        layout.template_ID(group, "image", new="image.new", open="image.open")
+    elif group.source == "VERTEX_GROUP":
+        _draw_weights(layout, group, patch)
+    else:
+        _draw_distance(layout, group)
+    lacking = _lacking(group)
+    if lacking:
+        message(layout, context, lacking)
+    layout.prop(group, "inverted")
+
+
+def _draw_weights(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, patch: int) -> None:
+    column = layout.column(align=True)
+    column.prop(group, "mesh")
+    if group.mesh is not None:
+        column.prop_search(group, "vertex_group", group.mesh, "vertex_groups")
+    button = layout.row()
+    button.enabled = _has_weights(group)
+    text = "Read Again" if group.image is not None else "Read Weights"
+    button.operator(OCEAN_OT_read_weights.bl_idname, text=text, icon="FILE_REFRESH").patch = patch
+
+
+def _draw_distance(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -> None:
+    column = layout.column(align=True)
+    column.prop(group, "object")
+    places = column.column(align=True)
+    places.active = group.object is None
+    places.prop(group, "x")
+    places.prop(group, "y")
+    column = layout.column(align=True)
+    column.prop(group, "near")
+    column.prop(group, "far")
+
+
+def _lacking(group: bpy.types.PropertyGroup) -> str:
+    """What is to be done before the sea can be shown; empty where nothing is."""
+    if group.source == "DISTANCE" or group.image is not None:
+        return ""
+    if group.source == "IMAGE":
+        return "The sea waits for an image: choose one, or no mask"
+    if group.mesh is None:
+        return "The sea waits for weights: choose a mesh over or under the water"
+    if not _has_weights(group):
+        return "The sea waits for weights: choose the mesh's vertex group"
+    return "The sea waits for weights: press Read Weights"
+
+
+def _has_weights(group: bpy.types.PropertyGroup) -> bool:
+    return group.mesh is not None and group.vertex_group in group.mesh.vertex_groups
