@@ -3,7 +3,8 @@
 
 The grid carries the sums of the patches before: displacement, velocity, slopes with the variance that the
 averages lack, and strain, all in the ocean's axes. A patch is read in its own space, averaged by its own
-spacing, turned, and multiplied by its weight on the ocean's mesh.
+spacing, turned, and multiplied by its weight w, whose own change is a part of slopes and strains:
+∂(w d) = w ∂d + d ∂w.
 """
 
 from __future__ import annotations
@@ -28,10 +29,11 @@ _INPUTS = (
     Plug(
         "Corner", "NodeSocketVector", None, "Its mesh's first vertex at rest, where the grid has its origin"
     ),
-    Plug("Spacing", "NodeSocketVector", None, "Between the vertices of its mesh"),
-    Plug("Columns", "NodeSocketInt", 2, "Its mesh's vertices along x"),
-    Plug("Rows", "NodeSocketInt", 2, "Its mesh's vertices along y"),
-    Plug("Weight", "NodeSocketString", "", "Attribute of the ocean's mesh that the patch is multiplied by"),
+    Plug("Weights", "NodeSocketGeometry", None, "Points over the ocean's domain, x fastest"),
+    Plug("Spacing", "NodeSocketVector", None, "Between these points"),
+    Plug("Columns", "NodeSocketInt", 2, "Of them along x"),
+    Plug("Rows", "NodeSocketInt", 2, "Of them along y"),
+    Plug("Weight", "NodeSocketString", "", "Attribute of theirs that the patch is multiplied by"),
     Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     Plug("Fade", "NodeSocketBool", True, "Average by the size of the cells"),
 )
@@ -42,7 +44,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, _INPUTS, _OUTPUTS)
     ocean, patch = Spaces(build, build.given("Ocean")), Spaces(build, build.given("Patch"))
     facts = build.group(node_group(GRID_FACTS), {"Geometry": patch.mesh})
-    before = _sums_before(build, ocean.mesh)
+    before = _sums_before(build)
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     in_ocean = build.vector("ADD", position, build.given("Corner"))
     in_patch = patch.point_of_ocean(ocean.point_of_asker(in_ocean))
@@ -65,51 +67,71 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish(build.switch("GEOMETRY", is_there, build.given("Geometry"), grid))
 
 
-def _sums_before(build: Builder, mesh: Socket) -> bpy.types.Node:
+def _sums_before(build: Builder) -> bpy.types.Node:
     """Keeps the sums and the weight, whose names are used anew."""
     node = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
     values = {name: output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in CARRIED}
     for name, value in values.items():
         node.capture_items.new("VECTOR", name)
         build.tree.links.new(value, node.inputs[name])
-    node.capture_items.new("FLOAT", "Weight")
-    build.tree.links.new(_weight(build, mesh), node.inputs["Weight"])
+    node.capture_items.new("VECTOR", "Weight")
+    build.tree.links.new(_weight(build), node.inputs["Weight"])
     return node
 
 
-def _weight(build: Builder, mesh: Socket) -> Socket:
-    """What the ocean's mesh says at the vertex, 1 where it says nothing."""
+def _weight(build: Builder) -> Socket:
+    """At the vertex, with its changes along x and y; 1 where there is no such attribute."""
+    points = build.given("Weights")
     attribute = build.add("GeometryNodeInputNamedAttribute", data_type="FLOAT")
     build.tree.links.new(build.given("Weight"), attribute.inputs["Name"])
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     inputs = {
         "Value": output(attribute, "Attribute"),
         "Place": build.vector("DIVIDE", position, build.given("Spacing")),
-        "Geometry": mesh,
+        "Geometry": points,
         **{name: build.given(name) for name in ("Columns", "Rows")},
     }
-    there, _, _ = coordinates(build, output(build.group(node_group(CELL), inputs), "Value"))
-    known = sample_index(build, mesh, output(attribute, "Exists"), 0, "BOOLEAN")
-    return build.switch("FLOAT", known, 1.0, there)
+    cell = build.group(node_group(CELL), inputs)
+    there, by_x, by_y = (
+        coordinates(build, output(cell, name))[0] for name in ("Value", "Along X", "Along Y")
+    )
+    step_x, step_y, _ = coordinates(build, build.given("Spacing"))
+    changes = (build.math("DIVIDE", change, step) for change, step in ((by_x, step_x), (by_y, step_y)))
+    known = sample_index(build, points, output(attribute, "Exists"), 0, "BOOLEAN")
+    return build.switch("VECTOR", known, (1.0, 0.0, 0.0), combined(build, there, *changes))
 
 
 def _turned(
     build: Builder, turned: Callable[[Socket | tuple[float, float, float]], Socket], weight: Socket
 ) -> dict[str, Socket]:
-    """What was read, in the ocean's axes and multiplied: vectors R v, strain R G Rᵀ."""
+    """What was read, in the ocean's axes and multiplied: vectors R v, strain R G Rᵀ.
+
+    In the order in which it can be stored: the displacement is a part of what stands before it.
+    """
 
     def told(name: str) -> Socket:
         return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
 
+    def product(a: Socket, b: Socket) -> Socket:
+        return build.math("MULTIPLY", a, b)
+
+    weight, by_x, by_y = coordinates(build, weight)
+    displacement = turned(told(DISPLACEMENT))
+    dx, dy, dz = coordinates(build, displacement)
     x, y, squares = coordinates(build, told(SLOPES))
-    slope_x, slope_y, _ = coordinates(build, build.scaled(turned(combined(build, x, y)), weight))
+    slope = build.scaled(turned(combined(build, x, y)), weight)
+    slope = build.vector("ADD", slope, build.scaled(combined(build, by_x, by_y), dz))
+    slope_x, slope_y, _ = coordinates(build, slope)
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
     lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
     lost = build.math("MULTIPLY", lost, build.math("MULTIPLY", weight, weight))
+    shear = build.math("MULTIPLY", build.math("ADD", product(dx, by_y), product(dy, by_x)), 0.5)
+    strain = build.scaled(_turned_strain(build, told(OTHERS), turned((1.0, 0.0, 0.0))), weight)
     return {
-        **{name: build.scaled(turned(told(name)), weight) for name in (DISPLACEMENT, VELOCITY)},
         SLOPES: combined(build, slope_x, slope_y, lost),
-        OTHERS: build.scaled(_turned_strain(build, told(OTHERS), turned((1.0, 0.0, 0.0))), weight),
+        OTHERS: build.vector("ADD", strain, combined(build, product(dx, by_x), product(dy, by_y), shear)),
+        VELOCITY: build.scaled(turned(told(VELOCITY)), weight),
+        DISPLACEMENT: build.scaled(displacement, weight),
     }
 
 

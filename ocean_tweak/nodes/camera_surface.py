@@ -40,8 +40,8 @@ EARTH_RADIUS = 6_371_000.0  # m
 _LEAST_HEIGHT = 2.0 / EARTH_RADIUS
 #: cells of the lattice in the shortest wave that is left
 SHORTEST_CELLS = 4.0
-#: of the sea's patches, where it has several
-PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, MOST_PATCHES + 1))
+#: of the sea's patches, where it has several; under masks a patch may be several too
+PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
 
 INPUTS = (
     OCEAN_INPUT,
@@ -63,7 +63,11 @@ INPUTS = (
         )
         for name in PATCH_INPUTS
     ),
-)
+    Plug(
+        "Weights", "NodeSocketObject", None,
+        "Points over the domain with the weights of patches; none takes those of the ocean's mesh",
+    ),
+)  # fmt: skip
 
 
 class _Sea(NamedTuple):
@@ -184,11 +188,25 @@ def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
     grid = build.store(grid, SLOPES, combined(build, x, y, lost), "FLOAT_VECTOR")
     # a mesh's normals are of its present shape already
     grid = build.store(grid, OTHERS, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
-    whole = {**shared, "Ocean": build.given("Ocean"), "Corner": sea.corner}
+    whole = {**shared, **_weights(build, sea), "Ocean": build.given("Ocean"), "Corner": sea.corner}
     for number, name in enumerate(PATCH_INPUTS, start=1):
         inputs = {**whole, "Patch": build.given(name), "Weight": WEIGHT.format(number)}
         grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
     return grid
+
+
+def _weights(build: Builder, sea: _Sea) -> dict[str, Socket]:
+    """Points that have the patches' weights, and how they lie."""
+    given = build.add(
+        "GeometryNodeObjectInfo", {"Object": build.given("Weights")}, transform_space="ORIGINAL"
+    )
+    count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": output(given, "Geometry")})
+    none = build.compare("EQUAL", output(count, "Point Count"), 0)
+    own = output(sea.facts, "Geometry")
+    points = build.switch("GEOMETRY", none, output(given, "Geometry"), own)
+    facts = build.group(node_group(GRID_FACTS), {"Geometry": points})
+    lie = {name: output(facts, name) for name in ("Spacing", "Columns", "Rows")}
+    return {"Weights": output(facts, "Geometry"), **lie}
 
 
 def _told(build: Builder, name: str) -> Socket:

@@ -3,28 +3,36 @@
 
 They are points alone, as the nodes want them: no renderer sees them. Each holds all samples of its patch in
 the patch's own axes and is turned as the patch is. They are live, whatever moves the ocean's own mesh.
+
+Of a sea under masks, a patch is as many meshes as it has masks. Their weights are on points over the domain.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import OceanParameters
-from ..core.cascades.patch_seas import ADDING, patch_parameters, rotations
+from ..core.cascades.patch_seas import ADDING, Part, parts
+from ..core.fingerprint import fingerprint
+from ..core.masks.parameters import Mask
+from ..core.masks.weights import weights
+from ..core.plain_data import to_plain
 from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
 from ..nodes.modifier_inputs import set_inputs
-from ..nodes.names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY
+from ..nodes.names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY, WEIGHT
 from ..nodes.versioned import is_of_kind
 from . import evaluation
 from .grid_mesh import Grid
 from .plan import Plan
-from .settings import is_ocean
+from .settings import OceanObjectError, is_ocean
 
-_NUMBER = "ocean_tweak_patch"
+_NUMBER, _MASKS = "ocean_tweak_patch", "ocean_tweak_masks"
+#: cells of the weights along each side of the domain
+_WEIGHTS = 256
 #: Blender's type of each attribute
 _TYPES = {DISPLACEMENT: "FLOAT_VECTOR", VELOCITY: "FLOAT_VECTOR", SLOPE: "FLOAT2", STRAIN: "FLOAT_VECTOR"}
 
@@ -44,7 +52,7 @@ def refresh(ocean: bpy.types.Object, plan: Plan, coarse: bool = False) -> None:
 
     coarse : a parameter is dragged: they wait until all samples are wanted
 
-    Raises MemoryError for a patch too large.
+    Raises MemoryError for a patch too large, OceanObjectError for masks that part the sea too often.
     """
     # a linked ocean shows what its own file holds: Blender drops changes to it
     if coarse or ocean.library is not None:
@@ -53,22 +61,30 @@ def refresh(ocean: bpy.types.Object, plan: Plan, coarse: bool = False) -> None:
     if surface is None or not plan.parameters.patches:
         remove(ocean)
         made = {}
+        points = None
     else:
-        made = dict(_refreshed(ocean, plan))
+        of_sea = parts(plan.parameters)
+        if len(of_sea) > len(PATCH_INPUTS):
+            raise OceanObjectError(
+                f"Masks part this sea's patches into {len(of_sea)}, and a camera surface shows "
+                f"{len(PATCH_INPUTS)}: take masks or patches away, or the camera surface"
+            )
+        made = dict(_refreshed(ocean, plan, of_sea))
+        points = _weights(ocean, plan, of_sea)
     if surface is not None:
-        set_inputs(
-            _modifier_of(surface), {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
-        )
+        inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
+        set_inputs(_modifier_of(surface), {**inputs, "Weights": points})
 
 
 def remove(ocean: bpy.types.Object) -> None:
-    """Take the meshes of an ocean's patches away."""
-    _remove(child for child in ocean.children if _NUMBER in child)
+    """Take the meshes of an ocean's patches and their weights away."""
+    _remove(child for child in ocean.children if _NUMBER in child or _MASKS in child)
 
 
 def remove_left() -> None:
     """Take away those whose ocean was deleted: nobody can choose them."""
-    _remove(item for item in bpy.data.objects if _NUMBER in item and not is_ocean(item.parent))
+    own = (item for item in bpy.data.objects if _NUMBER in item or _MASKS in item)
+    _remove(item for item in own if not is_ocean(item.parent))
 
 
 def _modifier_of(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
@@ -76,27 +92,63 @@ def _modifier_of(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
     return next((each for each in modifiers if is_of_kind(each.node_group, CAMERA_SURFACE)), None)
 
 
-def _refreshed(ocean: bpy.types.Object, plan: Plan) -> Iterator[tuple[int, bpy.types.Object]]:
+def _refreshed(
+    ocean: bpy.types.Object, plan: Plan, of_sea: Sequence[Part]
+) -> Iterator[tuple[int, bpy.types.Object]]:
     """The patches by their number; those that are one too many go."""
     present = patches_of(ocean)
-    patches = patch_parameters(plan.parameters)
-    kept = {present[number].name for number in range(1, len(patches) + 1) if number in present}
+    kept = {present[number].name for number in range(1, len(of_sea) + 1) if number in present}
     _remove(child for child in ocean.children if _NUMBER in child and child.name not in kept)
-    for number, (patch, rotation) in enumerate(zip(patches, rotations(plan.parameters), strict=True), 1):
-        item = present.get(number) or _new(ocean, number)
-        if item.rotation_euler.z != np.float32(rotation):
-            item.rotation_euler.z = rotation
+    for number, part in enumerate(of_sea, 1):
+        item = present.get(number) or _new(ocean, f"Patch {number}", _NUMBER, number)
+        if item.rotation_euler.z != np.float32(part.rotation):
+            item.rotation_euler.z = part.rotation
         if item.data.users > 1:  # of a duplicate
             item.data = item.data.copy()
         if item.data.library is None:
-            _write(item.data, patch, plan)
+            _write(item.data, part.parameters, plan)
         yield number, item
 
 
-def _new(ocean: bpy.types.Object, number: int) -> bpy.types.Object:
-    name = f"{ocean.name} Patch {number}"
+def _weights(ocean: bpy.types.Object, plan: Plan, of_sea: Sequence[Part]) -> bpy.types.Object | None:
+    """Points over the domain with the weights of the parts that have masks; None where none has."""
+    present = next((child for child in ocean.children if _MASKS in child), None)
+    masked = {WEIGHT.format(number): part.masks for number, part in enumerate(of_sea, 1) if part.masks}
+    if not masked:
+        _remove(iter((present,) if present is not None else ()))
+        return None
+    size = plan.parameters.domain_size
+    values = {name: [to_plain(mask, brief=True) for mask in masks] for name, masks in masked.items()}
+    content = fingerprint({"size": size, "scale": plan.scale, **values})
+    item = present or _new(ocean, "Weights", _MASKS, "")
+    if item[_MASKS] != content and item.data.library is None:
+        _write_weights(item, masked, size, Grid(size * plan.scale, _WEIGHTS, _WEIGHTS))
+        item[_MASKS] = content
+    return item
+
+
+def _write_weights(
+    item: bpy.types.Object, masked: Mapping[str, Sequence[Mask]], size: float, grid: Grid
+) -> None:
+    if item.data.users > 1:  # of a duplicate
+        item.data = item.data.copy()
+    mesh = item.data
+    mesh.clear_geometry()
+    mesh.vertices.add(grid.vertices)
+    mesh.attributes["position"].data.foreach_set("vector", grid.positions().reshape(-1))
+    mesh.attributes.new(DISPLACEMENT, "FLOAT_VECTOR", "POINT")  # by which nodes know a sea's grid; they rest
+    along = size / _WEIGHTS * np.arange(_WEIGHTS + 1)
+    for name, masks in masked.items():
+        values = weights(masks, size, along, along[:, np.newaxis]).value
+        attribute = mesh.attributes.new(name, "FLOAT", "POINT")
+        attribute.data.foreach_set("value", values.astype(np.float32).ravel())
+    mesh.update_tag()
+
+
+def _new(ocean: bpy.types.Object, role: str, key: str, value: object) -> bpy.types.Object:
+    name = f"{ocean.name} {role}"
     item = bpy.data.objects.new(name, bpy.data.meshes.new(name))
-    item[_NUMBER] = number
+    item[key] = value
     item.parent = ocean
     item.hide_viewport = item.hide_render = item.hide_select = True
     for collection in ocean.users_collection:

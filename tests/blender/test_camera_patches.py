@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The surface around the camera shows a sea of several patches: their sum, near and far."""
 
+import dataclasses
 import math
 
 import bpy
@@ -68,9 +69,23 @@ def normals(mesh):
     return flat.reshape(-1, 3)
 
 
+def under_masks(core, parameters):
+    """Two wave layers under one mask each, of which one is everywhere, and the last patch under another."""
+    harbour = core.Mask(x=40.0, y=40.0, near=5.0, far=60.0)
+    shore = core.Mask(source="IMAGE", image=core.Raster([[0.2, 1.0, 0.6], [0.0, 0.4, 1.0]]))
+    (layer,) = parameters.layers
+    lee = core.WaveLayer(wind_speed=5.0, fetch=3e3, wind_direction=-1.0)
+    *others, last = parameters.patches
+    return parameters.replace(
+        layers=(dataclasses.replace(layer, mask=harbour), lee),
+        patches=(*others, dataclasses.replace(last, mask=shore)),
+    )
+
+
 @pytest.mark.parametrize("turn", [0.0, TURN])
-def test_near_the_camera_it_is_the_sum(shown, core, patched, camera, empty_scene, turn):
-    parameters = patched()
+@pytest.mark.parametrize("masks", [False, True])
+def test_near_the_camera_it_is_the_sum(shown, core, patched, camera, empty_scene, turn, masks):
+    parameters = under_masks(core, patched()) if masks else patched()
     ocean, item = shown(parameters)
     ocean.rotation_euler.z = turn
     moved_to(ocean, 20.0, 30.0, 4.0)
@@ -89,7 +104,29 @@ def test_near_the_camera_it_is_the_sum(shown, core, patched, camera, empty_scene
         # both are bilinear between the patches' samples; places are rounded to a float
         np.testing.assert_allclose(displacement[near], sea.displacement, atol=1e-3)
         np.testing.assert_allclose(numbers(mesh, "velocity", 3)[near], sea.velocity, atol=3e-3)
-        np.testing.assert_allclose(normals(mesh)[near], sea.normal, atol=2e-3)
+        # weights are bilinear between points 0.6 m apart, and their change is one number in each cell
+        np.testing.assert_allclose(normals(mesh)[near], sea.normal, atol=4e-3 if masks else 2e-3)
+
+
+def test_masks_part_patches_into_meshes_with_weights(shown, core, patched, empty_scene):
+    """Patches times masks; one set of weights, which goes with the masks; too many are told."""
+    ocean, _ = shown(under_masks(core, patched()))
+    assert len(patch_objects(ocean)) == 6
+    (points,) = [child for child in ocean.children if "Weights" in child.name]
+    names = [attribute.name for attribute in points.data.attributes if "weight" in attribute.name]
+    assert sorted(names) == [f"ocean_tweak_weight_{number}" for number in (2, 4, 5, 6)]
+    settings = ocean.ocean_tweak
+    settings.layers[0].mask.near = 20.0
+    bpy.context.view_layer.update()
+    settings.layers[0].mask.source = "NONE"
+    settings.patches[2].mask.source = "NONE"
+    assert len(patch_objects(ocean)) == 3
+    assert not [child for child in ocean.children if "Weights" in child.name]
+    assert not settings.error
+    layers = tuple(core.WaveLayer(mask=core.Mask(x=float(number))) for number in range(3))
+    settings.from_parameters(patched().replace(layers=layers), empty_scene)
+    assert "9" in settings.error
+    assert "camera surface" in settings.error
 
 
 def test_the_edges_are_whole(shown):
