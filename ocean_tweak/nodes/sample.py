@@ -7,6 +7,8 @@ and in renders. The ocean and the object that asks may stand anywhere: answers a
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import bpy
 
 from .building import Builder, Plug, Socket, output
@@ -40,14 +42,19 @@ class Spaces:
 
     def __init__(self, build: Builder, ocean: Socket) -> None:
         self._build = build
-        own = build.add("GeometryNodeObjectInfo", {"Object": ocean}, transform_space="ORIGINAL")
+        self._ocean = ocean
         placed = build.add("GeometryNodeObjectInfo", {"Object": ocean}, transform_space="RELATIVE")
-        #: the mesh in the ocean's own space: moving it would copy it
-        self.mesh = output(own, "Geometry")
         #: from the ocean's space to the asker's
         self.transform = output(placed, "Transform")
         inverse = build.add("FunctionNodeInvertMatrix", {"Matrix": self.transform})
         self._inverse = output(inverse, "Matrix")
+
+    @cached_property
+    def mesh(self) -> Socket:
+        """The mesh in the ocean's own space: moving it would copy it."""
+        inputs = {"Object": self._ocean}
+        own = self._build.add("GeometryNodeObjectInfo", inputs, transform_space="ORIGINAL")
+        return output(own, "Geometry")
 
     def point_of_ocean(self, position: Socket) -> Socket:
         """The asker's position in the ocean's space."""
