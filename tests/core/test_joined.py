@@ -10,10 +10,12 @@ import pytest
 
 from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, ParameterError, Patch, WaveLayer, grid_sea
 from ocean_tweak.core.bake import ShotSurfaces
+from ocean_tweak.core.cascades.joined import border_shares
 from ocean_tweak.core.cascades.patch_seas import joined_bands
 from ocean_tweak.core.foam_threshold import whitecap_coverage
 from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from tests.core.patched_seas import summed
 
 LAYER = WaveLayer(wind_speed=10.0, wind_direction=0.4, fetch=100e3)
@@ -100,6 +102,29 @@ def test_the_square_repeats_without_a_seam() -> None:
         error = np.sqrt(np.mean((along - 0.5 * (slope + np.roll(slope, -1, 0))) ** 2, axis=1))
         assert error[[-1, 0, -20]].max() < 1.2 * error[50:400].max(), name
         assert error[50:400].max() < 0.2 * np.std(slope)
+
+
+def test_shares_within_the_border() -> None:
+    """Squares add up to 1; before the border only what is there counts, at the side only what is before."""
+    place = np.array([0.0, 70.0, 80.0, 87.3, 95.0, 99.9, 100.0])
+    (here, here_slope, no_step), (before, before_slope, step) = border_shares(place, 100.0, 20.0)
+    assert (no_step, step) == (0.0, 100.0)
+    np.testing.assert_allclose(here**2 + before**2, 1.0)
+    np.testing.assert_array_equal(before[:3], 0.0)
+    np.testing.assert_allclose(here[-1], 0.0, atol=1e-12)
+    ahead, behind = (border_shares(place + step, 100.0, 20.0) for step in (1e-5, -1e-5))
+    for index, slope in enumerate((here_slope, before_slope)):
+        difference = (ahead[index][0] - behind[index][0]) / 2e-5
+        np.testing.assert_allclose(slope, difference, atol=1e-5)
+
+
+def test_waves_that_the_grid_lacks_are_told_as_slopes() -> None:
+    """Together with those that it holds they are all gravity waves."""
+    sea = joined(256)
+    held = grid_sea(sea).statistics().resolved.mean_square_slope
+    lacking = unresolved_slope_variance(sea)
+    assert held + lacking == pytest.approx(total_slope_variance(APART.without_patches), rel=0.03)
+    assert lacking > unresolved_slope_variance(joined(512)) > unresolved_slope_variance(APART)
 
 
 def test_the_border_is_as_high_as_the_rest() -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from ocean_tweak.core import (
     Cascade,
+    HeroWave,
     Mask,
     Ocean,
     OceanParameters,
@@ -203,6 +204,17 @@ def test_layers_of_all_kinds_have_masks(kind: str) -> None:
     weight = weights_on_grid((HARBOUR,), SIZE, SAMPLES).value[..., np.newaxis]
     assert np.abs(fields[1] - fields[2]).max() > 0.05
     np.testing.assert_allclose(fields[0], fields[2] + weight * (fields[1] - fields[2]), atol=2e-5)
+
+
+def test_a_hero_wave_is_there_once_and_under_no_mask() -> None:
+    hero = HeroWave(x=60.0, y=90.0, time=2.0, wavelength=40.0, crest_height=2.0)
+    with_wave, without = (
+        grid_sea(sea(hero_waves=waves), "double").surface(2.0).displacement for waves in ((hero,), ())
+    )
+    alone = Ocean(only(sea(), 1).replace(hero_waves=(hero,)), "double").surface(2.0).displacement
+    plain = Ocean(only(sea(), 1), "double").surface(2.0).displacement
+    np.testing.assert_allclose(with_wave - without, alone - plain, atol=1e-9)
+    assert np.abs(alone - plain).max() > 1.0
 
 
 def test_the_height_above_a_place_is_that_of_the_masked_surface() -> None:

@@ -156,7 +156,7 @@ class JoinedSea(GridSea):
 
 def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> dict[Key, RealArray]:
     """A grid at places in a square, near whose far sides it goes over into what lies before the near ones."""
-    along_x, along_y = _shares(x, side, border), _shares(y, side, border)
+    along_x, along_y = border_shares(x, side, border), border_shares(y, side, border)
     total: dict[Key, RealArray] = {}
     for share_x, slope_x, back_x in along_x:
         for share_y, slope_y, back_y in along_y:
@@ -170,7 +170,7 @@ def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> di
     return total
 
 
-def _shares(place: Array, side: float, border: float) -> tuple[tuple[Array, Array, float], ...]:
+def border_shares(place: Array, side: float, border: float) -> tuple[tuple[Array, Array, float], ...]:
     """How much counts of what is there and of what is a side before, the derivative of that, and the side.
 
     Shares are cosine and sine of an angle that rises smoothly from 0 to a quarter turn within the border.
