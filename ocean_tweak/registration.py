@@ -21,6 +21,7 @@ from .ui import (
     mask_operators,
     material_operators,
     node_operators,
+    object_menu,
     operators,
     panels,
     parameter_operators,
@@ -54,6 +55,7 @@ CLASSES = (
     *camera_operators.CLASSES,
     *float_operators.CLASSES,
     *node_operators.CLASSES,
+    *object_menu.CLASSES,
     *scene_operators.CLASSES,
     *material_operators.CLASSES,
 )
@@ -98,6 +100,7 @@ def register(package: str | None = None) -> None:
     preset_thumbnails.register()
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
+    bpy.types.VIEW3D_MT_object.append(object_menu.draw_object_menu)
     bpy.types.NODE_MT_add.append(node_operators.draw_add_menu)
     bpy.types.VIEW3D_MT_mesh_add.append(scene_operators.draw_add_menu)
     bpy.types.TOPBAR_MT_file_export.append(usd_operators.draw_export_menu)
@@ -119,6 +122,7 @@ def unregister() -> None:
     bpy.types.TOPBAR_MT_file_export.remove(usd_operators.draw_export_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(scene_operators.draw_add_menu)
     bpy.types.NODE_MT_add.remove(node_operators.draw_add_menu)
+    bpy.types.VIEW3D_MT_object.remove(object_menu.draw_object_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
     preset_thumbnails.unregister()
