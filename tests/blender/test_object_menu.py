@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Object menu offers what can be done with the active ocean: F3 does not find what stands in panels alone."""
+"""The Object menu offers what is done with the active ocean: F3 does not find what stands in panels alone."""
 
 from types import SimpleNamespace
 
