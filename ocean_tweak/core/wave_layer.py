@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a layer of waves by a spectrum is: its energy, its directions, its band."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import constants
+from .errors import ParameterError
+from .masks.parameters import Mask
+from .validation import Validated, choice, integer, nested, number, switch
+
+SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
+SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
+DEFINITIONS = ("WIND", "SEA_STATE")
+DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
+
+
+@dataclass(frozen=True)
+class WaveLayer(Validated):
+    """One wave system, given by its wind and fetch or by its height and period."""
+
+    spectrum: str = choice("TMA", SPECTRA, "How the energy is shared among wavelengths")
+    wind_speed: float = number(
+        12.0, 0.1, 100.0, "m/s", "Mean wind speed. Sets wave height and length",
+        "from calm to beyond the strongest hurricane",
+    )  # fmt: skip
+    wind_direction: float = number(
+        0.0, -1e6, 1e6, "rad", "Direction towards which the waves run, counter-clockwise from +x",
+        "any number of turns that a float tells apart",
+    )  # fmt: skip
+    fetch: float = number(
+        150e3, 1.0, 20e6, "m", "Distance of open water over which the wind has blown",
+        "from a pond to half the Earth's circumference",
+    )  # fmt: skip
+    limit_fetch: bool = switch(True, "End the growth of the sea where it is fully developed for its wind")
+    spreading: str = choice("DONELAN_BANNER", SPREADINGS, "How the energy is shared among directions")
+    swell: float = number(
+        0.3, 0.0, 4.0, "", "Draws waves out into long parallel trains; 0 to 1 is the useful range",
+        "beyond 4 a wave train is a single direction",
+    )  # fmt: skip
+    gain: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's gain"
+    )
+    peak_enhancement: float = number(
+        constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "γ of JONSWAP and TMA: how far long waves stand out",
+        "records lie between 1 and 7",
+    )  # fmt: skip
+    depth_factor: str = choice(
+        "KITAIGORODSKII", DEPTH_FACTORS, "How TMA loses energy in shallow water: exact, or the approximation"
+    )
+    generalized_a: float = number(
+        0.7795,
+        0.0,
+        1e6,
+        "m²/s⁴",
+        "A of the generalised spectrum A/ω⁵ exp(-B/ω⁴)",
+        "beyond it no liquid holds together",
+    )
+    generalized_b: float = number(
+        0.6185, 1e-12, 1e12, "1/s⁴", "B of the generalised spectrum A/ω⁵ exp(-B/ω⁴)",
+        "peaks from a thousandth to a thousand rad/s",
+    )  # fmt: skip
+    short_wave_cutoff: float = number(
+        0.0, 0.0, 1e3, "m", "Length l of the factor exp(-k²l²) that takes away waves shorter than about 2πl",
+        "longer than any wave's cut-off",
+    )  # fmt: skip
+    wind_height: float = number(
+        10.0, 2.0, 100.0, "m", "Height above the water at which the wind was measured",
+        "lower, the log law has no wind for every speed",
+    )  # fmt: skip
+    definition: str = choice(
+        "WIND", DEFINITIONS, "What gives the layer's energy: wind and fetch, or wave height and period"
+    )
+    significant_wave_height: float = number(
+        2.0,
+        0.0,
+        100.0,
+        "m",
+        "Wave height Hs of a layer defined by its sea state",
+        "thrice the largest measured",
+    )
+    peak_period: float = number(
+        10.0,
+        0.05,
+        60.0,
+        "s",
+        "Peak period Tp of a layer defined by its sea state",
+        "from ripples to long swell",
+    )
+    spreading_exponent: float = number(
+        1.0,
+        0.0,
+        1e4,
+        "",
+        "s of the spreading cos²ˢ(θ/2) with a fixed exponent",
+        "beyond it the wave is a plane one",
+    )
+    second_spreading: str = choice("FLAT", SPREADINGS, "The spreading that is mixed in")
+    spreading_mix: float = number(0.0, 0.0, 1.0, "", "Share of the second spreading", "a share")
+    shortest_wavelength: float = number(
+        0.0, 0.0, 1e6, "m", "The band's short end: waves below it are left out", "0 keeps all short waves"
+    )
+    longest_wavelength: float = number(
+        1e6,
+        1e-3,
+        1e6,
+        "m",
+        "The band's long end: waves above it are left out",
+        "1000 km keeps all long waves",
+    )
+    band_softness: float = number(
+        0.0,
+        0.0,
+        4.0,
+        "octaves",
+        "Width over which the band's ends fade; 0 cuts sharply",
+        "a band's own width",
+    )
+    band_inverted: bool = switch(False, "Keep what lies outside the band instead")
+    muted: bool = switch(False, "Leave the layer out; no other layer changes")
+    id: int = integer(
+        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free one",
+        "Blender's whole numbers",
+    )  # fmt: skip
+    seed: int = integer(
+        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
+        "Blender's whole numbers",
+    )  # fmt: skip
+    mask: Mask | None = nested(Mask, optional=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.shortest_wavelength >= self.longest_wavelength:
+            raise ParameterError(
+                "shortest_wavelength", self.shortest_wavelength,
+                f"must be below longest_wavelength = {self.longest_wavelength:g} m",
+            )  # fmt: skip
