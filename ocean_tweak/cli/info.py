@@ -92,6 +92,13 @@ def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) ->
         f"sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
     lines += _patch_rows(found)
+    if parameters.joined:
+        lines.append(
+            f"  joined on {parameters.joined}² samples, {parameters.domain_size / parameters.joined:.3g} m apart: "
+            f"waves from {2.0 * parameters.domain_size / parameters.joined:.3g} m"
+        )
+    if parameters.is_masked:
+        lines.append("  masks lie over some of these waves; all numbers are without them")
     coverage, earlier = foam_outlook(parameters)
     if coverage > 0.0:
         share = f"{100.0 * coverage:.2g} %"

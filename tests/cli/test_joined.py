@@ -126,3 +126,17 @@ def test_info_tells_of_the_waves_that_the_grid_holds(
     whole = report["statistics"]
     assert [patch["resolution"] for patch in whole["patches"]] == [96, 128]
     assert report["parameters"]["joined"] == 48
+
+
+def test_info_tells_of_masks_and_joined_patches(
+    patched: Path, masked: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two samples of 300 m / 48 are 12.5 m."""
+    assert main(["info", "--params", str(patched), "--set", "joined=48"]) == 0
+    said = capsys.readouterr().out
+    assert "joined on 48² samples, 6.25 m apart: waves from 12.5 m" in said
+    assert "masks" not in said
+    assert main(["info", "--params", str(masked)]) == 0
+    said = capsys.readouterr().out
+    assert "masks lie over some of these waves" in said
+    assert "joined" not in said
