@@ -93,9 +93,9 @@ def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) ->
     ]
     lines += _patch_rows(found)
     if parameters.joined:
+        apart = parameters.domain_size / parameters.joined
         lines.append(
-            f"  joined on {parameters.joined}² samples, {parameters.domain_size / parameters.joined:.3g} m apart: "
-            f"waves from {2.0 * parameters.domain_size / parameters.joined:.3g} m"
+            f"  joined on {parameters.joined}² samples, {apart:.3g} m apart: waves from {2.0 * apart:.3g} m"
         )
     if parameters.is_masked:
         lines.append("  masks lie over some of these waves; all numbers are without them")
