@@ -241,5 +241,6 @@ def _rise(octaves: Array, width: float) -> Array:
     """0 below, 1 above 0 octaves, with a smooth step of the given width between; a half at 0."""
     if width == 0.0:
         return (octaves >= 0.0).astype(np.float64)
-    x = np.clip(octaves / width + 0.5, 0.0, 1.0)
+    # held before the division: a width may be as small as a float can be
+    x = np.clip(np.clip(octaves, -width, width) / width + 0.5, 0.0, 1.0)
     return x * x * (3.0 - 2.0 * x)

@@ -13,7 +13,19 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Timing, Water, WaveLayer
+from ocean_tweak.core import (
+    Foam,
+    Mask,
+    Ocean,
+    OceanParameters,
+    ParameterError,
+    Patch,
+    Raster,
+    Timing,
+    Water,
+    WaveLayer,
+    grid_sea,
+)
 from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.propagation import propagate
 
@@ -54,15 +66,62 @@ LAYERS = st.builds(
     instances(WaveLayer, shortest_wavelength=st.just(0.0), longest_wavelength=st.just(1e6), id=st.just(-1)),
     BAND,
 )
+COMMON = {
+    "loop_duration": st.one_of(st.none(), st.integers(1, 500).map(lambda n: Fraction(n, 24))),
+    "water": instances(Water),
+    "foam": instances(Foam, resolution=st.sampled_from([0, 16, 24])),
+    "timing": st.just(Timing()),
+}
 SEAS = instances(
     OceanParameters,
     resolution=st.sampled_from([16, 18, 20, 32]),
-    loop_duration=st.one_of(st.none(), st.integers(1, 500).map(lambda n: Fraction(n, 24))),
-    water=instances(Water),
-    foam=instances(Foam, resolution=st.sampled_from([0, 16, 24])),
     layers=st.lists(LAYERS, min_size=1, max_size=3).map(tuple),
-    timing=st.just(Timing()),
+    joined=st.just(0),
+    **COMMON,
 )
+MASKS = st.one_of(
+    st.none(),
+    instances(
+        Mask,
+        source=st.just("DISTANCE"),
+        near=st.floats(0.0, 100.0),
+        far=st.floats(101.0, 1e6),
+        image=st.none(),
+    ),
+    instances(
+        Mask,
+        source=st.just("IMAGE"),
+        image=st.lists(
+            st.lists(st.floats(0.0, 1.0, width=32), min_size=3, max_size=3), min_size=1, max_size=4
+        ).map(Raster),
+    ),
+)
+
+
+def patched_seas() -> st.SearchStrategy[OceanParameters]:
+    """Two patches that meet, apart or joined, some of them and of the layers under masks."""
+    patches = st.builds(
+        lambda first, second, end: (
+            dataclasses.replace(first, shortest_wavelength=end),
+            dataclasses.replace(second, longest_wavelength=end),
+        ),
+        *(
+            instances(
+                Patch,
+                resolution=st.sampled_from([16, 24]),
+                shortest_wavelength=st.just(0.0),
+                longest_wavelength=st.just(1e6),
+                mask=MASKS,
+            )
+            for _ in range(2)
+        ),
+        st.floats(1e-3, 1e5),
+    )
+    layers = st.builds(lambda layer, mask: (dataclasses.replace(layer, mask=mask),), LAYERS, MASKS)
+    return instances(
+        OceanParameters, patches=patches, joined=st.sampled_from([0, 16, 48]), layers=layers,
+        trough_damping=st.just(0.0), **COMMON,
+    )  # fmt: skip
 
 
 @QUICK
@@ -83,7 +142,17 @@ def test_any_sea_is_finite_and_keeps_its_energy(parameters: OceanParameters, tim
 
 
 @QUICK
-@given(parameters=SEAS)
+@given(parameters=patched_seas(), time=st.floats(-1e6, 1e6))
+def test_any_sum_is_finite(parameters: OceanParameters, time: float) -> None:
+    sea = grid_sea(parameters.on_one_grid(parameters.resolution))
+    with np.errstate(over="raise", invalid="raise", divide="raise"):
+        fields = sea.surface(time, OUTPUTS)
+    for name in OUTPUTS:
+        assert np.all(np.isfinite(getattr(fields, name))), name
+
+
+@QUICK
+@given(parameters=st.one_of(SEAS, patched_seas()))
 def test_json_round_trip(parameters: OceanParameters) -> None:
     assert OceanParameters.from_json(parameters.to_json()) == parameters
 

@@ -19,6 +19,9 @@ _LARGEST_SEED = 2**31 - 1
 _SAMPLES_A_WAVE = 8.0
 _FEWEST, _MOST = 16, 8192
 
+#: rad; directions are allowed up to this
+_MOST_TURNED = 1e6
+
 #: the fields that hold layers of any kind
 _LAYERS = ("layers", "pictures", "wind_fields")
 
@@ -55,7 +58,10 @@ def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanPar
 
 def _in_patch(parameters: OceanParameters, layer: WaveLayer, index: int, rotation: float) -> WaveLayer:
     if rotation:
-        layer = replace(layer, wind_direction=layer.wind_direction - rotation)
+        direction = layer.wind_direction - rotation
+        if abs(direction) > _MOST_TURNED:
+            direction = math.remainder(direction, math.tau)
+        layer = replace(layer, wind_direction=direction)
     if index:
         seed = random.combine(layer_seed(parameters, layer), index) & _LARGEST_SEED
         layer = replace(layer, seed=seed)
@@ -93,7 +99,7 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
 
 
 def joined_bands(parameters: OceanParameters) -> OceanParameters:
-    """A joined sea's patches apart, without the waves shorter than two samples of its one grid.
+    """A joined sea's patches apart, without the waves shorter than two samples of its one grid or their own.
 
     The first has the grid's samples, the others as many as reading between them takes.
     """
@@ -103,12 +109,16 @@ def joined_bands(parameters: OceanParameters) -> OceanParameters:
         first = replace(first, resolution=parameters.resolution)
     else:
         first = _readable(first, shortest)
-    kept = (_readable(patch, shortest) for patch in others if patch.longest_wavelength > shortest)
+    kept = (
+        _readable(patch, shortest)
+        for patch in others
+        if patch.longest_wavelength > max(shortest, 2.0 * patch.spacing)
+    )
     return parameters.replace(joined=0, patches=(first, *kept))
 
 
 def _readable(patch: Patch, shortest: float) -> Patch:
-    end = max(patch.shortest_wavelength, shortest)
+    end = max(patch.shortest_wavelength, shortest, 2.0 * patch.spacing)
     wanted = 2 * math.ceil(0.5 * _SAMPLES_A_WAVE * patch.domain_size / end)
     return replace(patch, shortest_wavelength=end, resolution=min(max(wanted, _FEWEST), _MOST))
 
