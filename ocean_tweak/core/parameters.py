@@ -277,6 +277,11 @@ class OceanParameters(Validated):
         return self.replace(joined=resolution, patches=self.patches).at_resolution(resolution)
 
     @property
+    def apart(self) -> OceanParameters:
+        """The sea with its patches on grids of their own, where they are joined."""
+        return self.replace(joined=0, patches=self.patches) if self.joined else self
+
+    @property
     def without_patches(self) -> OceanParameters:
         """The sea of one patch, as large and with as many samples, that has the same spectrum."""
         return self.replace(patches=(), joined=0)

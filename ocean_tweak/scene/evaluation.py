@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..core import Cascade, OceanParameters, grid_sea
 from ..core.fields import FOAM, OUTPUTS
+from ..nodes.camera_surface import PATCH_INPUTS
 from .instant_foam import instant_foam
 from .settings import all_oceans
 
@@ -21,8 +22,9 @@ RealArray = NDArray[np.float32]
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
 _MOST_SURFACE_BYTES = 256 * 2**20
-# of one ocean: for the viewport, for the render, the coarse one while a parameter is dragged, four patches
-_SEAS_OF_AN_OCEAN = 7
+# of one ocean: for the viewport, for the render, the coarse one while a parameter is dragged, and what the
+# surface around the camera reads
+_SEAS_OF_AN_OCEAN = 3 + len(PATCH_INPUTS)
 # s after the foam that was made last, within which the next one is quickly made
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept

@@ -103,9 +103,9 @@ def _finest(parameters: OceanParameters) -> dict[str, float]:
     """What samples hold where each of several patches has its own: two go into the shortest wave."""
     if not parameters.patches:
         return {}
-    apart, last = parameters.replace(joined=0, patches=parameters.patches), parameters.patches[-1]
+    last = parameters.patches[-1]
     spacing = max(last.spacing, 0.5 * last.shortest_wavelength)
-    return {SPACING: spacing, SLOPES: unresolved_slope_variance(apart)}
+    return {SPACING: spacing, SLOPES: unresolved_slope_variance(parameters.apart)}
 
 
 def _metres(item: bpy.types.Object, scene: bpy.types.Scene | None) -> float:

@@ -43,6 +43,7 @@ def buoy(empty_scene):
 
 
 def sea_below(core, ocean, parameters, frame, place):
+    """The point of the surface above a place in the world, and its normal there."""
     matrix = np.array(ocean.matrix_world)
     inside = np.linalg.inv(matrix) @ [*place[:2], 0.0, 1.0]
     found = core.Ocean(parameters).points_at(inside[0], inside[1], parameters.timing.time(frame))

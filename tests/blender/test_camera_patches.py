@@ -220,6 +220,29 @@ def test_a_weight_on_the_ocean_s_mesh_multiplies_its_patch(around, sheet, camera
         np.testing.assert_allclose(lost[far & side], squares, rtol=0.01)
 
 
+def test_a_weight_that_changes_is_a_part_of_the_normals(around, sheet, camera):
+    """Water moved alike everywhere, by D: its gradient is D ∂w, whose shear is the mean of both."""
+    moved, by_x, by_y = np.array([20.0, -30.0, 10.0]), 0.005, 0.006
+
+    def weight(rest):
+        return 0.1 + by_x * rest[..., :1] + by_y * rest[..., 1:2]
+
+    still = {"slope": np.zeros_like, "strain": np.zeros_like}
+    patch = sheet(np.broadcast_to(moved, (32, 32, 3)), 64.0, attributes=still)
+    patch.hide_viewport = patch.hide_render = True
+    flat = sheet(np.zeros((64, 64, 3)), 64.0, attributes={"ocean_tweak_weight_1": weight})
+    item = around(flat, patch_1=patch, finest_spacing=0.5, curvature=False, to_horizon=False, reach=60.0)
+    mesh = evaluated_mesh(item)
+    rest = numbers(mesh, "position", 3) - numbers(mesh, "displacement", 3)
+    inside = np.all((rest[:, :2] % 64.0 > 2.0) & (rest[:, :2] % 64.0 < 62.0), axis=1)
+    shear = 0.5 * (moved[0] * by_y + moved[1] * by_x)
+    along_x = np.array([1.0 + moved[0] * by_x, shear, moved[2] * by_x])
+    along_y = np.array([shear, 1.0 + moved[1] * by_y, moved[2] * by_y])
+    normal = np.cross(along_x, along_y)
+    assert np.count_nonzero(inside) > 100
+    np.testing.assert_allclose(normals(mesh)[inside] - normal / np.linalg.norm(normal), 0.0, atol=2e-3)
+
+
 def test_slopes_are_in_the_geometry_or_told_as_variance(shown, core, patched, camera):
     """Near and far the squares of what the normals show and what is told are those of all patches."""
     parameters = patched(choppiness=0.01)

@@ -9,6 +9,7 @@ import pytest
 from mathutils import Euler, Vector
 
 from .conftest import DOMAIN
+from .floats import sea_below
 from .sheets import new_sheet, wave
 
 CENTIMETRE, DEGREE = 0.01, 1.0
@@ -59,15 +60,6 @@ def modified(extension):
         return item
 
     return modify
-
-
-def sea_below(core, ocean, parameters, frame, place):
-    """The point of the surface above a place in the world, and its normal there."""
-    matrix = np.array(ocean.matrix_world)
-    inside = np.linalg.inv(matrix) @ [*place[:2], 0.0, 1.0]
-    found = core.Ocean(parameters).points_at(inside[0], inside[1], parameters.timing.time(frame))
-    point = matrix @ [inside[0], inside[1], float(found.height), 1.0]
-    return point[:3], matrix[:3, :3] @ found.normal
 
 
 def angle(first, second):

@@ -16,15 +16,9 @@ from ocean_tweak.core.foam_threshold import whitecap_coverage
 from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
-from tests.core.patched_seas import summed
+from tests.core.patched_seas import LAYER, SEA, THREE, summed
 
-LAYER = WaveLayer(wind_speed=10.0, wind_direction=0.4, fetch=100e3)
-PATCHES = (
-    Patch(600.0, 0.0, 20.0, 1e6, 128),
-    Patch(151.0, 0.7, 5.0, 20.0, 128),
-    Patch(33.0, 1.2, 0.9, 5.0, 160),
-)
-APART = OceanParameters(seed=3, layers=(LAYER,), patches=PATCHES)
+PATCHES, APART = THREE, SEA
 #: samples of 128 before the border of two 20 m waves
 INSIDE = 119
 GENERATOR = np.random.default_rng(2)
@@ -166,6 +160,16 @@ def test_a_first_patch_may_be_turned() -> None:
     along = 600.0 / 64 * np.arange(57)  # before the border of a tenth of the side
     there = Cascade(joined_bands(sea)).fields_at(along, along[:, np.newaxis], 2.0).displacement
     np.testing.assert_allclose(found[:57, :57], there, atol=3e-5)
+
+
+def test_strains_are_as_large_as_the_foam_takes_them_for() -> None:
+    """Mean squares over the grid; those of the second patch, read between its samples, make the most."""
+    found, wanted = np.zeros(3), np.zeros(3)
+    for seed in range(10):
+        sea = grid_sea(joined(128, seed=seed))
+        found += np.mean(sea.surface(0.0, {"strain"}).strain.astype(float) ** 2, axis=(0, 1))
+        wanted += np.diag(sea.strain_covariances((0.0, 0.0))[0])
+    np.testing.assert_allclose(found, wanted, rtol=0.02)
 
 
 def test_foam_covers_as_much_as_at_sea() -> None:

@@ -64,8 +64,7 @@ class Cascade:
     ) -> None:
         if not isinstance(parameters, OceanParameters):
             raise TypeError(f"Cascade wants OceanParameters, not {type(parameters).__name__}")
-        if parameters.joined:
-            parameters = parameters.replace(joined=0, patches=parameters.patches)
+        parameters = parameters.apart
         check_memory(memory_need(parameters, precision=precision).peak(), f"A sea of {_samples(parameters)}")
         self.parameters = parameters
         self.rotations = rotations(parameters)

@@ -84,17 +84,24 @@ class JoinedSea(GridSea):
         """How foam is born and lives: its threshold is that of the sea without masks."""
 
         def strains_of(drift: tuple[float, float]) -> Strains:
-            covariances = [
-                strain_covariances(
-                    ocean.initial_state, self.parameters.choppiness, drift, part.rotation,
-                    not self._is_on_grid(part),
-                )
-                for ocean, part in zip(self._oceans, self._parts, strict=True)
-            ]  # fmt: skip
-            gradients, rates = zip(*covariances, strict=True)
-            return sampled_strains(np.sum(gradients, axis=0), np.sum(rates, axis=0))
+            return sampled_strains(*self.strain_covariances(drift))
 
         return foam_model_of(self.parameters, strains_of, self._spacing)
+
+    def strain_covariances(self, drift: tuple[float, float]) -> tuple[Array, Array]:
+        """Of the strains on the grid and of their rates, as `foam_threshold.strain_covariances` has them.
+
+        What is read between samples has less than its waves.
+        """
+        covariances = [
+            strain_covariances(
+                ocean.initial_state, self.parameters.choppiness, drift, part.rotation,
+                not self._is_on_grid(part),
+            )
+            for ocean, part in zip(self._oceans, self._parts, strict=True)
+        ]  # fmt: skip
+        gradients, rates = zip(*covariances, strict=True)
+        return np.sum(gradients, axis=0), np.sum(rates, axis=0)
 
     @property
     def _spacing(self) -> float:

@@ -43,10 +43,9 @@ def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]
     patches hold a part each, would be alike in both. The first keeps those of a sea of one patch, and holds
     the pictures, wind fields and hero waves.
     """
-    parameters = _without_masks(parameters)
+    parameters = _without_masks(parameters).apart
     if not parameters.patches:
         return (parameters,)
-    parameters = parameters.replace(joined=0, patches=parameters.patches)
     return tuple(_of_patch(parameters, index, patch) for index, patch in enumerate(parameters.patches))
 
 
