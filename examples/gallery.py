@@ -45,18 +45,24 @@ def main() -> None:
 
 def parse(argv: list[str]) -> argparse.Namespace:
     """The arguments after "--"."""
-    parser = argparse.ArgumentParser(prog="gallery.py")
-    parser.add_argument("--out", type=Path, required=True, help="folder for the pictures")
-    parser.add_argument("--jpeg", type=Path, help="folder for small JPEG files of them")
+    parser = picture_parser("gallery.py")
     parser.add_argument("--moods", nargs="+", default=MOODS, choices=MOODS)
     parser.add_argument("--engines", nargs="+", default=ENGINES, choices=ENGINES)
-    parser.add_argument("--width", type=int, default=1280, help="pixels; the height is 27/64 of it")
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--frame", type=int, default=1)
     parser.add_argument("--resolution", type=int, help="samples along a side, instead of the mood's")
     parser.add_argument("--rings", type=int, help="of copies around the ocean, instead of the scene's")
     parser.add_argument("--still", action="store_true", help="without motion blur")
     return parser.parse_args(argv)
+
+
+def picture_parser(program: str) -> argparse.ArgumentParser:
+    """What every gallery is asked for: where pictures go, how large and how clean they are, and the frame."""
+    parser = argparse.ArgumentParser(prog=program)
+    parser.add_argument("--out", type=Path, required=True, help="folder for the pictures")
+    parser.add_argument("--jpeg", type=Path, help="folder for small JPEG files of them")
+    parser.add_argument("--width", type=int, default=1280, help="pixels; the height is 27/64 of it")
+    parser.add_argument("--samples", type=int, default=64)
+    parser.add_argument("--frame", type=int, default=1)
+    return parser
 
 
 def build(extension: Extension, mood: str, engine: str, arguments: argparse.Namespace) -> None:

@@ -19,7 +19,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from extension import enable
-from gallery import render, save_jpeg, set_quality
+from gallery import picture_parser, render, save_jpeg, set_quality
 
 PARAMETERS = Path(__file__).resolve().with_suffix(".json")
 #: height over the sea at rest in m, and degrees below the horizon; None for what the scene comes with
@@ -42,14 +42,9 @@ def main() -> None:
 
 def parse(argv: list[str]) -> argparse.Namespace:
     """The arguments after "--"."""
-    parser = argparse.ArgumentParser(prog="horizon.py")
-    parser.add_argument("--out", type=Path, required=True, help="folder for the pictures")
-    parser.add_argument("--jpeg", type=Path, help="folder for small JPEG files of them")
+    parser = picture_parser("horizon.py")
     parser.add_argument("--params", type=Path, default=PARAMETERS, help="JSON of the sea")
     parser.add_argument("--views", nargs="+", default=tuple(VIEWS), choices=VIEWS)
-    parser.add_argument("--width", type=int, default=1280, help="pixels; the height is 27/64 of it")
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--frame", type=int, default=1)
     return parser.parse_args(argv)
 
 

@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..core.cascades.plan import Wish
-from ..core.errors import ParameterError
-from ..core.frames import Frame, parse_frames
 from ..core.presets import built_in
 from ..export.exr import COMPRESSION_ERROR, MAPS
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS, written
 from ..export.usd.package import FORMS, UP_AXES
-from . import baking, checking, info, job, usd
+from . import argument_values, baking, checking, info, job, usd
 from .seas import chosen_seas
 from .wanted_bake import CACHE_VARIABLE
 
@@ -73,7 +69,7 @@ def _add_bake(commands: _Commands, in_blender: bool) -> None:
     _add_sea_arguments(parser, in_blender)
     _add_frames(parser, in_blender)
     parser.add_argument(
-        "--only", type=_frames, metavar="RANGE",
+        "--only", type=argument_values.frames, metavar="RANGE",
         help="bake these of the frames now; the others are baked elsewhere or later",
     )  # fmt: skip
     _add_cache(parser, in_blender, "--out")
@@ -84,7 +80,7 @@ def _add_bake(commands: _Commands, in_blender: bool) -> None:
 
 def _add_frames(parser: argparse.ArgumentParser, in_blender: bool) -> None:
     parser.add_argument(
-        "--frames", type=_frames, metavar="RANGE", required=not in_blender,
+        "--frames", type=argument_values.frames, metavar="RANGE", required=not in_blender,
         help="1-48, 1-100x2 or 1001,1005-1010" + ("; by default the scene's" if in_blender else ""),
     )  # fmt: skip
 
@@ -101,13 +97,13 @@ def _add_cache(parser: _Arguments, in_blender: bool, option: str) -> None:
 def _add_files_arguments(parser: _Arguments) -> None:
     """What, beside the sea, decides which files a bake writes."""
     parser.add_argument(
-        "--maps", type=_maps, metavar="LIST", default=("disp",),
+        "--maps", type=argument_values.maps, metavar="LIST", default=("disp",),
         help=f"what to write, of {','.join(MAPS)}; disp by default",
     )  # fmt: skip
     parser.add_argument("--name", help="start of the file names; by default that of the sea")
     parser.add_argument(
         "--uid",
-        type=_uid,
+        type=argument_values.uid,
         help="tells seas of one name apart, in the folder's; made from the name by default",
     )
     parser.add_argument(
@@ -163,7 +159,11 @@ def _add_job(commands: _Commands, in_blender: bool) -> None:
         help="openjd (default): Open Job Description, as AWS Deadline Cloud takes it; flamenco: a job type",
     )  # fmt: skip
     parser.add_argument(
-        "--chunk", type=_count, metavar="N", default=25, help="frames in a task of baking; 25 by default"
+        "--chunk",
+        type=argument_values.count,
+        metavar="N",
+        default=25,
+        help="frames in a task of baking; 25 by default",
     )
     parser.add_argument(
         "--plain-ranges", action="store_true",
@@ -183,7 +183,10 @@ def _add_program_arguments(parser: argparse.ArgumentParser) -> None:
     programs.add_argument("--python", metavar="COMMAND", default=job.PYTHON, help=f"{job.PYTHON} by default")
     programs.add_argument("--blender", metavar="COMMAND", default="blender", help="blender by default")
     programs.add_argument(
-        "--workers", type=_workers, metavar="N", help="processes of a task that bakes; by default one a core"
+        "--workers",
+        type=argument_values.workers,
+        metavar="N",
+        help="processes of a task that bakes; by default one a core",
     )
 
 
@@ -197,7 +200,7 @@ def _add_render_arguments(parser: argparse.ArgumentParser) -> None:
     )
     rendering.add_argument(
         "--render-chunk",
-        type=_count,
+        type=argument_values.count,
         metavar="N",
         default=5,
         help="frames in a task of rendering; 5 by default",
@@ -208,7 +211,10 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "usd", "write the sea as USD layers, for other programs")
     _add_sea_arguments(parser, in_blender)
     parser.add_argument(
-        "--frames", type=_frames, metavar="RANGE", help="1-48, 1001-1010x0.5; with --bake by default all"
+        "--frames",
+        type=argument_values.frames,
+        metavar="RANGE",
+        help="1-48, 1001-1010x0.5; with --bake by default all",
     )
     parser.add_argument(
         "--form", choices=FORMS, required=True,
@@ -220,13 +226,19 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
     parser.add_argument("--name", help="of the asset, by default that of the file")
     parser.add_argument("--force", action="store_true", help=OPTIONS["force"].text)
     parser.add_argument(
-        "--workers", type=_workers, metavar="N", help="threads that make frames; by default two"
+        "--workers",
+        type=argument_values.workers,
+        metavar="N",
+        help="threads that make frames; by default two",
     )
     _add_openjd(parser)
     _add_usd_content(parser.add_argument_group("what the layers hold"))
     forms = parser.add_argument_group("one form only")
     forms.add_argument(
-        "--only", type=_frames, metavar="RANGE", help="clips: write these of the frames now, and not the top"
+        "--only",
+        type=argument_values.frames,
+        metavar="RANGE",
+        help="clips: write these of the frames now, and not the top",
     )
     forms.add_argument("--stitch", action="store_true", help="clips: write the top of clips that are there")
     forms.add_argument(
@@ -245,12 +257,17 @@ def _add_usd_content(parser: _Arguments) -> None:
 
     add("up_axis", choices=UP_AXES)
     add("metres_per_unit", type=float, metavar="M")
-    add("subframes", type=_count, metavar="N")
-    add("attributes", f", of {','.join(ATTRIBUTES)}; all by default", type=_attributes, metavar="LIST")
+    add("subframes", type=argument_values.count, metavar="N")
+    add(
+        "attributes",
+        f", of {','.join(ATTRIBUTES)}; all by default",
+        type=argument_values.attributes,
+        metavar="LIST",
+    )
     add("half", action="store_true")
-    add("tiles", type=_tiles, metavar="3x3")
+    add("tiles", type=argument_values.tiles, metavar="3x3")
     add("proxy", type=int, metavar="N")
-    add("variants", type=_resolutions, metavar="512,256")
+    add("variants", type=argument_values.resolutions, metavar="512,256")
 
 
 def _add_usd_verify(commands: _Commands) -> None:
@@ -259,7 +276,10 @@ def _add_usd_verify(commands: _Commands) -> None:
     )
     parser.add_argument("file", type=Path, metavar="FILE.usd", help="the asset's own layer")
     parser.add_argument(
-        "--frames", type=_frames, metavar="RANGE", help="compare these; by default first, middle and last"
+        "--frames",
+        type=argument_values.frames,
+        metavar="RANGE",
+        help="compare these; by default first, middle and last",
     )
     parser.set_defaults(run=lambda arguments, _oceans: usd.verify(arguments))
 
@@ -271,13 +291,16 @@ def _add_folder_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _add_wanted_frames(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--frames", type=_frames, metavar="RANGE", help="by default all that were asked for or made"
+        "--frames",
+        type=argument_values.frames,
+        metavar="RANGE",
+        help="by default all that were asked for or made",
     )
 
 
 def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--workers", type=_workers, metavar="N",
+        "--workers", type=argument_values.workers, metavar="N",
         help="processes that share the frames, by default one a core as far as memory allows; "
         "one that is killed is started again",
     )  # fmt: skip
@@ -322,7 +345,7 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
         help="change one parameter, for example layers.0.wind_speed=25 (may be repeated)",
     )  # fmt: skip
     parser.add_argument(
-        "--plan", type=_wish, metavar="finest=0.1,area=4000,memory=2GB",
+        "--plan", type=argument_values.wish, metavar="finest=0.1,area=4000,memory=2GB",
         help="make the sea of patches: waves down to so many metres, no repetition in a square of so many "
         "metres, in so many bytes (2GB where they are left out)",
     )  # fmt: skip
@@ -330,73 +353,3 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
     parser.add_argument("--start-frame", metavar="N", help="frame at which ocean time is 0")
     if in_blender:
         source.add_argument("--object", metavar="NAME", help="only the ocean of this object")
-
-
-_BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
-_WISHED = re.compile(r"(finest|area|memory)=(\d+(?:\.\d*)?|\.\d+)([a-z]*)", re.IGNORECASE)
-
-
-def _wish(text: str) -> Wish:
-    values: dict[str, float] = {}
-    for part in text.split(","):
-        match = _WISHED.fullmatch(part.strip())
-        units = _BYTES if match and match[1].lower() == "memory" else {"": 1.0, "m": 1.0}
-        if not match or match[3].lower() not in units or match[1].lower() in values:
-            raise argparse.ArgumentTypeError(f"{text!r} must look like finest=0.1,area=4000,memory=2GB")
-        values[match[1].lower()] = float(match[2]) * units[match[3].lower()]
-    if not {"finest", "area"} <= values.keys():
-        raise argparse.ArgumentTypeError(f"{text!r} must tell finest and area, in metres")
-    try:
-        return Wish(**values)
-    except ParameterError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
-def _frames(text: str) -> tuple[Frame, ...]:
-    try:
-        return parse_frames(text)
-    except ParameterError as error:
-        raise argparse.ArgumentTypeError(f"{text!r} {error.reason}") from None
-
-
-def _maps(text: str) -> tuple[str, ...]:
-    names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
-    unknown = [name for name in names if name not in MAPS]
-    if unknown:
-        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
-    return names
-
-
-def _attributes(text: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
-
-
-def _tiles(text: str) -> tuple[int, int]:
-    match = re.fullmatch(r"(\d{1,4})x(\d{1,4})", text)
-    if not match:
-        raise argparse.ArgumentTypeError(f"{text!r} must look like 3x3")
-    return int(match[1]), int(match[2])
-
-
-def _resolutions(text: str) -> tuple[int, ...]:
-    if not re.fullmatch(r"\d{1,6}(,\d{1,6})*", text):
-        raise argparse.ArgumentTypeError(f"{text!r} must look like 512,256")
-    return tuple(map(int, text.split(",")))
-
-
-def _uid(text: str) -> str:
-    if not re.fullmatch("[0-9A-Za-z]{1,32}", text):
-        raise argparse.ArgumentTypeError(f"{text!r} must be 1 to 32 letters and digits")
-    return text
-
-
-def _count(text: str) -> int:
-    if not (text.isdecimal() and 1 <= int(text) <= 1_000_000):
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1")
-    return int(text)
-
-
-def _workers(text: str) -> int:
-    if not (text.isdecimal() and 1 <= int(text) <= 256):
-        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 to 256")
-    return int(text)

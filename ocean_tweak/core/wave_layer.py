@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from . import constants
 from .errors import ParameterError
+from .layer_fields import direction, identity, muted, own_seed
 from .masks.parameters import Mask
-from .validation import Validated, choice, integer, nested, number, switch
+from .validation import Validated, choice, nested, number, switch
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
@@ -25,10 +26,7 @@ class WaveLayer(Validated):
         12.0, 0.1, 100.0, "m/s", "Mean wind speed. Sets wave height and length",
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
-    wind_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which the waves run, counter-clockwise from +x",
-        "any number of turns that a float tells apart",
-    )  # fmt: skip
+    wind_direction: float = direction()
     fetch: float = number(
         150e3, 1.0, 20e6, "m", "Distance of open water over which the wind has blown",
         "from a pond to half the Earth's circumference",
@@ -118,15 +116,9 @@ class WaveLayer(Validated):
         "a band's own width",
     )
     band_inverted: bool = switch(False, "Keep what lies outside the band instead")
-    muted: bool = switch(False, "Leave the layer out; no other layer changes")
-    id: int = integer(
-        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free one",
-        "Blender's whole numbers",
-    )  # fmt: skip
-    seed: int = integer(
-        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
-        "Blender's whole numbers",
-    )  # fmt: skip
+    muted: bool = muted()
+    id: int = identity()
+    seed: int = own_seed()
     mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:

@@ -22,6 +22,25 @@ class OfActiveOcean:
         return True
 
 
+class OfOwnList(OfActiveOcean):
+    """Operators that change a list of the ocean as a whole, which a library override keeps.
+
+    kept : what is said then
+    """
+
+    kept: str
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """The list can be changed."""
+        if not super().poll(context):
+            return False
+        if context.active_object.override_library:
+            cls.poll_message_set(cls.kept)
+            return False
+        return True
+
+
 def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]:
     """Report what is wrong, and end the operator without a change."""
     missing = "Not enough memory for this sea" if isinstance(error, MemoryError) else type(error).__name__

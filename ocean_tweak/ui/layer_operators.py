@@ -12,7 +12,7 @@ from ..core.hero_waves.presets import hero_wave
 from ..core.wave_particles.presets import WIND_FIELDS, wind_field
 from ..scene.animated import move_keys
 from ..scene.settings import LAYER_KINDS, OceanObjectError, settings_of
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfOwnList, refuse
 
 _WINDS = {
     "UNIFORM": ("Uniform", "The same wind everywhere (Li and Wang 2016, figure 9 B)"),
@@ -34,18 +34,10 @@ def entries(parameters: OceanParameters) -> list[Entry]:
     return [Entry(name, index) for name in names for index in range(len(getattr(parameters, name)))]
 
 
-class _OfLayers(OfActiveOcean):
+class _OfLayers(OfOwnList):
     """Operators that change the list as a whole, through the parameters."""
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """The list can be changed."""
-        if not super().poll(context):
-            return False
-        if context.active_object.override_library:
-            cls.poll_message_set("A library override keeps its layers: make the ocean local first")
-            return False
-        return True
+    kept = "A library override keeps its layers: make the ocean local first"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the list, and keep a layer active; keys follow their layers."""

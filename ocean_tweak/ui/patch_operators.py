@@ -9,22 +9,14 @@ from ..core.cascades.editing import with_another_patch, without_patch
 from ..core.cascades.patch import MOST_PATCHES
 from ..core.cascades.plan import planned
 from ..scene.settings import OceanObjectError, settings_of
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfOwnList, refuse
 from .patch_properties import wish_of
 
 
-class _OfPatches(OfActiveOcean):
+class _OfPatches(OfOwnList):
     """Operators that change the list as a whole, through the parameters."""
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """The list can be changed."""
-        if not super().poll(context):
-            return False
-        if context.active_object.override_library:
-            cls.poll_message_set("A library override keeps its patches: make the ocean local first")
-            return False
-        return True
+    kept = "A library override keeps its patches: make the ocean local first"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the list as a whole, or not at all."""

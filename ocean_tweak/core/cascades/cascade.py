@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs
 from ..foam import FoamModel
 from ..foam_field import foam_model_of
-from ..foam_threshold import Strains, sampled_strains, strain_covariances
+from ..foam_threshold import Strains, sampled_strains
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, weights
 from ..memory import check_memory, memory_need
@@ -36,6 +36,7 @@ from .sampling import (
     weighted_field,
 )  # fmt: skip
 from .statistics import CascadeStatistics, cascade_statistics
+from .strains import summed_strain_covariances
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -166,9 +167,8 @@ class Cascade:
             made = ocean.surface(time, outputs)
             reach += float(np.max(np.hypot(made.displacement[..., 0], made.displacement[..., 1])))
             moving = made.velocity if velocity else None
-            spacing = part.parameters.domain_size / part.parameters.resolution
-            fields.append(self._in_sea(bilinear(made.displacement, moving, spacing), part))
-        spacings = [part.parameters.domain_size / part.parameters.resolution for part in self._parts]
+            fields.append(self._in_sea(bilinear(made.displacement, moving, part.spacing), part))
+        spacings = [part.spacing for part in self._parts]
         points = find_summed_points(x, y, fields, spacings, reach, velocity)
         if surface == "mesh":
             return points
@@ -201,23 +201,15 @@ class Cascade:
     @cached_property
     def foam_model(self) -> FoamModel:
         """How foam is born and lives: its threshold follows from the strains of all patches together."""
-        oceans = self._of_foam._oceans
+        sea = self._of_foam
 
         def strains_of(drift: tuple[float, float]) -> Strains:
-            parts = [
-                strain_covariances(
-                    ocean.initial_state,
-                    self.parameters.choppiness,
-                    drift,
-                    part.rotation,
-                    self.parameters.is_cascade,
-                )
-                for ocean, part in zip(oceans, self._of_foam._parts, strict=True)
-            ]
-            gradients, rates = zip(*parts, strict=True)
-            return sampled_strains(np.sum(gradients, axis=0), np.sum(rates, axis=0))
+            covariances = summed_strain_covariances(
+                sea._oceans, sea._parts, drift, lambda _part: self.parameters.is_cascade
+            )
+            return sampled_strains(*covariances)
 
-        return foam_model_of(self.parameters, strains_of, self._of_foam.spacings[-1])
+        return foam_model_of(self.parameters, strains_of, sea.spacings[-1])
 
     @cached_property
     def _of_foam(self) -> Cascade:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ..fields import OUTPUTS, memory_groups
 from ..foam import FoamModel
 from ..foam_field import foam_model_of
-from ..foam_threshold import Strains, sampled_strains, strain_covariances
+from ..foam_threshold import Strains, sampled_strains
 from ..grid_sea import GridSea
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, weights_on_grid
@@ -34,6 +34,7 @@ from ..surface_query import Field
 from .cascade import Cascade
 from .patch_seas import Part, joined_bands, parts
 from .sampling import Components, Grid, Key, Summed, closed, unweighted, weighted
+from .strains import summed_strain_covariances
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -89,19 +90,10 @@ class JoinedSea(GridSea):
         return foam_model_of(self.parameters, strains_of, self._spacing)
 
     def strain_covariances(self, drift: tuple[float, float]) -> tuple[Array, Array]:
-        """Of the strains on the grid and of their rates, as `foam_threshold.strain_covariances` has them.
-
-        What is read between samples has less than its waves.
-        """
-        covariances = [
-            strain_covariances(
-                ocean.initial_state, self.parameters.choppiness, drift, part.rotation,
-                not self._is_on_grid(part),
-            )
-            for ocean, part in zip(self._oceans, self._parts, strict=True)
-        ]  # fmt: skip
-        gradients, rates = zip(*covariances, strict=True)
-        return np.sum(gradients, axis=0), np.sum(rates, axis=0)
+        """Of the strains on the grid and of their rates; see `summed_strain_covariances`."""
+        return summed_strain_covariances(
+            self._oceans, self._parts, drift, lambda part: not self._is_on_grid(part)
+        )
 
     @property
     def _spacing(self) -> float:

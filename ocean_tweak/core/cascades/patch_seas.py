@@ -82,6 +82,11 @@ class Part:
     masks: tuple[Mask, ...]
     patch: int
 
+    @property
+    def spacing(self) -> float:
+        """Between its samples, m."""
+        return self.parameters.domain_size / self.parameters.resolution
+
 
 def parts(parameters: OceanParameters) -> tuple[Part, ...]:
     """The parts of a sea: of each patch, the waves under each mask."""

@@ -11,9 +11,10 @@ from fractions import Fraction
 import numpy as np
 
 from ..errors import ParameterError
+from ..layer_fields import direction, identity, muted, own_seed
 from ..masks.parameters import Mask
 from ..raster import Raster
-from ..validation import Validated, choice, integer, nested, number, raster, switch
+from ..validation import Validated, choice, integer, nested, number, raster
 
 FILTERS = ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE")
 FILTER_GAINS = ("PHYSICAL", "PAPER")
@@ -45,10 +46,7 @@ class PictureLayer(Validated):
         12.0, 0.1, 100.0, "m/s", "Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter",
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
-    wind_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which the waves run, counter-clockwise from +x",
-        "any number of turns that a float tells apart",
-    )  # fmt: skip
+    wind_direction: float = direction()
     significant_wave_height: float = number(
         1.0, 0.0, 100.0, "m", "Wave height Hs of every filter but the physical one: four standard deviations",
         "thrice the largest measured",
@@ -83,15 +81,9 @@ class PictureLayer(Validated):
         1024, 16, 2048, "Samples along each side of the white noise, an even number; others are another sea",
         "from the coarsest sea to the largest picture that is not made smaller",
     )  # fmt: skip
-    muted: bool = switch(False, "Leave the layer out; no other layer changes")
-    id: int = integer(
-        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free one",
-        "Blender's whole numbers",
-    )  # fmt: skip
-    seed: int = integer(
-        -1, -1, 2**31 - 1, "Seed of the white noise; -1 derives it from the ocean's seed and the id",
-        "Blender's whole numbers",
-    )  # fmt: skip
+    muted: bool = muted()
+    id: int = identity()
+    seed: int = own_seed("Seed of the white noise")
     mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:

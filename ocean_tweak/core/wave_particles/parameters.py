@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import ParameterError
+from ..layer_fields import direction, identity, muted, own_seed
 from ..masks.parameters import Mask
 from ..raster import Raster
 from ..validation import Validated, choice, integer, nested, number, raster, switch
@@ -47,10 +48,7 @@ class WindFieldLayer(Validated):
         12.0, 0.0, 100.0, "m/s", "Speed of the wind where it is the same everywhere: without keys",
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
-    wind_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which it blows, counter-clockwise from +x",
-        "any number of turns that a float tells apart",
-    )  # fmt: skip
+    wind_direction: float = direction("Direction towards which it blows, counter-clockwise from +x")
     keys: tuple[WindKey, ...] = nested(WindKey, many=True, empty=True, most=MOST_KEYS)
     strength: float = number(1.0, 0.0, 100.0, "", "Multiplies the wind", "an artist's gain")
     start_time: float = number(
@@ -95,15 +93,9 @@ class WindFieldLayer(Validated):
         0.05, 0.0, 10.0, "s", "k of the height k·V of a particle, V the wind's speed", "an artist's gain"
     )
     gain: float = number(1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's gain")
-    muted: bool = switch(False, "Leave the layer out; no other layer changes")
-    id: int = integer(
-        -1, -1, 2**31 - 1, "Identity of the layer, from which its seed follows; -1 takes the first free one",
-        "Blender's whole numbers",
-    )  # fmt: skip
-    seed: int = integer(
-        -1, -1, 2**31 - 1, "Seed of this layer alone; -1 derives it from the ocean's seed and the id",
-        "Blender's whole numbers",
-    )  # fmt: skip
+    muted: bool = muted()
+    id: int = identity()
+    seed: int = own_seed()
     mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:

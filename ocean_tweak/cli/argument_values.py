@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What stands behind an option, as a value. Each raises ArgumentTypeError for a text that is none."""
+
+from __future__ import annotations
+
+import argparse
+import re
+
+from ..core.cascades.plan import Wish
+from ..core.errors import ParameterError
+from ..core.frames import Frame, parse_frames
+from ..export.exr import MAPS
+
+_BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
+_WISHED = re.compile(r"(finest|area|memory)=(\d+(?:\.\d*)?|\.\d+)([a-z]*)", re.IGNORECASE)
+
+
+def wish(text: str) -> Wish:
+    """finest=0.1,area=4000,memory=2GB."""
+    values: dict[str, float] = {}
+    for part in text.split(","):
+        match = _WISHED.fullmatch(part.strip())
+        units = _BYTES if match and match[1].lower() == "memory" else {"": 1.0, "m": 1.0}
+        if not match or match[3].lower() not in units or match[1].lower() in values:
+            raise argparse.ArgumentTypeError(f"{text!r} must look like finest=0.1,area=4000,memory=2GB")
+        values[match[1].lower()] = float(match[2]) * units[match[3].lower()]
+    if not {"finest", "area"} <= values.keys():
+        raise argparse.ArgumentTypeError(f"{text!r} must tell finest and area, in metres")
+    try:
+        return Wish(**values)
+    except ParameterError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def frames(text: str) -> tuple[Frame, ...]:
+    """1-48,60."""
+    try:
+        return parse_frames(text)
+    except ParameterError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} {error.reason}") from None
+
+
+def maps(text: str) -> tuple[str, ...]:
+    """disp,foam: keys of MAPS, each once."""
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
+    unknown = [name for name in names if name not in MAPS]
+    if unknown:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
+    return names
+
+
+def attributes(text: str) -> tuple[str, ...]:
+    """names between commas, each once."""
+    return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+
+
+def tiles(text: str) -> tuple[int, int]:
+    """3x3."""
+    match = re.fullmatch(r"(\d{1,4})x(\d{1,4})", text)
+    if not match:
+        raise argparse.ArgumentTypeError(f"{text!r} must look like 3x3")
+    return int(match[1]), int(match[2])
+
+
+def resolutions(text: str) -> tuple[int, ...]:
+    """512,256."""
+    if not re.fullmatch(r"\d{1,6}(,\d{1,6})*", text):
+        raise argparse.ArgumentTypeError(f"{text!r} must look like 512,256")
+    return tuple(map(int, text.split(",")))
+
+
+def uid(text: str) -> str:
+    """letters and digits."""
+    if not re.fullmatch("[0-9A-Za-z]{1,32}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} must be 1 to 32 letters and digits")
+    return text
+
+
+def count(text: str) -> int:
+    """a whole number from 1."""
+    if not (text.isdecimal() and 1 <= int(text) <= 1_000_000):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1")
+    return int(text)
+
+
+def workers(text: str) -> int:
+    """a whole number from 1 to 256."""
+    if not (text.isdecimal() and 1 <= int(text) <= 256):
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 to 256")
+    return int(text)
