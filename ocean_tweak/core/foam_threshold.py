@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 
 _SAMPLES = 2**18
 
+#: squeeze from which foam may be born: below it are the roundings of float32 fields, and of a sea without any
+LEAST_SQUEEZE = 1e-6
+
 
 class Wind(NamedTuple):
     """The strongest wind among the layers and pictures that are given by a wind."""
@@ -67,7 +70,8 @@ class Strains:
         A point counts as covered while its foam is at least half as dense as it can be. Foam is born with
         a strength that rises with the squeeze; it covers for `duration` s when it was born at full
         strength, shorter otherwise. By Rice (1944) a level is crossed upwards at the mean of the positive
-        rates there times the squeeze's density; rare crossings are independent.
+        rates there times the squeeze's density; rare crossings are independent. It is never below
+        LEAST_SQUEEZE, so that a sea without squeeze has no foam.
 
         coverage : 0…1
         rises : squeezes over the threshold at which the strength is 2^-1 … 2^0, evenly spaced in the exponent
@@ -87,7 +91,7 @@ class Strains:
         later = np.interp(levels, squeeze, crossings).mean(axis=1) * duration
         covered = 1.0 - (1.0 - now) * np.exp(-later / np.maximum(1.0 - now, 1e-3))
         enough = np.nonzero(covered >= coverage)[0]
-        return float(candidates[enough[-1]] if len(enough) else candidates[0])
+        return max(LEAST_SQUEEZE, float(candidates[enough[-1]] if len(enough) else candidates[0]))
 
 
 def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float, float]) -> Strains:

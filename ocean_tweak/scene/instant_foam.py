@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..core import OceanParameters
 from ..core.foam import FoamModel
 from ..core.foam_field import foam_outlook
+from ..core.foam_threshold import LEAST_SQUEEZE
 
 RealArray = NDArray[np.float32]
 
@@ -27,7 +28,7 @@ def instant_foam(parameters: OceanParameters, cusp: RealArray) -> RealArray:
     if covered == 0:
         return np.zeros_like(cusp)
     least = np.partition(cusp, cusp.size - covered, axis=None)[cusp.size - covered]
-    if least <= 0.0:
+    if least <= LEAST_SQUEEZE:
         return np.zeros_like(cusp)
     model = FoamModel(float(least) / _HALF_STRENGTH, 0.0, (0.0, 0.0), 1.0)
     return model.strength(cusp).astype(np.float32)

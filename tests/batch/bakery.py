@@ -17,12 +17,13 @@ from ocean_tweak.export.exr import read_image
 
 ROOT = Path(__file__).parents[2]
 SEA = {"resolution": 64, "domain_size": 300.0, "seed": 11, "layers": [{"wind_speed": 14.0}]}
+LONG = os.environ.get("OCEAN_TWEAK_LONG_TESTS") == "1"
 SOON = 60.0  # s; more than anything here takes on a busy machine
 
 
 def times(count: int) -> int:
     """How often a test repeats itself: ten times as often in the long run."""
-    return 10 * count if os.environ.get("OCEAN_TWEAK_LONG_TESTS") == "1" else count
+    return 10 * count if LONG else count
 
 
 def command(*arguments: object) -> list[str]:

@@ -10,7 +10,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Foam, Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core import Cascade, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer, grid_sea
 from ocean_tweak.core.foam import FoamHistory, FoamModel, strength_levels
 from ocean_tweak.core.foam_field import resampled
 from ocean_tweak.core.foam_threshold import foam_wind, strains, whitecap_coverage
@@ -78,6 +78,52 @@ def test_swell_without_wind_has_no_foam() -> None:
     ocean = Ocean(SEA.replace(layers=(swell,)))
     assert foam_wind(ocean.parameters) is None
     assert not np.any(foam(ocean, 20))
+
+
+WIND = WaveLayer(wind_speed=20.0)
+HALVES = (
+    Patch(200.0, shortest_wavelength=20.0, resolution=16),
+    Patch(50.0, longest_wavelength=20.0, resolution=16),
+)
+
+
+@pytest.mark.parametrize("precision", ["single", "double"])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"choppiness": 0.0},
+        {"choppiness": 0.0, "patches": HALVES, "joined": 32},
+        {"layers": (dataclasses.replace(WIND, shortest_wavelength=1e4),)},
+        {"layers": (WaveLayer(fetch=1.0),), "domain_size": 100e3},
+        {"layers": (dataclasses.replace(WIND, muted=True),)},
+        {"layers": (dataclasses.replace(WIND, gain=0.0),)},
+        {"layers": (dataclasses.replace(WIND, mask=Mask(source="IMAGE", image=Raster([[0.0]]))),)},
+        {"layers": (WaveLayer(wind_speed=20.0, spectrum="GENERALIZED_AB", generalized_a=0.0),)},
+    ],
+    ids=["flat", "joined", "too long", "too short", "muted", "no gain", "masked", "no energy"],
+)  # fmt: skip
+def test_a_sea_without_squeeze_has_no_foam(changes: dict, precision: str) -> None:
+    sea = OceanParameters(resolution=32, layers=(WIND,), foam=Foam(coverage=100.0, half_life=0.5)).replace(
+        **changes
+    )
+    with np.errstate(all="raise", under="ignore"):
+        fields = grid_sea(sea, precision).surface(4.0, {"foam", "cusp"})
+    assert not np.any(fields.foam)
+    assert not np.any(fields.cusp)
+
+
+def test_patches_without_squeeze_have_no_foam() -> None:
+    sea = Cascade(OceanParameters(choppiness=0.0, layers=(WIND,), patches=HALVES))
+    assert not np.any(sea.area(100.0, 16, 4.0, {"foam"}).foam)
+
+
+def test_crests_of_one_direction_can_be_white_all_over() -> None:
+    """They squeeze half of the sea: no threshold covers more of it."""
+    swell = WaveLayer(wind_speed=100.0, spreading="COSINE_2S", spreading_exponent=1e4, swell=0.0)
+    sea = OceanParameters(resolution=32, layers=(swell,), foam=Foam(coverage=100.0, half_life=0.0))
+    fields = Ocean(sea).surface(4.0, {"foam", "cusp"})
+    assert np.mean(fields.cusp > 1e-3) == pytest.approx(0.5, abs=0.15)
+    np.testing.assert_array_equal(fields.foam[fields.cusp > 1e-3], 1.0)
 
 
 # The life of a single patch: a squeeze that is there for one lattice time

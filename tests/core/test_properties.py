@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -15,12 +14,10 @@ from hypothesis import strategies as st
 
 from ocean_tweak.core import (
     Foam,
-    Mask,
     Ocean,
     OceanParameters,
     ParameterError,
     Patch,
-    Raster,
     Timing,
     Water,
     WaveLayer,
@@ -28,100 +25,11 @@ from ocean_tweak.core import (
 )
 from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.propagation import propagate
+from tests.core.random_seas import SEAS, patched_seas
 
 QUICK = settings(
     max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
-
-
-def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
-    """Values of a field over its whole range and its ends; many decades by their logarithm."""
-    meta = field.metadata
-    if "nested" in meta:
-        return st.just(field.default)
-    if meta["kind"] is str:
-        return st.sampled_from(meta["choices"])
-    if meta["kind"] is bool:
-        return st.booleans()
-    low, high = meta["minimum"], meta["maximum"]
-    if meta["kind"] is int:
-        return st.integers(low, high)
-    linear = st.floats(low, high)
-    if low > 0 and high / low > 100:
-        logarithmic = st.floats(math.log(low), math.log(high)).map(lambda x: min(max(math.exp(x), low), high))
-        return st.one_of(linear, logarithmic, st.sampled_from([low, high]))
-    return st.one_of(linear, st.sampled_from([low, high, field.default]))
-
-
-def instances(cls: type, **fixed: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
-    strategies = {
-        f.name: fixed.get(f.name, values(f)) for f in dataclasses.fields(cls) if f.name not in fixed
-    }
-    return st.builds(cls, **strategies, **fixed)
-
-
-BAND = st.tuples(st.floats(0.0, 100.0), st.floats(101.0, 1e6))
-LAYERS = st.builds(
-    lambda layer, band: dataclasses.replace(layer, shortest_wavelength=band[0], longest_wavelength=band[1]),
-    instances(WaveLayer, shortest_wavelength=st.just(0.0), longest_wavelength=st.just(1e6), id=st.just(-1)),
-    BAND,
-)
-COMMON = {
-    "loop_duration": st.one_of(st.none(), st.integers(1, 500).map(lambda n: Fraction(n, 24))),
-    "water": instances(Water),
-    "foam": instances(Foam, resolution=st.sampled_from([0, 16, 24])),
-    "timing": st.just(Timing()),
-}
-SEAS = instances(
-    OceanParameters,
-    resolution=st.sampled_from([16, 18, 20, 32]),
-    layers=st.lists(LAYERS, min_size=1, max_size=3).map(tuple),
-    joined=st.just(0),
-    **COMMON,
-)
-MASKS = st.one_of(
-    st.none(),
-    instances(
-        Mask,
-        source=st.just("DISTANCE"),
-        near=st.floats(0.0, 100.0),
-        far=st.floats(101.0, 1e6),
-        image=st.none(),
-    ),
-    instances(
-        Mask,
-        source=st.just("IMAGE"),
-        image=st.lists(
-            st.lists(st.floats(0.0, 1.0, width=32), min_size=3, max_size=3), min_size=1, max_size=4
-        ).map(Raster),
-    ),
-)
-
-
-def patched_seas() -> st.SearchStrategy[OceanParameters]:
-    """Two patches that meet, apart or joined, some of them and of the layers under masks."""
-    patches = st.builds(
-        lambda first, second, end: (
-            dataclasses.replace(first, shortest_wavelength=end),
-            dataclasses.replace(second, longest_wavelength=end),
-        ),
-        *(
-            instances(
-                Patch,
-                resolution=st.sampled_from([16, 24]),
-                shortest_wavelength=st.just(0.0),
-                longest_wavelength=st.just(1e6),
-                mask=MASKS,
-            )
-            for _ in range(2)
-        ),
-        st.floats(1e-3, 1e5),
-    )
-    layers = st.builds(lambda layer, mask: (dataclasses.replace(layer, mask=mask),), LAYERS, MASKS)
-    return instances(
-        OceanParameters, patches=patches, joined=st.sampled_from([0, 16, 48]), layers=layers,
-        trough_damping=st.just(0.0), **COMMON,
-    )  # fmt: skip
 
 
 @QUICK

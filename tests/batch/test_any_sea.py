@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every sea whose parameters are valid can be baked to every map that it has."""
+
+from __future__ import annotations
+
+import tempfile
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import strategies as st
+
+from ocean_tweak.core import OceanParameters
+from ocean_tweak.core.bake import bake
+from ocean_tweak.core.shot import Shot
+from ocean_tweak.export.cache.job import Job, maps_for
+from ocean_tweak.export.cache.records import CacheSink
+from ocean_tweak.export.exr import read_image
+from tests.batch.bakery import LONG
+from tests.core.random_seas import any_seas
+
+EACH = 25
+
+
+@pytest.mark.parametrize("part", range(20 if LONG else 1))
+def test_any_sea_bakes_every_map(part: int) -> None:
+    @seed(part)
+    @settings(max_examples=EACH, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    @given(sea=any_seas(), frame=st.one_of(st.integers(-1000, 100_000), st.just(Fraction(5, 2))))
+    def bakes(sea: OceanParameters, frame: int | Fraction) -> None:
+        if sea.is_cascade and sea.is_masked:
+            sea = sea.on_one_grid(16)
+        job = Job("sea", "0", Shot(sea), maps_for(sea), "NONE")
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "records").mkdir()
+            with np.errstate(over="raise", invalid="raise", divide="raise"):
+                (made,) = bake(job.shot, [frame], CacheSink(folder, job))
+            assert len(made.paths) == len(job.maps) * (len(sea.patches) if sea.is_cascade else 1)
+            for path in made.paths:
+                pixels, _ = read_image(path)
+                assert np.all(np.isfinite(pixels)), path.name
+
+    bakes()
