@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-core test-long test-window mutate lint bench bench-smoke build docs guide papers clean
+.PHONY: help setup demo test test-all test-core test-long test-window mutate lint bench bench-smoke build docs guide papers clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -14,8 +14,11 @@ demo:       ## bake, build and render the storm of examples/storm.json into buil
 	@$(PYTHON) -m tools.setup python-5.2 blender
 	@$(VENV) -m tools.demo
 
-test: setup ## every test: in the bpy wheels of 5.2 and 4.5, and of the installed zip in a real Blender
+test: setup ## every test once, and in each Blender, the installed zip's too, what can differ there
 	@$(VENV) -m tools.run_tests
+
+test-all: setup ## every test in every Blender
+	@$(VENV) -m tools.run_tests --all
 
 test-core:  ## the tests of the core alone
 	@$(PYTHON) -m tools.setup python-5.2

@@ -13,7 +13,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
-from . import real_blender, venvs
+from . import environments, real_blender
 from .project import ROOT, ToolError
 
 BOOTSTRAP = ROOT / "tools" / "bpy_script.py"
@@ -37,7 +37,7 @@ def command(
             options = ["--background", "--factory-startup", "--python-exit-code", "1"]
             files = [blend] if blend else []
             return [*blender, *options, *files, "--python", script, "--", *arguments]
-    python = venvs.python("5.2" if where == "any" else where)
+    python = environments.python("python-5.2" if where == "any" else f"python-{where}")
     return [str(python), str(BOOTSTRAP), *([blend] if blend else []), script, "--", *arguments]
 
 

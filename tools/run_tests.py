@@ -1,124 +1,223 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every test there is: from source in both bpy wheels, and of the installed zip in a real Blender."""
+"""Runs the tests: each once, and in every Blender what can differ there (`--all`: every test everywhere).
+
+Files are queued over the processors. A process takes many of them while many are left and single ones at the
+end, so that few processes are started and none is waited for long (guided self-scheduling: Polychronopoulos
+and Kuck 1987).
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import build, real_blender, venvs
+from . import build, environments, real_blender
 from .project import ROOT, TOOLS, ToolError
 
-SOURCE_SUITES = (
-    "tests/core",
-    "tests/export",
-    "tests/cli",
-    "tests/usd",
-    "tests/tools",
-    "tests/blender",
-)
-# of files, processes and farms' programs, which are the same whatever Blender there is
+#: of files, processes and farms' programs, which are the same whatever Blender there is
 ONCE = ("tests/farm", "tests/batch")
-INSTALLED_SUITES = ("tests/blender", "tests/extension")
+IN_EVERY_WHEEL = ("tests/blender", "tests/core", "tests/usd", "tests/cli", "tests/export", "tests/tools")
+INSTALLED = ("tests/extension",)
+
+#: of the suite for Blender, what depends on the Blender that it runs in
+OF_EVERY_BLENDER = (
+    "alembic", "animation", "assets", "every_operator", "foreign_colours", "life_of_an_ocean", "node_trees",
+    "old_groups", "registration", "rendering", "shot_files", "source_images", "usd_import", "velocity_blur",
+)  # fmt: skip
+#: of the core's, what depends on NumPy's version
+OF_EVERY_NUMPY = ("energy", "fields", "foam", "surface", "surface_detail", "surface_query")
+
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+PYTEST = ("-p", "no:cacheprovider", "-q")
 CLOSING_LINE = re.compile(
     r"^=* ?((?:no tests ran|\d+ [a-z]+(?:, \d+ [a-z]+)*) in [\d.]+s.*?)(?: =+)?$", re.MULTILINE
 )
-PYTEST = ("-p", "no:cacheprovider", "-q")
+COUNT = re.compile(r"(\d+) ([a-z]+)")
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where tests run.
+
+    command : before the arguments of pytest
+    zip_file : the extension that is installed in `profile`; None where tests take it from source
+    """
+
+    name: str
+    command: tuple[str, ...]
+    zip_file: Path | None = None
+    profile: Path | None = None
+
+    def environment(self, slot: int) -> dict[str, str]:
+        """Return the environment of a process: its own profile, with the zip where there is one."""
+        env = test_environment(f"{self.name.replace(' ', '-')}-{slot}")
+        if self.zip_file is not None and self.profile is not None:
+            shutil.copytree(self.profile, env["BLENDER_USER_RESOURCES"], symlinks=True)
+            env["OCEAN_TWEAK_ZIP"] = str(self.zip_file)
+        return env
 
 
 @dataclass(frozen=True)
 class Result:
-    """How one suite ended in one place."""
+    """How files of one suite ended in one place.
+
+    counts : tests by pytest's own word: passed, failed, skipped …
+    """
 
     place: str
     suite: str
     passed: bool
+    counts: Counter[str]
     closing_line: str
-
-    def __str__(self) -> str:
-        return f"{'ok    ' if self.passed else 'FAILED'} {self.place:12} {self.suite:16} {self.closing_line}"
+    seconds: float
 
 
-def main() -> int:
-    """Run everything; return the exit code."""
+class Queue:
+    """Test files that wait for a process, in order: pairs of a place and a file."""
+
+    def __init__(self, files: Sequence[tuple[Place, str]], slots: int) -> None:
+        self._files = list(files)
+        self._slots = slots
+        self._lock = threading.Lock()
+
+    def add(self, files: Sequence[tuple[Place, str]]) -> None:
+        """Append files."""
+        with self._lock:
+            self._files.extend(files)
+
+    def take(self) -> tuple[Place, list[str]] | None:
+        """Return the files that a process should run next, all of one suite; None if none are left."""
+        with self._lock:
+            if not self._files:
+                return None
+            place, first = self._files[0]
+            most = max(len(self._files) // (4 * self._slots), 1)
+            batch = [first]
+            for other, file in self._files[1:most]:
+                if other is not place or suite_of(file) != suite_of(first):
+                    break
+                batch.append(file)
+            del self._files[: len(batch)]
+            return place, batch
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the tests; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m tools.run_tests", description=__doc__)
+    parser.add_argument("--all", action="store_true", help="every test in every Blender")
+    everything = parser.parse_args(arguments).all
     begin = time.monotonic()
-    with ThreadPoolExecutor(2) as pool:  # two cores are common, and each of these keeps one busy
-        of_wheels = [
-            pool.submit(run_source_suites, "5.2", (*ONCE, *SOURCE_SUITES)),
-            pool.submit(run_source_suites, "4.5", SOURCE_SUITES),
-        ]
-        of_zip = pool.submit(run_installed_suites_if_possible)
-    installed, last_line, missing = of_zip.result()
-    results = [result for of_one in of_wheels for result in of_one.result()] + installed
-    failed = missing or not all(result.passed for result in results)
-    print("\n== summary", *results, sep="\n")
+    slots = max(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 1)
+    queue = Queue(of_wheels(everything), slots)
+    with ThreadPoolExecutor(slots) as pool:
+        of_zip = pool.submit(install_and_queue, queue, everything)
+        runs = [pool.submit(run_queued, queue, slot) for slot in range(slots)]
+        last_line, missing = of_zip.result()
+        # a slot that found the queue empty before the zip was installed has ended
+        runs.append(pool.submit(run_queued, queue, slots))
+        results = [result for run in runs for result in run.result()]
+    failed = missing or not results or not all(result.passed for result in results)
+    print("\n== summary", *summary(results), sep="\n")
     print(f"{'FAILED' if failed else 'all passed'} in {time.monotonic() - begin:.0f} s")
     print(last_line)
     return 1 if failed else 0
 
 
-def run_source_suites(blender: str, suites: Sequence[str]) -> list[Result]:
-    """Run suites from source in the environment of this Blender's wheel."""
-    command = [str(venvs.python(blender)), "-m", "pytest", *PYTEST]
-    env = test_environment(f"bpy-{blender}")
-    return [run_suite(f"bpy {blender}", suite, [*command, suite], env) for suite in suites]
+def of_wheels(everything: bool) -> list[tuple[Place, str]]:
+    """Return the files to run from source: the slowest suite first."""
+    newest, oldest = (
+        Place(f"bpy {blender}", (str(environments.python(f"python-{blender}")), "-m", "pytest"))
+        for blender in ("5.2", "4.5")
+    )
+    once = [(newest, file) for suite in (*IN_EVERY_WHEEL, *ONCE) for file in files_of(suite)]
+    if everything:
+        return [*once, *((oldest, file) for suite in IN_EVERY_WHEEL for file in files_of(suite))]
+    again = [*chosen("tests/blender", OF_EVERY_BLENDER), *chosen("tests/core", OF_EVERY_NUMPY)]
+    return [*once, *((oldest, file) for file in again)]
 
 
-def run_installed_suites_if_possible() -> tuple[list[Result], str, bool]:
-    """Results of the installed zip, a line on the Blender they are of, and whether its lack is a failure."""
+def files_of(suite: str) -> list[str]:
+    """Return the test files of a suite, the longest first."""
+    files = sorted((ROOT / suite).glob("test_*.py"), key=lambda file: -file.stat().st_size)
+    return [file.relative_to(ROOT).as_posix() for file in files]
+
+
+def chosen(suite: str, names: Sequence[str]) -> list[str]:
+    """Return the files of a suite with these names."""
+    return [f"{suite}/test_{name}.py" for name in names]
+
+
+def suite_of(file: str) -> str:
+    """Return the folder of a test file: `tests/core`."""
+    return file.rpartition("/")[0]
+
+
+def install_and_queue(queue: Queue, everything: bool) -> tuple[str, bool]:
+    """Queue what the installed zip is tested with; return a line on it, and whether that is a failure."""
     try:
         blender = real_blender.find()
-        return run_installed_suites(blender), f"real Blender: {blender}", False
+        place = installed(blender)
     except real_blender.NoBlender as reason:
         text = f"no real Blender, so the installed extension was not tested: {reason}"
-        return [], text, real_blender.required()
+        return text, real_blender.required()
     except ToolError as error:
-        return [], f"the extension was not tested: {error}", True
+        return f"the extension was not tested: {error}", True
+    of_blender = files_of("tests/blender") if everything else chosen("tests/blender", OF_EVERY_BLENDER)
+    own = [file for suite in INSTALLED for file in files_of(suite)]
+    queue.add([(place, file) for file in (*of_blender, *own)])
+    return f"real Blender: {blender}", False
 
 
-def run_installed_suites(blender: real_blender.RealBlender) -> list[Result]:
-    """Build the zip, install it into a fresh profile as an artist would, and test it there."""
+def installed(blender: real_blender.RealBlender) -> Place:
+    """Build the zip and install it into a profile, which is copied for each process."""
     zip_file = build.build(blender)
-    env = {**test_environment("real-blender"), "OCEAN_TWEAK_ZIP": str(zip_file)}
+    env = test_environment("installed")
     install(blender, zip_file, env)
-    options = [
-        "--background",
-        "--python-exit-code",
-        "1",
-        "--python",
-        str(ROOT / "tools/pytest_in_blender.py"),
-    ]
-    command = [*blender.command, *options, "--", str(venvs.PYTEST_IN_BLENDER), *PYTEST, f"--rootdir={ROOT}"]
-    return [run_suite("real Blender", suite, [*command, suite], env) for suite in INSTALLED_SUITES]
+    script = ["--python-exit-code", "1", "--python", str(ROOT / "tools/pytest_in_blender.py")]
+    command = [*blender.command, "--background", *script, "--", str(environments.PYTEST_IN_BLENDER)]
+    profile = Path(env["BLENDER_USER_RESOURCES"])
+    return Place("real Blender", (*command, f"--rootdir={ROOT}"), zip_file, profile)
 
 
 def install(blender: real_blender.RealBlender, zip_file: Path, env: Mapping[str, str]) -> None:
-    """Install and enable the zip in the profile of this environment."""
+    """Install and enable the zip in the profile of this environment, as an artist would."""
     options = ("install-file", "-r", "user_default", "--enable", str(zip_file))
     build.extension(blender, *options, env=dict(env))
 
 
-def test_environment(place: str) -> dict[str, str]:
+def test_environment(profile_name: str) -> dict[str, str]:
     """Return the environment of a test run: an empty profile of its own, and no threads beside the tests'."""
-    profile = TOOLS / "test-profiles" / place
+    profile = TOOLS / "test-profiles" / profile_name
     shutil.rmtree(profile, ignore_errors=True)
     own = {name: value for name, value in os.environ.items() if name != "OCEAN_TWEAK_ZIP"}
     return {**own, **ONE_THREAD, "BLENDER_USER_RESOURCES": str(profile)}
 
 
-def run_suite(place: str, suite: str, command: Sequence[str], env: Mapping[str, str]) -> Result:
-    """Run one suite, print what it said when it is through, and return how it ended."""
+def run_queued(queue: Queue, slot: int) -> list[Result]:
+    """Run files until none are left."""
+    results = []
+    while (taken := queue.take()) is not None:
+        place, files = taken
+        results.append(run_files(place, files, place.environment(slot)))
+    return results
+
+
+def run_files(place: Place, files: Sequence[str], env: Mapping[str, str]) -> Result:
+    """Run files of a suite in one process, print what it said when it is through; return how it ended."""
+    begin = time.monotonic()
     answer = subprocess.run(
-        command,
+        [*place.command, *PYTEST, *files],
         cwd=ROOT,
         env=env,
         stdin=subprocess.DEVNULL,
@@ -127,8 +226,12 @@ def run_suite(place: str, suite: str, command: Sequence[str], env: Mapping[str, 
         text=True,
         errors="replace",
     )
-    print(f"\n== {place}: {suite}\n{answer.stdout.rstrip()}", flush=True)
-    return Result(place, suite, answer.returncode == 0, closing_line(answer.stdout, answer.returncode))
+    suite, line = suite_of(files[0]), closing_line(answer.stdout, answer.returncode)
+    names = ", ".join(Path(file).stem.removeprefix("test_") for file in files)
+    print(f"\n== {place.name}: {suite}: {names}\n{answer.stdout.rstrip()}", flush=True)
+    counts = Counter({word: int(count) for count, word in COUNT.findall(line.partition(" in ")[0])})
+    passed = answer.returncode == 0
+    return Result(place.name, suite, passed, counts, line, time.monotonic() - begin)
 
 
 def closing_line(output: str, code: int) -> str:
@@ -137,6 +240,18 @@ def closing_line(output: str, code: int) -> str:
     if found:
         return found[-1]
     return f"ended with exit code {code} before pytest was through"
+
+
+def summary(results: Sequence[Result]) -> Iterator[str]:
+    """Yield a line for each suite in each place, its processes added up, and one for each that broke off."""
+    for key in dict.fromkeys((result.place, result.suite) for result in results):
+        of_one = [result for result in results if (result.place, result.suite) == key]
+        counts: Counter[str] = sum((result.counts for result in of_one), Counter())
+        told = ", ".join(f"{count} {word}" for word, count in counts.items()) or "no tests ran"
+        verdict = "ok    " if all(result.passed for result in of_one) else "FAILED"
+        seconds = sum(result.seconds for result in of_one)
+        yield f"{verdict} {key[0]:12} {key[1]:16} {told} in {seconds:.0f} s"
+        yield from (f"       {result.closing_line}" for result in of_one if not result.counts)
 
 
 if __name__ == "__main__":

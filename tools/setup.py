@@ -9,11 +9,10 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
-from . import real_blender, venvs
+from . import environments, real_blender
 from .project import TOOLS, ToolError
-
-PARTS = ("python-5.2", "python-4.5", "blender")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -27,30 +26,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     TOOLS.mkdir(exist_ok=True)
     with (TOOLS / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # two runs at once: the second waits, then finds all made
-        try:
-            jobs = [_job(name) for name in names]
-        except ToolError as error:
-            print(f"set-up failed: {error}", file=sys.stderr)
+        if any(name != "blender" for name in names) and _make("uv", environments.make_uv):
             return 1
         with ThreadPoolExecutor(len(names)) as pool:
-            return max(pool.map(_make, names, jobs))
+            return max(pool.map(_make, names, [PARTS[name] for name in names]))
 
 
-def _job(name: str) -> Callable[[], None]:
-    """Return what makes this part; a missing Python is found here, before anything is downloaded."""
-    if name == "blender":
-        return _make_blender
-    blender = name.split("-")[1]
-    interpreter = venvs.interpreter_to_use(blender)
-
-    def make() -> None:
-        if interpreter:
-            venvs.make_venv(blender, interpreter)
-        if blender == "5.2":
-            venvs.make_pytest_for_blender()
-            venvs.make_farm()
-
-    return make
+def _make_python_52() -> None:
+    """The environment of all tests, and what only they need beside it."""
+    environments.make("python-5.2")
+    environments.make_pytest_for_blender()
+    environments.make("farm")
 
 
 def _make(name: str, make: Callable[[], None]) -> int:
@@ -75,6 +61,12 @@ def _make_blender() -> None:
             raise
         print(f"no real Blender: {missing}", file=sys.stderr, flush=True)
 
+
+PARTS = {
+    "python-5.2": _make_python_52,
+    "python-4.5": partial(environments.make, "python-4.5"),
+    "blender": _make_blender,
+}
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.cli import main
-from tools import venvs
+from tools import environments
 
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).parent
@@ -41,8 +41,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     reason = ""
     if sys.version_info[:2] != (3, 13):
         reason = "tried once, with the Python of Blender 5.2"
-    elif not (venvs.FARM / "bin" / "openjd").exists():
-        reason = f"no {venvs.FARM}: run make setup"
+    elif not environments.program("farm", "openjd").exists():
+        reason = "no openjd in .tools/farm: run make setup"
     for item in items:
         if reason and HERE in item.path.parents:
             item.add_marker(pytest.mark.skip(reason=reason))
@@ -73,7 +73,7 @@ def run(environment: dict[str, str]) -> Run:
 
 @pytest.fixture(scope="session")
 def openjd(run: Run) -> Run:
-    return lambda *arguments, **more: run(venvs.FARM / "bin" / "openjd", *arguments, **more)
+    return lambda *arguments, **more: run(environments.program("farm", "openjd"), *arguments, **more)
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.core.shot import Shot as SeaOfShot
-from tools import venvs
+from tools import environments
 
 from .conftest import ROOT, SEA, Run, Shot
 
@@ -34,7 +34,7 @@ def test_commands_run_in_their_order(
     programs = {
         "python": lambda *words: main([*words[2:], *(["--workers", "1"] if "bake" in words else [])]),
         "openjd": lambda *words: openjd(*words).returncode,
-        "deadline": lambda *words: run(venvs.FARM / "bin" / "deadline", *words).returncode,
+        "deadline": lambda *words: run(environments.program("farm", "deadline"), *words).returncode,
     }
     # what renders or sends a job away is tried elsewhere, or cannot be
     left_out = {"blender": 1, "openjd": 1, "deadline": 2}

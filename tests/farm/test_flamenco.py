@@ -14,7 +14,7 @@ import pytest
 from ocean_tweak.cli import Sea, main
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot as SeaOfShot
-from tools import venvs
+from tools import environments
 
 from .conftest import HERE, Run, Shot
 
@@ -33,7 +33,7 @@ def compile_job(run: Run) -> Callable[..., dict[str, Any]]:
     def compiled(folder: Path, **settings: object) -> dict[str, Any]:
         (script,) = folder.glob("ocean_tweak_*.js")
         call = f"compiled({json.dumps(settings)})"
-        answer = run(venvs.FARM / "bin" / "python", "-c", ENGINE, HERE / "manager.js", script, call)
+        answer = run(environments.program("farm", "python"), "-c", ENGINE, HERE / "manager.js", script, call)
         assert answer.returncode == 0, answer.stdout
         return json.loads(answer.stdout)
 

@@ -15,7 +15,7 @@ import pytest
 from ocean_tweak.cli import Sea, main
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot as SeaOfShot
-from tools import real_blender, venvs
+from tools import environments, real_blender
 
 from .conftest import Run, Shot
 from .light import NOTHING, PER_METRE, PIXELS
@@ -93,7 +93,7 @@ def test_oceans_of_a_file_are_baked_side_by_side(openjd: Run, tmp_path: Path) ->
 
 
 def test_deadline_cloud_reads_the_bundle(bundle: Path, run: Run, shot: Shot) -> None:
-    answer = run(venvs.FARM / "bin" / "deadline", "bundle", "info", bundle)
+    answer = run(environments.program("farm", "deadline"), "bundle", "info", bundle)
     assert answer.returncode == 0, answer.stdout
     told = json.loads(answer.stdout[answer.stdout.index("{") :])
     assert told["steps"] == ["Bake", "Verify", "Render"]
@@ -106,7 +106,7 @@ def test_deadline_cloud_reads_the_bundle(bundle: Path, run: Run, shot: Shot) -> 
         "read = parameters.read_job_bundle_parameters(sys.argv[1]);"
         "print(*sorted(parameter['name'] for parameter in read))"
     )
-    answer = run(venvs.FARM / "bin" / "python", "-c", script, bundle)
+    answer = run(environments.program("farm", "python"), "-c", script, bundle)
     names = "BlendFile Blender Cache ChunkSize Frames Pictures Python RenderChunkSize Seas"
     assert answer.stdout.strip() == names
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import sys
+from collections import Counter
 
 import pytest
 
 from tools import build, real_blender, run_tests
+from tools.project import ROOT
 
 
 @pytest.mark.parametrize(
@@ -26,30 +28,83 @@ def test_closing_line_is_pytests_own(output, expected):
 )
 def test_empty_suite_fails_like_a_failing_one(tmp_path, source, passed):
     (tmp_path / "test_it.py").write_text(source)
-    command = [sys.executable, "-m", "pytest", f"--rootdir={tmp_path}", str(tmp_path)]
-    assert run_tests.run_suite("here", "suite", command, {}).passed is passed
+    here = run_tests.Place("here", (sys.executable, "-m", "pytest", f"--rootdir={tmp_path}"))
+    assert run_tests.run_files(here, [f"{tmp_path}/test_it.py"], {}).passed is passed
+
+
+@pytest.mark.parametrize("everything", [False, True])
+def test_every_test_file_is_queued_once_in_the_newest_blender(everything):
+    queued = [file for place, file in run_tests.of_wheels(everything) if place.name == "bpy 5.2"]
+    own_run = ("tests/ui/", "tests/extension/")
+    files = [file.relative_to(ROOT).as_posix() for file in ROOT.glob("tests/**/test_*.py")]
+    assert sorted(queued) == sorted(file for file in files if not file.startswith(own_run))
+
+
+@pytest.mark.parametrize("everything", [False, True])
+def test_what_is_queued_again_is_there(everything):
+    queued = [file for place, file in run_tests.of_wheels(everything) if place.name == "bpy 4.5"]
+    assert len(queued) > 15
+    assert [file for file in queued if not (ROOT / file).is_file()] == []
+    if everything:
+        once = {file for _, file in run_tests.of_wheels(False)}
+        assert {run_tests.suite_of(file) for file in once - set(queued)} == set(run_tests.ONCE)
+
+
+def test_queue_gives_each_file_once_in_batches_of_a_suite_that_shrink():
+    here, there = run_tests.Place("here", ()), run_tests.Place("there", ())
+    files = [(here, f"tests/a/test_{n}.py") for n in range(40)] + [
+        (there, f"tests/b/test_{n}.py") for n in range(9)
+    ]
+    queue = run_tests.Queue(files, slots=2)
+    taken = list(iter(queue.take, None))
+    assert [(place, file) for place, batch in taken for file in batch] == files
+    assert all(len({run_tests.suite_of(file) for file in batch}) == 1 for _, batch in taken)
+    sizes = [len(batch) for _, batch in taken]
+    assert sizes[0] > 4
+    assert sizes[-8:] == [1] * 8
 
 
 @pytest.fixture
-def source_suites(monkeypatch):
-    good = run_tests.Result("bpy", "tests/core", True, "1 passed in 1s")
-    monkeypatch.setattr(run_tests, "run_source_suites", lambda blender, suites: [good])
+def one_good_test(monkeypatch, tmp_path):
+    (tmp_path / "test_it.py").write_text("def test_a(): pass")
+    here = run_tests.Place("here", (sys.executable, "-m", "pytest", f"--rootdir={tmp_path}"))
+    monkeypatch.setattr(run_tests, "of_wheels", lambda everything: [(here, f"{tmp_path}/test_it.py")])
 
 
 @pytest.mark.parametrize(("required", "code"), [("1", 1), ("0", 0)])
-def test_run_without_real_blender_says_so_last(source_suites, monkeypatch, capsys, required, code):
+def test_run_without_real_blender_says_so_last(one_good_test, monkeypatch, capsys, required, code):
     def find():
         raise real_blender.NoBlender("none was found")
 
     monkeypatch.setattr(real_blender, "find", find)
     monkeypatch.setenv("OCEAN_TWEAK_REQUIRE_BLENDER", required)
-    assert run_tests.main() == code
-    assert capsys.readouterr().out.splitlines()[-1].startswith("no real Blender")
+    assert run_tests.main([]) == code
+    told = capsys.readouterr().out
+    assert told.splitlines()[-1].startswith("no real Blender")
+    assert "1 passed" in told.partition("== summary")[2]
 
 
-def test_extension_that_does_not_build_fails_the_run(source_suites, monkeypatch, capsys):
+def test_extension_that_does_not_build_fails_the_run(one_good_test, monkeypatch, capsys):
     broken = real_blender.RealBlender(("false",), "Blender 5.2")
     monkeypatch.setattr(real_blender, "find", lambda: broken)
     monkeypatch.setattr(build.wheels, "download", lambda: None)
-    assert run_tests.main() == 1
+    assert run_tests.main([]) == 1
     assert "`false --command extension build" in capsys.readouterr().out.splitlines()[-1]
+
+
+def test_processes_of_a_suite_are_added_up():
+    def result(suite, words, passed=True):
+        return run_tests.Result("here", suite, passed, Counter(words), "a line", 1.0)
+
+    lines = list(
+        run_tests.summary(
+            [result("tests/a", {"passed": 2}), result("tests/b", {"passed": 1}),
+             result("tests/a", {"passed": 3, "failed": 1}, passed=False), result("tests/b", {}, passed=False)]
+        )
+    )  # fmt: skip
+    assert len(lines) == 3
+    assert lines[0].startswith("FAILED here")
+    assert "5 passed, 1 failed" in lines[0]
+    assert lines[1].startswith("FAILED here")
+    assert "1 passed in" in lines[1]
+    assert lines[2].strip() == "a line"

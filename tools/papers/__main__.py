@@ -9,7 +9,7 @@ import os
 import sys
 import time
 
-from .. import blender, venvs
+from .. import blender, environments
 from ..project import BUILD, ROOT, ToolError, run_logged
 from . import chen, horvath, lantz, li_wang, mastin
 from .pages import PAGES, Table, Tables, page, updated
@@ -55,9 +55,13 @@ def _write(name: str, tables: Tables) -> None:
 
 
 def _draw() -> None:
-    venvs.make_papers()
-    python = venvs.PAPERS / "bin" / "python"
-    run_logged([str(python), "-m", "tools.papers.figures"], _LOG, {**os.environ, "PYTHONPATH": str(ROOT)})
+    environments.make_uv()
+    environments.make("papers")
+    run_logged(
+        [str(environments.python("papers")), "-m", "tools.papers.figures"],
+        _LOG,
+        {**os.environ, "PYTHONPATH": str(ROOT)},
+    )
 
 
 def _render() -> None:
