@@ -47,7 +47,7 @@ def main() -> None:
     parameters = core.OceanParameters.from_json(arguments.params.read_text(encoding="utf-8"))
     first, last = arguments.frames
     sequence = extension.module("scene.image_sequence").ImageSequence(
-        arguments.sequence, arguments.params.stem, first, last
+        arguments.sequence, arguments.params.stem, tuple(range(first, last + 1))
     )
     bpy.ops.wm.read_homefile(use_empty=True)
     for scene in make_scenes(extension, first, last, parameters.timing.fps):

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from .errors import ParameterError
@@ -71,16 +72,38 @@ def _digits(frame: Frame, width: int) -> str:
     return f"{sign}{whole:0{max(width - len(sign), 1)}d}{decimals}"
 
 
-def format_frames(frames: Iterable[Frame]) -> str:
-    """Ranges that `parse_frames` reads back: `1-48,60`."""
-    parts: list[str] = []
-    frames = tuple(frames)
+def format_frames(frames: Iterable[Frame], step_sign: str = "x") -> str:
+    """Ranges that `parse_frames` reads back: `1-48,60`, `1-99x2`.
+
+    step_sign : what stands before a step; "" for readers that know none, and get frame by frame
+    """
+    frames = set(frames)
     whole = sorted(frame for frame in frames if isinstance(frame, int))
-    start = 0
-    for index, frame in enumerate(whole):
-        if index + 1 == len(whole) or whole[index + 1] != frame + 1:
-            first = whole[start]
-            parts.append(str(first) if first == frame else f"{first}-{frame}")
-            start = index + 1
+    parts = [_range_text(run, step_sign) for run in _runs(whole, bool(step_sign))]
     between = sorted(frame for frame in frames if not isinstance(frame, int))
     return ",".join([*parts, *(_digits(frame, 1) for frame in between)])
+
+
+def held_frame(frames: Sequence[int], frame: int) -> int:
+    """The one of some ascending frames that stands at a frame: the last one up to it, else the first."""
+    return frames[max(bisect_right(frames, frame) - 1, 0)]
+
+
+def _runs(frames: Sequence[int], may_step: bool) -> Iterator[range]:
+    """Ascending frames in ranges; a step of more than 1 only over three frames and more."""
+    start = 0
+    while start < len(frames):
+        step = frames[start + 1] - frames[start] if start + 1 < len(frames) else 1
+        end = start
+        while end + 1 < len(frames) and frames[end + 1] - frames[end] == step:
+            end += 1
+        if step > 1 and not (may_step and end - start >= 2):
+            end, step = start, 1
+        yield range(frames[start], frames[end] + 1, step)
+        start = end + 1
+
+
+def _range_text(run: range, step_sign: str) -> str:
+    if len(run) == 1:
+        return str(run[0])
+    return f"{run[0]}-{run[-1]}" + (f"{step_sign}{run.step}" if run.step > 1 else "")

@@ -17,13 +17,14 @@ from mathutils import Matrix, Quaternion, Vector
 from numpy.typing import NDArray
 
 from ..core import OceanParameters, grid_sea
+from ..core.frames import frame_label
 from ..core.grid_sea import GridSea
 from ..core.surface_query import bilinear, find_points
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
 from .animated import shown_settings
 from .floating import FloatError, Ride
-from .image_sequence import SequenceError
+from .image_sequence import SequenceError, shown_frame
 from .plan import plan_of
 from .settings import OceanSettings
 
@@ -32,7 +33,7 @@ Array = NDArray[np.float64]
 
 #: minimum eigenvalue below which several sheets of the surface are looked for
 _NEARLY_FOLDED = 0.1
-_NUMBER = re.compile(r"\d{4,}(?=\.exr$)")
+_NUMBER = re.compile(r"(?:-\d{3,}|\d{4,})(?=\.exr$)")
 
 
 @dataclass(frozen=True)
@@ -121,10 +122,10 @@ def _baked(settings: OceanSettings, frame: int) -> RealArray:
     image = settings.sequence_maps.disp
     if image is None:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
-    held = min(max(frame, settings.sequence_first), settings.sequence_last)
     path = Path(bpy.path.abspath(image.filepath))
+    label = frame_label(shown_frame(settings, frame))
     try:
-        return read_image(path.with_name(_NUMBER.sub(f"{held:04d}", path.name)))[0]
+        return read_image(path.with_name(_NUMBER.sub(label, path.name)))[0]
     except ExrError as error:
         raise FloatError(str(error)) from error
 

@@ -4,18 +4,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 
 import bpy
 
+from ..core.frames import format_frames, frame_label, held_frame, parse_frames
 from ..export.exr import ExrError, read_image
 from .live_image import mark_as_data
 from .maps import MAPS
-from .settings import OceanObjectError
+from .settings import OceanObjectError, OceanSettings
 
-_FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>\d{{4,}})\.exr")
+_FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
 # what moves the mesh: a sequence has it at every frame
 _MOVING = "disp"
 
@@ -26,40 +29,38 @@ class SequenceError(OceanObjectError):
 
 @dataclass(frozen=True)
 class ImageSequence:
-    """The files NAME_map.####.exr of a folder from a first to a last frame.
+    """The files NAME_map.####.exr of a folder at some frames.
 
     directory : may start with // for the folder of the .blend file
+    frames : ascending, at least one
     """
 
     directory: str | Path
     name: str
-    first: int
-    last: int
+    frames: tuple[int, ...]
 
     def path(self, frame: int, map_name: str = _MOVING) -> Path:
         """Where a map of a frame is."""
-        return _absolute(self.directory) / f"{self.name}_{map_name}.{frame:04d}.exr"
+        return _absolute(self.directory) / f"{self.name}_{map_name}.{frame_label(frame)}.exr"
 
     def check(self) -> tuple[str, ...]:
         """The maps that there are. Raises SequenceError unless every frame has a file of each of them."""
-        if self.first > self.last:
-            raise SequenceError(f"The first frame {self.first} lies after the last frame {self.last}")
         available = _frames_by_map(_absolute(self.directory))
         if (self.name, _MOVING) not in available:
             names = sorted(name for name, map_name in available if map_name == _MOVING)
             hint = f"; it holds {', '.join(names)}" if names else ""
             raise SequenceError(f"No files {self.name}_disp.####.exr in {_absolute(self.directory)}{hint}")
-        wanted = range(self.first, self.last + 1)
+        wanted = set(self.frames)
         frames = {name: available[self.name, name] for name in MAPS if (self.name, name) in available}
         # a map that was baked for other frames only is none of this sequence
         maps = tuple(
             name for name in MAPS if name == _MOVING or not frames.get(name, set()).isdisjoint(wanted)
         )
         for name in maps:
-            missing = sorted(set(wanted) - frames[name])
+            missing = sorted(wanted - frames[name])
             if missing:
                 raise SequenceError(
-                    f"{len(missing)} of the frames {self.first} to {self.last} have no file, "
+                    f"{len(missing)} of the frames {format_frames(self.frames)} have no file, "
                     f"the first of them {self.path(missing[0], name)}"
                 )
         return maps
@@ -82,7 +83,9 @@ class LoadedSequence:
 def find_sequence(path: str | Path) -> ImageSequence:
     """The sequence that a file belongs to, or the only one of a folder.
 
-    Raises SequenceError when there is none, more than one, or a gap in it.
+    It has the frames that there are; which ones nobody baked is told by `unbaked_frames`.
+
+    Raises SequenceError when there is none, more than one, or a map of it lacks some of the frames.
     """
     chosen = _absolute(path)
     directory, name = chosen, None
@@ -102,7 +105,7 @@ def find_sequence(path: str | Path) -> ImageSequence:
     frames = available.get(name)
     if not frames:
         raise SequenceError(f"No files {name}_disp.####.exr in {directory}")
-    sequence = ImageSequence(directory, name, min(frames), max(frames))
+    sequence = ImageSequence(directory, name, tuple(sorted(frames)))
     sequence.check()
     return sequence
 
@@ -115,7 +118,7 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
     size.
     """
     maps = sequence.check()
-    paths = {name: sequence.path(sequence.first, name) for name in maps}
+    paths = {name: sequence.path(sequence.frames[0], name) for name in maps}
     sizes = {name: _samples(path) for name, path in paths.items()}
     for name, samples in sizes.items():
         if samples != sizes[_MOVING]:
@@ -127,6 +130,32 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
     return LoadedSequence(images, sizes[_MOVING], _frames_per_second(paths[_MOVING]))
 
 
+def baked_frames(settings: OceanSettings) -> tuple[int, ...]:
+    """The frames of an ocean's sequence, ascending; those of an old file from its first to its last one."""
+    if settings.sequence_frames:
+        return _parsed(settings.sequence_frames)
+    return tuple(range(settings.sequence_first, settings.sequence_last + 1))
+
+
+def shown_frame(settings: OceanSettings, frame: int) -> int:
+    """The frame whose files an ocean shows at a frame: the last one before it where it was not baked."""
+    return held_frame(baked_frames(settings), frame)
+
+
+def unbaked_frames(settings: OceanSettings, frames: Iterable[int]) -> tuple[int, ...]:
+    """Those of some frames that an ocean's sequence has not; none of a live ocean."""
+    if settings.source != "SEQUENCE":
+        return ()
+    baked = set(baked_frames(settings))
+    return tuple(frame for frame in frames if frame not in baked)
+
+
+# asked on every frame; a long list takes milliseconds
+@lru_cache(maxsize=16)
+def _parsed(text: str) -> tuple[int, ...]:
+    return tuple(frame for frame in parse_frames(text) if isinstance(frame, int))
+
+
 def missing_file(image: bpy.types.Image | None, frame: int) -> str:
     """The file that a sequence's image shows at a frame, where it is not there; "" otherwise."""
     if image is None:
@@ -135,7 +164,7 @@ def missing_file(image: bpy.types.Image | None, frame: int) -> str:
     match = _FILE.fullmatch(path.name)
     if match is None:
         return ""
-    file = path.with_name(f"{match['name']}_{match['map']}.{frame:04d}.exr")
+    file = path.with_name(f"{match['name']}_{match['map']}.{frame_label(frame)}.exr")
     return "" if file.is_file() else str(file)
 
 

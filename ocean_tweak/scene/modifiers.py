@@ -44,7 +44,7 @@ class Shown:
     """What the modifiers have to show.
 
     images : by map; None where the mesh's attributes have the surface
-    frames : first and last file number of a sequence, None for live images
+    frames : those that a sequence has, ascending; None for live images
     grid : the mesh and the samples of the images
     render_images, render_grid : what a render reads instead; None where it shows what the viewport shows
     scale : Blender units in a metre
@@ -53,7 +53,7 @@ class Shown:
     """
 
     images: Images | None
-    frames: tuple[int, int] | None
+    frames: tuple[int, ...] | None
     grid: Grid
     render_images: Images | None
     render_grid: Grid | None
@@ -128,7 +128,7 @@ def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> 
 
 
 def _sea_inputs(shown: Shown) -> dict[str, Any]:
-    first, last = shown.frames or (1, 1)
+    frames = shown.frames or (1,)
     return {
         "Use Attributes": shown.images is None,
         "Scale": shown.scale,
@@ -136,8 +136,8 @@ def _sea_inputs(shown: Shown) -> dict[str, Any]:
         "Warn Out of Range": shown.warn,
         "Domain Size": shown.grid.size,
         "Resolution": shown.grid.samples,
-        "First Frame": first,
-        "Last Frame": last,
+        "First Frame": frames[0],
+        "Last Frame": frames[-1],
         **_image_inputs(shown.images),
     }
 

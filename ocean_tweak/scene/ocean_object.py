@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ..core import OceanParameters
+from ..core.frames import format_frames
 from .cache_place import new_uid
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
 from .maps import MAPS
@@ -93,8 +94,7 @@ def _set_sequence(settings: OceanSettings, sequence: ImageSequence, baked: Loade
         setattr(settings.sequence_maps, name, baked.images.get(name))
     settings.sequence_samples = baked.samples
     settings.sequence_fps = str(baked.fps) if baked.fps is not None else ""
-    settings.sequence_first = sequence.first
-    settings.sequence_last = sequence.last
+    settings.sequence_frames = format_frames(sequence.frames)
 
 
 def _check(value: str, allowed: dict[str, tuple[str, str]], name: str) -> None:

@@ -133,7 +133,7 @@ def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     maps, files = settings.sequence_maps, ""
     if settings.source == "SEQUENCE":
         images = [getattr(maps, name) for name in MAPS]
-        frame = min(max(scene.frame_current, settings.sequence_first), settings.sequence_last)
+        frame = image_sequence.shown_frame(settings, scene.frame_current)
         files = next(filter(None, (image_sequence.missing_file(image, frame) for image in images)), "")
     set_changed(settings, missing_file=files)
 
@@ -235,7 +235,7 @@ def _refresh_baked(
         settings,
         Shown(
             images=images,
-            frames=(settings.sequence_first, settings.sequence_last),
+            frames=image_sequence.baked_frames(settings),
             grid=plan.viewport,
             render_images=images,
             render_grid=plan.render if plan.has_own_render else None,

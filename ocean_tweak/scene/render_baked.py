@@ -136,7 +136,7 @@ def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
         raise RenderError(
             f"{item.name} is {own:g} m wide, the bake {bake.folder} {baked:g} m: give both one size"
         )
-    sequence = sequences.ImageSequence(bake.folder, bake.name, min(frames), max(frames))
+    sequence = sequences.ImageSequence(bake.folder, bake.name, tuple(sorted(set(frames))))
     try:
         ocean_object.use_sequence(item, scene, sequence)
     except ValueError as error:

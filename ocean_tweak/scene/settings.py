@@ -56,8 +56,11 @@ LAYER_KINDS = {
 }
 
 OUT_OF_RANGE = {
-    "HOLD": ("Hold", "Show the nearest frame that was baked"),
-    "WARN": ("Warn", "Show the nearest frame that was baked, and a warning here and in the modifier"),
+    "HOLD": ("Hold", "Show the last frame before that was baked, else the first"),
+    "WARN": (
+        "Warn",
+        "Show the last frame before that was baked, else the first, and a warning here and in the modifier",
+    ),
 }
 
 #: samples along each side that play smoothly
@@ -106,7 +109,9 @@ class OceanSettings(Protocol):
     usd : how it becomes USD layers
     use_foam, use_normals, use_velocity : whether these maps are made and shown
     repeats_x, repeats_y : patches side by side
-    sequence_first, sequence_last, sequence_samples : file numbers, and texels along each side
+    sequence_frames : the frames that were baked, as `format_frames` writes them
+    sequence_first, sequence_last : the first and the last of them, in a file made before there were others
+    sequence_samples : texels along each side
     sequence_fps : frames per second of the shot it was baked for, "24000/1001"; "" where it does not say
     out_of_range : a key of OUT_OF_RANGE
     viewport_resolution : the most samples along each side in the viewport
@@ -132,6 +137,7 @@ class OceanSettings(Protocol):
     live_maps: MapImages
     render_maps: MapImages
     sequence_maps: MapImages
+    sequence_frames: str
     sequence_first: int
     sequence_last: int
     sequence_samples: int

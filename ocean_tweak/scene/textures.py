@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 
 
@@ -20,12 +22,12 @@ def new_texture(name: str) -> bpy.types.Texture:
     return texture
 
 
-def show(texture: bpy.types.Texture, image: bpy.types.Image, frames: tuple[int, int] | None) -> None:
-    """Let a texture read an image; `frames` are the first and last file of a sequence."""
+def show(texture: bpy.types.Texture, image: bpy.types.Image, frames: Sequence[int] | None) -> None:
+    """Let a texture read an image; `frames` are those that a sequence has, ascending and without a gap."""
     assign(texture, image=image)
     if frames is None:
         return
-    first, last = frames
+    first, last = frames[0], frames[-1]
     # File number = frame_offset + frame - frame_start + 1, and what is added to the offset is held between
     # 0 and the duration. To begin at 0 rather than 1 holds the first frame too; a single file has no 0.
     begin = 0 if last > first else 1

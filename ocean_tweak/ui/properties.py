@@ -180,6 +180,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "render_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
         "sequence_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
         "texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),
+        "sequence_frames": StringProperty(**_HIDDEN),
         "sequence_first": IntProperty(**_HIDDEN),
         "sequence_last": IntProperty(**_HIDDEN),
         "sequence_samples": IntProperty(**_HIDDEN),

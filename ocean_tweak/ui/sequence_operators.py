@@ -9,6 +9,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..core import OceanParameters, ParameterError
+from ..core.frames import format_frames
 from ..export.cache.job import CacheError, read_job
 from ..export.exr import ExrError, read_image
 from ..scene import ocean_object
@@ -46,8 +47,8 @@ class OCEAN_OT_use_sequence(OfActiveOcean, bpy.types.Operator, ImportHelper):
             return refuse(self, error)
         self.report(
             {"INFO"},
-            translated("{name}: frames {first} to {last}").format(
-                name=sequence.name, first=sequence.first, last=sequence.last
+            translated("{name}: frames {frames}").format(
+                name=sequence.name, frames=format_frames(sequence.frames)
             ),
         )
         return {"FINISHED"}
@@ -68,7 +69,7 @@ class OCEAN_OT_use_live(OfActiveOcean, bpy.types.Operator):
 
 
 def _baked_parameters(sequence: ImageSequence) -> OceanParameters:
-    path = sequence.path(sequence.first)
+    path = sequence.path(sequence.frames[0])
     _, metadata = read_image(path)
     if "parameters" not in metadata:
         raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
@@ -80,7 +81,7 @@ def _baked_parameters(sequence: ImageSequence) -> OceanParameters:
             raise
     # images name their pictures and winds, which stand in the job beside them
     try:
-        parameters = read_job(path.parent).shot.at(sequence.first).parameters
+        parameters = read_job(path.parent).shot.at(sequence.frames[0]).parameters
     except (CacheError, ParameterError) as error:
         raise SequenceError(
             f"{path} names the pictures or winds of its sea, but does not hold them, and the bake's job does "

@@ -90,7 +90,7 @@ def bake(extension, core, tmp_path):
         sea = core.grid_sea(parameters)
         for frame in range(first, last + 1):
             sink.write(frame, sea.frame(frame, sink.outputs))
-        return extension("scene.image_sequence").ImageSequence(directory, name, first, last)
+        return extension("scene.image_sequence").ImageSequence(directory, name, tuple(range(first, last + 1)))
 
     return write
 

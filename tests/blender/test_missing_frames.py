@@ -37,7 +37,7 @@ def test_frames_beyond_the_baked_ones_are_told_or_not(item, draw, empty_scene): 
     for frame, held in ((10, 11), (14, 13)):
         empty_scene.frame_set(frame)
         assert warnings(item) == [("WARNING", f"Frame {frame} was not baked: frame {held} is held")]
-        assert f"Frame {frame} has no file: the nearest one is held" in " ".join(draw(item))
+        assert f"Frame {frame} has no file: frame {held} is held" in " ".join(draw(item))
     held = vertices(item)
     item.ocean_tweak.out_of_range = "HOLD"
     assert warnings(item) == []
@@ -103,7 +103,7 @@ def test_a_damaged_file_is_told(item, baked, empty_scene):
 def test_a_map_with_gaps_is_refused(ocean_object, bake, make_parameters, empty_scene, map_name):
     baked = bake(make_parameters(), 1, 3, maps=ALL_MAPS)
     baked.path(2, map_name).unlink()
-    with pytest.raises(ValueError, match=f"1 of the frames 1 to 3 have no file.*sea_{map_name}.0002.exr"):
+    with pytest.raises(ValueError, match=f"1 of the frames 1-3 have no file.*sea_{map_name}.0002.exr"):
         ocean_object.add(empty_scene, make_parameters(), source="SEQUENCE", sequence=baked)
 
 

@@ -326,11 +326,11 @@ def test_frames_without_a_file_are_told(draw, item, bake, ocean_object, make_par
     empty_scene.frame_set(11)
     assert "has no file" not in " ".join(draw(item))
     empty_scene.frame_set(5)
-    assert "Frame 5 has no file: the nearest one is held" in " ".join(draw(item))
+    assert "Frame 5 has no file: frame 11 is held" in " ".join(draw(item))
     item.ocean_tweak.method = "DISPLACE"
-    assert "the nearest one is held" in " ".join(draw(item))
+    assert "frame 11 is held" in " ".join(draw(item))
     ocean_object.use_sequence(item, empty_scene, bake(make_parameters(), 7, 7, name="still"))
-    assert "Frame 5 has no file: the sea is flat" in " ".join(draw(item))
+    assert "Frame 5 has no file: frame 7 is held" in " ".join(draw(item))
 
 
 def test_drawing_computes_nothing(draw, item, core, monkeypatch):

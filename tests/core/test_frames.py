@@ -10,7 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ocean_tweak.core import ParameterError
-from ocean_tweak.core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
+from ocean_tweak.core.frames import (
+    Frame,
+    as_frame,
+    format_frames,
+    frame_label,
+    held_frame,
+    parse_frames,
+)
 
 frames = st.one_of(
     st.integers(-20_000, 20_000),
@@ -87,3 +94,26 @@ def test_what_is_formatted_is_parsed(chosen: set[Frame]) -> None:
 def test_labels_are_told_apart_and_parsed(one: Frame, other: Frame) -> None:
     assert (frame_label(one) == frame_label(other)) == (one == other)
     assert parse_frames(frame_label(one)) == (one,)
+
+
+@pytest.mark.parametrize(
+    ("text", "with_steps", "without"),
+    [
+        ("1,3,5,7,9,12", "1-9x2,12", "1,3,5,7,9,12"),
+        ("1-10,50-60", "1-10,50-60", "1-10,50-60"),
+        ("1,3", "1,3", "1,3"),
+        ("-8,-4,0,1,2", "-8-0x4,1-2", "-8,-4,0-2"),
+    ],
+)
+def test_steps_are_told_to_those_who_know_them(text: str, with_steps: str, without: str) -> None:
+    frames = parse_frames(text)
+    assert format_frames(frames) == with_steps
+    assert format_frames(frames, ":") == with_steps.replace("x", ":")
+    assert format_frames(frames, "") == without
+
+
+def test_a_frame_that_is_not_there_shows_the_one_before() -> None:
+    frames = (-3, 1, 3, 12)
+    assert [held_frame(frames, frame) for frame in (-9, -3, 0, 1, 2, 3, 11, 12, 99)] == [
+        -3, -3, -3, 1, 1, 3, 3, 12, 12,
+    ]  # fmt: skip

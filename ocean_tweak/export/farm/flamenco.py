@@ -44,7 +44,7 @@ def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:
     seas, cache = f"<job_folder>/{SEAS}", "<cache>"
     return {
         "label": f"Ocean Tweak: {job.name}",
-        "frames": format_frames(job.frames),
+        "frames": format_frames(job.frames, step_sign=""),
         "chunk": job.chunk,
         "folder": str(folder),
         "cache": str((job.cache or folder / "cache").absolute()),

@@ -221,4 +221,4 @@ def _tasks(job: ShotJob, size: int, size_parameter: str) -> _Data:
 
 
 def _farm_frames(job: ShotJob) -> str:
-    return format_frames(job.frames)
+    return format_frames(job.frames, ":")

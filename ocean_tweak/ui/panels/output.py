@@ -4,7 +4,9 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ...core.frames import format_frames
 from ...scene import bake_process, cache_place
+from ...scene.image_sequence import baked_frames
 from ...scene.maps import MAPS
 from ...scene.shots import scene_frames
 from .. import bake_operators, sequence_operators
@@ -55,7 +57,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         row(column, "Version", folder.name)
     row(column, "Files", bpy.path.basename(image.filepath) if image else "none chosen")
     if image:
-        row(column, "Frames", f"{settings.sequence_first} to {settings.sequence_last}")
+        row(column, "Frames", format_frames(baked_frames(settings)))
         row(column, "Maps", ", ".join(name for name in MAPS if getattr(settings.sequence_maps, name)))
     if settings.missing_file:
         file = bpy.path.basename(settings.missing_file)

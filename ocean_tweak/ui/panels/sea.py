@@ -11,6 +11,7 @@ from ...core import sea_scales
 from ...core.wind_profile import wind_at_10_m
 from ...scene import cache_place, refinement
 from ...scene.conversion import ocean_modifier
+from ...scene.image_sequence import shown_frame, unbaked_frames
 from ...scene.settings import OceanSettings, is_ocean
 from ...scene.units import metres_per_unit
 from .. import operators, preset_operators, scene_operators, sea_operators
@@ -156,12 +157,8 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
         warnings.append(
             "The object is scaled, so its waves are too. Set its scale to 1 and change the domain size"
         )
-    first, last = settings.sequence_first, settings.sequence_last
-    is_outside = settings.source == "SEQUENCE" and not first <= frame <= last
-    if is_outside and settings.out_of_range == "WARN":
-        flat = frame < first == last and settings.method == "DISPLACE"
-        shown = "the sea is flat" if flat else "the nearest one is held"
-        warnings.append(f"Frame {frame} has no file: {shown}")
+    if settings.out_of_range == "WARN" and unbaked_frames(settings, (frame,)):
+        warnings.append(f"Frame {frame} has no file: frame {shown_frame(settings, frame)} is held")
     if settings.source == "SEQUENCE" and cache_place.is_left_behind(item):
         warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
     return warnings
