@@ -8,6 +8,7 @@ import atexit
 import bpy
 
 from . import cli
+from .export import logs
 from .scene import asset_library, handlers
 from .scene.cache_place import cache_folder, own_uid
 from .scene.settings import all_oceans
@@ -26,6 +27,7 @@ from .ui import (
     panels,
     parameter_operators,
     patch_operators,
+    preferences,
     preset_operators,
     preset_thumbnails,
     properties,
@@ -38,6 +40,7 @@ from .ui import (
 )
 
 CLASSES = (
+    *preferences.CLASSES,
     *properties.CLASSES,
     *operators.CLASSES,
     *parameter_operators.CLASSES,
@@ -92,8 +95,10 @@ def register(package: str | None = None) -> None:
         # Blender disables its extensions when it quits. Nobody does so for a script, and bpy 4.5 hangs or
         # crashes at the end of a process in which Python classes are still registered
         atexit.register(unregister)
+    preferences.OCEAN_AP_preferences.bl_idname = package or _COMMAND
     for cls in CLASSES:
         bpy.utils.register_class(cls)
+    preferences.apply()
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
@@ -129,3 +134,4 @@ def unregister() -> None:
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
+    logs.end()

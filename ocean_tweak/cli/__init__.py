@@ -5,19 +5,23 @@ from __future__ import annotations
 
 import contextlib
 import io
+import logging
 import os
 import sys
 
 from ..core import ParameterError
+from ..export import logs
 from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..export.exr import ExrError
 from ..export.usd.library import UsdError
 from .arguments import make_parser
-from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, complain, message_of, remedy_of
+from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, message_of, remedy_of
 from .seas import SceneOceans, Sea
 
 __all__ = ["SceneOceans", "Sea", "main"]
+
+_LOG = logging.getLogger(__name__)
 
 #: what a user, a disk or another process can cause; anything else is a bug and raises
 _EXPECTED = (ParameterError, UsageError, OSError, ExrError, CacheError, UsdError, Held, MemoryError)
@@ -34,6 +38,8 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
         arguments = make_parser(in_blender=scene_oceans is not None).parse_args(argv)
     except SystemExit as end:  # argparse has printed the reason; Blender wants the code as a result
         return int(end.code or 0)
+    if arguments.verbose or scene_oceans is None:  # in Blender the preferences say it else
+        logs.to_console(logs.LEVELS[min(arguments.verbose, len(logs.LEVELS) - 1)])
     try:
         return int(arguments.run(arguments, scene_oceans))
     except (*_EXPECTED, KeyboardInterrupt) as error:
@@ -41,9 +47,10 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
         if getattr(arguments, "openjd", False):
             with contextlib.suppress(BrokenPipeError):
                 print(f"openjd_fail: {message}", flush=True)
-        complain(message)
+        _LOG.error("%s", message)
         return WRONG_ARGUMENTS if isinstance(error, (ParameterError, UsageError)) else FAILED
     finally:
+        logs.end_file()
         _flush()
 
 

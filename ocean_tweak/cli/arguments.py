@@ -49,6 +49,10 @@ def _command(commands: _Commands, name: str, purpose: str) -> argparse.ArgumentP
         name, help=purpose, description=f"{purpose[0].upper()}{purpose[1:]}."
     )
     parser.add_argument("--json", action="store_true", help="print JSON for machines, an object a line")
+    parser.add_argument(
+        "-v", "--verbose", action="count", default=0,
+        help="also tell what is done; twice (-vv) what is looked at",
+    )  # fmt: skip
     return parser
 
 
@@ -308,6 +312,10 @@ def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
         "--wait", action="store_true", help="wait for others that bake the same frames, instead of refusing"
     )
     _add_take_over(parser)
+    parser.add_argument(
+        "--log", action="store_true",
+        help="also write what happens, with times, into a file beside the bake's folder, vNNN-hash8.log",
+    )  # fmt: skip
     parser.add_argument(
         "--estimate", action="store_true", help="only say how many frames, bytes and seconds it will take"
     )

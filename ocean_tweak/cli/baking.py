@@ -4,31 +4,47 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import shlex
+import sys
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from .. import __version__
 from ..core.bake import BakedFrame
 from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames
 from ..core.memory import check_memory, memory_need, physical_memory
+from ..export import logs
 from ..export.cache.estimate import Estimate, estimate, readable_bytes
-from ..export.cache.job import JOB_FILE, CacheError, Job, open_folder, read_job, recovered_job, write_job
+from ..export.cache.job import (
+    JOB_FILE,
+    CacheError,
+    Job,
+    log_file,
+    made_with,
+    open_folder,
+    read_job,
+    recovered_job,
+    write_job,
+)
 from ..export.cache.locks import Held, claimed
 from ..export.cache.records import CacheSink, Finding, remove_leftovers, unfinished
 from ..export.exr import ExrError
 from ..export.files import writable_folder
 from .checking import known_frames, wanted_frames
-from .outcome import DONE, FAILED, UsageError, complain, message_of, remedy_of
+from .outcome import DONE, FAILED, UsageError, message_of, remedy_of
 from .progress import Progress, duration
 from .seas import Sea
 from .stopping import stop_requested
 from .wanted_bake import cache_of, jobs_of
 from .workers import make_in_processes
+
+_LOG = logging.getLogger(__name__)
 
 
 def bake(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
@@ -61,7 +77,8 @@ def resume(arguments: argparse.Namespace) -> int:
         job = recovered_job(folder)
         job = replace(job, frames=known_frames(folder, job))
         write_job(folder, job)
-        complain(f"{error.args[0].partition(': run')[0]}; the job is written again from what the images tell")
+        problem = error.args[0].partition(": run")[0]
+        _LOG.warning("%s; the job is written again from what the images tell", problem)
     frames = wanted_frames(folder, job, arguments.frames)
     job = replace(job, frames=known_frames(folder, job) or frames)
     job.shot.check(frames)
@@ -70,6 +87,11 @@ def resume(arguments: argparse.Namespace) -> int:
 
 def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequence[Frame]) -> int:
     """Make what is not whole of the frames. Returns the exit code."""
+    if arguments.log:
+        logs.to_file(log_file(folder))
+        _LOG.info(
+            "Ocean Tweak %s, %s, %d cores: %s", __version__, made_with(), _cores(), shlex.join(sys.argv)
+        )
     progress = Progress(job.name, arguments.json, arguments.openjd)
     with (
         stop_requested() as stop,
@@ -93,7 +115,7 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
     if progress.is_complete:
         return DONE
     progress.fail("stopped")
-    complain(f"stopped after a whole frame; {_go_on(folder)}")
+    _LOG.error("stopped after a whole frame; %s", _go_on(folder))
     return FAILED
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import errno
-import sys
 
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
 
@@ -24,11 +23,6 @@ _REMEDIES = {
 
 class UsageError(ValueError):
     """Arguments that do not fit together."""
-
-
-def complain(message: object) -> None:
-    """Say what is wrong, in a line."""
-    print(f"ocean_tweak: {message}", file=sys.stderr, flush=True)
 
 
 def message_of(error: BaseException) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import shutil
 import sys
 import time
@@ -12,6 +13,9 @@ from typing import Any, TextIO
 from ..core.bake import BakedFrame
 from ..core.frames import format_frames
 from ..core.plain_data import to_plain
+from ..export.logs import PRINTED
+
+_LOG = logging.getLogger(__name__)
 
 _BAR = 30
 
@@ -44,6 +48,7 @@ class Progress:
 
     def say(self, text: str, **data: Any) -> None:
         """A line of text, or its data for a machine."""
+        self._note(text)
         self._print(json.dumps({"sea": self.name, **data}) if self.machine else f"{self.name}: {text}")
 
     def remark(self, text: str) -> None:
@@ -59,14 +64,18 @@ class Progress:
     def frame(self, baked: BakedFrame) -> None:
         """A frame has been made."""
         self._done += 1
-        if self._is_terminal:
-            self._draw_bar()
-            return
         seconds = round(baked.seconds, 4)
         label = format_frames((baked.frame,))
-        self.say(
+        text = (
             f"frame {label} ({self._done}/{self._total}) "
-            f"{seconds:.2f} s  {', '.join(path.name for path in baked.paths)}",
+            f"{seconds:.2f} s  {', '.join(path.name for path in baked.paths)}"
+        )
+        if self._is_terminal:
+            self._note(text)
+            self._draw_bar()
+            return
+        self.say(
+            text,
             frame=to_plain(baked.frame), paths=[str(path) for path in baked.paths], seconds=seconds,
         )  # fmt: skip
         self.share(f"frame {label}")
@@ -104,6 +113,10 @@ class Progress:
         self.stream.write(f"\r{line:<{self._drawn}}")
         self.stream.flush()
         self._drawn = len(line)
+
+    def _note(self, text: str) -> None:
+        """For the log's file."""
+        _LOG.info("%s: %s", self.name, text, extra=PRINTED)
 
     def _print(self, line: str) -> None:
         print(line, file=self.stream, flush=True)

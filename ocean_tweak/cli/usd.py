@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import shlex
 from collections.abc import Callable
@@ -19,10 +20,12 @@ from ..export.cache.records import recorded_frames
 from ..export.usd.export import Export
 from ..export.usd.package import Package, with_samples_between
 from ..export.usd.verify import verify as problems_of
-from .outcome import DONE, FAILED, UsageError, complain
+from .outcome import DONE, FAILED, UsageError
 from .progress import Progress
 from .seas import SceneOceans, chosen_seas
 from .stopping import stop_requested
+
+_LOG = logging.getLogger(__name__)
 
 #: threads that make frames: one computes while another writes
 _THREADS = 2
@@ -57,7 +60,7 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
             _make(export, chosen, arguments, progress, stop.is_set)
     if not progress.is_complete:
         progress.fail("stopped")
-        complain(_stopped(package))
+        _LOG.error("%s", _stopped(package))
         return FAILED
     if arguments.only:
         progress.say(

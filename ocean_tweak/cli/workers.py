@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import os
 import queue
 import signal
@@ -23,11 +24,14 @@ from typing import IO, Any
 from ..core.bake import BakedFrame
 from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames, parse_frames
+from ..export import logs
 from ..export.cache.job import CacheError, Job, read_job
 from ..export.cache.records import CacheSink
 from ..export.exr import ExrError
 from ..export.python_process import environment, module_command
 from .outcome import DONE, FAILED, message_of
+
+_LOG = logging.getLogger(__name__)
 
 #: how often a process may die before its first frame
 _MOST_DEATHS = 3
@@ -114,7 +118,11 @@ class _Process:
         for reader in self._readers:
             reader.start()
         # not among the arguments, whose length systems limit
-        order = {"frames": format_frames(frames), "asked": format_frames(job.frames)}
+        order = {
+            "frames": format_frames(frames),
+            "asked": format_frames(job.frames),
+            "log": logs.level(),
+        }
         with contextlib.suppress(OSError):  # it has ended already, and is asked why
             assert self._process.stdin is not None
             self._process.stdin.write(json.dumps(order) + "\n")
@@ -147,6 +155,7 @@ class _Process:
                 f"a process of the bake ended {_MOST_DEATHS} times with code {code} before it had made "
                 f"frame {self.left[0]}: {said or 'perhaps there is not enough memory; use fewer workers'}"
             )
+        _LOG.info("a process of the bake ended with code %s; another goes on", code)
         return _Process(self.folder, self.job, self.left, self._events, self._deaths + 1)
 
     def end(self) -> None:
@@ -178,7 +187,7 @@ class _Process:
 
     def _read_errors(self) -> None:
         for line in _lines(self._process.stderr):
-            self._said = [*self._said[-3:], line.strip().removeprefix("ocean_tweak: ")]
+            self._said = [*self._said[-3:], logs.relay(line, _LOG)]
 
 
 def _lines(stream: IO[str] | None) -> Iterator[str]:
@@ -198,6 +207,7 @@ def main(argv: Sequence[str]) -> int:
         if not order:
             return DONE  # nobody wants it any more
         threading.Thread(target=_watch, args=(ended,), daemon=True).start()
+        logs.to_console(order["log"])
         folder = Path(argv[0])
         job = read_job(folder, parse_frames(order["asked"]) if order["asked"] else ())
         _make(folder, job, parse_frames(order["frames"]), ended)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from .printable import printable
+
 
 class ParameterError(ValueError):
     """A parameter that cannot be used: names the field, its value and what is allowed."""
@@ -11,13 +13,8 @@ class ParameterError(ValueError):
         self.field = field
         self.value = value
         self.reason = reason
-        super().__init__(f"{field} = {_shown(value)}: {reason}")
+        super().__init__(f"{printable(field, 120)} = {printable(repr(value))}: {reason}")
 
     def inside(self, container: str) -> ParameterError:
         """The same error with the field's path lengthened at the front."""
         return ParameterError(f"{container}.{self.field}", self.value, self.reason)
-
-
-def _shown(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else text[:77] + "..."

@@ -18,6 +18,7 @@ from ..core.shot import Shot
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
 from .maps import wanted_maps
+from .preferences import preferences
 from .settings import settings_of
 
 
@@ -36,6 +37,9 @@ class BakeProcess(CommandProcess):
             "bake", "--frames", format_frames(frames), "--out", str(cache_folder(item)), "--name",
             bake_name(item), "--uid", own_uid(item), "--maps", ",".join(wanted_maps(settings_of(item))),
         ]  # fmt: skip
+        chosen = preferences()
+        if chosen is not None and chosen.write_log:
+            arguments.append("--log")
         super().__init__(item.name, arguments, shot)
 
     def take(self, said: dict[str, Any]) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import subprocess
 import tempfile
@@ -16,7 +17,10 @@ from typing import IO, Any
 import bpy
 
 from ..core.shot import Shot
+from ..export import logs
 from ..export.python_process import environment, module_command
+
+_LOG = logging.getLogger(__name__)
 
 
 class CommandProcess:
@@ -41,7 +45,8 @@ class CommandProcess:
         self._parameters = None if shot is None else _write_shot(shot.to_json(indent=None))
         sea = () if self._parameters is None else ("--params", str(self._parameters))
         self._process = subprocess.Popen(
-            [*module_command(), *arguments, "--json", *sea], env=environment(), stdin=subprocess.DEVNULL,
+            [*module_command(), *arguments, "--json", *logs.verbose_arguments(), *sea],
+            env=environment(), stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8", errors="replace",
         )  # fmt: skip
         self._readers = [
@@ -112,7 +117,7 @@ class CommandProcess:
     def _read_errors(self, stream: IO[str]) -> None:
         with stream:
             for line in stream:
-                self.error = line.strip().removeprefix("ocean_tweak: ") or self.error
+                self.error = logs.relay(line, _LOG) or self.error
 
 
 def _write_shot(text: str) -> Path:

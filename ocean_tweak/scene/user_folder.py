@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-_EXTENSIONS = "bl_ext"
+from .preferences import extension_name
 
 
 def user_folder(name: str) -> Path:
@@ -17,9 +17,9 @@ def user_folder(name: str) -> Path:
 
     Raises OSError where it cannot be made.
     """
-    parts = __package__.split(".")
-    if parts[0] == _EXTENSIONS:  # bl_ext.REPOSITORY.EXTENSION. …
-        folder = bpy.utils.extension_path_user(".".join(parts[:3]), path=name, create=True)
-    else:  # a script that uses a checkout
+    extension = extension_name()
+    if extension is not None:
+        folder = bpy.utils.extension_path_user(extension, path=name, create=True)
+    else:
         folder = bpy.utils.user_resource("SCRIPTS", path=f"ocean_tweak/{name}", create=True)
     return Path(folder)

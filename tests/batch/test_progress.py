@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import errno
 import json
+import logging
 import os
 import re
 import subprocess
@@ -16,6 +17,7 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.cli.progress import Progress
 from ocean_tweak.core.bake import BakedFrame
+from ocean_tweak.export import logs
 from tests.batch.bakery import ROOT, SOON, command, each_json_line, images, only_folder, run, write_sea
 
 
@@ -62,6 +64,71 @@ def test_a_bar_on_a_terminal(sea: Path, tmp_path: Path, workers: int) -> None:
     assert all(len(filled) + len(empty) == 30 for _, filled, empty, _ in drawn)
     assert said.endswith("\r\n")
     assert "frame 1 (" not in said
+
+
+def test_a_log_beside_a_bake(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each line that was printed, and what ended the second bake; nothing of it twice on the console."""
+    for more in ("--workers", "1"), ("--workers", "2", "--only", "3", "--maps", "vel"), ("--only", "9"):
+        main(bake(sea, tmp_path / "c", "--log", *more))
+    said = capsys.readouterr()
+    assert said.out.count("frame 3 (") == 2
+    assert said.err.count("\n") == 1
+    first, second = sorted((tmp_path / "c").glob("*/v*.log"))
+    lines = first.read_text().splitlines()
+    assert [re.findall(r"INFO sea: (frame \d)", line) for line in lines[2:]] == [
+        [f"frame {n}"] for n in range(1, 6)
+    ]
+    assert all(re.match(rf"\d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d \S+ {os.getpid()} ", line) for line in lines)
+    assert second.read_text().count("frame 3 (1/1)") == 1
+    assert main(["clean", str(first.with_suffix(""))]) == 0
+    assert not first.exists()
+    assert second.exists()
+
+
+def test_a_log_that_cannot_be_written(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nor does one wait for the reader of a fifo, or write through a link."""
+    assert main(bake(sea, tmp_path / "c", "--estimate")) == 0
+    log = only_folder(tmp_path / "c").with_suffix(".log")
+    capsys.readouterr()
+    os.mkfifo(log)
+    assert main(bake(sea, tmp_path / "c", "--log")) == 1
+    log.unlink()
+    log.symlink_to(tmp_path / "elsewhere")
+    assert main(bake(sea, tmp_path / "c", "--log")) == 1
+    assert not (tmp_path / "elsewhere").exists()
+    assert [line[: line.rindex(":")] for line in capsys.readouterr().err.splitlines()] == [
+        f"ocean_tweak: {log}"
+    ] * 2
+
+
+def test_how_much_the_console_hears(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def heard(*more: str) -> str:
+        assert main(bake(sea, tmp_path / "c", "--workers", "2", *more)) == 0
+        return capsys.readouterr().err
+
+    assert heard() == ""
+    (tmp_path / "c").rename(tmp_path / "d")
+    lines = heard("-vv").splitlines()
+    assert lines
+    assert all(line.startswith(("ocean_tweak: info: ", "ocean_tweak: debug: ")) for line in lines)
+
+
+def test_what_another_process_says_is_said_as_it_was(caplog: pytest.LogCaptureFixture) -> None:
+    logger = logging.getLogger("ocean_tweak.cli")
+    with caplog.at_level(logging.DEBUG, "ocean_tweak"):
+        lines = ["ocean_tweak: flat\n", "ocean_tweak: info: done\n", "\n", "a library's own\n"]
+        assert [logs.relay(line, logger) for line in lines] == ["flat", "done", "", "a library's own"]
+    assert [(record.levelname, record.message) for record in caplog.records] == [
+        ("WARNING", "flat"), ("INFO", "done"), ("DEBUG", "a library's own"),
+    ]  # fmt: skip
+
+
+def test_a_message_is_one_line_without_control_characters(capsys: pytest.CaptureFixture[str]) -> None:
+    logs.to_console()
+    logging.getLogger("ocean_tweak.core").warning("host %s", "a\x1b[31m\nb\u202e" + 9000 * "c")
+    line = capsys.readouterr().err
+    assert line.startswith("ocean_tweak: host a\\x1b[31m b\\u202ec")
+    assert len(line) < 4100
 
 
 def test_a_narrow_terminal_has_one_line(sea: Path, tmp_path: Path) -> None:

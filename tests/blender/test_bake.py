@@ -59,15 +59,19 @@ def test_another_sea_gets_another_version(ocean, tmp_path):
     assert Path(bpy.path.abspath(ocean.ocean_tweak.sequence_maps.disp.filepath)).parent == versions[1]
 
 
-def test_a_bake_goes_on(ocean, tmp_path):
+def test_a_bake_goes_on(ocean, package, tmp_path):
     bpy.ops.ocean.bake()
     (folder,) = bakes(tmp_path)
     kept = {path.name: path.stat().st_mtime_ns for path in folder.glob("*.exr") if ".0003." not in path.name}
     for path in folder.glob("*.0003.exr"):
         path.unlink()
+    chosen = bpy.context.preferences.addons[package].preferences
+    chosen.write_log = True
     assert bpy.ops.ocean.bake() == {"FINISHED"}
+    chosen.write_log = False
     assert len(list(folder.glob("*.exr"))) == 4 * 3
     assert {name: (folder / name).stat().st_mtime_ns for name in kept} == kept
+    assert "frame 3 (1/1)" in folder.with_suffix(".log").read_text()
 
 
 def test_the_baked_sea_is_animated_too(ocean, core, make_parameters, extension, saved, tmp_path):

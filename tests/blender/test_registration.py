@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What enabling adds to Blender, disabling takes away, any number of times."""
 
+import logging
+
 import addon_utils
 import bpy
 import pytest
@@ -67,3 +69,21 @@ def test_handlers_are_added_once_and_outlive_a_new_file(package):
     ours = [(name, f.__name__) for name, f in handlers() if f.__module__.startswith(package)]
     assert ours
     assert len(ours) == len(set(ours))
+
+
+def test_the_console_hears_what_the_preferences_say_once(package, capsys):
+    """After any number of registrations, under whatever name Blender knows the package by."""
+    logger = logging.getLogger(f"{package}.ocean_tweak.scene.anything")
+    for _ in range(2):
+        addon_utils.disable(package)
+        assert addon_utils.enable(package) is not None
+    # from before, it would be of a class that is gone
+    chosen = bpy.context.preferences.addons[package].preferences
+    logger.warning("flat")
+    logger.info("unheard")
+    chosen.log_level = "INFO"
+    logger.info("heard")
+    chosen.log_level = "ERROR"
+    logger.warning("unheard")
+    chosen.log_level = "WARNING"
+    assert capsys.readouterr().err == "ocean_tweak: flat\nocean_tweak: info: heard\n"

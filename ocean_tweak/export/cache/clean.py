@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ...core.frames import Frame, frame_label
 from ..exr import MAPS
 from ..files import PART
-from .job import ENTRY, JOB_FILE, LOCKS, RECORDS, CacheError, is_bake, record_path
+from .job import ENTRY, JOB_FILE, LOCKS, RECORDS, CacheError, is_bake, log_file, record_path
 from .locks import claims
 from .records import FileEntry, read_record, recorded_frames
 
@@ -98,6 +98,8 @@ def _remove_rest(home: Path) -> None:
         return
     (home / JOB_FILE).unlink(missing_ok=True)
     home.rmdir()
+    with contextlib.suppress(OSError):
+        log_file(home).unlink()
     if [path.name for path in home.parent.iterdir()] == [ENTRY]:
         (home.parent / ENTRY).unlink(missing_ok=True)
         with contextlib.suppress(OSError):  # somebody has just begun another version

@@ -327,6 +327,12 @@ def _versions(home: Path) -> Iterator[tuple[Path, tuple[int, str]]]:
             yield path, (int(match[1]), match[2])
 
 
+def log_file(folder: Path) -> Path:
+    """Where what happens to a bake is written, when that is asked for: beside its folder."""
+    home = folder.resolve()
+    return home.with_name(f"{home.name}.log")
+
+
 def record_path(folder: Path, frame: Frame) -> Path:
     """Where a frame's record lies."""
     return folder / RECORDS / f"{frame_label(frame)}.json"
