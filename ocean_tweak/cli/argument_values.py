@@ -9,6 +9,7 @@ import re
 from ..core.cascades.plan import Wish
 from ..core.errors import ParameterError
 from ..core.frames import Frame, parse_frames
+from ..export.cache.job import UID
 from ..export.exr import MAPS
 
 _BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
@@ -71,7 +72,7 @@ def resolutions(text: str) -> tuple[int, ...]:
 
 def uid(text: str) -> str:
     """letters and digits."""
-    if not re.fullmatch("[0-9A-Za-z]{1,32}", text):
+    if not UID.fullmatch(text):
         raise argparse.ArgumentTypeError(f"{text!r} must be 1 to 32 letters and digits")
     return text
 

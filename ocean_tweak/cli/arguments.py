@@ -343,7 +343,7 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
         "--params",
         type=Path,
         metavar="FILE",
-        help=f"parameters: JSON, or a USD layer of ours; without them {default}",
+        help=f"parameters: JSON, - for what is piped in, or a USD layer of ours; without them {default}",
     )
     source.add_argument(
         "--preset", choices=tuple(built_in()), metavar="NAME", help=f"one of {', '.join(built_in())}"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -38,6 +39,9 @@ class Sea(NamedTuple):
         return self.shot.parameters if animation is None else self.shot.at(animation.first_frame).parameters
 
 
+#: `--params -`: what is piped in
+_STDIN = Path("-")
+
 SceneOceans = Callable[[], Mapping[str, Sea]]
 
 
@@ -53,7 +57,7 @@ def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None)
 
 
 def _file_sea_name(path: Path | None) -> str:
-    return path.stem if path else "ocean"
+    return "ocean" if path is None or path == _STDIN else path.stem
 
 
 def _file_shot(path: Path | None) -> Shot:
@@ -62,12 +66,18 @@ def _file_shot(path: Path | None) -> Shot:
     if path.suffix in reading.SUFFIXES:
         return reading.shot_of(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = _text_of(path)
     except UnicodeDecodeError as error:
         raise ParameterError("params", str(path), f"is not UTF-8 text ({error.reason})") from None
     except OSError as error:
         raise UsageError(f"--params {path}: {error.strerror}") from None
     return Shot.from_dict(with_pictures(OceanParameters, parse_json(text), path.parent))
+
+
+def _text_of(path: Path) -> str:
+    if path == _STDIN:
+        return sys.stdin.buffer.read().decode("utf-8")
+    return path.read_text(encoding="utf-8")
 
 
 def _chosen(oceans: Mapping[str, Sea], name: str | None) -> dict[str, Sea]:

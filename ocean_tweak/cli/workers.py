@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Processes that share the frames of a bake. One that is killed is started again for what it left.
 
-A process is `python -m ocean_tweak.cli.workers FOLDER`: it reads a JSON line that says which frames, makes
+A process runs this module with the folder as its argument: it reads a JSON line that says which frames, makes
 them from what lies in the folder and prints a JSON line a frame. It locks nothing: whoever started it holds
 the lock. It ends after a frame when its input is closed, as it is when whoever started it is gone.
 """

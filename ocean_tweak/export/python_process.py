@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""New Python processes that find this package and what it needs, also from inside Blender."""
+"""New Python processes that find this package and what it needs, also from inside Blender.
+
+They run no module of the current folder: whoever works in a folder that somebody sent has not chosen the
+Python files in it.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +12,31 @@ import sys
 from pathlib import Path
 
 PACKAGE = "ocean_tweak"
+_HOME = Path(__file__).resolve().parents[2]
+#: -I keeps the current folder and the environment out; what may be imported is said here instead
+_RUN = "import runpy, sys; sys.path[:0] = {path!r}; runpy.run_module({module!r}, None, '__main__', True)"
 
 
 def module_command(module: str = "") -> list[str]:
     """The start of a command that runs this package, or a module of it by its name inside the package."""
-    return [sys.executable, "-m", f"{PACKAGE}.{module}" if module else PACKAGE]
+    whole = f"{PACKAGE}.{module}" if module else PACKAGE
+    path = [str(_HOME), *(str(entry) for entry in sys.path if not _is_current_folder(entry))]
+    return [sys.executable, "-I", "-X", "utf8", "-c", _RUN.format(path=path, module=whole)]
 
 
 def environment() -> dict[str, str]:
-    """The environment in which that command works.
+    """The environment for that command.
 
     Each process is one of several workers: threads of its own would only fight with the others'.
     """
-    home = Path(__file__).resolve().parents[2]
-    path = os.pathsep.join([str(home), *(entry for entry in sys.path if entry)])
-    own = {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    return {**os.environ, **own, "PYTHONIOENCODING": "utf-8:backslashreplace"}
+    return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+
+
+def _is_current_folder(entry: str) -> bool:
+    """Whether an entry of `sys.path` depends on where the process stands: relative, or that very folder."""
+    if not os.path.isabs(entry):  # noqa: PTH117  # an entry need not be a path
+        return True
+    try:
+        return Path(entry).samefile(Path.cwd())
+    except OSError:
+        return False

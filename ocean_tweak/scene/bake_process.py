@@ -34,8 +34,9 @@ class BakeProcess(CommandProcess):
         self.frames = tuple(frames)
         self.folder: Path | None = None
         arguments = [
-            "bake", "--frames", format_frames(frames), "--out", str(cache_folder(item)), "--name",
-            bake_name(item), "--uid", own_uid(item), "--maps", ",".join(wanted_maps(settings_of(item))),
+            "bake", f"--frames={format_frames(frames)}", f"--out={cache_folder(item)}",
+            f"--name={bake_name(item)}", f"--uid={own_uid(item)}",
+            f"--maps={','.join(wanted_maps(settings_of(item)))}",
         ]  # fmt: skip
         chosen = preferences()
         if chosen is not None and chosen.write_log:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 
-from ..export.cache.job import JOB_FILE, safe_name, uid_of
+from ..export.cache.job import JOB_FILE, UID, safe_name, uid_of
 from .image_sequence import ImageSequence, find_sequence
 from .settings import OceanObjectError, all_oceans, settings_of
 from .user_folder import user_folder
@@ -38,7 +38,8 @@ def cache_folder(item: bpy.types.Object) -> Path:
 def own_uid(item: bpy.types.Object) -> str:
     """What tells the ocean from all others: a duplicate gets another one than the ocean it was made from.
 
-    It follows from what is stored in the file, so that every machine of a farm finds the same.
+    It follows from what is stored in the file, so that every machine of a farm finds the same. One that
+    could name a folder elsewhere, as a file of somebody else may hold it, counts as taken.
     """
     settings = settings_of(item)
     taken = {
@@ -46,7 +47,7 @@ def own_uid(item: bpy.types.Object) -> str:
         for other in all_oceans()
         if other != item and other.session_uid < item.session_uid
     }
-    if settings.uid and settings.uid not in taken:
+    if UID.fullmatch(settings.uid) and settings.uid not in taken:
         return settings.uid
     uid = uid_of(f"{settings.uid} {item.name_full}")
     if item.library is None:

@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
-import os
 import subprocess
-import tempfile
 import threading
 import time
 from collections.abc import Sequence
-from pathlib import Path
 from typing import IO, Any
 
 import bpy
@@ -42,22 +40,24 @@ class CommandProcess:
         self.error = ""
         self.is_stopped = False
         self._began = time.monotonic()
-        self._parameters = None if shot is None else _write_shot(shot.to_json(indent=None))
-        sea = () if self._parameters is None else ("--params", str(self._parameters))
+        # no file holds the sea: whoever is killed, and whenever, leaves none behind
+        sea = () if shot is None else ("--params=-",)
         self._process = subprocess.Popen(
             [*module_command(), *arguments, "--json", *logs.verbose_arguments(), *sea],
-            env=environment(), stdin=subprocess.DEVNULL,
+            env=environment(), stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8", errors="replace",
         )  # fmt: skip
-        self._readers = [
-            threading.Thread(target=read, args=(stream,), name=f"Ocean Tweak {arguments[0]}", daemon=True)
-            for read, stream in (
+        text = "" if shot is None else shot.to_json(indent=None)
+        self._threads = [
+            threading.Thread(target=work, args=values, name=f"Ocean Tweak {arguments[0]}", daemon=True)
+            for work, *values in (
+                (_write, self._process.stdin, text),
                 (self._read_progress, self._process.stdout),
                 (self._read_errors, self._process.stderr),
             )
         ]
-        for reader in self._readers:
-            reader.start()
+        for thread in self._threads:
+            thread.start()
 
     @property
     def factor(self) -> float:
@@ -75,10 +75,8 @@ class CommandProcess:
         """Whether nothing more will come."""
         if self._process.poll() is None:
             return False
-        for reader in self._readers:
-            reader.join()
-        if self._parameters is not None:
-            self._parameters.unlink(missing_ok=True)
+        for thread in self._threads:
+            thread.join()
         return True
 
     @property
@@ -120,11 +118,9 @@ class CommandProcess:
                 self.error = logs.relay(line, _LOG) or self.error
 
 
-def _write_shot(text: str) -> Path:
-    handle, name = tempfile.mkstemp(prefix="ocean_tweak_", suffix=".json")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    return Path(name)
+def _write(stream: IO[str], text: str) -> None:
+    with contextlib.suppress(OSError), stream:  # it may have ended already, and says why
+        stream.write(text)
 
 
 class Running(dict[int, CommandProcess]):

@@ -43,13 +43,13 @@ class UsdExport(CommandProcess):
         self.size = 0
         bake = used_bake(item)
         arguments = [
-            "usd", "--form", settings_of(item).usd.form, "--frames", format_frames(self.frames),
-            "--out", str(self.path), *command_arguments(choices(item)),
+            "usd", f"--form={settings_of(item).usd.form}", f"--frames={format_frames(self.frames)}",
+            f"--out={self.path}", *command_arguments(choices(item)),
         ]  # fmt: skip
         if bake is None:
             super().__init__(item.name, arguments, shot)
         else:
-            super().__init__(item.name, [*arguments, "--bake", str(bake)])
+            super().__init__(item.name, [*arguments, f"--bake={bake}"])
 
     def take(self, said: dict[str, Any]) -> None:
         """At the end it says how much was written."""

@@ -3,6 +3,8 @@
 
 import json
 import shutil
+import sys
+import tempfile
 from pathlib import Path
 
 import bpy
@@ -194,3 +196,24 @@ def test_the_window_is_free_while_it_bakes(ocean, extension, saved):
     process.forget(again)
     assert again.is_complete, again.error
     assert again.left == 1
+
+
+def test_nothing_of_a_strangers_folder_or_file_is_obeyed(ocean, tmp_path, monkeypatch):
+    """Modules beside the .blend file are not run, a name is no option, a uid is no path; no file is left."""
+    folder, temporary = tmp_path / "sent", tmp_path / "temporary"
+    folder.mkdir()
+    temporary.mkdir()
+    for module in ("numpy", "json", "argparse"):  # this process has them already
+        (folder / f"{module}.py").write_text(f"open({str(folder / 'RUN')!r}, 'w')")
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(sys, "path", ["", *sys.path])
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    ocean.name = "-Sea"
+    ocean.ocean_tweak.uid = "/../../elsewhere/x"
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    (baked,) = bakes(tmp_path)
+    assert baked.parent == tmp_path / "cache" / f"-Sea-{ocean.ocean_tweak.uid}"
+    assert not list(tmp_path.glob("**/elsewhere*"))
+    assert not (folder / "RUN").exists()
+    assert not list(temporary.iterdir())

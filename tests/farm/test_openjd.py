@@ -88,7 +88,7 @@ def test_oceans_of_a_file_are_baked_side_by_side(openjd: Run, tmp_path: Path) ->
     assert steps[-1]["dependencies"] == [{"dependsOn": "Verify 1"}, {"dependsOn": "Verify 2"}]
     assert json.loads((out / "seas" / "Bay_001.json").read_text())["resolution"] == 32
     render = steps[-1]["script"]["actions"]["onRun"]["args"]
-    assert [word for word in render if word.startswith("Bay_001-0123abcd/")]
+    assert [word for word in render if word.startswith("--bake=Bay_001-0123abcd/")]
     assert openjd("check", out / "template.json").returncode == 0
 
 
@@ -178,7 +178,8 @@ def test_a_real_blender_renders_the_same(shot: Shot, bundle: Path, run: Run, tmp
     script.write_text(step["embeddedFiles"][0]["data"])
     given = {
         "{{Param.BlendFile}}": shot.folder / "shot.blend", "{{Task.File.Render}}": script,
-        "{{Param.Cache}}": shot.cache, "{{Param.Pictures}}": tmp_path,
+        "--cache={{Param.Cache}}": f"--cache={shot.cache}",
+        "--pictures={{Param.Pictures}}": f"--pictures={tmp_path}",
         "--frames={{Task.Param.Frames}}": "--frames=2",
     }  # fmt: skip
     answer = run(*blender.command, *(given.get(word, word) for word in step["actions"]["onRun"]["args"]))

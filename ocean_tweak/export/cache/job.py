@@ -37,6 +37,7 @@ ENTRY = "entry"
 FORMAT = 1
 _SEAL = "sha256"
 
+UID = re.compile("[0-9A-Za-z]{1,32}")
 _VERSION = re.compile(r"v(\d{3,})-([0-9a-f]{8})")
 #: images that are asked for a lost job
 _TELLING_IMAGES = 8
@@ -52,10 +53,12 @@ class Job:
     """What is baked.
 
     name : of the sea, and of its files
-    uid : tells seas of the same name apart
+    uid : tells seas of the same name apart, letters and digits
     maps : keys of `export.exr.MAPS`; in whatever order they are given, the job is the same
     compression : a key of COMPRESSION_ERROR
     frames : those that are asked for
+
+    Raises ParameterError for what would name files elsewhere, and for maps that cannot be made.
     """
 
     name: str
@@ -67,6 +70,10 @@ class Job:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(name for name in MAPS if name in self.maps))
+        if self.name != safe_name(self.name):
+            raise ParameterError("name", self.name, "holds what file names cannot hold")
+        if not UID.fullmatch(self.uid):
+            raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
         _check_maps(self.maps, self.shot.parameters)
 
     @cached_property
@@ -145,7 +152,7 @@ class Job:
             )
         check_seal(data)
         name, uid, maps = data.get("name"), data.get("uid"), data.get("maps")
-        if not (isinstance(name, str) and isinstance(uid, str) and safe_name(name) == name):
+        if not (isinstance(name, str) and isinstance(uid, str)):
             raise ValueError(f"has the name {name!r} and uid {uid!r}")
         if not (isinstance(maps, list) and maps and all(isinstance(m, str) and m in MAPS for m in maps)):
             raise ValueError(f"has the maps {maps!r}")
@@ -299,7 +306,7 @@ def recovered_job(folder: Path) -> Job:
         f"{folder / JOB_FILE} cannot be read, and the images do not tell the job: bake it with the same "
         "arguments as before; frames that are whole stay"
     )
-    if match is None or not name:
+    if match is None or name != safe_name(name) or not UID.fullmatch(uid):
         raise CacheError(problem)
     for path in sorted(folder.glob("*.exr"))[:_TELLING_IMAGES]:
         try:

@@ -83,16 +83,18 @@ def chunks(frames: Sequence[Frame], size: int) -> list[str]:
 def sea_arguments(bake: Job, seas: str, cache: str) -> list[str]:
     """What `bake` and `verify` are told alike: the sea, its files and their place.
 
+    With equals signs all of them: a name, a folder or a range may begin with a minus.
+
     seas, cache : folders, as the farm writes them
     """
     return [
-        "--params", f"{seas}/{bake.name}.json",
-        "--name", bake.name,
-        "--uid", bake.uid,
-        "--maps", ",".join(bake.maps),
-        "--compression", bake.compression,
-        "--out", cache,
-    ]  # fmt: skip
+        f"--params={seas}/{bake.name}.json",
+        f"--name={bake.name}",
+        f"--uid={bake.uid}",
+        f"--maps={','.join(bake.maps)}",
+        f"--compression={bake.compression}",
+        f"--out={cache}",
+    ]
 
 
 def bake_arguments(
@@ -102,8 +104,7 @@ def bake_arguments(
     # a farm gives a lost machine's task to another one, which finds the lost one's lock
     arguments = [*BAKERS[job.bake_with], "bake", *sea_arguments(bake, seas, cache), "--take-over"]
     if job.workers is not None:
-        arguments += ["--workers", str(job.workers)]
-    # with an equals sign, as a range may begin with a minus
+        arguments.append(f"--workers={job.workers}")
     return [*arguments, *_openjd(openjd), f"--frames={frames}", f"--only={only}"]
 
 
@@ -115,8 +116,8 @@ def verify_arguments(job: ShotJob, bake: Job, seas: str, cache: str, only: str, 
 
 def render_arguments(job: ShotJob, cache: str, frames: str, pictures: str, openjd: bool) -> list[str]:
     """What the render's script is told, behind Blender's own arguments."""
-    bakes = [word for bake in job.bakes for word in ("--bake", f"{bake.home}/{bake.hash8}")]
-    return ["--cache", cache, *bakes, "--pictures", pictures, *_openjd(openjd), f"--frames={frames}"]
+    bakes = [f"--bake={bake.home}/{bake.hash8}" for bake in job.bakes]
+    return [f"--cache={cache}", *bakes, f"--pictures={pictures}", *_openjd(openjd), f"--frames={frames}"]
 
 
 def _openjd(openjd: bool) -> list[str]:

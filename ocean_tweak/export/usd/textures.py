@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.bake import BakedFrame, bake
 from ...core.frames import Frame, format_frames
-from ..cache.job import Job, open_folder, uid_of
+from ..cache.job import Job, open_folder, safe_name, uid_of
 from ..cache.locks import claimed
 from ..cache.records import CacheSink, State, inspect, unfinished
 from ..exr import read_image
@@ -27,7 +27,7 @@ FOLDER = "textures"
 
 def own_bake(top: Path, package: Package) -> Path:
     """The folder of the bake beside an asset, made where it is missing."""
-    job = Job(package.name, uid_of(package.name), package.shot, (MAP,), frames=package.frames)
+    job = Job(safe_name(package.name), uid_of(package.name), package.shot, (MAP,), frames=package.frames)
     return open_folder(top.parent / FOLDER, job)
 
 

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Folders and files of somebody else: what they hold is not run, and leads nowhere else."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from ocean_tweak.cli import Sea, main
+from ocean_tweak.core import OceanParameters
+from ocean_tweak.core.shot import Shot
+from ocean_tweak.export.cache.job import CacheError, read_job, sealed
+from tests.batch.bakery import ROOT, command
+
+SMALL = OceanParameters(resolution=16)
+
+
+def test_modules_of_the_current_folder_are_not_run(tmp_path: Path) -> None:
+    # what Python itself, NumPy or this package would import first
+    for module in ("numpy", "json", "argparse", "__future__", "pathlib", "OpenEXR", "sitecustomize"):
+        (tmp_path / f"{module}.py").write_text(f"open({str(tmp_path / 'RUN')!r}, 'w')")
+    arguments = ["bake", "--set", "resolution=16", "--frames", "1-2", "--workers", "2", "--out", "cache"]
+    answer = subprocess.run(
+        command(*arguments), cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True,
+        text=True, check=False,
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    assert len(list(tmp_path.glob("cache/*/*/*.exr"))) == 2
+    assert not (tmp_path / "RUN").exists()
+
+
+@pytest.mark.parametrize("uid", ["/../../elsewhere/x", "../x", "a/b", "a\\b", "", "\n", "x" * 33, "é"])
+@pytest.mark.parametrize("arguments", [["bake", "--workers", "1", "--out"], ["job", "--cache", "c", "--out"]])
+def test_a_uid_of_a_scene_is_no_path(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], uid: str, arguments: list[str]
+) -> None:
+    seas = {"Sea": Sea(Shot(SMALL), uid, (1,))}
+    code = main([*arguments, str(tmp_path / "chosen" / "out")], lambda: seas)
+    assert code == (0 if uid == "" else 2)  # without one, it follows from the name
+    if code:
+        assert "must be 1 to 32 letters and digits" in capsys.readouterr().err
+    assert {path for path in tmp_path.rglob("*") if path.is_file()} <= set(tmp_path.rglob("chosen/out/**/*"))
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("name", "../../x"), ("name", "/x"), ("name", "a\\b"), ("name", "C:x"), ("uid", "/../x")],
+)
+def test_a_job_that_names_files_elsewhere_is_none(copy: Path, key: str, value: str) -> None:
+    job = json.loads((copy / "bake.json").read_text())
+    del job["sha256"]
+    (copy / "bake.json").write_text(json.dumps(sealed({**job, key: value})))
+    with pytest.raises(CacheError, match=f"{key} = .*(cannot hold|letters and digits)"):
+        read_job(copy)
