@@ -11,7 +11,16 @@ from bpy.app.handlers import persistent
 
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
-from . import bake_process, evaluation, live_image, patch_objects, refinement, source_images, usd_process
+from . import (
+    bake_process,
+    evaluation,
+    live_image,
+    patch_objects,
+    refinement,
+    source_images,
+    stored_values,
+    usd_process,
+)
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, refresh_and_tell, refresh_patches, refresh_render
@@ -103,9 +112,16 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     usd_process.stop_all()
     _forget_all()
     _subscribe()
+    stored_values.mend_all()
     renew_groups(ALL_KINDS)
     patch_objects.remove_left()
     refresh_live_oceans()
+
+
+@persistent
+def mend_after_import(_imported: object = None) -> None:
+    """Oceans that were appended or linked are of a file that was not opened."""
+    stored_values.mend_all()
 
 
 @persistent
@@ -138,6 +154,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),
     ("load_post", refresh_after_load),
+    ("blend_import_post", mend_after_import),
     ("undo_post", refresh_after_undo),
     ("redo_post", refresh_after_undo),
 )

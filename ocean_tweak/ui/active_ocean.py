@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What operators on the active ocean share."""
 
+from collections.abc import Sized
+
 import bpy
 
-from ..scene.settings import is_ocean
+from ..scene.settings import OceanSettings, is_ocean
 
 
 class OfActiveOcean:
@@ -39,6 +41,17 @@ class OfOwnList(OfActiveOcean):
             cls.poll_message_set(cls.kept)
             return False
         return True
+
+
+def nearest(index: int, entries: Sized) -> int:
+    """The number of the entry that an index into a list means, 0 for none: files and scripts may hold one
+    beyond its ends."""
+    return max(0, min(index, len(entries) - 1))
+
+
+def active_layer(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
+    """The layer that is active in the list, if there is any."""
+    return settings.layers[nearest(settings.active_layer, settings.layers)] if settings.layers else None
 
 
 def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]:

@@ -12,7 +12,7 @@ from ..core.hero_waves.presets import hero_wave
 from ..core.wave_particles.presets import WIND_FIELDS, wind_field
 from ..scene.animated import move_keys
 from ..scene.settings import LAYER_KINDS, OceanObjectError, settings_of
-from .active_ocean import OfOwnList, refuse
+from .active_ocean import OfOwnList, nearest, refuse
 
 _WINDS = {
     "UNIFORM": ("Uniform", "The same wind everywhere (Li and Wang 2016, figure 9 B)"),
@@ -46,7 +46,7 @@ class _OfLayers(OfOwnList):
         try:
             before = settings.to_parameters(context.scene)
             places = entries(before)
-            after, active = self.changed(before, places[min(settings.active_layer, len(places) - 1)])
+            after, active = self.changed(before, places[nearest(settings.active_layer, places)])
             settings.from_parameters(after, context.scene)
         except (ParameterError, OceanObjectError) as error:
             return refuse(self, error)
@@ -141,7 +141,7 @@ class OCEAN_OT_layer_remove(_OfLayers, bpy.types.Operator):
             return False
         settings = settings_of(context.active_object)
         kinds = [layer.kind for layer in settings.layers]
-        if kinds.count("WAVES") < 2 and kinds[min(settings.active_layer, len(kinds) - 1)] == "WAVES":
+        if kinds.count("WAVES") < 2 and kinds[nearest(settings.active_layer, kinds)] == "WAVES":
             cls.poll_message_set("A sea has at least one layer of waves: mute it for flat water")
             return False
         return True
@@ -171,7 +171,7 @@ class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Move it, unless it stands at the end already."""
         kinds = [layer.kind for layer in settings_of(context.active_object).layers]
-        here = min(settings_of(context.active_object).active_layer, len(kinds) - 1)
+        here = nearest(settings_of(context.active_object).active_layer, kinds)
         there = here + (1 if self.direction == "DOWN" else -1)
         if not (0 <= there < len(kinds) and kinds[here] == kinds[there]):
             return {"CANCELLED"}

@@ -148,7 +148,12 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
     @property
     def group(self) -> bpy.types.PropertyGroup:
         """The properties that belong to the layer's kind."""
-        return _GROUPS[self.kind](self)
+        return _GROUPS[kind_of(self)](self)
+
+
+def kind_of(layer: bpy.types.PropertyGroup) -> str:
+    """A key of LAYER_KINDS, whatever number is stored."""
+    return layer.kind or "WAVES"
 
 
 _GROUPS = {
@@ -166,9 +171,9 @@ def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> dict[str, l
     """
     result: dict[str, list[Any]] = {kind.parameter: [] for kind in LAYER_KINDS.values()}
     for layer in layers:
-        name = LAYER_KINDS[layer.kind].parameter
+        name = LAYER_KINDS[kind_of(layer)].parameter
         try:
-            result[name].append(_READERS[layer.kind](layer, metres))
+            result[name].append(_READERS[kind_of(layer)](layer, metres))
         except ParameterError as error:
             raise error.inside(f"{name}.{len(result[name])}") from None
     return result
@@ -269,7 +274,7 @@ _READERS = {
 
 
 def _keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
-    return _KEYS[group.source](group)
+    return _KEYS[group.source or "UNIFORM"](group)
 
 
 def _image_keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:

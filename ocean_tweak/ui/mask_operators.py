@@ -9,7 +9,7 @@ from ..core import ParameterError
 from ..scene import source_images
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.vertex_weights import weights_seen
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, active_layer, refuse
 
 
 class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
@@ -59,9 +59,8 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
         settings = settings_of(context.active_object)
         if self.patch >= 0:
             return settings.patches[self.patch].mask if self.patch < len(settings.patches) else None
-        if settings.active_layer >= len(settings.layers):
-            return None
-        return getattr(settings.layers[settings.active_layer].group, "mask", None)
+        layer = active_layer(settings)
+        return None if layer is None else getattr(layer.group, "mask", None)
 
 
 CLASSES = (OCEAN_OT_read_weights,)

@@ -9,7 +9,7 @@ from ..core.cascades.editing import with_another_patch, without_patch
 from ..core.cascades.patch import MOST_PATCHES
 from ..core.cascades.plan import planned
 from ..scene.settings import OceanObjectError, settings_of
-from .active_ocean import OfOwnList, refuse
+from .active_ocean import OfOwnList, nearest, refuse
 from .patch_properties import wish_of
 
 
@@ -109,7 +109,7 @@ class OCEAN_OT_patch_remove(_OfPresentPatches, bpy.types.Operator):
 
     def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
         """The one that took over is active."""
-        index = min(settings_of(context.active_object).active_patch, len(parameters.patches) - 1)
+        index = nearest(settings_of(context.active_object).active_patch, parameters.patches)
         return without_patch(parameters, index), max(index - 1, 0)
 
 

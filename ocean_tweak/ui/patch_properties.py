@@ -21,6 +21,7 @@ from ..core.plain_data import to_plain
 from ..scene.settings import OceanObjectError
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties
+from .active_ocean import nearest
 from .changes import changed
 from .layer_properties import set_count
 
@@ -193,7 +194,7 @@ def write(settings: bpy.types.PropertyGroup, parameters: OceanParameters, metres
         mask_properties.write(group.mask, patch.mask, metres, images)
     for patch in patches[:1]:
         _give_to_ocean(patch, settings)
-    settings.active_patch = min(settings.active_patch, max(len(patches) - 1, 0))
+    settings.active_patch = nearest(settings.active_patch, patches)
 
 
 def _counted(patches: int) -> str:

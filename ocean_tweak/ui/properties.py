@@ -127,8 +127,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             description="Folder of baked frames; each bake gets one of its own in it. // is beside the file",
         ),
         "preset": StringProperty(**_HIDDEN),
-        "active_layer": IntProperty(name="Active Layer", options={"HIDDEN"}, **_OVERRIDE),
-        "active_patch": IntProperty(name="Active Patch", options={"HIDDEN"}, **_OVERRIDE),
+        "active_layer": IntProperty(name="Active Layer", min=0, options={"HIDDEN"}, **_OVERRIDE),
+        "active_patch": IntProperty(name="Active Patch", min=0, options={"HIDDEN"}, **_OVERRIDE),
         **patch_properties.PLAN,
         "use_loop": BoolProperty(
             name="Loop", **_SHOWN,

@@ -10,7 +10,7 @@ from ..scene import source_images, wind_recording
 from ..scene.refinement import show
 from ..scene.settings import OceanObjectError, settings_of
 from . import layer_properties
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, active_layer, refuse
 
 
 class OCEAN_OT_record_wind(OfActiveOcean, bpy.types.Operator):
@@ -104,18 +104,13 @@ class OCEAN_OT_reload_image(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _active_layer(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
-    settings = settings_of(context.active_object)
-    return settings.layers[settings.active_layer] if settings.active_layer < len(settings.layers) else None
-
-
 def _active_wind(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
-    layer = _active_layer(context)
+    layer = active_layer(settings_of(context.active_object))
     return layer.wind_field if layer is not None and layer.kind == "WIND_FIELD" else None
 
 
 def _active_image(context: bpy.types.Context) -> bpy.types.Image | None:
-    layer = _active_layer(context)
+    layer = active_layer(settings_of(context.active_object))
     return layer_properties.source_image(layer) if layer is not None else None
 
 

@@ -57,6 +57,13 @@ def ocean(ocean_object, make_parameters, empty_scene):
     return item
 
 
+def stored(item):
+    """An ocean's settings as a file holds them: what is written here is not checked."""
+    if hasattr(item, "bl_system_properties_get"):
+        return item.bl_system_properties_get()["ocean_tweak"]
+    return item["ocean_tweak"]
+
+
 def sea_of(item):
     """The parameters of an ocean, as its settings have them now."""
     return item.ocean_tweak.to_parameters(bpy.context.scene)

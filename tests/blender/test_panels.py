@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
+from tests.blender.conftest import stored
+
 
 class Layout:
     """Takes what a panel draws, and remembers it."""
@@ -95,6 +97,20 @@ def test_without_an_ocean_there_is_a_way_to_one(draw):
     floating = [f"object.ocean_tweak_float{end}" for end in ("", "_bake", "_remove")]
     offered = ["No ocean is active", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
     assert draw(None) == offered
+
+
+@pytest.mark.parametrize("index", [-5, 900])
+def test_an_index_beyond_a_list_draws_its_nearest_entry(draw, item, index):
+    bpy.context.view_layer.objects.active = item
+    bpy.ops.ocean.layer_add(kind="HERO_WAVE")
+    bpy.ops.ocean.patch_add()
+    settings = item.ocean_tweak
+    settings.active_layer = 0 if index < 0 else 1
+    settings.active_patch = 0 if index < 0 else len(settings.patches) - 1
+    expected = draw(item)
+    for name in ("active_layer", "active_patch"):
+        stored(item)[name] = index
+    assert draw(item) == expected
 
 
 def test_blenders_own_ocean_can_be_converted(draw, empty_scene):

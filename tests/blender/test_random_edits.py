@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever an artist types, the ocean is shown or says why not, and no exception comes."""
+"""Whatever an artist types or a file holds, the ocean is shown or says why not, and no exception comes."""
 
 import random
 
 import bpy
 import numpy as np
 import pytest
+
+from tests.blender.conftest import stored
 
 #: what would only cost time: these are tried with small values
 LARGEST = {"resolution": 48, "viewport_resolution": 48, "mesh_resolution": 40, "repeats_x": 3, "repeats_y": 3}
@@ -73,3 +75,78 @@ def test_random_edits_leave_no_exception(ocean, empty_scene, extension, patches,
     assert told > 3
     settings.from_parameters(extension("core").OceanParameters(resolution=32), empty_scene)
     assert not settings.error
+
+
+@pytest.mark.parametrize("index", [-5, 900])
+def test_an_index_beyond_a_list_means_its_nearest_entry(ocean, empty_scene, index):
+    nearest = 0 if index < 0 else -1
+    settings = ocean.ocean_tweak
+    settings.resolution = 48  # which hold a hero wave and its copy
+    kinds = ("WAVES", "WIND_FIELD", "PICTURE", "HERO_WAVE")
+    for kind in kinds:
+        bpy.ops.ocean.layer_add(kind=kind)
+
+    def active_is(name):
+        stored(ocean)[name] = index
+        assert getattr(settings, name) == index
+
+    for operator, added in (("layer_solo", 0), ("layer_duplicate", 1), ("layer_remove", -1)):
+        count = len(settings.layers)
+        active_is("active_layer")
+        expected = settings.layers[nearest].kind
+        assert getattr(bpy.ops.ocean, operator)() == {"FINISHED"}
+        assert len(settings.layers) == count + added
+        assert [layer.kind for layer in settings.layers].count(expected) > 0
+    for kind in kinds:
+        active_is("active_layer")
+        assert bpy.ops.ocean.layer_add(kind=kind) == {"FINISHED"}
+    assert [not layer.group.muted for layer in settings.layers].count(True) >= len(kinds)
+    for direction in ("UP", "DOWN"):
+        active_is("active_layer")
+        bpy.ops.ocean.layer_move(direction=direction)
+    active_is("active_layer")
+    bpy.ops.ocean.reload_image.poll()
+    bpy.ops.ocean.record_wind.poll()
+    with pytest.raises(RuntimeError, match=r"mask|mesh"):
+        bpy.ops.ocean.read_weights()
+    bpy.ops.ocean.patch_add()
+    bpy.ops.ocean.patch_add()
+    count = len(settings.patches)
+    active_is("active_patch")
+    assert bpy.ops.ocean.patch_remove() == {"FINISHED"}
+    assert settings.active_patch == (0 if index < 0 else count - 2)  # the one before takes over
+
+
+def test_what_a_file_holds_beyond_its_ranges_is_replaced_when_it_is_opened(
+    ocean, tmp_path, caplog, empty_scene
+):
+    raw = stored(ocean)
+    beyond = {
+        "active_layer": -5,
+        "viewport_resolution": 10**8,
+        "repeats_x": -3,
+        "method": 77,
+        "dispersion": -1,
+    }
+    for name, value in beyond.items():
+        raw[name] = value
+    raw["layers"][0]["kind"] = 99
+    raw["layers"][1]["swell"] = float("nan")
+    raw["foam"]["half_life"] = 1e30
+    file = str(tmp_path / "stranger.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    item = next(each for each in bpy.data.objects if each.ocean_tweak.is_ocean)
+    settings = item.ocean_tweak
+    assert settings.error == ""
+    assert (settings.active_layer, settings.viewport_resolution, settings.repeats_x) == (0, 8192, 1)
+    assert (settings.method, settings.dispersion, settings.layers[0].kind) == ("NODES", "CAPILLARY", "WAVES")
+    assert settings.layers[1].swell == pytest.approx(0.3)
+    assert settings.foam.half_life == 60.0
+    (told,) = (record.getMessage() for record in caplog.records if "not allowed" in record.getMessage())
+    assert all(name in told for name in (*beyond, "layers.0.kind", "layers.1.swell", "foam.half_life"))
+    assert told.startswith(item.name)
+    caplog.clear()
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    assert "not allowed" not in caplog.text

@@ -9,6 +9,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...scene.command_process import CommandProcess
 from ...scene.settings import OceanSettings, is_ocean, settings_of
+from ..active_ocean import active_layer
 
 CATEGORY = "Ocean Tweak"
 _LABEL_SHARE = 0.4  # of the width, as Blender's own split layouts
@@ -59,8 +60,7 @@ def active_settings(context: bpy.types.Context) -> OceanSettings:
 
 def active_waves(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
     """The active layer where it is a wave system."""
-    layers = settings.layers
-    layer = layers[settings.active_layer] if settings.active_layer < len(layers) else None
+    layer = active_layer(settings)
     return layer if layer is not None and layer.kind == "WAVES" else None
 
 

@@ -8,6 +8,8 @@ from ...core.hero_waves.outlook import hero_wave_outlooks
 from ...scene.settings import LAYER_KINDS
 from ...scene.units import metres_per_unit
 from .. import layer_operators, wind_operators
+from ..active_ocean import active_layer, nearest
+from ..layer_properties import kind_of
 from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
 from .masks import draw_mask
 
@@ -22,12 +24,10 @@ class OCEAN_UL_layers(bpy.types.UIList):
         layer: bpy.types.PropertyGroup, _icon: int, _active_data: object, _active_property: str,
     ) -> None:  # fmt: skip
         """Draw the layer's wind, its waves or its picture."""
-        group = layer.group
+        group, kind = layer.group, kind_of(layer)
         line = layout.row(align=True)
         line.active = not group.muted
-        line.label(
-            text=_TITLES[layer.kind](group, context.scene), icon=LAYER_KINDS[layer.kind].icon, translate=False
-        )
+        line.label(text=_TITLES[kind](group, context.scene), icon=LAYER_KINDS[kind].icon, translate=False)
         line.prop(group, "muted", text="", icon="HIDE_ON" if group.muted else "HIDE_OFF", emboss=False)
 
 
@@ -84,10 +84,10 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
         for direction in ("UP", "DOWN"):
             move = layer_operators.OCEAN_OT_layer_move.bl_idname
             buttons.operator(move, text="", icon=f"TRIA_{direction}").direction = direction
-        if settings.active_layer < len(settings.layers):
-            layer = settings.layers[settings.active_layer]
+        layer = active_layer(settings)
+        if layer is not None:
             layout = split(self.layout, animated=True)
-            _DRAWERS[layer.kind](layout, layer.group, context)
+            _DRAWERS[kind_of(layer)](layout, layer.group, context)
             if hasattr(layer.group, "mask"):
                 draw_mask(layout, context, layer.group.mask)
 
@@ -154,7 +154,7 @@ def _draw_picture(
     if not physical:
         _props(layout, group, "significant_wave_height")
     _props(layout, group, "gain", "wind_direction", "animation")
-    _props(layout, group, *_ANIMATION[group.animation])
+    _props(layout, group, *_ANIMATION.get(group.animation, ()))
 
 
 def _draw_hero_wave(
@@ -167,7 +167,8 @@ def _draw_hero_wave(
     settings, scene = active_settings(context), context.scene
     if group.muted or settings.error:
         return
-    number = [layer.kind for layer in settings.layers[: settings.active_layer]].count("HERO_WAVE")
+    before = settings.layers[: nearest(settings.active_layer, settings.layers)]
+    number = [layer.kind for layer in before].count("HERO_WAVE")
     (wave,) = (found for found in hero_wave_outlooks(settings.to_parameters(scene)) if found.number == number)
     column = layout.column(align=True)
     row(column, "Focus", f"{translated('Frame')} {wave.frame:.6g}")

@@ -11,6 +11,7 @@ from ...core.cascades.patch import NO_LONGEST
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
 from .. import patch_operators
+from ..active_ocean import nearest
 from .drawing import SubPanel, active_settings, length_text, message, row, split
 from .masks import draw_mask
 
@@ -64,8 +65,7 @@ class OCEAN_PT_patches(SubPanel, bpy.types.Panel):
         buttons.operator(patch_operators.OCEAN_OT_patch_remove.bl_idname, text="", icon="REMOVE")
         buttons.separator()
         buttons.operator(patch_operators.OCEAN_OT_one_patch.bl_idname, text="", icon="X")
-        if settings.active_patch < len(settings.patches):
-            _draw_patch(layout, context, settings.active_patch)
+        _draw_patch(layout, context, nearest(settings.active_patch, settings.patches))
 
 
 def _draw_patch(layout: bpy.types.UILayout, context: bpy.types.Context, index: int) -> None:
