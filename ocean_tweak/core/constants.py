@@ -60,6 +60,9 @@ TROUGH_FILTER = 3.0
 # Height over length at which waves break in deep water, Miche (1944)
 BREAKING_STEEPNESS = 0.142
 
+# Wind in m/s, or fetch in m, that raises no waves: those of weaker ones are smaller than an atom
+CALM = 1e-12
+
 # Whitecaps, Monahan & O'Muircheartaigh (1980): share of the sea, wind at 10 m in m/s
 WHITECAP_FACTOR = 3.84e-6
 WHITECAP_EXPONENT = 3.41

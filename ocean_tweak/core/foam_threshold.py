@@ -38,7 +38,7 @@ def foam_wind(parameters: OceanParameters) -> Wind | None:
     """The wind at 10 m that makes whitecaps, m/s and rad; None without one: swell does not break."""
     winds = [
         Wind(wind_at_10_m(layer.wind_speed, layer.wind_height), layer.wind_direction)
-        for layer in parameters.active_layers
+        for layer in parameters.raised_layers
         if layer.definition == "WIND" and layer.gain > 0.0
     ]
     winds += [

@@ -112,7 +112,7 @@ def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> I
     transposed = grid.shape[::-1]
     h_plus, h_minus = (np.zeros(transposed, dtype).T for _ in range(2))
     expected_plus, expected_minus = (np.zeros(transposed, h_plus.real.dtype).T for _ in range(2))
-    for layer in parameters.active_layers:
+    for layer in parameters.raised_layers:
         spectrum = DirectionalSpectrum(layer, parameters.water, parameters.dispersion, parameters.band)
         forward, backward = spectrum.cell_means(grid)
         along, against = random_phasors(grid, layer_seed(parameters, layer), parameters.amplitudes, dtype)

@@ -7,6 +7,7 @@ Every spectrum here is α g²/ω⁵ exp(-5/4 (ω_p/ω)⁴) γ^r, with γ = 1 but
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -26,7 +27,7 @@ class LayerScales:
     """Numbers of a layer's spectrum.
 
     alpha : α, dimensionless
-    peak_frequency : ω_p in rad/s, before the depth acts
+    peak_frequency : ω_p in rad/s, before the depth acts; infinite in a calm, which has no energy
     peak_enhancement : γ
     wind_frequency : U_10 ω_p / g, for the spreading models that know the wind
     fetch : the fetch in m that acts, after its limit; NaN where none does
@@ -75,6 +76,8 @@ def layer_scales(layer: WaveLayer, water: Water) -> LayerScales:
     """The numbers of a layer's spectrum, from its wind or from its sea state."""
     if layer.definition == "SEA_STATE":
         return _from_sea_state(layer, water)
+    if layer.is_calm:
+        return LayerScales(0.0, math.inf, layer.peak_enhancement, constants.PM_PEAK)
     U = wind_at_10_m(layer.wind_speed, layer.wind_height)
     return FROM_WIND[layer.spectrum](layer, U, water.gravity)
 

@@ -229,6 +229,11 @@ class OceanParameters(Validated):
         return tuple(layer for layer in self.layers if not layer.muted)
 
     @property
+    def raised_layers(self) -> tuple[WaveLayer, ...]:
+        """The active layers that have waves: not those in a calm."""
+        return tuple(layer for layer in self.active_layers if not layer.is_calm)
+
+    @property
     def active_pictures(self) -> tuple[PictureLayer, ...]:
         """The pictures that are not muted."""
         return tuple(layer for layer in self.pictures if not layer.muted)

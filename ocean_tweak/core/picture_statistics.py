@@ -68,7 +68,7 @@ def longest_random_wave(parameters: OceanParameters, of_layers: float) -> float:
     """
     peaks = [of_layers]
     for layer in parameters.active_pictures:
-        if layer.picture is None and layer.is_physical and layer.gain > 0.0:
+        if layer.picture is None and layer.is_physical and wanted_variance(layer, parameters.water) > 0.0:
             omega_m = 2.0 * np.pi * peak_frequency(layer.wind_speed, parameters.water.gravity)
             k = dispersion.wave_number(omega_m, parameters.dispersion, parameters.water)
             peaks.append(float(2.0 * np.pi / k))

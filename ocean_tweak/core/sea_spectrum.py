@@ -17,13 +17,13 @@ Array = NDArray[np.float64]
 
 
 class SeaSpectrum:
-    """Frequency spectrum and peak of a sea's active layers."""
+    """Frequency spectrum and peak of a sea's layers, but for those in a calm."""
 
     def __init__(self, parameters: OceanParameters) -> None:
         self.parameters = parameters
         self.layers = tuple(
             DirectionalSpectrum(layer, parameters.water, parameters.dispersion, parameters.band)
-            for layer in parameters.active_layers
+            for layer in parameters.raised_layers
         )
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:

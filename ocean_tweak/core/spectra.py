@@ -3,11 +3,13 @@
 
 Symbols as in Horvath (2015): U wind speed in m/s (at 10 m unless said otherwise), F fetch in m, h depth
 in m, g in m/s². Functions of ω take arrays of any shape and return float64 arrays of that shape, with
-S(0) = 0.
+S(0) = 0. In a calm, U = 0 or F = 0, peaks are at infinity and S is 0 at every frequency, as it is in the
+limit.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -19,9 +21,21 @@ from .parameters import Water
 Array = NDArray[np.float64]
 
 
+def _over(a: float, b: float) -> float:
+    """a/b for b ≥ 0; endless where b is 0: a calm's waves have no length, so their frequency has no end."""
+    return a / b if b > 0.0 else math.inf
+
+
+def _fourth(omega: float) -> float:
+    """ω⁴; endless where no float holds it."""
+    return omega**4 if omega < 1e77 else math.inf
+
+
 def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
     """S = A/ω⁵ exp(-B/ω⁴), A in m²/s⁴ and B in 1/s⁴. Horvath (2015), eq. 20."""
     omega = np.asarray(omega, np.float64)
+    if not math.isfinite(A * B):  # the peak lies beyond all waves
+        return np.zeros_like(omega)
     # the exponential is zero in double precision where B/ω⁴ > 745: the floor keeps the quotient finite
     w = np.maximum(omega, (B / 1e4) ** 0.25)
     return A / w**5 * np.exp(-B / w**4)
@@ -29,13 +43,14 @@ def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
 
 def pierson_moskowitz(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
     """Pierson-Moskowitz spectrum of a fully developed sea. Horvath (2015), eq. 18."""
-    omega_0 = g / (constants.PM_WIND_FACTOR * U)
-    return generalized_ab(omega, constants.PM_ALPHA * g**2, constants.PM_BETA * omega_0**4)
+    omega_0 = _over(g, constants.PM_WIND_FACTOR * U)
+    return generalized_ab(omega, constants.PM_ALPHA * g**2, constants.PM_BETA * _fourth(omega_0))
 
 
 def pierson_moskowitz_peak(U: float, g: float = constants.GRAVITY) -> float:
     """ω_p in rad/s, 0.855 g/U. Horvath (2015), eq. 19, as it follows from eq. 18."""
-    return (constants.PM_BETA / constants.DEVELOPMENT) ** 0.25 * g / (constants.PM_WIND_FACTOR * U)
+    factor = (constants.PM_BETA / constants.DEVELOPMENT) ** 0.25
+    return _over(factor * g, constants.PM_WIND_FACTOR * U)
 
 
 def phillips(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
@@ -45,12 +60,12 @@ def phillips(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
     constant so that both spectra hold the same energy, A/4B: A = α g²/β.
     """
     A = constants.PM_ALPHA / constants.PM_BETA * g**2
-    return generalized_ab(omega, A, (g / (constants.PM_WIND_FACTOR * U)) ** 4)
+    return generalized_ab(omega, A, _fourth(_over(g, constants.PM_WIND_FACTOR * U)))
 
 
 def phillips_peak(U: float, g: float = constants.GRAVITY) -> float:
     """ω_p in rad/s of the Phillips spectrum: (4B/5)^¼."""
-    return constants.DEVELOPMENT**-0.25 * g / (constants.PM_WIND_FACTOR * U)
+    return _over(constants.DEVELOPMENT**-0.25 * g, constants.PM_WIND_FACTOR * U)
 
 
 def full_development_fetch(U: float, g: float = constants.GRAVITY) -> float:
@@ -61,12 +76,12 @@ def full_development_fetch(U: float, g: float = constants.GRAVITY) -> float:
 
 def jonswap_alpha(U: float, F: float, g: float = constants.GRAVITY) -> float:
     """α of JONSWAP, dimensionless. Horvath (2015), eq. 28."""
-    return constants.JONSWAP_ALPHA * (U**2 / (F * g)) ** constants.JONSWAP_ALPHA_EXPONENT
+    return constants.JONSWAP_ALPHA * _over(U**2, F * g) ** constants.JONSWAP_ALPHA_EXPONENT
 
 
 def jonswap_peak(U: float, F: float, g: float = constants.GRAVITY) -> float:
     """ω_p of JONSWAP in rad/s. Horvath (2015), eq. 28, corrected: the cube root is missing in print."""
-    return constants.JONSWAP_PEAK * (g**2 / (U * F)) ** (1.0 / 3.0)
+    return constants.JONSWAP_PEAK * _over(g**2, U * F) ** (1.0 / 3.0)
 
 
 def jonswap(
@@ -81,8 +96,8 @@ def jonswap(
     Horvath (2015), eq. 28, corrected: γ^r, where the paper prints γ⁴. With γ = 1 it is the generalised
     A,B spectrum of eq. 20.
     """
-    base = generalized_ab(omega, alpha * g**2, constants.DEVELOPMENT * omega_p**4)
-    if gamma == 1.0:
+    base = generalized_ab(omega, alpha * g**2, constants.DEVELOPMENT * _fourth(omega_p))
+    if gamma == 1.0 or math.isinf(omega_p):
         return base
     w = np.asarray(omega, np.float64)
     sigma = np.where(w <= omega_p, constants.JONSWAP_SIGMA_BELOW, constants.JONSWAP_SIGMA_ABOVE)

@@ -22,7 +22,7 @@ class FrequencyCurves(NamedTuple):
     """S over ω.
 
     omega : (size,) rad/s, ascending, evenly in log ω
-    layers : (layers, size) m²·s/rad, the active layers
+    layers : (layers, size) m²·s/rad, the active layers that have waves
     resolved : lowest and highest ω in rad/s of the waves that the grid holds
     """
 
@@ -45,7 +45,7 @@ class PolarDensity(NamedTuple):
 
 
 def frequency_curves(parameters: OceanParameters, size: int = 256) -> FrequencyCurves:
-    """The curves of a sea's active layers; those of a sea without any have zero rows."""
+    """The curves of a sea's active layers; those of a sea without any, or in a calm, have zero rows."""
     sea = SeaSpectrum(parameters)
     omega = shown_frequencies(sea, size)
     layers = [layer.frequency_spectrum(omega) for layer in sea.layers]

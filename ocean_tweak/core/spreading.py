@@ -81,7 +81,9 @@ def donelan_banner_beta(ratio: ArrayLike) -> Array:
 def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
     """s of Mitsuyasu's model over ω/ω_p. Horvath (2015), eq. 35 and 36."""
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
-    s_p = constants.MITSUYASU_PEAK * wind_frequency**constants.MITSUYASU_WIND_EXPONENT
+    # s grows without end as the wind falls
+    slow = max(wind_frequency, 1e-30)
+    s_p = constants.MITSUYASU_PEAK * slow**constants.MITSUYASU_WIND_EXPONENT
     below, above = constants.MITSUYASU_BELOW_EXPONENT, constants.MITSUYASU_ABOVE_EXPONENT
     return np.minimum(s_p * np.where(x <= 1.0, x**below, x**above), _LARGEST_S)
 

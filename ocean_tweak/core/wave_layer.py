@@ -13,6 +13,8 @@ from .validation import Validated, choice, nested, number, switch
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
+#: those that grow with the fetch
+FETCH_LIMITED = ("TMA", "JONSWAP")
 DEFINITIONS = ("WIND", "SEA_STATE")
 DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
 
@@ -23,13 +25,13 @@ class WaveLayer(Validated):
 
     spectrum: str = choice("TMA", SPECTRA, "How the energy is shared among wavelengths")
     wind_speed: float = number(
-        12.0, 0.1, 100.0, "m/s", "Mean wind speed. Sets wave height and length",
+        12.0, 0.0, 100.0, "m/s", "Mean wind speed. Sets wave height and length; 0 is a calm, without waves",
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
     wind_direction: float = direction()
     fetch: float = number(
-        150e3, 1.0, 20e6, "m", "Distance of open water over which the wind has blown",
-        "from a pond to half the Earth's circumference",
+        150e3, 0.0, 20e6, "m", "Distance of open water over which the wind has blown; 0 raises no waves",
+        "from the shore to half the Earth's circumference",
     )  # fmt: skip
     limit_fetch: bool = switch(True, "End the growth of the sea where it is fully developed for its wind")
     spreading: str = choice("DONELAN_BANNER", SPREADINGS, "How the energy is shared among directions")
@@ -128,3 +130,11 @@ class WaveLayer(Validated):
                 "shortest_wavelength", self.shortest_wavelength,
                 f"must be below longest_wavelength = {self.longest_wavelength:g} m",
             )  # fmt: skip
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether it is given by a wind that raises no waves: there is none, or it blows over no water."""
+        if self.definition != "WIND" or self.spectrum == "GENERALIZED_AB":
+            return False  # its energy comes from elsewhere
+        has_fetch = self.spectrum in FETCH_LIMITED
+        return self.wind_speed < constants.CALM or (has_fetch and self.fetch < constants.CALM)

@@ -111,7 +111,7 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["info", "--set", "layers.0.wind_speed=-3"], 2, "wind_speed = -3: must be from 0.1 to 100 m/s"),
+        (["info", "--set", "layers.0.wind_speed=-3"], 2, "wind_speed = -3: must be from 0 to 100 m/s"),
         (["info", "--set", "layers.0.wind_speed=NaN"], 2, "finite"),
         (["info", "--set", "layers.0.wind_sped=3"], 2, "did you mean wind_speed?"),
         (["info", "--set", "layers.4.wind_speed=3"], 2, "from 0 to 0"),

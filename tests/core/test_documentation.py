@@ -147,7 +147,7 @@ def test_every_kind_of_parameters_has_a_table() -> None:
 def test_tables_are_made_from_the_fields() -> None:
     table = parameters_doc.tables()
     assert "| `depth` | m | 200 | 0.1 … 11000 | from a puddle to the deepest trench |" in table
-    assert "| `fetch` | m | 150000 | 1 … 2e7 |" in table
+    assert "| `fetch` | m | 150000 | 0 … 2e7 |" in table
     assert "| `depth_factor` |  | `KITAIGORODSKII` | `KITAIGORODSKII`, `THOMPSON_VINCENT` |" in table
     assert "| `loop_duration` | s | `null` | 0.01 … 1e6, or `null` |" in table
     with pytest.raises(ValueError, match="marks"):

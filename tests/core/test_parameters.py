@@ -49,9 +49,9 @@ def test_numpy_numbers_are_numbers() -> None:
 @pytest.mark.parametrize(
     ("data", "field", "said"),
     [
-        ({"layers": [{"wind_speed": math.nan}]}, "layers.0.wind_speed", "finite number from 0.1 to 100 m/s"),
+        ({"layers": [{"wind_speed": math.nan}]}, "layers.0.wind_speed", "finite number from 0 to 100 m/s"),
         ({"layers": [{}, {"fetch": math.inf}]}, "layers.1.fetch", "finite"),
-        ({"layers": [{"wind_speed": 0}]}, "layers.0.wind_speed", "from 0.1 to 100 m/s"),
+        ({"layers": [{"wind_speed": -0.1}]}, "layers.0.wind_speed", "from 0 to 100 m/s"),
         ({"water": {"depth": -5}}, "water.depth", "from 0.1 to 11000 m"),
         ({"water": {"depth": 0}}, "water.depth", "from 0.1 to 11000 m"),
         ({"resolution": 17}, "resolution", "even number"),

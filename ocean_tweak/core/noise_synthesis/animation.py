@@ -33,13 +33,16 @@ def dominant_band(
 ) -> NDArray[np.bool_]:
     """(N, N//2+1): wavelengths of which the filter leaves over two thirds of what it leaves of its favourite.
 
-    Of the modified Pierson-Moskowitz filter the frequencies count, as eq. 1 has them; a fractal's favourite
-    is the longest wave of the patch.
+    Of the modified Pierson-Moskowitz filter the frequencies count, as eq. 1 has them, and in a calm there is
+    none; a fractal's favourite is the longest wave of the patch.
     """
     if layer.filter == "MODIFIED_PIERSON_MOSKOWITZ":
         f = dispersion.angular_frequency(grid.k, relation, water) / (2.0 * np.pi)
         U, g = layer.wind_speed, water.gravity
-        power = pierson_moskowitz(f, U, g) / pierson_moskowitz(peak_frequency(U, g), U, g)
+        peak = peak_frequency(U, g)
+        if math.isinf(peak):
+            return np.zeros(grid.shape, bool)
+        power = pierson_moskowitz(f, U, g) / pierson_moskowitz(peak, U, g)
     else:
         power = POWERS[layer.filter](layer, grid, relation, water)
     return power >= constants.DOMINANT_SHARE

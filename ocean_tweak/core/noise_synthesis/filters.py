@@ -30,13 +30,15 @@ _TEXTURE_WIDTH = 1.0 / 3.0
 
 
 def peak_frequency(U: float, g: float = constants.GRAVITY) -> float:
-    """f_m in Hz. Mastin et al. (1987), eq. 2."""
-    return constants.MASTIN_PEAK * g / U
+    """f_m in Hz, infinite in a calm. Mastin et al. (1987), eq. 2."""
+    return constants.MASTIN_PEAK * g / U if U >= constants.CALM else math.inf
 
 
 def pierson_moskowitz(f: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
     """F_PM(f) in m²·s, any shape, with F_PM(0) = 0. Mastin et al. (1987), eq. 1."""
     f_m = peak_frequency(U, g)
+    if math.isinf(f_m):
+        return np.zeros(np.shape(f))
     # the exponential is zero in double precision where (f_m/f)⁴ > 600: the floor keeps the quotient finite
     f = np.maximum(np.asarray(f, np.float64), 0.2 * f_m)
     fall = np.exp(-constants.DEVELOPMENT * (f_m / f) ** 4)

@@ -43,7 +43,7 @@ class PictureLayer(Validated):
         "significant_wave_height",
     )  # fmt: skip
     wind_speed: float = number(
-        12.0, 0.1, 100.0, "m/s", "Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter",
+        12.0, 0.0, 100.0, "m/s", "Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter",
         "from calm to beyond the strongest hurricane",
     )  # fmt: skip
     wind_direction: float = direction()
