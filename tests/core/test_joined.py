@@ -49,6 +49,28 @@ def test_waves_too_short_for_the_grid_are_left_out() -> None:
     assert [patch.band for patch in joined_bands(joined(32)).patches] == [(20.0, 1e6)]
 
 
+@pytest.mark.parametrize(
+    ("patches", "ends"),
+    [
+        # two samples of the first are 1.125 m, of the second 3/16 m and of the grid 0.375 m
+        ((Patch(9.0, 1.0, 1.0, 1e6, 16), Patch(1.5, 0.0, 0.0, 1.0, 16)), [1.0, 0.375]),
+        # two samples of the middle one are longer than all of its waves
+        (
+            (
+                Patch(9.0, 0.0, 2.0, 1e6, 16),
+                Patch(20.0, 0.3, 1.0, 2.0, 16),
+                Patch(6.0, 0.1, 0.0, 1.0, 16),
+            ),
+            [2.0, 1.0, 0.75],
+        ),
+    ],
+)
+def test_bands_meet_where_a_patch_in_between_is_coarse(patches: tuple[Patch, ...], ends: list[float]) -> None:
+    bands = joined_bands(OceanParameters(patches=patches, joined=48)).patches
+    assert [patch.shortest_wavelength for patch in bands] == ends
+    assert [patch.longest_wavelength for patch in bands] == [1e6, *ends[:-1]]
+
+
 def test_patches_are_read_at_eight_samples_a_wave() -> None:
     """Linear interpolation keeps (2 + cos 2π/8)/3 = 0.902 of the shortest wave's variance along an axis."""
     for patch in joined_bands(joined(1024)).patches[1:]:

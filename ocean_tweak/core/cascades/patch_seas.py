@@ -103,26 +103,25 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
 
 
 def joined_bands(parameters: OceanParameters) -> OceanParameters:
-    """A joined sea's patches apart, without the waves shorter than two samples of its one grid or their own.
+    """A joined sea's patches apart, without the waves shorter than two samples of its one grid.
 
-    The first has the grid's samples, the others as many as reading between them takes.
+    The first has the grid's samples, the others as many as reading between them takes. The last that is left
+    holds no waves shorter than two of its own samples either; where another follows, bands must meet.
     """
     shortest = 2.0 * parameters.domain_size / parameters.resolution
     first, *others = parameters.patches
+    kept = [first, *(patch for patch in others if patch.longest_wavelength > shortest)]
+    if len(kept) > 1 and kept[-1].longest_wavelength <= 2.0 * kept[-1].spacing:
+        kept.pop()
+    ends = [patch.shortest_wavelength for patch in kept]
+    ends[-1] = max(ends[-1], shortest, 2.0 * kept[-1].spacing)
+    bands = [_readable(patch, end) for patch, end in zip(kept, ends, strict=True)]
     if not first.rotation:
-        first = replace(first, resolution=parameters.resolution)
-    else:
-        first = _readable(first, shortest)
-    kept = (
-        _readable(patch, shortest)
-        for patch in others
-        if patch.longest_wavelength > max(shortest, 2.0 * patch.spacing)
-    )
-    return parameters.replace(joined=0, patches=(first, *kept))
+        bands[0] = replace(first, resolution=parameters.resolution)
+    return parameters.replace(joined=0, patches=tuple(bands))
 
 
-def _readable(patch: Patch, shortest: float) -> Patch:
-    end = max(patch.shortest_wavelength, shortest, 2.0 * patch.spacing)
+def _readable(patch: Patch, end: float) -> Patch:
     wanted = 2 * math.ceil(0.5 * _SAMPLES_A_WAVE * patch.domain_size / end)
     return replace(patch, shortest_wavelength=end, resolution=min(max(wanted, _FEWEST), _MOST))
 
