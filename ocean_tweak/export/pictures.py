@@ -180,7 +180,7 @@ def _by_openexr(path: Path) -> NDArray[np.float32]:
 
 def _by_pillow(path: Path) -> NDArray[Any]:
     try:
-        from PIL import Image
+        from PIL import Image, UnidentifiedImageError
     except ImportError:
         raise _refused(
             path, "is read by the Pillow package: install it with 'pip install Pillow', or save it as .exr"
@@ -199,7 +199,7 @@ def _by_pillow(path: Path) -> NDArray[Any]:
         raise
     except Image.DecompressionBombError:
         raise _refused(path, _TOO_LARGE) from None
-    except Image.UnidentifiedImageError:
+    except UnidentifiedImageError:
         raise _refused(path, "is not a picture of a kind that Pillow reads") from None
     except (OSError, ValueError, SyntaxError, EOFError, IndexError) as error:
         reason = getattr(error, "strerror", None) or error

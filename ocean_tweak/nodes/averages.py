@@ -44,13 +44,13 @@ def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
     slopes = [build.math("DIVIDE", build.math("MULTIPLY", part, -1.0), up) for part in (x, y)]
     squares = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in slopes))
     of_point = build.add(
-        "GeometryNodeFieldOnDomain", {"Value": combined(build, *slopes, squares)},
+        "GeometryNodeFieldOnDomain", {"Value": combined(build, slopes[0], slopes[1], squares)},
         data_type="FLOAT_VECTOR", domain="POINT",
     )  # fmt: skip
     sloped = build.store(ocean, SLOPES, output(of_point, "Value"), "FLOAT_VECTOR")
-    white = (output(named_attribute(build, name, "FLOAT"), "Attribute") for name in (FOAM, CUSP))
     either = build.switch("GEOMETRY", moving, ocean, sloped)
-    return build.store(either, OTHERS, combined(build, *white), "FLOAT_VECTOR")
+    foam, cusp = (output(named_attribute(build, name, "FLOAT"), "Attribute") for name in (FOAM, CUSP))
+    return build.store(either, OTHERS, combined(build, foam, cusp), "FLOAT_VECTOR")
 
 
 def patch_carried(build: Builder, patch: Socket) -> Socket:
@@ -73,7 +73,8 @@ def read(build: Builder, mesh: bpy.types.Node | dict[str, Socket], name: str, pl
 
 def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:
     """Along x and y, and 1."""
-    return combined(build, *(build.integer("SUBTRACT", count, 1) for count in (columns, rows)), 1.0)
+    x, y = (build.integer("SUBTRACT", count, 1) for count in (columns, rows))
+    return combined(build, x, y, 1.0)
 
 
 def _build(tree: bpy.types.NodeTree) -> None:

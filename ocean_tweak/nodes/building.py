@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import bpy
 
-Socket = bpy.types.NodeSocket
+Socket: TypeAlias = bpy.types.NodeSocket
 #: what a node's input can be given: another node's output, or a value
 Input = Any
 
@@ -59,8 +59,8 @@ class Builder:
             panel = None
             if isinstance(entry, Panel):
                 panel = tree.interface.new_panel(entry.name)
-            for plug in entry.inputs if isinstance(entry, Panel) else (entry,):
-                self._add_plug(Plug(*plug), "INPUT", panel)
+            for values in entry.inputs if isinstance(entry, Panel) else (entry,):
+                self._add_plug(Plug(*values), "INPUT", panel)
         self.input = self.add("NodeGroupInput")
 
     def _add_plug(self, plug: Plug, direction: str, panel: bpy.types.NodeTreeInterfacePanel | None) -> None:

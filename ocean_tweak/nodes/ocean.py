@@ -17,8 +17,9 @@ A sea of several patches is their sum, at the place of a vertex at rest:
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 
@@ -164,7 +165,7 @@ def _half_texel(build: Builder, patch: int) -> Socket:
 def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socket) -> _Surface:
     """One patch's maps, and warnings where files are missing."""
 
-    def given(names: tuple[tuple[str, ...], ...]) -> dict[str, Socket]:
+    def given(names: Iterable[tuple[Any, ...]]) -> dict[str, Socket]:
         return {name: build.given(numbered(name, patch)) for name, *_ in names}
 
     frame = build.group(node_group(SHOWN_FRAME), given(FRAME_INPUTS))
@@ -186,8 +187,17 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
             "Is Missing": build.logic("NOR", output(read, "Has Displacement"), by_attributes),
         },
     )
-    names = ("Displacement", "Velocity", "Normal", "Foam", "Cusp", "Has Velocity", "Has Normal", "Has Foam")
-    return _Surface(*(output(read, name) for name in names), warns=output(warnings, "Warning"))
+    return _Surface(
+        displacement=output(read, "Displacement"),
+        velocity=output(read, "Velocity"),
+        normal=output(read, "Normal"),
+        foam=output(read, "Foam"),
+        cusp=output(read, "Cusp"),
+        has_velocity=output(read, "Has Velocity"),
+        has_normal=output(read, "Has Normal"),
+        has_foam=output(read, "Has Foam"),
+        warns=output(warnings, "Warning"),
+    )
 
 
 def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:

@@ -42,8 +42,8 @@ class Shading:
             )
         for panel in panels:
             parent = self.tree.interface.new_panel(panel.name)
-            for plug in panel.inputs:
-                self._add_input(Plug(*plug), parent)
+            for values in panel.inputs:
+                self._add_input(Plug(*values), parent)
         return self.node("NodeGroupInput")
 
     def _add_input(self, plug: Plug, parent: bpy.types.NodeTreeInterfacePanel) -> None:

@@ -55,4 +55,4 @@ def is_of_kind(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
 
 def is_stale(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
     """Whether a group was built as this kind, but by another version of the extension."""
-    return is_of_kind(group, kind) and group.get(_KEY) != kind.tag
+    return group is not None and is_of_kind(group, kind) and group.get(_KEY) != kind.tag

@@ -116,7 +116,7 @@ def _foreign(home: Path) -> Iterator[str]:
     if not home.is_dir():
         return
     own = {JOB_FILE, LOCKS, RECORDS}
-    listed = set()
+    listed: set[str] = set()
     for frame in recorded_frames(home):
         with contextlib.suppress(ValueError):
             record = read_record(home, frame)

@@ -236,7 +236,7 @@ def unfinished(
 
 def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
     """Remove what a killed process had begun to write of these frames."""
-    names = set()
+    names: set[str] = set()
     for frame in frames:
         names.update(name for _, name in job.files(folder, frame))
         names.add(record_path(folder, frame).name)

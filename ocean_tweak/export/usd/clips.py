@@ -43,7 +43,7 @@ class ClipSink:
         """Where a frame goes."""
         return self.folder / clip_name(self.edition.package.name, frame)
 
-    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
+    def write(self, frame: Frame, fields: SurfaceFields, *_others: SurfaceFields) -> tuple[Path, ...]:
         """Write a frame's clip. Returns its path. Raises UsdError."""
         path, package = self.path(frame), self.edition.package
         with whole_layer(path, alone=self._alone) as layer:

@@ -14,6 +14,7 @@ from ...core import ParameterError
 from ...core.bake import BakedFrame, bake
 from ...core.frames import Frame, format_frames
 from ..cache.job import Job, read_job
+from ..cache.records import unfinished
 from ..files import sync_folder, writable_folder
 from . import textures
 from .asset import prim_name, write_asset, write_payload
@@ -99,7 +100,7 @@ class Export:
         if self.package.form == "clips":
             return sum(len(self._todo(sink, frames)) for _, _, sink in self._clips())
         if self.package.form == "displacement":
-            return sum(1 for _ in textures.unfinished(self.bake_folder, self.job, frames))
+            return len(tuple(unfinished(self.bake_folder, self.job, frames)))
         return len(frames) * self.rounds
 
     @property

@@ -36,7 +36,7 @@ class PointsSink:
         """The fields that a frame must have."""
         return outputs_of(self._edition.package.attributes)
 
-    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
+    def write(self, frame: Frame, fields: SurfaceFields, *_others: SurfaceFields) -> tuple[Path, ...]:
         """Add a frame. Returns the layer's path. Raises UsdError."""
         with self._busy:
             try:

@@ -271,10 +271,10 @@ def _image_difference(path: Path, frame: Frame, surfaces: ShotSurfaces) -> Itera
         yield Problem(frame, f"{path} has {image.shape[0]}² texels instead of {wanted.shape[0]}²")
         return
     kept = COMPRESSION_ERROR.get(metadata.get("compression", ""), 0.0)
-    error = float(np.abs(image.astype(np.float64) - wanted).max())
+    off = float(np.abs(image.astype(np.float64) - wanted).max())
     limit = (kept + _SINGLE) * max(1.0, float(np.abs(wanted).max()))
-    if not error <= limit:
-        yield Problem(frame, f"{path} differs from this sea by {error:.3g} m, more than {limit:.2g}")
+    if not off <= limit:
+        yield Problem(frame, f"{path} differs from this sea by {off:.3g} m, more than {limit:.2g}")
 
 
 def _still_grid(opened: _Opened) -> Iterator[Problem]:
