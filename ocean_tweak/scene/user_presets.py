@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from pathlib import Path
 
 from ..core.parameters import ParameterError
@@ -21,9 +22,16 @@ def all_presets() -> dict[str, Preset]:
 
 
 def own_presets() -> dict[str, Preset]:
-    """The user's, by key, in the order of their titles."""
+    """The user's, by key, in the order of their titles: read after changes only, since menus ask often."""
+    folder = user_folder("presets")
+    # a file that is written whole, renamed or deleted changes its folder
+    return dict(_presets_of(folder, folder.stat().st_mtime_ns))
+
+
+@lru_cache(maxsize=1)
+def _presets_of(folder: Path, _changed: int) -> dict[str, Preset]:
     found = {}
-    for path in user_folder("presets").glob("*.json"):
+    for path in folder.glob("*.json"):
         try:
             found[f"{_OWN}{path.stem}"] = read_preset(path)
         except (ParameterError, OSError):
@@ -63,6 +71,7 @@ def save(preset: Preset, replace: bool = False) -> str:
         raise ParameterError("title", preset.title, "is the name of another preset already")
     with whole_file(path) as beside:
         beside.write_text(text, encoding="utf-8")
+    _presets_of.cache_clear()  # clocks of disks are coarse: a second change may not move them
     return key
 
 
@@ -72,13 +81,14 @@ def rename(key: str, title: str) -> str:
     renamed = Preset(title, old.description, old.parameters)
     new = save(renamed, replace=_key(title) == key)
     if new != key:
-        path_of(key).unlink(missing_ok=True)
+        delete(key)
     return new
 
 
 def delete(key: str) -> None:
     """Delete a user's preset. Raises OSError."""
     path_of(key).unlink(missing_ok=True)
+    _presets_of.cache_clear()
 
 
 def path_of(key: str) -> Path:

@@ -78,6 +78,19 @@ def test_a_life_of_an_own_preset(ocean, own_folder, extension, tmp_path_factory)
     assert sea_of(ocean) == mine
 
 
+def test_presets_are_read_once_and_anew_after_a_change(ocean, own_folder, extension, monkeypatch):
+    presets, read = extension("scene.user_presets"), []
+    wanted = presets.read_preset
+    monkeypatch.setattr(presets, "read_preset", lambda path: read.append(path.name) or wanted(path))
+    bpy.ops.ocean.save_preset(title="Bay")
+    for _ in range(3):
+        assert list(presets.own_presets()) == ["user:bay"]
+    assert read == ["bay.json"]
+    text = (own_folder / "bay.json").read_text()
+    (own_folder / "cove.json").write_text(text.replace("Bay", "Cove"))  # by another Blender
+    assert [preset.title for preset in presets.own_presets().values()] == ["Bay", "Cove"]
+
+
 @pytest.mark.parametrize("operator", ["rename_preset", "delete_preset"])
 def test_presets_that_came_along_stay(own_folder, operator, empty_scene):
     with pytest.raises(RuntimeError, match="no preset of your own"):
