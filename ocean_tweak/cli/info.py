@@ -18,7 +18,7 @@ from ..core.hero_waves.outlook import HeroWaveOutlook, hero_wave_outlooks
 from ..core.memory import memory_need
 from ..core.statistics import SeaState
 from ..core.wave_particles.outlook import wind_wave_outlook
-from ..export.files import whole_file
+from ..export.files import write_text
 from .outcome import DONE, UsageError
 from .seas import Sea
 
@@ -51,8 +51,7 @@ def _save(path: Path, seas: Mapping[str, Sea]) -> None:
     if len(seas) > 1:
         raise UsageError("--save: the file has several oceans; choose one with --object")
     (sea,) = seas.values()
-    with whole_file(path) as beside:
-        beside.write_text(sea.shot.to_json() + "\n", encoding="utf-8")
+    write_text(path, sea.shot.to_json() + "\n")
 
 
 def _plain(statistics: CascadeStatistics) -> dict[str, object]:

@@ -15,6 +15,7 @@ from ..core.frames import Frame
 from ..core.parameters import parse_json
 from ..core.presets import built_in
 from ..core.shot import Shot
+from ..export.files import LARGEST_JSON, read_bytes
 from ..export.pictures import with_pictures
 from ..export.usd import reading
 from .outcome import UsageError
@@ -77,7 +78,7 @@ def _file_shot(path: Path | None) -> Shot:
 def _text_of(path: Path) -> str:
     if path == _STDIN:
         return sys.stdin.buffer.read().decode("utf-8")
-    return path.read_text(encoding="utf-8")
+    return read_bytes(path, LARGEST_JSON).decode("utf-8")
 
 
 def _chosen(oceans: Mapping[str, Sea], name: str | None) -> dict[str, Sea]:

@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writing files so that nobody ever sees half of one, also from several machines at once."""
+"""Files written so that nobody ever sees half of one, also from several machines at once, and read with care:
+what somebody sent may be a link, a pipe or without end.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import os
+import stat
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
 #: ending of what is not whole yet
 PART = ".part"
+
+#: bytes of a JSON file: far more than any sea has with its pictures
+LARGEST_JSON = 64_000_000
 
 #: s for which a file is replaced again and again: on Windows that fails while somebody reads the old one
 _REPLACE_PATIENCE = 5.0 if os.name == "nt" else 0.0
@@ -27,6 +33,31 @@ _NO_FOLDER_SYNC = {errno.EINVAL, errno.ENOTSUP, errno.EBADF, errno.EACCES, errno
 def _beside(path: Path) -> Path:
     """A name that no other process has, on this machine or another, even where process numbers agree."""
     return path.with_name(f".{path.name}.{uuid.uuid4().hex}{PART}")
+
+
+def is_link(path: Path) -> bool:
+    """Whether a name leads elsewhere: a symbolic link, or a junction of Windows."""
+    try:
+        status = path.lstat()
+    except OSError:
+        return False
+    junction = getattr(stat, "IO_REPARSE_TAG_MOUNT_POINT", None)
+    return stat.S_ISLNK(status.st_mode) or (
+        junction is not None and getattr(status, "st_reparse_tag", None) == junction
+    )
+
+
+def read_bytes(path: Path, most: int) -> bytes:
+    """A file's bytes. Raises OSError for what is no plain file, or has more of them than `most`."""
+    # a pipe would keep whoever opens it waiting for ever
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with open(descriptor, "rb") as file:  # noqa: PTH123
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise OSError(None, "is no file", str(path))
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise OSError(None, f"is larger than {most / 1e6:g} MB", str(path))
+    return content
 
 
 def begun_file(part: Path) -> str:
@@ -52,6 +83,25 @@ def whole_file(path: Path) -> Iterator[Path]:
         if isinstance(error, OSError):
             error.filename = str(path)
         raise
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file that appears whole; on any error the old one stays as it was."""
+    write_texts({path: text})
+
+
+def write_texts(texts: Mapping[Path, str]) -> list[Path]:
+    """Write files that belong together: none of them is replaced before the disk has taken all.
+
+    Returns their paths.
+    """
+    with contextlib.ExitStack() as stack:
+        for path, text in texts.items():
+            with stack.enter_context(whole_file(path)).open("wb") as file:
+                file.write(text.encode())
+                file.flush()
+                os.fsync(file.fileno())
+    return list(texts)
 
 
 def _replace(source: Path, target: Path) -> None:
@@ -106,7 +156,9 @@ def alone(path: Path) -> Iterator[None]:
     The system lets go of the lock of a process that dies. On a disk without file locks, or when one is held
     for much too long, everybody gets in: what is done in here must not rely on it alone.
     """
-    with path.open("a+b") as file:
+    # no link is followed to whatever it leads to
+    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    with open(os.open(path, flags, 0o666), "r+b") as file:  # noqa: PTH123
         until = time.monotonic() + _LOCK_PATIENCE
         while not _locked(file) and time.monotonic() < until:
             time.sleep(0.01)

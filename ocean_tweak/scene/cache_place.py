@@ -11,6 +11,7 @@ from pathlib import Path
 import bpy
 
 from ..export.cache.job import JOB_FILE, UID, safe_name, uid_of
+from ..export.files import is_link
 from .image_sequence import ImageSequence, find_sequence
 from .settings import OceanObjectError, all_oceans, settings_of
 from .user_folder import user_folder
@@ -85,20 +86,30 @@ def is_left_behind(item: bpy.types.Object) -> bool:
 def take_along(item: bpy.types.Object) -> ImageSequence:
     """Copy the bake that the ocean reads into its cache. Returns the copy.
 
-    Raises OceanObjectError where there is nothing to copy, OSError for what the disk refuses.
+    Raises OceanObjectError where there is nothing to copy or something leads elsewhere, OSError for what the
+    disk refuses.
     """
     folder = shown_bake(item)
     if folder is None:
         raise OceanObjectError("The ocean reads no bake that could be copied")
     goal = cache_folder(item) / folder.parent.name / folder.name
     if not goal.exists():
+        _refuse_foreign(folder)
         beside = goal.with_name(f".{goal.name}.part")
         shutil.rmtree(beside, ignore_errors=True)
         beside.parent.mkdir(parents=True, exist_ok=True)
         try:
-            shutil.copytree(folder, beside, ignore=shutil.ignore_patterns("*.lock", ".*"))
+            # a link that came meanwhile stays one
+            shutil.copytree(folder, beside, symlinks=True, ignore=shutil.ignore_patterns("*.lock", ".*"))
             beside.rename(goal)
         except BaseException:
             shutil.rmtree(beside, ignore_errors=True)
             raise
     return find_sequence(goal)
+
+
+def _refuse_foreign(folder: Path) -> None:
+    """Raise OceanObjectError for a link or a pipe in a bake: what a link leads to may be private."""
+    for path in folder.rglob("*"):
+        if is_link(path) or not (path.is_file() or path.is_dir()):
+            raise OceanObjectError(f"{path} is a link or no file, which is not copied: remove it")

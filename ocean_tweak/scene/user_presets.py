@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..core.parameters import ParameterError
 from ..core.presets import LARGEST, Preset, built_in
-from ..export.files import whole_file
+from ..export.files import read_bytes, write_text
 from .user_folder import user_folder
 
 #: a user's preset is told from one that came along by the start of its key
@@ -46,10 +46,8 @@ def is_own(key: str) -> bool:
 
 def read_preset(path: Path) -> Preset:
     """A preset from a file. Raises ParameterError for what is none, OSError for what cannot be read."""
-    with path.open("rb") as file:
-        content = file.read(LARGEST + 1)
     try:
-        return Preset.from_json(content.decode("utf-8"))
+        return Preset.from_json(read_bytes(path, LARGEST).decode("utf-8"))
     except UnicodeDecodeError as error:
         raise ParameterError("preset", path.name, f"is not UTF-8 text ({error.reason})") from None
 
@@ -69,8 +67,7 @@ def save(preset: Preset, replace: bool = False) -> str:
     path = path_of(key)
     if path.exists() and not replace:
         raise ParameterError("title", preset.title, "is the name of another preset already")
-    with whole_file(path) as beside:
-        beside.write_text(text, encoding="utf-8")
+    write_text(path, text)
     _presets_of.cache_clear()  # clocks of disks are coarse: a second change may not move them
     return key
 

@@ -57,5 +57,8 @@ def active_layer(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
 def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]:
     """Report what is wrong, and end the operator without a change."""
     missing = "Not enough memory for this sea" if isinstance(error, MemoryError) else type(error).__name__
-    operator.report({"ERROR"}, str(error) or missing)
+    text = (
+        f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else str(error)
+    )
+    operator.report({"ERROR"}, text or missing)
     return {"CANCELLED"}

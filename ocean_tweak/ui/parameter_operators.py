@@ -11,15 +11,13 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 from ..core import OceanParameters, ParameterError
 from ..core.parameters import parse_json
 from ..core.shot import Shot
+from ..export.files import LARGEST_JSON, read_bytes, write_text
 from ..export.pictures import with_pictures
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import animate, shot_of
 from ..scene.source_images import open_image
 from ..scene.units import frame_rate, set_frame_rate
 from .active_ocean import OfActiveOcean, refuse
-
-# far beyond any sea with its pictures; keeps a file chosen by mistake from filling the memory
-_LARGEST_JSON = 64_000_000
 
 
 def apply_parameters(context: bpy.types.Context, parameters: OceanParameters, use_frame_rate: bool) -> None:
@@ -83,7 +81,7 @@ class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper
         """Write the file; settings that are no sea are refused."""
         try:
             shot = shot_of(context.active_object, context.scene)
-            Path(self.filepath).write_text(shot.to_json() + "\n", encoding="utf-8")
+            write_text(Path(self.filepath), shot.to_json() + "\n")
         except (ParameterError, OSError) as error:
             return refuse(self, error)
         self.report({"INFO"}, translated("Parameters written to {file}").format(file=self.filepath))
@@ -91,11 +89,7 @@ class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper
 
 
 def _read_text(path: Path) -> str:
-    with path.open("rb") as file:
-        data = file.read(_LARGEST_JSON + 1)
-    if len(data) > _LARGEST_JSON:
-        raise ParameterError("file", str(path), f"is larger than {_LARGEST_JSON // 10**6} MB: not parameters")
-    return data.decode("utf-8")
+    return read_bytes(path, LARGEST_JSON).decode("utf-8")
 
 
 CLASSES = (OCEAN_OT_import_parameters, OCEAN_OT_export_parameters)

@@ -10,6 +10,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core import ParameterError
 from ..core.presets import Preset
+from ..export.files import write_text
 from ..scene import user_presets
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfActiveOcean, refuse
@@ -183,7 +184,7 @@ class OCEAN_OT_export_preset(bpy.types.Operator, ExportHelper):
         if self.key not in presets:
             return refuse(self, f"There is no preset {self.key!r}")
         try:
-            Path(self.filepath).write_text(presets[self.key].to_json(), encoding="utf-8")
+            write_text(Path(self.filepath), presets[self.key].to_json())
         except OSError as error:
             return refuse(self, error)
         self.report({"INFO"}, translated("Preset written to {file}").format(file=self.filepath))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import resource
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -285,3 +286,28 @@ def test_many_workers_need_as_much_memory(
     assert "with 3 workers needs" in capsys.readouterr().err
     assert main(bake(sea, tmp_path, "1-3", "--workers", 2)) == 0
     assert main(bake(sea, tmp_path, "4-6")) == 0  # by default as many as fit
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["info", "--save", "{}/sea.json"], ["job", "--out", "{}"], ["job", "--form", "flamenco", "--out", "{}"]],
+    ids=["parameters", "openjd", "flamenco"],
+)
+def test_what_is_written_over_old_files_is_whole_or_the_old(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str]
+) -> None:
+    """Also files that belong together: none of them is new while another one is old."""
+    frames = ["--frames", "1"] if arguments[0] == "job" else []
+    command = [word.format(tmp_path) for word in arguments] + frames
+    assert main([*command, "--set", "seed=1"]) == 0
+    before = contents(tmp_path)
+    most = max(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file()) - 1
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, limits[1]))  # the largest does not fit any more
+    try:
+        assert main([*command, "--set", "seed=2"]) == 1
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "File too large" in capsys.readouterr().err
+    assert contents(tmp_path) == before
+    assert list(tmp_path.rglob(".*")) == []

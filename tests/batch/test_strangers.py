@@ -14,7 +14,7 @@ from ocean_tweak.cli import Sea, main
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.cache.job import CacheError, read_job, sealed
-from tests.batch.bakery import ROOT, command
+from tests.batch.bakery import ROOT, command, contents
 
 SMALL = OceanParameters(resolution=16)
 
@@ -36,13 +36,13 @@ def test_modules_of_the_current_folder_are_not_run(tmp_path: Path) -> None:
 @pytest.mark.parametrize("uid", ["/../../elsewhere/x", "../x", "a/b", "a\\b", "", "\n", "x" * 33, "é"])
 @pytest.mark.parametrize("arguments", [["bake", "--workers", "1", "--out"], ["job", "--cache", "c", "--out"]])
 def test_a_uid_of_a_scene_is_no_path(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], uid: str, arguments: list[str]
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, uid: str, arguments: list[str]
 ) -> None:
     seas = {"Sea": Sea(Shot(SMALL), uid, (1,))}
     code = main([*arguments, str(tmp_path / "chosen" / "out")], lambda: seas)
     assert code == (0 if uid == "" else 2)  # without one, it follows from the name
     if code:
-        assert "must be 1 to 32 letters and digits" in capsys.readouterr().err
+        assert "must be 1 to 32 letters and digits" in caplog.text
     assert {path for path in tmp_path.rglob("*") if path.is_file()} <= set(tmp_path.rglob("chosen/out/**/*"))
 
 
@@ -56,3 +56,57 @@ def test_a_job_that_names_files_elsewhere_is_none(copy: Path, key: str, value: s
     (copy / "bake.json").write_text(json.dumps(sealed({**job, key: value})))
     with pytest.raises(CacheError, match=f"{key} = .*(cannot hold|letters and digits)"):
         read_job(copy)
+
+
+@pytest.mark.parametrize("part", ["locks", "records"])
+@pytest.mark.parametrize(
+    "command_line", ["clean {}", "resume {} --take-over", "resume {} --workers 1 --frames 1-8"]
+)
+def test_no_command_goes_through_links(
+    copy: Path, capsys: pytest.CaptureFixture[str], part: str, command_line: str
+) -> None:
+    """A folder of a bake that somebody sent may lead into one of our own."""
+    elsewhere = copy.parent / "elsewhere"
+    (copy / part).rename(elsewhere)
+    for name in ("entry", "poetry.lock", "0001.json", ".0001.json.0.part"):
+        (elsewhere / name).write_text("mine")
+    (copy / part).symlink_to(elsewhere)
+    before = contents(elsewhere)
+    assert main(command_line.format(copy).split()) == 1
+    assert f"{copy / part} is a link" in capsys.readouterr().err
+    assert contents(elsewhere) == before
+
+
+def test_the_lock_of_a_folder_is_no_link(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outside = copy.parent / "made by a link"
+    (copy / "locks" / "entry").unlink()
+    (copy / "locks" / "entry").symlink_to(outside)
+    assert main(["resume", str(copy), "--workers", "1"]) == 1
+    assert "entry" in capsys.readouterr().err
+    assert not outside.exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("bake.json", "bake.json: is no file"),
+        ("records/0002.json", "frame 2 is damaged: its record cannot be used: it cannot be read: is no file"),
+        ("sea_disp.0002.exr", "frame 2 is damaged: sea_disp.0002.exr"),
+    ],
+)
+def test_pipes_keep_nobody_waiting(
+    copy: Path, capsys: pytest.CaptureFixture[str], name: str, said: str
+) -> None:
+    (copy / name).unlink()
+    os.mkfifo(copy / name)
+    assert main(["verify", str(copy), "--frames", "2"]) == 1
+    printed = capsys.readouterr()
+    assert said in printed.out + printed.err
+
+
+def test_a_pipe_is_nobodys_claim_and_no_parameters(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(copy / "locks" / "x.lock")
+    assert main(["resume", str(copy), "--workers", "1"]) == 1
+    assert "x.lock cannot be read" in capsys.readouterr().err
+    assert main(["info", "--params", str(copy / "locks" / "x.lock")]) == 2
+    assert "is no file" in capsys.readouterr().err

@@ -2,6 +2,7 @@
 """Baking from Blender: the frames are the core's, they lie where they should, and nothing is lost."""
 
 import json
+import os
 import shutil
 import sys
 import tempfile
@@ -169,6 +170,25 @@ def test_save_as_elsewhere_offers_to_take_the_bake_along(
     shutil.rmtree(tmp_path / "cache")
     saved.frame_set(2)
     np.testing.assert_allclose(evaluated(ocean), expected(make_parameters(), 2), atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("what", ["a link", "a folder's link", "a pipe"])
+def test_nothing_is_taken_along_through_links(ocean, saved, extension, tmp_path, what):
+    ocean.ocean_tweak.use_foam = False
+    saved.frame_end = 1
+    bpy.ops.ocean.bake()
+    (folder,) = bakes(tmp_path)
+    secret = tmp_path / "secret"
+    secret.mkdir()
+    (secret / "key").write_text("private")
+    if what == "a pipe":
+        os.mkfifo(folder / "other")
+    else:
+        (folder / "other").symlink_to(secret / "key" if what == "a link" else secret)
+    ocean.ocean_tweak.cache_folder = str(tmp_path / "elsewhere")
+    with pytest.raises(RuntimeError, match="other is a link or no file"):
+        bpy.ops.ocean.take_cache_along()
+    assert not list((tmp_path / "elsewhere").rglob("*other*"))
 
 
 def test_the_window_is_free_while_it_bakes(ocean, extension, saved):

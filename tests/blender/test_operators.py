@@ -2,6 +2,7 @@
 """What the artist can press."""
 
 import json
+import resource
 from fractions import Fraction
 
 import bpy
@@ -95,6 +96,25 @@ def test_a_bad_file_is_refused_and_changes_nothing(active, empty_scene, tmp_path
     with pytest.raises(RuntimeError, match="No such file"):
         bpy.ops.ocean.import_parameters(filepath=str(tmp_path / "missing.json"))
     assert active.ocean_tweak.to_parameters(empty_scene) == before
+
+
+@pytest.mark.parametrize("export", ["parameters", "preset"])
+def test_an_export_is_whole_or_the_old_file(active, tmp_path, export):
+    file = tmp_path / "old.json"
+    file.write_text("{}")
+    key = {"key": "beaufort_05"} if export == "preset" else {}
+    write = getattr(bpy.ops.ocean, f"export_{export}")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))  # as a disk that has room for so many bytes
+    try:
+        with pytest.raises(RuntimeError, match=r"old\.json: File too large"):
+            write(filepath=str(file), **key)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert file.read_text() == "{}"
+    assert list(tmp_path.iterdir()) == [file]
+    assert write(filepath=str(file), **key) == {"FINISHED"}
+    assert json.loads(file.read_text())
 
 
 def test_a_sea_of_several_patches_is_imported_and_exported(active, core, empty_scene, tmp_path):

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from ...core.frames import Frame, frame_label
 from ..exr import MAPS
-from ..files import PART
-from .job import ENTRY, JOB_FILE, LOCKS, RECORDS, CacheError, is_bake, log_file, record_path
+from ..files import PART, is_link
+from .job import ENTRY, JOB_FILE, LOCKS, RECORDS, CacheError, is_bake, log_file, record_path, refuse_links
 from .locks import claims
 from .records import FileEntry, read_record, recorded_frames
 
@@ -35,8 +35,7 @@ def clean(folder: Path, frames: Iterable[Frame]) -> Cleaned:
     home = folder.resolve()
     if not is_bake(home):
         raise CacheError(f"{folder}: is no folder of a bake, so nothing in it is deleted")
-    if (home / RECORDS).is_symlink():
-        raise CacheError(f"{folder / RECORDS} is a link: what it lists is not known to be of this bake")
+    refuse_links(home)
     count, size, left = 0, 0, []
     for frame in frames:
         try:
@@ -79,7 +78,7 @@ def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
     if entry.map not in MAPS or not entry.name.endswith(f"_{entry.map}.{frame_label(frame)}.exr"):
         return "is not named as a frame's image is"
     path = home / entry.name
-    if path.is_symlink() or path.resolve().parent != home:
+    if is_link(path) or path.resolve().parent != home:
         return "is a link, or lies outside the folder"
     return "is a folder" if path.is_dir() else ""
 
@@ -87,7 +86,7 @@ def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
 def _remove_rest(home: Path) -> None:
     """The job, the lock files and the folders, as far as nothing else is in them."""
     for part in (home / LOCKS, home / RECORDS):
-        if not part.is_symlink():
+        if not is_link(part):
             for begun in part.glob(f".*{PART}"):  # of processes that were killed
                 begun.unlink(missing_ok=True)
     (home / LOCKS / ENTRY).unlink(missing_ok=True)

@@ -28,7 +28,7 @@ from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.parameters import OceanParameters
 from ...core.shot import Shot
 from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
-from ..files import alone, new_file, sync_folder, whole_file
+from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
 
 JOB_FILE = "bake.json"
 RECORDS, LOCKS = "records", "locks"
@@ -41,7 +41,6 @@ UID = re.compile("[0-9A-Za-z]{1,32}")
 _VERSION = re.compile(r"v(\d{3,})-([0-9a-f]{8})")
 #: images that are asked for a lost job
 _TELLING_IMAGES = 8
-_LARGEST_JSON = 64 * 2**20
 
 
 class CacheError(RuntimeError):
@@ -255,8 +254,7 @@ def write_job(folder: Path, job: Job) -> None:
     try:
         present = read_job(folder)
     except CacheError:
-        with whole_file(path) as beside:
-            beside.write_text(text, encoding="utf-8")
+        write_text(path, text)
         return
     if present.fingerprint != job.fingerprint:
         raise CacheError(f"{path} is another job, though its folder has this one's name: move it away")
@@ -280,14 +278,9 @@ def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:
     """
     path = folder / JOB_FILE
     try:
-        with path.open("rb") as file:
-            content = file.read(_LARGEST_JSON + 1)
+        job = Job.from_dict(json.loads(read_bytes(path, LARGEST_JSON)))
     except OSError as error:
         raise CacheError(f"{path}: {error.strerror}; a bake's folder is named vNNN-hash8") from None
-    if len(content) > _LARGEST_JSON:
-        raise CacheError(f"{path} is too large to be a job")
-    try:
-        job = Job.from_dict(json.loads(content))
     except json.JSONDecodeError as error:
         raise CacheError(f"{path} is no JSON ({error}): run resume to have it written again") from None
     except (ValueError, RecursionError) as error:
@@ -338,6 +331,15 @@ def log_file(folder: Path) -> Path:
     """Where what happens to a bake is written, when that is asked for: beside its folder."""
     home = folder.resolve()
     return home.with_name(f"{home.name}.log")
+
+
+def refuse_links(folder: Path) -> None:
+    """Raise CacheError where what is written and removed in a bake's folder would be elsewhere."""
+    for part in (folder / RECORDS, folder / LOCKS):
+        if is_link(part):
+            raise CacheError(
+                f"{part} is a link, and what it leads to is not known to be of this bake: remove it"
+            )
 
 
 def record_path(folder: Path, frame: Frame) -> Path:

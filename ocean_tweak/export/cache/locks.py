@@ -27,8 +27,8 @@ from pathlib import Path
 from typing import Any
 
 from ...core.frames import Frame, format_frames, parse_frames
-from ..files import alone, whole_file
-from .job import ENTRY, LOCKS
+from ..files import alone, read_bytes, write_text
+from .job import ENTRY, LOCKS, refuse_links
 
 #: s between two beats
 BEAT = 5.0
@@ -106,8 +106,9 @@ def claimed(
     stopped : asked while waiting; True ends it with Held
     say : is told once whom it waits for
 
-    Raises Held naming who has them.
+    Raises Held naming who has them, CacheError where the folder's own parts are links.
     """
+    refuse_links(folder)
     locks = folder / LOCKS
     locks.mkdir(exist_ok=True)
     own = _own_claim(locks, frames)
@@ -236,16 +237,14 @@ def _write(claim: Claim) -> None:
         "started": claim.started,
         "frames": format_frames(claim.frames or ()),
     }
-    with whole_file(claim.path) as beside:
-        beside.write_text(f"{json.dumps(data)}\n{0:0{_DIGITS}d}\n", encoding="ascii")
+    write_text(claim.path, f"{json.dumps(data)}\n{0:0{_DIGITS}d}\n")
 
 
 def _read(path: Path) -> Claim:
     """The claim in a file. Raises FileNotFoundError where there is none."""
     for _ in range(3):
         try:
-            with path.open("rb") as file:
-                content = file.read(_LARGEST_LOCK)
+            content = read_bytes(path, _LARGEST_LOCK)
             break
         except FileNotFoundError:
             raise

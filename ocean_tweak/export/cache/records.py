@@ -20,7 +20,7 @@ from ...core.errors import ParameterError
 from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
-from ..files import PART, begun_file, sync_folder, whole_file
+from ..files import PART, begun_file, read_bytes, sync_folder, write_text
 from .job import FORMAT, RECORDS, Job, check_seal, made_with, record_path, sealed
 
 _LARGEST_RECORD = 2**20
@@ -126,8 +126,7 @@ class CacheSink:
             for name, path in zip(self.job.maps * len(sequences), paths, strict=True)
         )
         made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries, self._asked)
-        with whole_file(record) as beside:
-            beside.write_text(json.dumps(made.to_dict(), indent=1) + "\n", encoding="utf-8")
+        write_text(record, json.dumps(made.to_dict(), indent=1) + "\n")
         sync_folder(record.parent)
         return paths
 
@@ -136,14 +135,11 @@ def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
     """A frame's record; None when there is none. Raises ValueError for one that cannot be read."""
     path = record_path(folder, frame)
     try:
-        with path.open("rb") as file:
-            content = file.read(_LARGEST_RECORD + 1)
+        content = read_bytes(path, _LARGEST_RECORD)
     except FileNotFoundError:
         return None
     except OSError as error:
         raise ValueError(f"it cannot be read: {error.strerror}") from None
-    if len(content) > _LARGEST_RECORD:
-        raise ValueError("it is too large")
     try:
         record = FrameRecord.from_dict(json.loads(content))
     except RecursionError:
@@ -203,6 +199,8 @@ def _problem(path: Path, entry: FileEntry) -> str:
         size = path.stat().st_size
     except FileNotFoundError:
         return "is gone"
+    if not path.is_file():
+        return "is no file"
     if size != entry.bytes:
         return f"has {size} bytes, not {entry.bytes}"
     if file_hash(path) != entry.sha256:

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from ...core.frames import format_frames
+from ..files import write_texts
 from .shot_job import (
     SEAS,
     ShotJob,
     bake_arguments,
     render_arguments,
+    sea_files,
     verify_arguments,
-    write_seas,
-    write_text,
 )
 
 _SCRIPT = Path(__file__).with_name("flamenco.js")
@@ -27,11 +27,13 @@ _RENDER_SCRIPT = "render_baked.py"
 def write(folder: Path, job: ShotJob) -> list[Path]:
     """Write the job type. Returns its files; raises ValueError for what Flamenco cannot run, or OSError."""
     shot = json.dumps(_shot(folder, job), indent=4)
-    written = write_seas(folder, job)
+    texts = sea_files(folder, job)
     if job.render is not None:
-        written.append(write_text(folder / _RENDER_SCRIPT, job.render.script))
+        texts[folder / _RENDER_SCRIPT] = job.render.script
     name = f"ocean_tweak_{re.sub(r'[^0-9A-Za-z]+', '_', job.name).lower()}.js"
-    return [*written, write_text(folder / name, _SCRIPT.read_text(encoding="utf-8").replace(_PLACE, shot))]
+    texts[folder / name] = _SCRIPT.read_text(encoding="utf-8").replace(_PLACE, shot)
+    (folder / SEAS).mkdir(parents=True, exist_ok=True)
+    return write_texts(texts)
 
 
 def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:

@@ -14,15 +14,15 @@ from typing import Any
 from ... import __version__
 from ...core.frames import format_frames
 from ..cache.job import Job
+from ..files import write_texts
 from .shot_job import (
     SEAS,
     ShotJob,
     bake_arguments,
     chunks,
     render_arguments,
+    sea_files,
     verify_arguments,
-    write_seas,
-    write_text,
 )
 
 TEMPLATE, VALUES = "template.json", "parameter_values.json"
@@ -37,12 +37,12 @@ _Data = dict[str, Any]
 
 def write(folder: Path, job: ShotJob) -> list[Path]:
     """Write the bundle. Returns its files; raises ValueError for a shot that makes no bundle, or OSError."""
-    text = template(job)
-    return [
-        *write_seas(folder, job),
-        write_text(folder / TEMPLATE, json.dumps(text, indent=2, ensure_ascii=False) + "\n"),
-        write_text(folder / VALUES, json.dumps(parameter_values(job), indent=2, ensure_ascii=False) + "\n"),
-    ]
+    own = {TEMPLATE: template(job), VALUES: parameter_values(job)}
+    texts = {
+        folder / name: json.dumps(data, indent=2, ensure_ascii=False) + "\n" for name, data in own.items()
+    }
+    (folder / SEAS).mkdir(parents=True, exist_ok=True)
+    return write_texts(sea_files(folder, job) | texts)
 
 
 def template(job: ShotJob) -> _Data:

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from ...core.frames import Frame, format_frames
 from ..cache.job import Job
-from ..files import whole_file
 
 #: folder of the seas' parameters, in a job's own
 SEAS = "seas"
@@ -124,14 +123,6 @@ def _openjd(openjd: bool) -> list[str]:
     return ["--openjd"] if openjd else []
 
 
-def write_seas(folder: Path, job: ShotJob) -> list[Path]:
-    """Write the seas' parameters into a job's folder. Raises OSError."""
-    (folder / SEAS).mkdir(parents=True, exist_ok=True)
-    return [write_text(folder / SEAS / f"{bake.name}.json", bake.shot.to_json() + "\n") for bake in job.bakes]
-
-
-def write_text(path: Path, text: str) -> Path:
-    """Write a file that appears whole. Raises OSError."""
-    with whole_file(path) as beside:
-        beside.write_text(text, encoding="utf-8")
-    return path
+def sea_files(folder: Path, job: ShotJob) -> dict[Path, str]:
+    """The seas' parameters as the files of a job's folder."""
+    return {folder / SEAS / f"{bake.name}.json": bake.shot.to_json() + "\n" for bake in job.bakes}
