@@ -117,10 +117,19 @@ class Timing(Validated):
         "Frame at which the ocean's time is zero",
         "more than Blender's frame range",
     )
+    stretch: Fraction = rational(
+        Fraction(1), 0.001, 1000.0, "", "Frames of the shot in a frame of its animation: 2 is half the speed."
+        " In Blender the scene's Time Stretching",
+        "more than Blender's 1/900 to 900", left_out=True,
+    )  # fmt: skip
 
     def time(self, frame: float | Fraction) -> Fraction:
         """Ocean time in seconds at a frame, which may hold a sub-frame; exact."""
-        return (Fraction(frame) - self.start_frame) / self.fps
+        return (Fraction(frame) / self.stretch - self.start_frame) / self.fps
+
+    def frame(self, time: float) -> float:
+        """The frame at an ocean time in seconds."""
+        return float(self.stretch) * (self.start_frame + time * float(self.fps))
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def to_plain(value: Any, brief: bool = False) -> Any:
 def _is_unused(field: dataclasses.Field[Any], value: object) -> bool:
     """What is not there is left out, where its field says so: the JSON of a sea without it, and so the
     fingerprint of its frames, stays what it was before there was such a thing."""
-    return bool(field.metadata.get("left_out")) and not value
+    return bool(field.metadata.get("left_out")) and (not value or value == field.default)
 
 
 def from_plain(cls: type, data: object) -> Any:

@@ -199,9 +199,9 @@ class Shot:
         """
         timing = self.parameters.timing
         if self.animation is None:
-            return Moment(self.parameters, timing.time(frame), 1.0)
+            return Moment(self.parameters, timing.time(frame), float(1 / timing.stretch))
         values = self.animation.at(frame)
-        time, rate = timing.time(frame), 1.0
+        time, rate = timing.time(frame), float(1 / timing.stretch)
         change = self.animation.rate(OCEAN_TIME, frame)
         if change is not None:
             time, rate = Fraction(repr(values[OCEAN_TIME])), change * float(timing.fps)

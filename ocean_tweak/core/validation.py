@@ -66,13 +66,18 @@ def rational(
     description: str,
     why: str = "",
     optional: bool = False,
+    left_out: bool = False,
 ) -> Any:
-    """A dataclass field that is kept as an exact fraction; None is allowed where it is optional."""
+    """A dataclass field that is kept as an exact fraction; None is allowed where it is optional.
+
+    left_out : where it is the default, JSON has no such key
+    """
     return dataclasses.field(
         default=default,
         metadata={
             "kind": Fraction, "minimum": minimum, "maximum": maximum,
             "unit": unit, "description": description, "why": why, "optional": optional,
+            "left_out": left_out,
         },
     )  # fmt: skip
 

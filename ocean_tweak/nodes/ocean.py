@@ -28,11 +28,11 @@ from .frame_warnings import WARNINGS
 from .grid import GRID
 from .grid import INPUTS as GRID_INPUTS
 from .names import CUSP, DISPLACEMENT, FOAM, TEXTURE_COORDINATES, VELOCITY
-from .patch import IMAGE_INPUTS, PATCH, SCALE_INPUTS
+from .patch import EARLY_IMAGE_INPUTS, IMAGE_INPUTS, PATCH, SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
-_VERSION = 1
+_VERSION = 2
 _NAME = "Ocean Tweak"
 
 #: patches that a group can add
@@ -67,6 +67,7 @@ _GRID_PANEL = Panel(
 
 _PATCH_INPUTS = (
     *IMAGE_INPUTS,
+    *EARLY_IMAGE_INPUTS,
     ("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch that repeats, in Blender units"),
     ("Resolution", "NodeSocketInt", 512, "Samples along each side of the images"),
     *FRAME_INPUTS,
@@ -173,6 +174,7 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
         node_group(PATCH),
         {
             **given(IMAGE_INPUTS),
+            **given(EARLY_IMAGE_INPUTS),
             **{name: build.given(name) for name, *_ in SCALE_INPUTS},
             "Coordinates": coordinates,
             "Frame": output(frame, "Frame"),

@@ -17,6 +17,18 @@ IMAGE_INPUTS = (
     ("Velocity", "NodeSocketImage", None, "Velocity in metres per second"),
 )
 
+#: the images of frames before 0: Blender counts the files of a sequence upwards from 0
+EARLY_IMAGE_INPUTS = tuple(
+    Plug(
+        f"{name} Before 0",
+        kind,
+        default,
+        "The same at frames before 0: its files end in -001.exr, -002.exr …",
+        hidden=True,
+    )
+    for name, kind, default, _ in IMAGE_INPUTS
+)
+
 #: those that make Blender units of metres
 SCALE_INPUTS = (
     ("Scale", "NodeSocketFloat", 1.0, "Blender units in a metre"),
@@ -42,13 +54,21 @@ _OUTPUTS = (
 def _build(tree: bpy.types.NodeTree) -> None:
     inputs = (
         *IMAGE_INPUTS,
+        *EARLY_IMAGE_INPUTS,
         ("Coordinates", "NodeSocketVector", None, "Texture coordinates: 0 to 1 is one patch"),
         ("Frame", "NodeSocketInt", 1, "File of the image sequences"),
         *SCALE_INPUTS,
     )
     build = Builder(tree, inputs, _OUTPUTS)
-    texels = {name: _texel(build, name) for name in MAP_INPUTS.values()}
-    has = {name: _has_texels(build, name) for name in MAP_INPUTS.values()}
+    frame = build.given("Frame")
+    is_early = build.compare("LESS_THAN", frame, 0)
+    number = build.integer("MAXIMUM", frame, build.integer("SUBTRACT", 0, frame))
+    images = {
+        name: build.switch("IMAGE", is_early, build.given(name), build.given(f"{name} Before 0"))
+        for name in MAP_INPUTS.values()
+    }
+    texels = {name: _texel(build, image, number) for name, image in images.items()}
+    has = {name: _has_texels(build, image, number) for name, image in images.items()}
     foam = build.add("ShaderNodeSeparateXYZ", {"Vector": texels["Foam"]})
     unit = build.add("ShaderNodeVectorMath", {"Vector": texels["Normal"]}, operation="NORMALIZE")
     build.finish_with(
@@ -63,14 +83,14 @@ def _build(tree: bpy.types.NodeTree) -> None:
     )
 
 
-def _texel(build: Builder, name: str) -> Socket:
+def _texel(build: Builder, image: Socket, number: Socket) -> Socket:
     """What the image says, bilinear between texel centres; zero without an image."""
     texture = build.add(
         "GeometryNodeImageTexture",
         {
-            "Image": build.given(name),
+            "Image": image,
             "Vector": build.given("Coordinates"),
-            "Frame": build.given("Frame"),
+            "Frame": number,
         },
         interpolation="Linear",
         extension="REPEAT",
@@ -78,11 +98,11 @@ def _texel(build: Builder, name: str) -> Socket:
     return output(texture, "Color")
 
 
-def _has_texels(build: Builder, name: str) -> Socket:
+def _has_texels(build: Builder, image: Socket, number: Socket) -> Socket:
     """Whether there is an image and its file can be read: otherwise it has no width."""
-    information = {"Image": build.given(name), "Frame": build.given("Frame")}
-    width = output(build.add("GeometryNodeImageInfo", information), "Width")
+    information = build.add("GeometryNodeImageInfo", {"Image": image, "Frame": number})
+    width = output(information, "Width")
     return build.compare("GREATER_THAN", width, 0)
 
 
-PATCH = GroupKind("Ocean Tweak Patch", 1, _build)
+PATCH = GroupKind("Ocean Tweak Patch", 2, _build)

@@ -3,33 +3,73 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 
-from .building import Builder, Plug, output
+from .building import Builder, Plug, Socket, output
 from .versioned import GroupKind
 
 #: name, socket type, default, description
 FRAME_INPUTS = (
     ("First Frame", "NodeSocketInt", 1, "First file of the image sequence; held before it"),
     ("Last Frame", "NodeSocketInt", 1_048_574, "Last file of the image sequence; held after it"),
-)
+    Plug(
+        "Baked Frames", "NodeSocketString", "",
+        "Which frames have a file, the last one first: 1 for one that has, 0 for one that has none and holds "
+        "the file before. Empty where all have one",
+        hidden=True,
+    ),
+    Plug(
+        "Files per Frame", "NodeSocketFloat", 1.0,
+        "Files in a frame of the animation: 2 for a sequence that was baked with a Time Stretching of 100 to "
+        "200",
+        hidden=True,
+    ),
+)  # fmt: skip
+
+# Of a file: a product of two float32 may lie below the whole number that it stands for
+_TOLERANCE = 1.0 / 128.0
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
     outputs = (
-        Plug("Frame", "NodeSocketInt", None, "The scene's whole frame, held at both ends"),
-        Plug("Scene Frame", "NodeSocketInt", None, "The scene's whole frame"),
+        Plug("Frame", "NodeSocketInt", None, "The file that is shown: in a gap the last one before it"),
+        Plug("Scene Frame", "NodeSocketInt", None, "The file that belongs to the scene's time"),
         Plug("Is Held", "NodeSocketBool", None, "Whether the two differ"),
     )
     build = Builder(tree, FRAME_INPUTS, outputs)
     time = build.add("GeometryNodeInputSceneTime")
-    floor = build.add("FunctionNodeFloatToInt", {"Float": output(time, "Frame")}, rounding_mode="FLOOR")
+    # Blender's scene time is stretched already
+    file = build.math("MULTIPLY", output(time, "Frame"), build.given("Files per Frame"))
+    near = build.math("ADD", file, _TOLERANCE)
+    floor = build.add("FunctionNodeFloatToInt", {"Float": near}, rounding_mode="FLOOR")
     whole = output(floor, "Integer")
     # beyond the ends the image node gives zero without a word
     begun = build.integer("MAXIMUM", whole, build.given("First Frame"))
-    held = build.integer("MINIMUM", begun, build.given("Last Frame"))
+    ended = build.integer("MINIMUM", begun, build.given("Last Frame"))
+    held = build.integer("SUBTRACT", ended, _frames_back(build, ended))
     is_held = build.compare("NOT_EQUAL", held, whole)
     build.finish_with({"Frame": held, "Scene Frame": whole, "Is Held": is_held})
 
 
-SHOWN_FRAME = GroupKind("Ocean Tweak Frame", 1, _build)
+def _frames_back(build: Builder, frame: Socket) -> Socket:
+    """How far before a frame the last one with a file is: 0 where it has one itself."""
+    frames = build.given("Baked Frames")
+    start = build.integer("SUBTRACT", build.given("Last Frame"), frame)
+    length = build.add("FunctionNodeStringLength", {"String": frames})
+    inputs = {"String": frames, "Position": start, "Length": output(length, "Length")}
+    before = output(build.add("FunctionNodeSliceString", inputs), "String")
+    found = build.add("FunctionNodeFindInString", {"String": before, "Search": "1"})
+    return build.integer("MAXIMUM", output(found, "First Found"), 0)
+
+
+def baked_text(frames: Sequence[int]) -> str:
+    """What ascending frames are in the input Baked Frames."""
+    present, last = set(frames), frames[-1]
+    if len(present) == last - frames[0] + 1:
+        return ""
+    return "".join("1" if frame in present else "0" for frame in range(last, frames[0] - 1, -1))
+
+
+SHOWN_FRAME = GroupKind("Ocean Tweak Frame", 2, _build)

@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 
 from .settings import OceanSettings, settings_of
-from .units import frame_rate, frame_with_subframe, shortest_decimal
+from .units import frame_rate, frame_with_subframe, shortest_decimal, time_stretch
 
 _GROUP = "ocean_tweak."
 _OCEAN_TIME = "ocean_tweak.ocean_time"
@@ -53,14 +53,19 @@ def shown_settings(item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None
 
 def clock_of(settings: OceanSettings, scene: bpy.types.Scene, start_frame: int) -> Clock:
     """The ocean's time at the scene's frame, sub-frame included."""
-    frame, fps = frame_with_subframe(scene), frame_rate(scene)
+    # as Blender does with keys
+    frame, rate = frame_with_subframe(scene) / time_stretch(scene), 1 / time_stretch(scene)
+    fps = frame_rate(scene)
     if not settings.use_ocean_time:
-        return Clock((frame - start_frame) / fps, 1.0)
-    return Clock(shortest_decimal(settings.ocean_time), _rate(settings.id_data, frame, fps))
+        return Clock((frame - start_frame) / fps, float(rate))
+    change = _change(settings.id_data, frame)
+    return Clock(
+        shortest_decimal(settings.ocean_time), None if change is None else float(change * fps * rate)
+    )
 
 
-def _rate(item: bpy.types.Object, frame: Fraction, fps: Fraction) -> float | None:
-    """From the keys on both sides of the moment."""
+def _change(item: bpy.types.Object, frame: Fraction) -> float | None:
+    """Seconds of ocean time in a frame of the animation, from the keys on both sides of one."""
     data = item.animation_data
     if data is not None and any(driver.data_path == _OCEAN_TIME for driver in data.drivers):
         return None
@@ -68,12 +73,13 @@ def _rate(item: bpy.types.Object, frame: Fraction, fps: Fraction) -> float | Non
     if curve is None:
         return 0.0
     half = 0.5
-    change = curve.evaluate(float(frame) + half) - curve.evaluate(float(frame) - half)
-    return float(change * fps)
+    return float(curve.evaluate(float(frame) + half) - curve.evaluate(float(frame) - half))
 
 
-def set_keys(item: bpy.types.Object, first_frame: int, samples: Mapping[str, Sequence[float]]) -> None:
-    """Give an ocean's settings a key a frame, linear between; all their other keys and drivers go.
+def set_keys(
+    item: bpy.types.Object, scene: bpy.types.Scene, first_frame: int, samples: Mapping[str, Sequence[float]]
+) -> None:
+    """Give an ocean's settings a key a frame of the scene, linear between; other keys and drivers go.
 
     samples : values in Blender units, by path as in `core.shot.ANIMATED`; none takes the animation off
     """
@@ -84,7 +90,7 @@ def set_keys(item: bpy.types.Object, first_frame: int, samples: Mapping[str, Seq
         item.keyframe_insert(data_path, frame=first_frame)
         points = next(curve for curve in curves_of(item) if curve.data_path == data_path).keyframe_points
         points.add(len(values) - len(points))
-        frames = first_frame + np.arange(len(values))
+        frames = (first_frame + np.arange(len(values))) / float(time_stretch(scene))
         points.foreach_set("co", np.stack((frames, values), axis=-1).astype(np.float32).ravel())
         for point in points:
             point.interpolation = "LINEAR"

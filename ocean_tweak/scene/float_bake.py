@@ -11,7 +11,7 @@ import bpy
 from . import float_keys, floating, handlers
 from .floating import FloatError, Ride
 from .floating_place import Water, place_on, water_at
-from .units import metres_per_unit
+from .units import metres_per_unit, time_stretch
 
 
 @dataclass(frozen=True)
@@ -83,11 +83,12 @@ class FloatBake:
 
     def finish(self) -> int:
         """Write the keys; what floated live is left to them. Returns how many objects there are."""
+        stretch = time_stretch(self._scene)
         for rider in self._riders:
             if not rider.was_live:
                 floating.remove_carrier(rider.carrier)
             floating.sink(rider.item)
-            rider.track.write(self.frames[0])
+            rider.track.write(self.frames[0] / stretch, 1 / stretch)
         self._go_back()
         return len(self._riders)
 

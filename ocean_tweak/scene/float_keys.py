@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from fractions import Fraction
 
 import bpy
 from mathutils import Euler, Matrix, Quaternion
@@ -126,8 +127,12 @@ class Track:
             return [angle, *axis]
         return list(turned)
 
-    def write(self, first: int) -> None:
-        """Make them keys from a frame on, linear between, in a new action; keys outside of them stay."""
+    def write(self, first: Fraction, step: Fraction) -> None:
+        """Make them keys from a frame on, linear between, in a new action; keys outside of them stay.
+
+        first, step : frames of the animation, which Time Stretching makes others than the scene's
+        """
+        places = [float(first + index * step) for index in range(len(self._rows))]
         item = self.item
         state, old = state_of(item), _action_of(item)
         action = old.copy() if old is not None else bpy.data.actions.new(f"{item.name} Float")
@@ -140,7 +145,7 @@ class Track:
         columns = list(zip(*self._rows, strict=True))
         for path, values in (("location", columns[:3]), (rotation_path(item), columns[3:])):
             for index, column in enumerate(values):
-                _write_curve(action.fcurve_ensure_for_datablock(item, path, index=index), first, column)
+                _write_curve(action.fcurve_ensure_for_datablock(item, path, index=index), places, column)
 
 
 def _action_of(item: bpy.types.Object) -> bpy.types.Action | None:
@@ -154,11 +159,10 @@ def _assign(item: bpy.types.Object, action: bpy.types.Action, slot: str) -> None
     animation.action_slot = found or action.slots.new("OBJECT", item.name)
 
 
-def _write_curve(curve: bpy.types.FCurve, first: int, values: Sequence[float]) -> None:
-    last = first + len(values) - 1
+def _write_curve(curve: bpy.types.FCurve, frames: Sequence[float], values: Sequence[float]) -> None:
     points = curve.keyframe_points
-    for index in reversed([i for i, point in enumerate(points) if first <= point.co.x <= last]):
+    for index in reversed([i for i, point in enumerate(points) if frames[0] <= point.co.x <= frames[-1]]):
         points.remove(points[index], fast=True)
-    for frame, value in enumerate(values, first):
+    for frame, value in zip(frames, values, strict=True):
         points.insert(frame, value, options={"FAST"}).interpolation = "LINEAR"
     curve.update()

@@ -69,7 +69,7 @@ def water_at(ocean: bpy.types.Object, scene: bpy.types.Scene, frame: int) -> Wat
     if settings.source == "LIVE":
         displacement = _sea(plan.parameters).surface(plan.time).displacement
     else:
-        displacement = _baked(settings, frame)
+        displacement = _baked(settings, scene, frame)
     return Water(displacement, plan.parameters.domain_size / len(displacement))
 
 
@@ -117,13 +117,13 @@ def _sea(parameters: OceanParameters) -> GridSea:
     return grid_sea(parameters)
 
 
-def _baked(settings: OceanSettings, frame: int) -> RealArray:
+def _baked(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> RealArray:
     """(N, N, 3) of the file that this frame shows."""
     image = settings.sequence_maps.disp
     if image is None:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
     path = Path(bpy.path.abspath(image.filepath))
-    label = frame_label(shown_frame(settings, frame))
+    label = frame_label(shown_frame(settings, scene, frame))
     try:
         return read_image(path.with_name(_NUMBER.sub(label, path.name)))[0]
     except ExrError as error:

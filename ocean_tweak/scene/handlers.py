@@ -27,7 +27,13 @@ from .refresh import check_files, refresh_and_tell, refresh_patches, refresh_ren
 from .settings import all_oceans, oceans_in, settings_of
 
 # scene settings that change an ocean and have no update callback of ours
-_FOLLOWED = (("UnitSettings", "scale_length"), ("RenderSettings", "fps"), ("RenderSettings", "fps_base"))
+_FOLLOWED = (
+    ("UnitSettings", "scale_length"),
+    ("RenderSettings", "fps"),
+    ("RenderSettings", "fps_base"),
+    ("RenderSettings", "frame_map_old"),
+    ("RenderSettings", "frame_map_new"),
+)
 # subscriptions to properties are made and cleared under this owner
 _OWNER = object()
 

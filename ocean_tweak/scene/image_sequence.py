@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,11 +13,13 @@ from pathlib import Path
 
 import bpy
 
+from ..core import ParameterError, Timing
 from ..core.frames import format_frames, frame_label, held_frame, parse_frames
 from ..export.exr import ExrError, read_image
 from .live_image import mark_as_data
 from .maps import MAPS
 from .settings import OceanObjectError, OceanSettings
+from .units import time_stretch
 
 _FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
 # what moves the mesh: a sequence has it at every frame
@@ -71,13 +74,17 @@ class LoadedSequence:
     """A sequence as images of the file.
 
     images : by map
+    early_images : by map, of frames before 0: Blender counts the files of an image upwards from 0
     samples : along each side
     fps : of the shot it was baked for; None where the files do not say
+    stretch : frames of that shot in a frame of its animation
     """
 
     images: dict[str, bpy.types.Image]
+    early_images: dict[str, bpy.types.Image]
     samples: int
     fps: Fraction | None
+    stretch: Fraction
 
 
 def find_sequence(path: str | Path) -> ImageSequence:
@@ -126,8 +133,12 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
                 f"{paths[name]} is {samples} texels wide, the displacement {sizes[_MOVING]}: "
                 "bake all maps with one resolution"
             )
-    images = {name: _image(path) for name, path in paths.items()}
-    return LoadedSequence(images, sizes[_MOVING], _frames_per_second(paths[_MOVING]))
+    early = [frame for frame in sequence.frames if frame < 0]
+    later = [frame for frame in sequence.frames if frame >= 0]
+    # where all frames are early ones, the others are never read
+    images = {name: _image(sequence.path((later or early)[0], name)) for name in maps}
+    early_images = {name: _image(sequence.path(early[0], name)) for name in maps if early}
+    return LoadedSequence(images, early_images, sizes[_MOVING], *_timing(paths[_MOVING]))
 
 
 def baked_frames(settings: OceanSettings) -> tuple[int, ...]:
@@ -137,17 +148,26 @@ def baked_frames(settings: OceanSettings) -> tuple[int, ...]:
     return tuple(range(settings.sequence_first, settings.sequence_last + 1))
 
 
-def shown_frame(settings: OceanSettings, frame: int) -> int:
-    """The frame whose files an ocean shows at a frame: the last one before it where it was not baked."""
-    return held_frame(baked_frames(settings), frame)
+def shown_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> int:
+    """The frame whose files an ocean shows at a frame of the scene: the last baked one up to it,
+    else the first.
+
+    Nodes choose the file by themselves, alike: see `nodes.shown_frame`.
+    """
+    return held_frame(baked_frames(settings), _wanted_frame(settings, scene, frame))
 
 
-def unbaked_frames(settings: OceanSettings, frames: Iterable[int]) -> tuple[int, ...]:
-    """Those of some frames that an ocean's sequence has not; none of a live ocean."""
+def unbaked_frames(settings: OceanSettings, scene: bpy.types.Scene, frames: Iterable[int]) -> tuple[int, ...]:
+    """Those of some frames of the scene that an ocean's sequence has not; none of a live ocean."""
     if settings.source != "SEQUENCE":
         return ()
     baked = set(baked_frames(settings))
-    return tuple(frame for frame in frames if frame not in baked)
+    return tuple(frame for frame in frames if _wanted_frame(settings, scene, frame) not in baked)
+
+
+def _wanted_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> int:
+    """The frame of the bake at a frame of the scene: the same one, unless Time Stretching changed since."""
+    return math.floor(frame * Fraction(settings.sequence_stretch or 1) / time_stretch(scene))
 
 
 # asked on every frame; a long list takes milliseconds
@@ -193,12 +213,13 @@ def _image(path: Path) -> bpy.types.Image:
     return image
 
 
-def _frames_per_second(path: Path) -> Fraction | None:
+def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
+    """Frames per second of a file's shot, and its stretch."""
     try:
-        _, metadata = read_image(path)
-        return Fraction(metadata["parameters"]["timing"]["fps"])
-    except (ExrError, KeyError, TypeError, ValueError):  # a file that somebody else made
-        return None
+        timing = Timing(**read_image(path)[1]["parameters"]["timing"])
+        return timing.fps, timing.stretch
+    except (ExrError, KeyError, TypeError, ParameterError):  # a file that somebody else made
+        return None, Fraction(1)
 
 
 def _shows(image: bpy.types.Image, path: Path) -> bool:

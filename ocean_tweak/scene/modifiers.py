@@ -17,6 +17,7 @@ from ..nodes.grid import GRID
 from ..nodes.modifier_inputs import all_inputs, set_inputs
 from ..nodes.names import MAP_INPUTS, TEXTURE_COORDINATES
 from ..nodes.ocean import ocean_group
+from ..nodes.shown_frame import baked_text
 from ..nodes.versioned import is_of_kind, node_group
 from .grid_mesh import Grid
 from .textures import assign, show
@@ -50,6 +51,8 @@ class Shown:
     scale : Blender units in a metre
     velocity_scale : Blender units per second in a metre per second of the velocity image
     warn : whether frames without a file get a warning
+    early_images : by map, of a sequence's frames before 0
+    files_per_frame : files of a sequence in a frame of the animation
     """
 
     images: Images | None
@@ -60,11 +63,23 @@ class Shown:
     scale: float
     velocity_scale: float
     warn: bool
+    early_images: Images | None = None
+    files_per_frame: float = 1.0
 
     @property
     def render_is_alike(self) -> bool:
         """Whether a render reads the same images, on its own grid."""
         return self.render_images == self.images
+
+    @property
+    def suits_displace(self) -> bool:
+        """Whether a Displace modifier can show it: of a sequence it knows an offset and a length, and counts
+        Blender's frames upwards from 0."""
+        frames = self.frames
+        if frames is None:
+            return True
+        is_whole = 1 < len(frames) == frames[-1] - frames[0] + 1
+        return is_whole and frames[0] >= 0 and self.files_per_frame == 1.0
 
 
 @dataclass(frozen=True)
@@ -138,7 +153,10 @@ def _sea_inputs(shown: Shown) -> dict[str, Any]:
         "Resolution": shown.grid.samples,
         "First Frame": frames[0],
         "Last Frame": frames[-1],
+        "Baked Frames": baked_text(frames),
+        "Files per Frame": shown.files_per_frame,
         **_image_inputs(shown.images),
+        **_early_image_inputs(shown.early_images),
     }
 
 
@@ -153,6 +171,10 @@ def _render_inputs(shown: Shown) -> dict[str, Any]:
 
 def _image_inputs(images: Images | None) -> dict[str, bpy.types.Image | None]:
     return {socket: (images or {}).get(name) for name, socket in MAP_INPUTS.items()}
+
+
+def _early_image_inputs(images: Images | None) -> dict[str, bpy.types.Image | None]:
+    return {f"{socket} Before 0": image for socket, image in _image_inputs(images).items()}
 
 
 def _grid_inputs(grid: Grid) -> dict[str, Any]:

@@ -92,8 +92,10 @@ def use_live(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
 def _set_sequence(settings: OceanSettings, sequence: ImageSequence, baked: LoadedSequence) -> None:
     for name in MAPS:
         setattr(settings.sequence_maps, name, baked.images.get(name))
+        setattr(settings.early_maps, name, baked.early_images.get(name))
     settings.sequence_samples = baked.samples
     settings.sequence_fps = str(baked.fps) if baked.fps is not None else ""
+    settings.sequence_stretch = str(baked.stretch)
     settings.sequence_frames = format_frames(sequence.frames)
 
 

@@ -15,7 +15,7 @@ from .animated import clock_of
 from .grid_mesh import Grid
 from .maps import wanted_maps
 from .settings import OceanObjectError, OceanSettings
-from .units import frame_rate, frame_with_subframe, metres_per_unit
+from .units import frame_rate, frame_with_subframe, metres_per_unit, time_stretch
 
 #: samples along each side of the surface that is shown while a parameter is dragged
 COARSE = 128
@@ -107,12 +107,13 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
 def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> float:
     """Blender units per second of the scene in a metre per second of the sea.
 
-    A sequence shows one file a frame, whatever the scene's frame rate: then it plays faster or slower than
-    it was baked.
+    A sequence shows its files by the scene's frames, whatever frame rate and stretch of time it was baked
+    with: then it plays faster or slower than it was baked.
     """
     if settings.source == "LIVE" or not settings.sequence_fps:
         return plan.scale
-    return float(frame_rate(scene) / Fraction(settings.sequence_fps) / plan.metres)
+    played = Fraction(settings.sequence_stretch or 1) / time_stretch(scene)
+    return float(played * frame_rate(scene) / Fraction(settings.sequence_fps) / plan.metres)
 
 
 def _check(grid: Grid) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from fractions import Fraction
 
 import bpy
 import numpy as np
@@ -130,10 +131,11 @@ def refresh_render(
 def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Keep for the panel which file of the present frame is not there."""
     settings = settings_of(item)
-    maps, files = settings.sequence_maps, ""
+    files = ""
     if settings.source == "SEQUENCE":
+        frame = image_sequence.shown_frame(settings, scene, scene.frame_current)
+        maps = settings.early_maps if frame < 0 else settings.sequence_maps
         images = [getattr(maps, name) for name in MAPS]
-        frame = image_sequence.shown_frame(settings, scene.frame_current)
         files = next(filter(None, (image_sequence.missing_file(image, frame) for image in images)), "")
     set_changed(settings, missing_file=files)
 
@@ -224,8 +226,10 @@ def _refresh_live(
 def _refresh_baked(
     item: bpy.types.Object, settings: OceanSettings, plan: Plan, scene: bpy.types.Scene
 ) -> None:
-    present = {name: getattr(settings.sequence_maps, name) for name in plan.maps}
-    images = {name: image for name, image in present.items() if image is not None}
+    images, early_images = (
+        {name: getattr(maps, name) for name in plan.maps if getattr(maps, name) is not None}
+        for maps in (settings.sequence_maps, settings.early_maps)
+    )
     if "disp" not in images:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
     _refresh_mesh(item, plan.viewport)
@@ -242,6 +246,8 @@ def _refresh_baked(
             scale=plan.scale,
             velocity_scale=velocity_scale(settings, plan, scene),
             warn=settings.out_of_range == "WARN",
+            early_images=early_images,
+            files_per_frame=float(Fraction(settings.sequence_stretch or 1)),
         ),
     )
 
@@ -310,7 +316,7 @@ def _refresh_mesh(item: bpy.types.Object, grid: Grid) -> None:
 
 
 def _refresh_modifiers(item: bpy.types.Object, settings: OceanSettings, shown: Shown) -> None:
-    if settings.method == "NODES":
+    if settings.method == "NODES" or not shown.suits_displace:
         modifiers.apply_nodes(item, Textures(settings.texture, settings.render_texture), shown)
         return
     ownership.own_texture(item, "texture", item.name)

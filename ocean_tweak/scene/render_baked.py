@@ -15,12 +15,13 @@ import importlib
 import json
 import re
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import bpy
 
 _FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel)\.[^.]*\.exr")
-_RANGE = re.compile(r"(-?\d+)(?:-(-?\d+)(?::(\d+))?)?")
+_RANGE = re.compile(r"(-?\d+)(?:-(-?\d+)(?:[x:](\d+))?)?")
 
 
 class RenderError(RuntimeError):
@@ -42,9 +43,23 @@ class Bake:
                 f"{cache / home} holds no bake v...-{hash8}: bake the sea, or write the job anew"
             )
         self.folder = folders[0].resolve()
+        try:
+            shot = json.loads((self.folder / "bake.json").read_text(encoding="utf-8"))["shot"]
+            self.domain_size = float(shot["domain_size"])
+            self.stretch = Fraction(shot["timing"].get("stretch", 1))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, ZeroDivisionError) as error:
+            raise RenderError(f"{self.folder / 'bake.json'} cannot be read: {error!r}") from error
 
     def check(self, frames: list[int]) -> None:
-        """Raise RenderError unless all frames are there: Blender would show a flat sea."""
+        """Raise RenderError unless all frames are there, with the scene's Time Stretching: Blender would show
+        a flat sea, or other frames."""
+        render = bpy.context.scene.render
+        stretch = Fraction(render.frame_map_new, render.frame_map_old)
+        if stretch != self.stretch:
+            raise RenderError(
+                f"Time Stretching, new / old, is {stretch} in {bpy.data.filepath} and {self.stretch} in the "
+                f"bake {self.folder}: give both the same"
+            )
         for frame in frames:
             # 0007, -007, 12345
             path = self.folder / f"{self.name}_disp.{frame:04d}.exr"
@@ -90,6 +105,9 @@ def frame_ranges(text: str) -> list[range]:
             print(f"render_baked: --frames {text}: {part!r} is no range", file=sys.stderr)
             sys.exit(2)
         first, last, step = int(match[1]), int(match[2] or match[1]), int(match[3] or 1)
+        if last < first or step < 1:
+            print(f"render_baked: --frames {text}: {part!r} holds no frames", file=sys.stderr)
+            sys.exit(2)
         ranges.append(range(first, last + 1, step))
     return ranges
 
@@ -110,6 +128,7 @@ def show(bake: Bake, frames: list[int], alone: bool) -> None:
     for image in images:
         image.filepath = str(bake.folder / file_name(image))
         image.reload()
+    show_frames(images, frames)
     if not images:
         known = ", ".join(item.name for item in oceans) or "none that this Blender knows"
         raise RenderError(
@@ -130,7 +149,7 @@ def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
     ocean_object = importlib.import_module(f"{package}.scene.ocean_object")
     sequences = importlib.import_module(f"{package}.scene.image_sequence")
     scene = item.users_scene[0]
-    baked = json.loads((bake.folder / "bake.json").read_text(encoding="utf-8"))["shot"]["domain_size"]
+    baked = bake.domain_size
     own = item.ocean_tweak.to_parameters(scene).domain_size
     if abs(own - baked) > 1e-6 * baked:
         raise RenderError(
@@ -142,6 +161,60 @@ def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
     except ValueError as error:
         raise RenderError(f"{item.name}: {error}") from error
     print(f"{item.name} reads {bake.folder}", flush=True)
+
+
+def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:
+    """Let the modifiers that read images of a bake know its frames, which may be others than before.
+
+    Raises RenderError for frames before 0 that they have no image for.
+    """
+    early = {image for image in images if file_name(image).split(".")[-2].startswith("-")}
+    if min(frames) < 0 and not early:
+        raise RenderError(
+            f"frame {min(frames)}: {bpy.data.filepath} reads no frames before 0: let its ocean read a baked "
+            "sequence that has such"
+        )
+    first, last, baked = min(frames), max(frames), set(frames)
+    values = {
+        "First Frame": first,
+        "Last Frame": last,
+        "Baked Frames": "".join("1" if frame in baked else "0" for frame in range(last, first - 1, -1)),
+    }
+    modifiers = [modifier for item in bpy.data.objects for modifier in item.modifiers]
+    for modifier in modifiers:
+        if modifier.type != "NODES" or modifier.node_group is None:
+            continue
+        sockets = group_inputs(modifier.node_group)
+        given = [modifier_input(modifier, identifier) for identifier in sockets.values()]
+        if any(value in images for value in given if isinstance(value, bpy.types.Image)):
+            for name in values.keys() & sockets.keys():
+                modifier_input(modifier, sockets[name], values[name])
+            modifier.id_data.update_tag()
+    for texture in bpy.data.textures:
+        if getattr(texture, "image", None) in images:
+            user = texture.image_user
+            user.frame_start, user.frame_offset, user.frame_duration = first + 1, first, max(last - first, 1)
+            texture.update_tag()
+
+
+def group_inputs(group: bpy.types.NodeTree) -> dict[str, str]:
+    """Identifiers of a group's inputs by name, the geometry not among them."""
+    sockets = [socket for socket in group.interface.items_tree if getattr(socket, "in_out", "") == "INPUT"]
+    return {
+        socket.name: socket.identifier for socket in sockets if socket.socket_type != "NodeSocketGeometry"
+    }
+
+
+def modifier_input(modifier: bpy.types.NodesModifier, identifier: str, value: object = None) -> object:
+    """The value of an input, set before where one is given."""
+    if hasattr(modifier, "properties"):  # 5.x
+        socket = getattr(modifier.properties.inputs, identifier)
+        if value is not None:
+            socket.value = value
+        return socket.value
+    if value is not None:
+        modifier[identifier] = value
+    return modifier.get(identifier)
 
 
 def file_name(image: bpy.types.Image) -> str:
@@ -160,7 +233,8 @@ def render(ranges: list[range], pictures: Path, openjd: bool) -> None:
     scene = bpy.context.scene
     if scene.render.is_movie_format:
         raise RenderError(f"{scene.name} renders a movie: choose pictures, a farm makes each frame by itself")
-    scene.render.filepath = str(pictures.resolve() / f"{Path(bpy.data.filepath).stem}_####")
+    path = pictures.resolve() / f"{Path(bpy.data.filepath).stem}_####"
+    scene.render.filepath = str(path)
     total, done = sum(map(len, ranges)), 0
 
     def tell(*_: object) -> None:
@@ -171,8 +245,16 @@ def render(ranges: list[range], pictures: Path, openjd: bool) -> None:
 
     bpy.app.handlers.render_write.append(tell)
     for part in ranges:
-        scene.frame_start, scene.frame_end, scene.frame_step = part.start, part[-1], part.step
-        bpy.ops.render.render(animation=True)
+        # Blender renders no animation before frame 0
+        for frame in (frame for frame in part if frame < 0):
+            scene.frame_set(frame)
+            scene.render.filepath = scene.render.frame_path(frame=frame)
+            bpy.ops.render.render(write_still=True)
+            scene.render.filepath = str(path)
+        later = [frame for frame in part if frame >= 0]
+        if later:
+            scene.frame_start, scene.frame_end, scene.frame_step = later[0], later[-1], part.step
+            bpy.ops.render.render(animation=True)
 
 
 if __name__ == "__main__":

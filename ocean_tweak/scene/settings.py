@@ -16,7 +16,11 @@ import bpy
 from ..core import OceanParameters
 
 METHODS = {
-    "DISPLACE": ("Displace Modifier", "Displace modifiers move the mesh by images"),
+    "DISPLACE": (
+        "Displace Modifier",
+        "Displace modifiers move the mesh by images. Baked frames with gaps between them, before 0 or under "
+        "Time Stretching are nothing for them: those are moved by geometry nodes",
+    ),
     "NODES": ("Geometry Nodes", "A geometry nodes modifier moves the mesh. The fastest"),
 }
 SOURCES = {
@@ -112,7 +116,9 @@ class OceanSettings(Protocol):
     sequence_frames : the frames that were baked, as `format_frames` writes them
     sequence_first, sequence_last : the first and the last of them, in a file made before there were others
     sequence_samples : texels along each side
+    sequence_maps, early_maps : images of a bake's frames, and of those before 0
     sequence_fps : frames per second of the shot it was baked for, "24000/1001"; "" where it does not say
+    sequence_stretch : its frames in a frame of the animation, of Time Stretching; "" for 1
     out_of_range : a key of OUT_OF_RANGE
     viewport_resolution : the most samples along each side in the viewport
     mesh_resolution : quads along each side of one patch; 0 for as many as there are samples
@@ -137,11 +143,13 @@ class OceanSettings(Protocol):
     live_maps: MapImages
     render_maps: MapImages
     sequence_maps: MapImages
+    early_maps: MapImages
     sequence_frames: str
     sequence_first: int
     sequence_last: int
     sequence_samples: int
     sequence_fps: str
+    sequence_stretch: str
     out_of_range: str
     texture: bpy.types.Texture | None
     render_texture: bpy.types.Texture | None

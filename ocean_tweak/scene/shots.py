@@ -47,7 +47,9 @@ def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
     with settings.quiet():
         settings.use_ocean_time = OCEAN_TIME in samples
     first = shot.animation.first_frame if shot.animation is not None else 0
-    set_keys(item, first, {path: settings.blender_values(path, samples[path], scene) for path in samples})
+    set_keys(
+        item, scene, first, {path: settings.blender_values(path, samples[path], scene) for path in samples}
+    )
     if samples:
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 

@@ -31,6 +31,11 @@ def frame_rate(scene: bpy.types.Scene) -> Fraction:
     return Fraction(scene.render.fps) / shortest_decimal(scene.render.fps_base)
 
 
+def time_stretch(scene: bpy.types.Scene) -> Fraction:
+    """Frames of the scene in a frame of its animation, of Time Stretching: 2 is half the speed."""
+    return Fraction(scene.render.frame_map_new, scene.render.frame_map_old)
+
+
 def set_frame_rate(scene: bpy.types.Scene, fps: Fraction) -> None:
     """Set the scene's frame rate to a fraction, exactly where Blender can hold it."""
     for count in (round(fps), round(fps) + 1, fps.numerator):

@@ -27,15 +27,15 @@ from ..scene.settings import (
     VIEWPORT_RESOLUTION,
     OceanObjectError,
 )
-from ..scene.units import frame_rate, metres_per_unit
+from ..scene.units import frame_rate, metres_per_unit, time_stretch
 from . import layer_properties, mask_properties, parameter_properties, patch_properties
 from .changes import changed
 from .layer_properties import OCEAN_PG_layer
 from .patch_properties import OCEAN_PG_patch
 from .usd_properties import OCEAN_PG_usd
 
-# the frame rate is the scene's
-_FROM_SCENE = ("fps",)
+# frame rate and time stretching are the scene's
+_FROM_SCENE = ("fps", "stretch")
 # patches are always joined, on the samples that are rendered
 _FROM_RESOLUTION = ("joined",)
 
@@ -179,12 +179,14 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "live_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
         "render_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
         "sequence_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
+        "early_maps": PointerProperty(type=OCEAN_PG_maps, **_OVERRIDE),
         "texture": PointerProperty(type=bpy.types.Texture, **_HIDDEN),
         "sequence_frames": StringProperty(**_HIDDEN),
         "sequence_first": IntProperty(**_HIDDEN),
         "sequence_last": IntProperty(**_HIDDEN),
         "sequence_samples": IntProperty(**_HIDDEN),
         "sequence_fps": StringProperty(**_HIDDEN),
+        "sequence_stretch": StringProperty(**_HIDDEN),
         "error": StringProperty(**_HIDDEN),
         "missing_file": StringProperty(**_HIDDEN),
         "statistics": StringProperty(**_HIDDEN),
@@ -213,7 +215,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["patches"] = patch_properties.read(self.patches, metres)
         data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
-        data["timing"]["fps"] = str(frame_rate(scene))
+        data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
 

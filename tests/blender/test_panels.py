@@ -255,7 +255,8 @@ def test_every_parameter_can_be_reached(draw, item, core):
         core.PictureLayer, core.HeroWave, core.Patch,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
-    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "fps", "loop_duration", "joined", "mask"}
+    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "loop_duration", "joined", "mask"}
+    elsewhere |= {"fps", "stretch"}  # the scene's
     in_lists = {
         "wind_fields",
         "pictures",

@@ -67,7 +67,7 @@ def _outlook(parameters: OceanParameters, index: int, wave: HeroWave) -> HeroWav
     omega = float(dispersion.angular_frequency(k, parameters.dispersion, parameters.water))
     group_speed = float(dispersion.group_velocity(k, parameters.dispersion, parameters.water))
     return HeroWaveOutlook(
-        index, wave.time, timing.start_frame + wave.time * float(timing.fps), wave.x % size, wave.y % size,
+        index, wave.time, timing.frame(wave.time), wave.x % size, wave.y % size,
         wave.direction, wave.wavelength, 2.0 * math.pi / omega, wave.crest_height, omega / k, group_speed,
         size, tuple(_warnings(parameters, index, wave, group_speed)),
     )  # fmt: skip

@@ -150,15 +150,16 @@ def _rows(scene: bpy.types.Scene, values: dict[str, Any]) -> list[tuple[str, str
 
 
 def _object_warnings(context: bpy.types.Context) -> list[str]:
-    item, frame = context.active_object, context.scene.frame_current
+    item, scene = context.active_object, context.scene
+    frame = scene.frame_current
     settings = active_settings(context)
     warnings = []
     if any(abs(factor - 1.0) > 1e-5 for factor in item.matrix_world.to_scale()):
         warnings.append(
             "The object is scaled, so its waves are too. Set its scale to 1 and change the domain size"
         )
-    if settings.out_of_range == "WARN" and unbaked_frames(settings, (frame,)):
-        warnings.append(f"Frame {frame} has no file: frame {shown_frame(settings, frame)} is held")
+    if settings.out_of_range == "WARN" and unbaked_frames(settings, scene, (frame,)):
+        warnings.append(f"Frame {frame} has no file: frame {shown_frame(settings, scene, frame)} is held")
     if settings.source == "SEQUENCE" and cache_place.is_left_behind(item):
         warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
     return warnings
