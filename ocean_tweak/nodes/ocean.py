@@ -44,7 +44,7 @@ _LEAST_UPWARDS = 0.01
 _SEA_INPUTS = (
     Plug("Use Attributes", "NodeSocketBool", False, "Read the mesh's attributes instead of the images"),
     Plug("Move", "NodeSocketBool", True, "Move the mesh; otherwise only write attributes"),
-    *(Plug(*plug) for plug in SCALE_INPUTS),
+    *SCALE_INPUTS,
     Plug(
         "Warn Out of Range", "NodeSocketBool", False,
         "Show a warning at frames that have no file. The nearest file is held either way",
@@ -68,8 +68,8 @@ _GRID_PANEL = Panel(
 _PATCH_INPUTS = (
     *IMAGE_INPUTS,
     *EARLY_IMAGE_INPUTS,
-    ("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch that repeats, in Blender units"),
-    ("Resolution", "NodeSocketInt", 512, "Samples along each side of the images"),
+    Plug("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch that repeats, in Blender units"),
+    Plug("Resolution", "NodeSocketInt", 512, "Samples along each side of the images"),
     *FRAME_INPUTS,
 )
 
@@ -106,7 +106,7 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
     panels = (
         Panel(
             numbered("Patch", patch),
-            tuple((numbered(name, patch), *rest) for name, *rest in _PATCH_INPUTS),
+            tuple(plug._replace(name=numbered(plug.name, patch)) for plug in _PATCH_INPUTS),
         )
         for patch in range(1, patches + 1)
     )

@@ -11,28 +11,26 @@ from .versioned import GroupKind
 
 #: the images' inputs: name, socket type, default, description
 IMAGE_INPUTS = (
-    ("Displacement", "NodeSocketImage", None, "Displacement in metres: red x, green y, blue z"),
-    ("Foam", "NodeSocketImage", None, "Red foam from 0 to 1, green how far the surface is squeezed"),
-    ("Normal", "NodeSocketImage", None, "Normals of the surface in object space"),
-    ("Velocity", "NodeSocketImage", None, "Velocity in metres per second"),
+    Plug("Displacement", "NodeSocketImage", None, "Displacement in metres: red x, green y, blue z"),
+    Plug("Foam", "NodeSocketImage", None, "Red foam from 0 to 1, green how far the surface is squeezed"),
+    Plug("Normal", "NodeSocketImage", None, "Normals of the surface in object space"),
+    Plug("Velocity", "NodeSocketImage", None, "Velocity in metres per second"),
 )
 
 #: the images of frames before 0: Blender counts the files of a sequence upwards from 0
 EARLY_IMAGE_INPUTS = tuple(
-    Plug(
-        f"{name} Before 0",
-        kind,
-        default,
-        "The same at frames before 0: its files end in -001.exr, -002.exr …",
+    plug._replace(
+        name=f"{plug.name} Before 0",
+        description="The same at frames before 0: its files end in -001.exr, -002.exr …",
         hidden=True,
     )
-    for name, kind, default, _ in IMAGE_INPUTS
+    for plug in IMAGE_INPUTS
 )
 
 #: those that make Blender units of metres
 SCALE_INPUTS = (
-    ("Scale", "NodeSocketFloat", 1.0, "Blender units in a metre"),
-    (
+    Plug("Scale", "NodeSocketFloat", 1.0, "Blender units in a metre"),
+    Plug(
         "Velocity Scale", "NodeSocketFloat", 1.0,
         "Blender units per second of the scene in a metre per second of the velocity image",
     ),
@@ -55,8 +53,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     inputs = (
         *IMAGE_INPUTS,
         *EARLY_IMAGE_INPUTS,
-        ("Coordinates", "NodeSocketVector", None, "Texture coordinates: 0 to 1 is one patch"),
-        ("Frame", "NodeSocketInt", 1, "File of the image sequences"),
+        Plug("Coordinates", "NodeSocketVector", None, "Texture coordinates: 0 to 1 is one patch"),
+        Plug("Frame", "NodeSocketInt", 1, "File of the image sequences"),
         *SCALE_INPUTS,
     )
     build = Builder(tree, inputs, _OUTPUTS)

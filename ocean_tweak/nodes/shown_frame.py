@@ -12,8 +12,8 @@ from .versioned import GroupKind
 
 #: name, socket type, default, description
 FRAME_INPUTS = (
-    ("First Frame", "NodeSocketInt", 1, "First file of the image sequence; held before it"),
-    ("Last Frame", "NodeSocketInt", 1_048_574, "Last file of the image sequence; held after it"),
+    Plug("First Frame", "NodeSocketInt", 1, "First file of the image sequence; held before it"),
+    Plug("Last Frame", "NodeSocketInt", 1_048_574, "Last file of the image sequence; held after it"),
     Plug(
         "Baked Frames", "NodeSocketString", "",
         "Which frames have a file, the last one first: 1 for one that has, 0 for one that has none and holds "
