@@ -217,17 +217,36 @@ def read_header(path: Path) -> dict[str, Any]:
     return _header(path)[0]
 
 
+def read_size(path: Path) -> tuple[int, int]:
+    """Rows and columns of any EXR image, from its header. Raises ExrError."""
+    return _size(_raw_header(path))
+
+
 def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
-    """The metadata, and rows and columns."""
+    """The metadata of one of our images, and rows and columns. Raises ExrError."""
+    header = _raw_header(path)
+    try:
+        metadata = json.loads(header[METADATA_ATTRIBUTE])
+    except _UNREADABLE as error:
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
+    if not isinstance(metadata, dict) or header["type"] != load_openexr().scanlineimage:
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak")
+    return metadata, _size(header)
+
+
+def _raw_header(path: Path) -> dict[str, Any]:
     openexr = load_openexr()
     try:
         with path.open("rb") as stream, openexr.File(stream, header_only=True) as file:
-            header = file.header()
-            kind, (low, high) = header["type"], header["dataWindow"]
-            columns, rows = (int(end) - int(start) + 1 for start, end in zip(low, high, strict=True))
-            metadata = json.loads(header[METADATA_ATTRIBUTE])
+            header = dict(file.header())  # the file empties its own when it is closed
     except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
-    if not isinstance(metadata, dict) or kind != openexr.scanlineimage:
+    if not {"type", "dataWindow"} <= header.keys():
         raise ExrError(f"{path}: not a readable image of Ocean Tweak")
-    return metadata, (rows, columns)
+    return header
+
+
+def _size(header: dict[str, Any]) -> tuple[int, int]:
+    low, high = header["dataWindow"]
+    columns, rows = (int(end) - int(start) + 1 for start, end in zip(low, high, strict=True))
+    return rows, columns

@@ -15,7 +15,7 @@ import bpy
 
 from ..core import ParameterError, Timing
 from ..core.frames import format_frames, frame_label, held_frame, parse_frames
-from ..export.exr import ExrError, read_image
+from ..export.exr import ExrError, read_header, read_size
 from .live_image import mark_as_data
 from .maps import MAPS
 from .settings import OceanObjectError, OceanSettings
@@ -190,13 +190,12 @@ def missing_file(image: bpy.types.Image | None, frame: int) -> str:
 
 def _samples(path: Path) -> int:
     """Texels along each side of an image."""
-    # as a sequence, Blender tells the size of whichever file it read last, or none
-    image = bpy.data.images.load(str(path), check_existing=False)
-    width, height = image.size
-    bpy.data.images.remove(image)
-    if width != height or width == 0:
-        problem = f"is {width} x {height} texels, not square" if width else "cannot be read as an image"
-        raise SequenceError(f"{path} {problem}")
+    try:
+        height, width = read_size(path)
+    except ExrError:
+        raise SequenceError(f"{path} cannot be read as an EXR image") from None
+    if width != height:
+        raise SequenceError(f"{path} is {width} x {height} texels, not square")
     return width
 
 
@@ -216,7 +215,7 @@ def _image(path: Path) -> bpy.types.Image:
 def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
     """Frames per second of a file's shot, and its stretch."""
     try:
-        timing = Timing(**read_image(path)[1]["parameters"]["timing"])
+        timing = Timing(**read_header(path)["parameters"]["timing"])
         return timing.fps, timing.stretch
     except (ExrError, KeyError, TypeError, ParameterError):  # a file that somebody else made
         return None, Fraction(1)

@@ -11,7 +11,7 @@ from bpy_extras.io_utils import ImportHelper
 from ..core import OceanParameters, ParameterError
 from ..core.frames import format_frames
 from ..export.cache.job import CacheError, read_job
-from ..export.exr import ExrError, read_image
+from ..export.exr import ExrError, read_header
 from ..scene import ocean_object
 from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
 from ..scene.settings import settings_of
@@ -70,7 +70,7 @@ class OCEAN_OT_use_live(OfActiveOcean, bpy.types.Operator):
 
 def _baked_parameters(sequence: ImageSequence) -> OceanParameters:
     path = sequence.path(sequence.frames[0])
-    _, metadata = read_image(path)
+    metadata = read_header(path)
     if "parameters" not in metadata:
         raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
     told = metadata["parameters"]
