@@ -90,6 +90,27 @@ def test_settings_are_of_kinds_that_flamenco_knows(
     assert len(list(shot.pictures.glob("shot_000?.exr"))) == 3
 
 
+def test_paths_and_names_stay_as_they_are(compile_job: Callable[..., dict[str, Any]], tmp_path: Path) -> None:
+    """Whatever they hold: names of other settings, quotes, ends of scripts, or a minus at the front."""
+    seas = {"-<cache>\u2028": Sea(SeaOfShot(OceanParameters(resolution=32)), None, (1,))}
+    blend = tmp_path / "'\"\\ <script> é海 `${x}`.blend"
+    blend.touch()
+    cache, pictures = tmp_path / "<pictures>$&<frames></script>", tmp_path / "<cache>"
+    arguments = ["job", "--form", "flamenco", "--out", str(tmp_path / "<job_folder>"), "--blend", str(blend)]
+    assert main([*arguments, f"--cache={cache}", f"--pictures={pictures}"], lambda: seas) == 0
+    (script,) = (tmp_path / "<job_folder>").glob("ocean_tweak_*.js")
+    assert script.name.isascii()
+    job = compile_job(tmp_path / "<job_folder>", blendfile=str(blend))
+    tasks = {task["name"].partition("-")[0]: task["commands"][0]["parameters"] for task in job["tasks"]}
+    for name in ("bake", "verify"):
+        assert f"--out={cache}" in tasks[name]["args"]
+        assert "--name=-_cache_" in tasks[name]["args"]
+        assert f"--params={tmp_path}/<job_folder>/seas/-_cache_.json" in tasks[name]["args"]
+    assert f"--cache={cache}" in tasks["render"]["args"]
+    assert f"--pictures={pictures}" in tasks["render"]["args"]
+    assert tasks["render"]["blendfile"] == str(blend)
+
+
 def run_as_worker(command: dict[str, Any], blender: Path, run: Run) -> subprocess.CompletedProcess[str]:
     """As Flamenco's worker does it, with the manager's variables filled in."""
     parameters = command["parameters"]

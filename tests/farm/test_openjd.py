@@ -92,6 +92,22 @@ def test_oceans_of_a_file_are_baked_side_by_side(openjd: Run, tmp_path: Path) ->
     assert openjd("check", out / "template.json").returncode == 0
 
 
+NAMES = ["{{Param.Nothing}}", "a{{b", "a}}b{{{{", "x" * 200, "a\nb\u2028c\x1b[31m", "é海", '"\\<script>']
+
+
+@pytest.mark.parametrize("stem", NAMES)
+def test_any_name_of_a_file_makes_a_job(openjd: Run, tmp_path: Path, stem: str) -> None:
+    seas = {name: Sea(SeaOfShot(OceanParameters(resolution=32)), None, (1,)) for name in ("A", "{{B}}")}
+    blend = tmp_path / f"{stem}.blend"
+    blend.touch()
+    arguments = ["job", "--frames", "1-2", "--blend", str(blend), "--out", str(tmp_path / "job")]
+    assert main(arguments, lambda: seas) == 0
+    template = tmp_path / "job" / "template.json"
+    checked = openjd("check", template)
+    assert checked.returncode == 0, checked.stdout
+    assert 1 <= len(json.loads(template.read_text())["name"]) <= 128
+
+
 def test_deadline_cloud_reads_the_bundle(bundle: Path, run: Run, shot: Shot) -> None:
     answer = run(environments.program("farm", "deadline"), "bundle", "info", bundle)
     assert answer.returncode == 0, answer.stdout
@@ -215,6 +231,13 @@ def test_a_live_ocean_is_rendered_from_its_bake(
         (["--frames", "1-2000", "--chunk", "1", "--plain-ranges"], "2000 tasks in a step: at most 1024"),
         (["--frames", "1", "--blend", "absent.blend"], "--blend absent.blend: is no file"),
         (["--frames", "1", "--pictures", "x"], "--pictures: there are none without --blend"),
+        (
+            ["--frames", ",".join(str(number**2) for number in range(300))],
+            "write them out with --plain-ranges",
+        ),
+        (["--frames", "1", "--cache", "/" + 1030 * "x"], "1031 characters; a farm's job holds 1024"),
+        (["--frames", "1", "--cache", "\udce4"], "is no Unicode text"),
+        (["--frames", "1", "--python", ""], "--python and --blender: say how"),
         (["--frames", "1", "--chunk", "0"], "'0' must be a whole number from 1"),
         (["--frames=-1", "--form", "flamenco"], "frame -1: Flamenco knows no negative frames"),
         (["--frames", "1", "--form", "flamenco", "--plain-ranges"], "divides frames itself"),

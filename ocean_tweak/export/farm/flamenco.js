@@ -78,14 +78,14 @@ function addRenderTasks(job, verified) {
     });
 }
 
-// Puts this task's values where the arguments have <frames>, <all_frames>, <job_folder>, <cache> or <pictures>.
+// Puts arguments together: each is a list of texts, of which every second one names a value of this task.
 function filled(args, settings, frames) {
     const values = {
-        "<frames>": frames,
-        "<all_frames>": settings.frames,
-        "<job_folder>": settings.job_folder,
-        "<cache>": settings.cache,
-        "<pictures>": settings.pictures,
+        frames: frames,
+        all_frames: settings.frames,
+        job_folder: settings.job_folder,
+        cache: settings.cache,
+        pictures: settings.pictures,
     };
-    return args.map((arg) => Object.keys(values).reduce((text, key) => text.split(key).join(values[key]), arg));
+    return args.map((parts) => parts.map((text, index) => index % 2 ? values[text] : text).join(""));
 }

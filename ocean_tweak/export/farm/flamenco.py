@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.frames import format_frames
+from ..cache.job import uid_of
 from ..files import write_texts
 from .shot_job import (
     SEAS,
@@ -22,18 +23,38 @@ from .shot_job import (
 _SCRIPT = Path(__file__).with_name("flamenco.js")
 _PLACE = '"@SHOT@"'
 _RENDER_SCRIPT = "render_baked.py"
+#: around the name of a value; no name or path holds it
+_BORDER = "\0"
 
 
 def write(folder: Path, job: ShotJob) -> list[Path]:
     """Write the job type. Returns its files; raises ValueError for what Flamenco cannot run, or OSError."""
-    shot = json.dumps(_shot(folder, job), indent=4)
+    # also where the script is shown on a page, nothing in it ends the script
+    shot = json.dumps(_shot(folder, job), indent=4).replace("<", "\\u003c")
     texts = sea_files(folder, job)
     if job.render is not None:
         texts[folder / _RENDER_SCRIPT] = job.render.script
-    name = f"ocean_tweak_{re.sub(r'[^0-9A-Za-z]+', '_', job.name).lower()}.js"
-    texts[folder / name] = _SCRIPT.read_text(encoding="utf-8").replace(_PLACE, shot)
+    texts[folder / f"ocean_tweak_{_type_name(job.name)}.js"] = _SCRIPT.read_text(encoding="utf-8").replace(
+        _PLACE, shot
+    )
     (folder / SEAS).mkdir(parents=True, exist_ok=True)
     return write_texts(texts)
+
+
+def _type_name(name: str) -> str:
+    """What Flamenco calls the job type: the name in its alphabet, told apart where letters are lost."""
+    ours = re.sub(r"[^0-9A-Za-z]+", "_", name).lower()
+    return ours if name.isascii() else f"{ours.strip('_')}_{uid_of(name)}"
+
+
+def _value(name: str) -> str:
+    """A value that the script puts into an argument."""
+    return f"{_BORDER}{name}{_BORDER}"
+
+
+def _parts(arguments: list[str]) -> list[list[str]]:
+    """Arguments as the script takes them: texts, of which every second one names a value."""
+    return [argument.split(_BORDER) for argument in arguments]
 
 
 def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:
@@ -43,7 +64,7 @@ def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:
     if job.plain_ranges:
         raise ValueError("--plain-ranges: a Flamenco job type divides frames itself")
     folder = folder.absolute()
-    seas, cache = f"<job_folder>/{SEAS}", "<cache>"
+    seas, cache, frames = f"{_value('job_folder')}/{SEAS}", _value("cache"), _value("frames")
     return {
         "label": f"Ocean Tweak: {job.name}",
         "frames": format_frames(job.frames, step_sign=""),
@@ -55,8 +76,10 @@ def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:
         "seas": [
             {
                 "name": bake.name,
-                "bake": bake_arguments(job, bake, seas, cache, "<all_frames>", "<frames>", openjd=False),
-                "verify": verify_arguments(job, bake, seas, cache, "<frames>", openjd=False),
+                "bake": _parts(
+                    bake_arguments(job, bake, seas, cache, _value("all_frames"), frames, openjd=False)
+                ),
+                "verify": _parts(verify_arguments(job, bake, seas, cache, frames, openjd=False)),
             }
             for bake in job.bakes
         ],
@@ -67,9 +90,11 @@ def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:
 def _render(folder: Path, job: ShotJob) -> dict[str, Any] | None:
     if job.render is None:
         return None
-    script = render_arguments(job, "<cache>", "<frames>", "<pictures>", openjd=False)
+    cache, frames, pictures = map(_value, ("cache", "frames", "pictures"))
+    script = f"{_value('job_folder')}/{_RENDER_SCRIPT}"
+    arguments = render_arguments(job, cache, frames, pictures, openjd=False)
     return {
         "chunk": job.render.chunk,
         "pictures": str((job.render.pictures or folder / "pictures").absolute()),
-        "args": ["--python-exit-code", "1", "--python", f"<job_folder>/{_RENDER_SCRIPT}", "--", *script],
+        "args": _parts(["--python-exit-code", "1", "--python", script, "--", *arguments]),
     }

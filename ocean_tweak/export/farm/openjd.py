@@ -16,6 +16,7 @@ from ...core.frames import format_frames
 from ..cache.job import Job
 from ..files import write_texts
 from .shot_job import (
+    LONGEST_VALUE,
     SEAS,
     ShotJob,
     bake_arguments,
@@ -93,11 +94,17 @@ def _sea_parameters(job: ShotJob) -> list[_Data]:
 def _frame_parameters(job: ShotJob) -> list[_Data]:
     if job.plain_ranges:
         return []
+    text = _farm_frames(job)
+    if len(text) > LONGEST_VALUE:
+        raise ValueError(
+            f"scattered frames in {len(text)} characters: at most {LONGEST_VALUE}; "
+            "write them out with --plain-ranges"
+        )
     frames = {
         "name": "Frames",
         "type": "STRING",
         "minLength": 1,
-        "default": _farm_frames(job),
+        "default": text,
         "description": "Frames of the shot: 1-250, or 1-99:2, or 1,5,7-9",
         "userInterface": {"control": "LINE_EDIT", "label": "Frames", "groupLabel": "Shot"},
     }
@@ -217,6 +224,9 @@ def _tasks(job: ShotJob, size: int, size_parameter: str) -> _Data:
     ranges = chunks(job.frames, size)
     if len(ranges) > _MOST_RANGES:
         raise ValueError(f"{len(ranges)} tasks in a step: at most {_MOST_RANGES} can be written out")
+    longest = max(map(len, ranges))
+    if longest > LONGEST_VALUE:
+        raise ValueError(f"frames of a task in {longest} characters: at most {LONGEST_VALUE}; lower --chunk")
     return {"taskParameterDefinitions": [{"name": "Frames", "type": "STRING", "range": ranges}]}
 
 

@@ -6,6 +6,7 @@ The seas travel as JSON files beside the job, so a farm bakes without Blender an
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,8 @@ from ..cache.job import Job
 
 #: folder of the seas' parameters, in a job's own
 SEAS = "seas"
+#: characters of a value and of the job's name, in the strictest form of job
+LONGEST_VALUE, _LONGEST_NAME = 1024, 128
 
 #: what bakes → its arguments before those of the command line
 BAKERS = {
@@ -66,12 +69,38 @@ class ShotJob:
     render: Render | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "name", _shown(self.name))
+        render = (self.render.blend, self.render.pictures) if self.render is not None else ()
+        for text in (self.cache, *render, self.python, self.blender):
+            _check_text(str(text))
         between = [frame for frame in self.frames if not isinstance(frame, int)]
         if between:
             raise ValueError(f"frame {float(between[0])}: the tasks of a farm are whole frames")
         names = [bake.name for bake in self.bakes]
-        if len(set(names)) < len(names):
+        if len({name.casefold() for name in names}) < len(names):  # some disks tell no capitals apart
             raise ValueError(f"{', '.join(names)}: two seas of a job cannot have the same file names")
+
+
+def _shown(name: str) -> str:
+    """The job's name as every farm shows it: a line of at most so many characters, and no formula."""
+    line = "".join(letter if letter.isprintable() else " " for letter in name)
+    # OpenJD takes {{ }} for an expression
+    line = " ".join(re.sub(r"([{}])(?=\1)", r"\1 ", line).split()) or "shot"
+    return line if len(line) <= _LONGEST_NAME else f"{line[: _LONGEST_NAME - 1]}…"
+
+
+def _check_text(text: str) -> None:
+    """Raise ValueError for a path or a command that no job can hold."""
+    if not text:
+        raise ValueError("--python and --blender: say how the machines of the farm call these programs")
+    if len(text) > LONGEST_VALUE:
+        raise ValueError(
+            f"{text[:40]}…: has {len(text)} characters; a farm's job holds {LONGEST_VALUE} at most"
+        )
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{text!r}: is no Unicode text, which a farm's job is made of: rename it") from None
 
 
 def chunks(frames: Sequence[Frame], size: int) -> list[str]:
