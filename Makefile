@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-all test-core test-long test-window mutate lint bench bench-smoke build docs guide papers clean
+.PHONY: help setup demo test test-all test-core test-long test-window mutate same-seas lint bench bench-smoke build docs guide papers clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -39,6 +39,10 @@ guide:      ## follow docs/first-sea.md in a real Blender's window, and renew it
 mutate:     ## change each physical constant by 2 % and see which test notices (minutes; not part of `test`)
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.mutate
+
+same-seas:  ## whether the seas are those of the commit BASE, bit for bit
+	@$(PYTHON) -m tools.setup python-5.2
+	@$(VENV) -m tools.same_seas $(or $(BASE),HEAD)
 
 lint:       ## formatting, lint, types of the core, import layers; FIX=1 formats first
 	@$(PYTHON) -m tools.setup python-5.2
