@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 
 import bpy
 from bpy.app.handlers import persistent
@@ -12,6 +13,7 @@ from bpy.app.handlers import persistent
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
 from . import (
+    alarm,
     bake_process,
     evaluation,
     live_image,
@@ -38,7 +40,22 @@ _FOLLOWED = (
 _OWNER = object()
 
 
-@persistent
+def _loud(handler: Callable[..., None]) -> Callable[..., None]:
+    """A handler whose mistakes end a background render: Blender prints them and renders on."""
+
+    @persistent
+    @wraps(handler)
+    def run(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+        try:
+            handler(scene, depsgraph)
+        except Exception:
+            alarm.fail_render()
+            raise
+
+    return run
+
+
+@_loud
 def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """Show the frame that the scene is about to evaluate, sub-frame included."""
     for item in oceans_in(scene):
@@ -51,7 +68,7 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
                 refresh_patches(item, scene)
 
 
-@persistent
+@_loud
 def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
     for item in oceans_in(scene):
@@ -63,7 +80,7 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
             refresh_patches(item, scene, shown_settings(item, depsgraph))
 
 
-@persistent
+@_loud
 def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Give a render, or an export of what would be rendered, the samples of the render.
 
@@ -108,6 +125,18 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
         objects = settings.mask_objects()
         if library is None and objects and moved & {item, *objects}:
             settings.place_masks()
+
+
+@persistent
+def begin_render(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+    """The console hears all again that is wrong with a shot."""
+    alarm.render_begins()
+
+
+@persistent
+def end_render(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+    """A background render that failed ends here."""
+    alarm.render_ends()
 
 
 @persistent
@@ -159,6 +188,9 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),
+    ("render_init", begin_render),
+    ("render_complete", end_render),
+    ("render_cancel", end_render),
     ("load_post", refresh_after_load),
     ("blend_import_post", mend_after_import),
     ("undo_post", refresh_after_undo),
@@ -204,6 +236,7 @@ def unregister() -> None:
 
 
 def _forget_all() -> None:
+    alarm.forget_all()
     refinement.forget_all()
     evaluation.forget_all()
     live_image.forget_all()

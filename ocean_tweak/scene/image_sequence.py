@@ -176,6 +176,14 @@ def _parsed(text: str) -> tuple[int, ...]:
     return tuple(frame for frame in parse_frames(text) if isinstance(frame, int))
 
 
+def folder_of(settings: OceanSettings) -> Path | None:
+    """Where the files of an ocean's sequence are looked for; None where it has none."""
+    image = settings.sequence_maps.disp
+    if image is None or image.source != "SEQUENCE":
+        return None
+    return _absolute(bpy.path.abspath(image.filepath, library=image.library)).parent
+
+
 def missing_file(image: bpy.types.Image | None, frame: int) -> str:
     """The file that a sequence's image shows at a frame, where it is not there; "" otherwise."""
     if image is None:

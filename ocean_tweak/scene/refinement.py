@@ -28,7 +28,7 @@ from .refresh import (
     tell,
     waves_job,
 )
-from .settings import OceanSettings, all_oceans, settings_of
+from .settings import OceanSettings, all_oceans, scene_of, settings_of
 
 # s without a change after which all samples are shown
 PAUSE = 0.15
@@ -177,7 +177,7 @@ def _start_waves(oceans: dict[int, bpy.types.Object]) -> None:
         if due > now or uid in _outstanding.preparing:
             continue
         try:
-            job = waves_job(oceans[uid], _scene_of(oceans[uid]))
+            job = waves_job(oceans[uid], scene_of(oceans[uid]))
         except EXPECTED_ERRORS as error:
             del _outstanding.coarse[uid]
             tell(oceans[uid], error)
@@ -198,13 +198,13 @@ def _show_all_samples(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
 
 
 def _refresh(uid: int, item: bpy.types.Object) -> None:
-    _note_foam(uid, refresh_and_tell(item, _scene_of(item), statistics=False, patient=False))
+    _note_foam(uid, refresh_and_tell(item, scene_of(item), statistics=False, patient=False))
 
 
 def _start_foam(oceans: dict[int, bpy.types.Object]) -> None:
     for uid in _outstanding.foamless - _outstanding.coarse.keys() - _outstanding.foaming.keys():
         try:
-            job = foam_job(oceans[uid], _scene_of(oceans[uid]))
+            job = foam_job(oceans[uid], scene_of(oceans[uid]))
         except EXPECTED_ERRORS as error:
             _outstanding.foamless.discard(uid)
             tell(oceans[uid], error)
@@ -231,9 +231,9 @@ def _start_statistics(oceans: dict[int, bpy.types.Object]) -> None:
     for uid in _outstanding.uncounted - _outstanding.coarse.keys() - _outstanding.counting.keys():
         _outstanding.uncounted.discard(uid)
         item = oceans[uid]
-        if has_statistics(item, _scene_of(item)):
+        if has_statistics(item, scene_of(item)):
             continue
-        parameters = settings_of(item).to_parameters(_scene_of(item))
+        parameters = settings_of(item).to_parameters(scene_of(item))
         future = _outstanding.submit(partial(evaluation.computed_statistics, parameters))
         _outstanding.counting[uid] = (parameters, future)
 
@@ -252,11 +252,6 @@ def _take_statistics(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
             if uid not in _outstanding.uncounted:  # otherwise another sea was set meanwhile
                 set_changed(settings_of(oceans[uid]), statistics=text)
         yield uid
-
-
-def _scene_of(item: bpy.types.Object) -> bpy.types.Scene:
-    scene = bpy.context.scene
-    return scene if scene in item.users_scene else item.users_scene[0]
 
 
 def _redraw_panels() -> None:

@@ -6,12 +6,15 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 
 import bpy
 import numpy as np
 
 from ..core import ParameterError
+from ..core.frames import format_frames
 from . import (
+    alarm,
     evaluation,
     grid_mesh,
     image_sequence,
@@ -31,6 +34,8 @@ from .settings import OceanObjectError, OceanSettings, settings_of
 
 #: what a user can cause: shown with the object; anything else is a bug and raises
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
+
+_NO_SEQUENCE = "No image sequence is chosen: choose a baked one, or go back to live"
 
 # a render from the window refreshes oceans on its own thread, while the window may refresh them too
 _turn = threading.RLock()
@@ -87,6 +92,7 @@ def refresh(
             evaluation.keep_statistics(plan.parameters, text)
             set_changed(settings, statistics=text)
         set_changed(settings, error="")
+        alarm.is_well(item)
     return complete
 
 
@@ -129,15 +135,29 @@ def refresh_render(
 
 
 def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Keep for the panel which file of the present frame is not there."""
+    """Keep for the panel which file of the present frame is not there, and let the console hear it."""
     settings = settings_of(item)
-    files = ""
+    file = ""
     if settings.source == "SEQUENCE":
-        frame = image_sequence.shown_frame(settings, scene, scene.frame_current)
+        if settings.sequence_maps.disp is None:
+            alarm.failed(item, _NO_SEQUENCE)
+        present = scene.frame_current
+        frame = image_sequence.shown_frame(settings, scene, present)
         maps = settings.early_maps if frame < 0 else settings.sequence_maps
         images = [getattr(maps, name) for name in MAPS]
-        files = next(filter(None, (image_sequence.missing_file(image, frame) for image in images)), "")
-    set_changed(settings, missing_file=files)
+        file = next(filter(None, (image_sequence.missing_file(image, frame) for image in images)), "")
+        if file:
+            path = Path(file)
+            alarm.failed(
+                item, f"{path.name} is not in {path.parent}: bake this frame again or choose other files"
+            )
+        elif settings.out_of_range == "WARN" and image_sequence.unbaked_frames(settings, scene, (present,)):
+            folder, frames = image_sequence.folder_of(settings), image_sequence.baked_frames(settings)
+            alarm.warned(
+                item, "frames",
+                f"this frame was not baked, {frame} is held; {folder} has {format_frames(frames)}",
+            )  # fmt: skip
+    set_changed(settings, missing_file=file)
 
 
 def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
@@ -171,9 +191,10 @@ def set_changed(target: object, **values: object) -> None:
 
 
 def tell(item: bpy.types.Object, error: BaseException) -> None:
-    """Keep what is wrong for the panel."""
+    """Keep what is wrong for the panel, and let the console hear it."""
     text = str(error) or "Not enough memory for this resolution"
     set_changed(settings_of(item), error=text, statistics="")
+    alarm.failed(item, text)
 
 
 def _refresh_live(
@@ -231,7 +252,7 @@ def _refresh_baked(
         for maps in (settings.sequence_maps, settings.early_maps)
     )
     if "disp" not in images:
-        raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
+        raise SequenceError(_NO_SEQUENCE)
     _refresh_mesh(item, plan.viewport)
     vertex_attributes.remove(item.data)
     _refresh_modifiers(

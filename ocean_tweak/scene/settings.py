@@ -189,6 +189,12 @@ def settings_of(item: bpy.types.Object) -> OceanSettings:
         raise RuntimeError("Ocean Tweak is not enabled: call registration.register() first") from None
 
 
+def scene_of(item: bpy.types.Object) -> bpy.types.Scene:
+    """The scene whose units and frame an object has: the context's, unless it is in other ones only."""
+    scene, scenes = bpy.context.scene, item.users_scene
+    return scene if scene in scenes or not scenes else scenes[0]
+
+
 def is_ocean(item: bpy.types.Object | None) -> bool:
     """Whether an object was made as an ocean."""
     return item is not None and item.type == "MESH" and settings_of(item).is_ocean

@@ -4,9 +4,10 @@
 import bpy
 
 from ..scene.refinement import show
+from ..scene.settings import scene_of
 
 
-def changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+def changed(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Show the ocean whose settings hold this group."""
     item = group.id_data
     settings = item.ocean_tweak
@@ -14,6 +15,5 @@ def changed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
         return
     if settings.preset:
         settings.preset = ""
-    scenes = item.users_scene
-    if scenes:
-        show(item, context.scene if context.scene in scenes else scenes[0], dragged=True)
+    if item.users_scene:
+        show(item, scene_of(item), dragged=True)

@@ -31,7 +31,7 @@ from ..core import (
 )
 from ..core.plain_data import to_plain
 from ..scene import source_images, wind_recording
-from ..scene.settings import LAYER_KINDS
+from ..scene.settings import LAYER_KINDS, scene_of
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties
 from .changes import changed
@@ -50,9 +50,7 @@ SOURCES = {
 
 def _metres(layer: bpy.types.PropertyGroup) -> float:
     """Metres in a Blender unit of the layer's scene."""
-    scenes = layer.id_data.users_scene
-    scene = bpy.context.scene if bpy.context.scene in scenes or not scenes else scenes[0]
-    return float(metres_per_unit(scene))
+    return float(metres_per_unit(scene_of(layer.id_data)))
 
 
 def _fetch_in_km(layer: bpy.types.PropertyGroup) -> float:
@@ -131,7 +129,7 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
         "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
         # Blender has no property that is always shown in kilometres; this is the fetch itself
         "fetch_km": FloatProperty(
-            name="Fetch", min=0.001, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
+            name="Fetch", min=0.0, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
             get=_fetch_in_km, set=_set_fetch_in_km, options=set(),
             description="Distance of open water over which the wind has blown, in kilometres. "
             "Longer fetch: higher and longer waves, until the sea is fully developed",

@@ -20,7 +20,8 @@ import numpy as np
 
 from ..core.raster import Raster
 from ..core.shot import ANIMATED
-from ..scene.units import shortest_decimal
+from ..scene.settings import scene_of
+from ..scene.units import metres_per_unit, shortest_decimal
 
 _Field = dataclasses.Field[Any]
 _Update = Callable[[Any, bpy.types.Context], None]
@@ -36,7 +37,7 @@ _ANIMATED = {path.rpartition(".")[2] for path in ANIMATED}
 _ACRONYMS = {"TMA", "JONSWAP"}
 
 #: what sliders offer, where the allowed range is much wider than the useful one
-_SOFT_RANGES = {"swell": (0.0, 1.0), "choppiness": (0.0, 1.5), "gain": (0.0, 2.0), "wind_speed": (0.5, 50.0)}
+_SOFT_RANGES = {"swell": (0.0, 1.0), "choppiness": (0.0, 1.5), "gain": (0.0, 2.0), "wind_speed": (0.0, 50.0)}
 
 #: hundredths that a number moves a pixel while it is dragged; Blender has no more than 100
 _STEPS = {"m": 100, "m/s": 10}
@@ -112,7 +113,7 @@ def _property(field: _Field, update: _Update, moving: set[str]) -> Any:
     common = {
         "name": field.name.replace("_", " ").title(),
         "default": field.default,
-        "update": update,
+        "update": _limited(field, update) if _is_length(field) else update,
         "options": {"ANIMATABLE"} if field.name in moving else set(),
         "override": {"LIBRARY_OVERRIDABLE"},
     }
@@ -125,7 +126,7 @@ def _float_property(field: _Field, common: dict[str, Any]) -> Any:
     soft_low, soft_high = _SOFT_RANGES.get(field.name, (low, high))
     limits = {"min": low, "max": high, "soft_min": soft_low, "soft_max": soft_high}
     if _is_length(field):
-        # the range is in metres and the property in Blender units: the core says what is out of range
+        # the range is in metres and the property in Blender units: `_within` keeps to it
         least = 0.0 if low >= 0.0 else -_FLOAT32_MAX
         limits |= {"min": least, "max": _FLOAT32_MAX, "unit": _LENGTHS[meta["unit"]]}
     limits |= _SUBTYPES.get(meta["unit"], {})
@@ -194,4 +195,30 @@ def _exact_float(field: _Field, value: float, exact: object, metres: Fraction) -
         return exact
     if not math.isfinite(value):
         return value  # the core names it
-    return float(shortest_decimal(value) * _unit(field, metres))
+    return _within(field, float(shortest_decimal(value) * _unit(field, metres)))
+
+
+def _within(field: _Field, value: float) -> float:
+    """A length in metres, or the end of its range that it has passed, as Blender has it with other numbers.
+
+    A curve between two keys passes it easily.
+    """
+    if not _is_length(field):
+        return value
+    return min(max(value, field.metadata["minimum"]), field.metadata["maximum"])
+
+
+def _limited(field: _Field, update: _Update) -> _Update:
+    """An update before which a length that was set beyond its range becomes the range's end."""
+
+    def limited(group: Any, context: bpy.types.Context) -> None:
+        if not group.id_data.ocean_tweak.is_quiet:
+            value, metres = getattr(group, field.name), metres_per_unit(scene_of(group.id_data))
+            length = float(shortest_decimal(value) * metres) if math.isfinite(value) else value
+            end = _to_blender(field, _within(field, length), metres)
+            if np.float32(end) != np.float32(value) and math.isfinite(end):
+                setattr(group, field.name, end)  # which updates
+                return
+        update(group, context)
+
+    return limited

@@ -72,7 +72,7 @@ def test_random_edits_leave_no_exception(ocean, empty_scene, extension, patches,
             mesh.vertices.foreach_get("co", places)
             assert np.all(np.isfinite(places)), (prop.identifier, number)
     assert shown > edits // 3
-    assert told > 3
+    assert told > 0
     settings.from_parameters(extension("core").OceanParameters(resolution=32), empty_scene)
     assert not settings.error
 

@@ -149,11 +149,11 @@ def test_the_panel_says_that_it_is_not_all_yet(item, refinement, draw):  # noqa:
 
 
 def test_what_is_wrong_is_told_and_nothing_goes_on(item, refinement, core, monkeypatch):
-    item.ocean_tweak.water.depth = 0.0
-    assert "water.depth" in item.ocean_tweak.error
+    item.ocean_tweak.resolution = 33
+    assert "resolution = 33" in item.ocean_tweak.error
     assert run_until(refinement, lambda: not refinement.is_outstanding(item)) is None
     monkeypatch.setattr(core.Ocean, "statistics", lambda self: (_ for _ in ()).throw(MemoryError))
-    item.ocean_tweak.water.depth = 33.0
+    item.ocean_tweak.resolution = 34
     assert item.ocean_tweak.error == ""
     run_until(refinement, lambda: not refinement.is_outstanding(item))
     assert "memory" in item.ocean_tweak.error

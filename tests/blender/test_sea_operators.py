@@ -112,7 +112,7 @@ def test_undo_takes_the_conversion_back(blenders_ocean, window):
 
 
 def test_settings_that_are_no_sea_are_refused(blenders_ocean):
-    blenders_ocean.modifiers["Ocean"].wind_velocity = 0.0
-    with pytest.raises(RuntimeError, match="wind_speed"):
+    blenders_ocean.modifiers["Ocean"].depth = 0.0
+    with pytest.raises(RuntimeError, match="depth"):
         bpy.ops.ocean.convert()
     assert len(bpy.data.objects) == 1

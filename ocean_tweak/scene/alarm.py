@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What keeps an ocean from being shown is heard: on the console, and by the end of a background render.
+
+In a window the panel and the 3D view tell it too, and somebody looks. In the background nobody does: a render
+would go on and leave pictures of a sea that nobody made, so it ends before the picture is written, with exit
+code 3. Blender ends it as by Ctrl-C, so films are closed and placeholders removed.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import sys
+from dataclasses import dataclass, field
+
+import bpy
+
+from .settings import scene_of
+
+_log = logging.getLogger(__name__)
+
+#: of a background render that met a frame which cannot be shown
+EXIT_CODE = 3
+
+
+@dataclass
+class _Shot:
+    """What of the present shot is known.
+
+    said : what the console has heard: each thing once a shot
+    is_rendered : whether it is being rendered now
+    has_failed : whether this render met a frame that cannot be shown
+    """
+
+    said: set[tuple[int, str]] = field(default_factory=set)
+    is_rendered: bool = False
+    has_failed: bool = False
+
+
+_shot = _Shot()
+
+
+def failed(item: bpy.types.Object, text: str) -> None:
+    """The present frame of an ocean cannot be shown; a render in the background ends."""
+    # while a number is dragged, the console hears of its parameter once
+    _say(logging.ERROR, item, text.partition(" = ")[0], text)
+    fail_render(item)
+
+
+def warned(item: bpy.types.Object, subject: str, text: str) -> None:
+    """Something is not as it seems to be.
+
+    subject : of which the console hears once a shot, whatever the text
+    """
+    _say(logging.WARNING, item, subject, text)
+
+
+def is_well(item: bpy.types.Object) -> None:
+    """What was wrong is mended: if it comes back, it is said again."""
+    if not _shot.is_rendered:
+        _shot.said -= {entry for entry in _shot.said if entry[0] == item.session_uid}
+
+
+def fail_render(item: bpy.types.Object | None = None) -> None:
+    """End a background render, but for an ocean that is not in its pictures."""
+    if not (_shot.is_rendered and bpy.app.background) or _shot.has_failed:
+        return
+    if item is not None and not _is_rendered(item):
+        return
+    if not bpy.app.module:  # whose signals are those of the script that renders, and so is its exit code
+        _shot.has_failed = True
+        signal.raise_signal(signal.SIGINT)
+
+
+def render_begins() -> None:
+    """A shot of its own: all is said again."""
+    _shot.said.clear()
+    _shot.is_rendered, _shot.has_failed = True, False
+
+
+def render_ends() -> None:
+    """No more pictures are written. A background render that failed ends Blender here."""
+    _shot.is_rendered = False
+    if _shot.has_failed:
+        logging.shutdown()
+        for stream in (sys.stdout, sys.stderr):
+            if stream is not None:
+                stream.flush()
+        os._exit(EXIT_CODE)
+
+
+def forget_all() -> None:
+    """Another file is opened."""
+    _shot.said.clear()
+
+
+def _say(level: int, item: bpy.types.Object, subject: str, text: str) -> None:
+    entry = (item.session_uid, subject)
+    if entry not in _shot.said:
+        _shot.said.add(entry)
+        _log.log(level, "%s, frame %s: %s", item.name, scene_of(item).frame_current, text)
+
+
+def _is_rendered(item: bpy.types.Object) -> bool:
+    """Whether an ocean is in a picture of its scene, as far as its switches and collections say."""
+    scene = scene_of(item)
+    if item.hide_render:
+        return False
+    if item.name not in scene.collection.all_objects:
+        return True  # an instance shows it
+    return any(item.name in layer.objects for layer in scene.view_layers if layer.use)
