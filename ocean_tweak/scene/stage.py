@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything around an ocean that makes a picture: horizon, sky, sun, camera, render settings.
 
-What a scene has already stays, unless the caller says otherwise.
+What a scene has already stays, unless the caller says otherwise. What Blender's start-up file put into it and
+nobody has changed goes.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from ..core import OceanParameters, Timing, grid_sea
 from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
-from . import ocean_object, water_material
+from . import ocean_object, startup_file, water_material
 from .buoy import DIAMETER, new_buoy
 from .camera_surface import add_camera_surface
 from .floating import Ride, float_on
@@ -53,12 +54,14 @@ class Wishes:
 class Made:
     """What a scene got.
 
-    kept : what it had and kept, in words
+    kept : what it had and kept besides its camera, in words
+    replaced : names of the start-up file's objects, which are gone
     """
 
     ocean: bpy.types.Object
     camera: bpy.types.Object
     kept: tuple[str, ...]
+    replaced: tuple[str, ...]
 
 
 def build(
@@ -71,10 +74,13 @@ def build(
     if mood not in MOODS:
         raise ValueError(f"mood = {mood!r}: must be one of {', '.join(MOODS)}")
     chosen, target = MOODS[mood], collection or scene.collection
-    is_empty = not scene.objects
+    left = startup_file.untouched_objects(scene)
+    is_empty = len(left) == len(scene.objects)
     parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
     parameters = parameters.on_one_grid(parameters.resolution)  # as an ocean object shows patches
     ocean = _add_ocean(scene, parameters, target)
+    replaced = tuple(item.name for item in left)
+    startup_file.remove(left)
     material = water_material.water_material(chosen.water)
     water_material.set_air(material, chosen.visibility, chosen.sky().haze)
     water_material.assign(ocean, material)
@@ -90,7 +96,7 @@ def build(
         add_camera_surface(ocean, scene)
     if wishes.buoy:
         _add_buoy(scene, chosen, place, ocean, target)
-    return Made(ocean, camera, kept)
+    return Made(ocean, camera, kept, replaced)
 
 
 def _add_ocean(
@@ -199,8 +205,6 @@ def _set_up(
     kept = []
     if wishes.camera or scene.camera is None:
         scene.camera = camera
-    else:
-        kept.append(f"camera {scene.camera.name}")
     if wishes.world or is_plain(scene.world):
         sky = mood.sky()
         scene.world = new_world(f"{mood.label} Sky", sky)
@@ -228,8 +232,8 @@ def is_plain(world: bpy.types.World | None) -> bool:
     backgrounds = [node for node in world.node_tree.nodes if node.type == "BACKGROUND"]
     if len(world.node_tree.nodes) != 2 or len(backgrounds) != 1:
         return False
-    colour = backgrounds[0].inputs["Color"].default_value
-    return all(abs(part - _WORLD_GREY) < 1e-4 for part in colour[:3])
+    colour, strength = (backgrounds[0].inputs[name].default_value for name in ("Color", "Strength"))
+    return strength == 1.0 and all(abs(part - _WORLD_GREY) < 1e-4 for part in colour[:3])
 
 
 def set_engine(scene: bpy.types.Scene, engine: str) -> None:

@@ -20,7 +20,10 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
     """Add a sea with all that makes a picture of it."""
 
     bl_idname = "ocean.add_scene"
-    bl_description = "Add a sea with foam, water material, sky, sun, camera and a floating buoy"
+    bl_description = (
+        "Add a sea with foam, water material, sky, sun, camera and a floating buoy. The cube, the light and "
+        "the camera of Blender's own start-up file go, unless something of the scene was changed"
+    )
     bl_label = "Ocean Scene"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -72,13 +75,30 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         make_active(made.ocean, layer)
         if scene.camera == made.camera and isinstance(context.space_data, bpy.types.SpaceView3D):
             context.space_data.region_3d.view_perspective = "CAMERA"
-        said = translated("{mood}: {engine}, motion blur on").format(
-            mood=translated(MOODS[self.mood].label), engine=self.engine.title()
-        )
-        if made.kept:
-            said += "; " + translated("kept the scene's {list}").format(list=", ".join(made.kept))
-        self.report({"INFO"}, said)
+        self.report({"INFO"}, self._told(made, scene))
         return {"FINISHED"}
+
+    def _told(self, made: stage.Made, scene: bpy.types.Scene) -> str:
+        """What was made, what stayed and went, and how to see the sea where the scene looks elsewhere."""
+        parts = [
+            translated("{mood}: {engine}, motion blur on").format(
+                mood=translated(MOODS[self.mood].label), engine=self.engine.title()
+            )
+        ]
+        if made.replaced:
+            parts.append(
+                translated("the start-up file's {list} are gone").format(list=", ".join(made.replaced))
+            )
+        if scene.camera != made.camera:
+            parts.append(
+                translated(
+                    "the scene looks through {own}: to see the sea, select {new} and press Ctrl Numpad 0, "
+                    "or choose Replace Camera"
+                ).format(own=scene.camera.name, new=made.camera.name)
+            )
+        if made.kept:
+            parts.append(translated("kept the scene's {list}").format(list=", ".join(made.kept)))
+        return "; ".join(parts)
 
 
 def draw_add_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:

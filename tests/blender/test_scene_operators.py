@@ -20,6 +20,14 @@ def quick(extension, monkeypatch):
     return moods.MOODS
 
 
+@pytest.fixture
+def startup_scene(package):
+    """The scene of Blender's own start-up file."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    assert sorted(item.name for item in bpy.context.scene.objects) == ["Camera", "Cube", "Light"]
+    return bpy.context.scene
+
+
 def ocean_of(scene):
     return next(item for item in scene.objects if item.ocean_tweak.is_ocean)
 
@@ -121,6 +129,85 @@ def test_what_a_scene_has_stays(quick, empty_scene):
     assert empty_scene.camera != camera
     assert empty_scene.world.name == "Calm Sky"
     assert "My World" in bpy.data.worlds
+
+
+@pytest.mark.parametrize("gone", [(), ("Cube",), ("Camera", "Light")])
+def test_what_the_startup_file_brought_goes(quick, startup_scene, gone, capfd):
+    left = [name for name in ("Camera", "Cube", "Light") if name not in gone]
+    for name in gone:
+        bpy.data.objects.remove(bpy.data.objects[name])
+    bpy.ops.ocean.add_scene(mood="CALM", use_buoy=False)
+    assert not set(left) & {item.name for item in startup_scene.objects}
+    for name, blocks in (("Cube", bpy.data.meshes), ("Light", bpy.data.lights), ("Camera", bpy.data.cameras)):
+        assert (name in blocks) == (name in gone)  # what was there before without a user is not ours
+    assert startup_scene.camera.name == "Ocean Camera"
+    assert startup_scene.world.name == "Calm Sky"
+    assert startup_scene.frame_end == 240
+    (said,) = (line for line in capfd.readouterr().out.splitlines() if "the start-up file's" in line)
+    assert all((name in said.partition("the start-up file's")[2]) == (name in left) for name in left)
+
+
+def on_new_material(cube):
+    cube.data.materials[0] = bpy.data.materials.new("Mine")
+
+
+def on_red_material(cube):
+    nodes = cube.data.materials[0].node_tree.nodes
+    nodes["Principled BSDF"].inputs["Base Color"].default_value = (1.0, 0.0, 0.0, 1.0)
+
+
+TOUCHES = {
+    "moved cube": lambda o: setattr(o["Cube"], "location", (0.0, 0.0, 3.0)),
+    "scaled cube": lambda o: setattr(o["Cube"], "scale", (0.5, 0.5, 0.5)),
+    "renamed cube": lambda o: setattr(o["Cube"], "name", "Ship"),
+    "edited cube": lambda o: setattr(o["Cube"].data.vertices[0], "co", (1.0, 1.0, 2.0)),
+    "subdivided cube": lambda o: o["Cube"].modifiers.new("Smooth", "SUBSURF"),
+    "keyed cube": lambda o: o["Cube"].keyframe_insert("location", frame=1),
+    "cube of another material": lambda o: on_new_material(o["Cube"]),
+    "red cube": lambda o: on_red_material(o["Cube"]),
+    "moved camera": lambda o: setattr(o["Camera"], "location", (0.0, -5.0, 3.0)),
+    "turned camera": lambda o: setattr(o["Camera"], "rotation_euler", (1.2, 0.0, 0.8)),
+    "longer lens": lambda o: setattr(o["Camera"].data, "lens", 85.0),
+    "brighter light": lambda o: setattr(o["Light"].data, "energy", 500.0),
+    "another object": lambda o: bpy.ops.mesh.primitive_cone_add(),
+}
+
+
+def test_a_changed_scene_is_somebodys(extension, package):
+    untouched_objects = extension("scene.startup_file").untouched_objects
+    for name, touch in TOUCHES.items():
+        bpy.ops.wm.read_homefile(use_factory_startup=True)
+        scene = bpy.context.scene
+        assert len(untouched_objects(scene)) == 3
+        touch(scene.objects)
+        bpy.context.view_layer.update()
+        assert untouched_objects(scene) == [], name
+
+
+def test_what_somebody_changed_stays_and_the_remedy_is_said(quick, startup_scene, capfd):
+    startup_scene.objects["Cube"].location.z = 3.0
+    before = {item.name: np.array(item.matrix_basis) for item in startup_scene.objects}
+    bpy.ops.ocean.add_scene(mood="CALM", use_buoy=False)
+    for name, matrix in before.items():
+        np.testing.assert_array_equal(np.array(startup_scene.objects[name].matrix_basis), matrix)
+    assert startup_scene.camera.name == "Camera"
+    assert (
+        "the scene looks through Camera: to see the sea, select Ocean Camera and press Ctrl Numpad 0"
+        in capfd.readouterr().out
+    )
+
+
+def test_undo_brings_the_startup_file_back(quick, startup_scene, window):
+    with window.override():
+        bpy.ops.ed.undo_push(message="Before")
+        bpy.ops.ocean.add_scene(mood="CALM")
+        bpy.ops.ed.undo_push(message="Ocean Scene")
+        bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    assert sorted(item.name for item in scene.objects) == ["Camera", "Cube", "Light"]
+    assert scene.camera.name == "Camera"
+    assert [material.name for material in scene.objects["Cube"].data.materials] == ["Material"]
+    assert scene.world.name == "World"
 
 
 def test_a_scene_of_its_own_leaves_the_old_one_alone(quick, empty_scene):
