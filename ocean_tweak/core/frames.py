@@ -15,7 +15,8 @@ Frame = int | Fraction
 
 _NUMBER = r"-?\d{1,20}(?:\.\d{1,6})?"
 _RANGE = re.compile(rf"({_NUMBER})(?:-({_NUMBER})(?:[x:](\d{{1,20}}(?:\.\d{{1,6}})?))?)?")
-_MOST_FRAMES = 1_000_000
+#: that one range, list or bake may hold
+MOST_FRAMES = 1_000_000
 #: how far from 0 a frame may lie
 LARGEST_FRAME = 10**9
 
@@ -27,8 +28,8 @@ def parse_frames(text: str) -> tuple[Frame, ...]:
 
     Raises ParameterError.
     """
-    frames: set[Frame] = set()
     total = 0
+    parts: list[tuple[Fraction, Fraction, int]] = []
     for part in text.split(","):
         match = _RANGE.fullmatch(part.strip())
         if not match:
@@ -40,12 +41,22 @@ def parse_frames(text: str) -> tuple[Frame, ...]:
             raise ParameterError("frames", text, f"{part.strip()} holds no frames")
         count = int((last - first) // step) + 1
         total += count
-        if total > _MOST_FRAMES:
-            raise ParameterError("frames", text, f"must hold at most {_MOST_FRAMES} frames")
+        if total > MOST_FRAMES:
+            raise ParameterError("frames", text, f"must hold at most {MOST_FRAMES} frames")
         if max(abs(first), abs(last)) > LARGEST_FRAME:
             raise ParameterError("frames", text, f"must lie between -{LARGEST_FRAME} and {LARGEST_FRAME}")
-        frames.update(as_frame(first + index * step) for index in range(count))
-    return tuple(sorted(frames))
+        parts.append((first, step, count))
+    frames: set[Frame] = set()
+    for first, step, count in parts:  # only now: they are counted before they are made
+        frames.update(_series(first, step, count))
+    # as floats, in which frames of six decimals differ: fractions take seconds to compare
+    return tuple(sorted(frames, key=float))
+
+
+def _series(first: Fraction, step: Fraction, count: int) -> Iterable[Frame]:
+    if first.denominator == step.denominator == 1:
+        return range(int(first), int(first + count * step), int(step))
+    return (as_frame(first + index * step) for index in range(count))
 
 
 def as_frame(value: float | Fraction) -> Frame:

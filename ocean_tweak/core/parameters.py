@@ -21,6 +21,7 @@ from .hero_waves.parameters import HeroWave
 from .masks.parameters import Mask
 from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
+from .raster import check_numbers, numbers_in
 from .validation import Validated, choice, integer, nested, number, rational, switch
 from .wave_layer import WaveLayer
 from .wave_particles.bounds import check_bounds
@@ -314,6 +315,7 @@ class OceanParameters(Validated):
     @classmethod
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
+        check_numbers(numbers_in(data))
         return from_plain(cls, data)
 
     @classmethod

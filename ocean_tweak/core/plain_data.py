@@ -11,6 +11,7 @@ from typing import Any
 
 from .errors import ParameterError
 from .raster import Raster
+from .validation import check_count
 
 
 def parse_json(text: str) -> Any:
@@ -77,6 +78,8 @@ def from_plain(cls: type, data: object) -> Any:
     for key, value in data.items():
         if key not in fields:
             raise ParameterError(str(key), value, _unknown_key(str(key), list(fields)))
+        if isinstance(value, list):
+            check_count(fields[key].name, len(value), fields[key].metadata)
         try:
             arguments[key] = _nested_value(fields[key], value)
         except ParameterError as error:
@@ -104,6 +107,6 @@ def _nested_value(field: dataclasses.Field[Any], value: object) -> object:
 
 
 def _unknown_key(key: str, known: list[str]) -> str:
-    near = difflib.get_close_matches(key, known, n=1)
+    near = difflib.get_close_matches(key[:40], known, n=1)
     hint = f"did you mean {near[0]}? " if near else ""
     return f"unknown key; {hint}Known keys: {', '.join(known)}"

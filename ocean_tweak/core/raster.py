@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import binascii
 import hashlib
+import math
 import zlib
 from functools import cached_property
 from typing import Any
@@ -21,6 +22,9 @@ from .errors import ParameterError
 
 #: samples along a side, and channels of a sample
 LARGEST_SIDE, MOST_CHANNELS = 4096, 4
+
+#: numbers in all rasters of a sea together: half a gigabyte of them
+MOST_NUMBERS = 8 * LARGEST_SIDE**2
 
 #: shares of red, green and blue in a grey that looks as bright (ITU-R BT.709)
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -124,11 +128,48 @@ class Raster:
         return cls(_decoded(data["shape"], data["encoding"], data["data"]), name)
 
 
+def check_numbers(count: int) -> None:
+    """Raise ParameterError where rasters of so many numbers together are too many for one sea."""
+    if count > MOST_NUMBERS:
+        raise ParameterError(
+            "rasters", f"{count} numbers",
+            f"must hold at most {MOST_NUMBERS} together: make pictures or grids of wind smaller, or fewer",
+        )  # fmt: skip
+
+
+def numbers_in(data: object) -> int:
+    """How many numbers the rasters hold that stand as text in plain data, without unpacking any."""
+    total, rest = 0, [data]
+    while rest:
+        item = rest.pop()
+        if isinstance(item, list):
+            rest += item
+        elif isinstance(item, dict):
+            shape = item.get("shape")
+            if "data" in item and _is_shape(shape):
+                total += math.prod(shape)
+            else:
+                rest += item.values()
+    return total
+
+
+def _is_shape(shape: Any) -> bool:
+    return (
+        isinstance(shape, list)
+        and len(shape) == 3
+        and all(type(side) is int for side in shape)
+        and all(1 <= side <= LARGEST_SIDE for side in shape[:2])
+        and 1 <= shape[2] <= MOST_CHANNELS
+    )
+
+
 def _checked_values(values: ArrayLike, name: str) -> NDArray[np.float32]:
     what = f"raster {name!r}" if name else "raster"
     try:
         with np.errstate(over="ignore"):
             array = np.array(values, dtype=np.float32, order="C")
+    except OverflowError:  # a whole number beyond every float
+        raise ParameterError(what, values, "must hold numbers that are finite in 32 bits") from None
     except (TypeError, ValueError):
         raise ParameterError(what, values, "must be rows of the same number of numbers") from None
     if array.ndim == 2:
@@ -162,14 +203,8 @@ def _unpacked(packed: NDArray[Any], factor: float) -> NDArray[np.float32]:
     return (packed.astype(np.float64) / factor).astype(np.float32)
 
 
-def _decoded(shape: object, encoding: object, text: object) -> NDArray[np.float32]:
-    whole = isinstance(shape, list) and len(shape) == 3 and all(type(side) is int for side in shape)
-    sides = [int(side) for side in shape] if isinstance(shape, list) and whole else []
-    if (
-        not sides
-        or not all(1 <= side <= LARGEST_SIDE for side in sides[:2])
-        or not 1 <= sides[2] <= MOST_CHANNELS
-    ):
+def _decoded(shape: Any, encoding: object, text: object) -> NDArray[np.float32]:
+    if not _is_shape(shape):
         raise ParameterError(
             "shape", shape, f"must be [rows, columns, channels], up to {LARGEST_SIDE} a side"
         )
@@ -178,12 +213,12 @@ def _decoded(shape: object, encoding: object, text: object) -> NDArray[np.float3
     if not isinstance(text, str):
         raise ParameterError("data", text, "must be text")
     dtype, factor = _ENCODINGS[encoding]
-    size = int(np.prod(sides)) * dtype.itemsize
+    size = math.prod(shape) * dtype.itemsize
     try:
         unpacker = zlib.decompressobj()
         content = unpacker.decompress(base64.b64decode(text, validate=True), size + 1)
     except (binascii.Error, ValueError, zlib.error) as error:
         raise ParameterError("data", text, f"is not compressed numbers in base64: {error}") from None
     if len(content) != size:
-        raise ParameterError("data", text, f"must hold {size} bytes for shape {sides} in {encoding}")
-    return _unpacked(np.frombuffer(content, dtype).reshape(sides), factor)
+        raise ParameterError("data", text, f"must hold {size} bytes for shape {shape} in {encoding}")
+    return _unpacked(np.frombuffer(content, dtype).reshape(shape), factor)

@@ -193,13 +193,17 @@ def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
         return value
     if not isinstance(value, (tuple, list)) or not all(isinstance(v, kind) for v in value):
         raise ParameterError(field.name, value, f"must be a sequence of {kind.__name__}")
-    fewest = 0 if field.metadata["empty"] else 1
-    most = field.metadata["most"]
-    if not fewest <= len(value) <= most:
-        raise ParameterError(
-            field.name, f"{len(value)} entries", f"must have from {fewest} to {most} entries"
-        )
+    check_count(field.name, len(value), field.metadata)
     return tuple(value)
+
+
+def check_count(name: str, count: int, meta: Any) -> None:
+    """Raise ParameterError where a field of many cannot have so many entries; asked before they are made."""
+    if not meta.get("many"):
+        return
+    fewest, most = 0 if meta["empty"] else 1, meta["most"]
+    if not fewest <= count <= most:
+        raise ParameterError(name, f"{count} entries", f"must have from {fewest} to {most} entries")
 
 
 class Validated:

@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 
 from ..core import Raster, WindKey
 from ..core.parameters import ParameterError
-from ..core.plain_data import from_plain, to_plain
+from ..core.plain_data import from_plain, parse_json, to_plain
+from ..core.raster import check_numbers, numbers_in
 from ..core.wave_particles.parameters import MOST_KEYS
 from .animated import clock_of, shown_settings
 from .settings import OceanObjectError
@@ -184,7 +185,9 @@ def known_keys(name: str) -> tuple[WindKey, ...] | None:
 def from_text(text: str, name: str) -> tuple[WindKey, ...]:
     """Keys from JSON, remembered by their hash. Raises ParameterError for what is damaged."""
     try:
-        keys = tuple(from_plain(WindKey, data) for data in json.loads(text))
+        plain = parse_json(text)
+        check_numbers(numbers_in(plain))
+        keys = tuple(from_plain(WindKey, data) for data in plain)
     except (ValueError, TypeError) as error:
         raise ParameterError("recording", text[:20], f"cannot be read, record anew: {error}") from None
     _keep(name, keys)

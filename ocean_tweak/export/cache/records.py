@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from ...core.errors import ParameterError
 from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
-from ...core.frames import Frame, format_frames, frame_label, parse_frames
+from ...core.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
 from ..files import PART, begun_file, read_bytes, sync_folder, write_text
 from .job import FORMAT, RECORDS, Job, check_seal, made_with, record_path, sealed
 
@@ -163,13 +163,21 @@ def recorded_frames(folder: Path) -> tuple[Frame, ...]:
 
 
 def asked_frames(folder: Path) -> set[Frame]:
-    """The frames that were asked for when those that have a record were made."""
+    """The frames that were asked for when those that have a record were made.
+
+    Raises ParameterError where these are more than a bake can have.
+    """
     texts = set()
     for frame in recorded_frames(folder):
         with contextlib.suppress(ValueError):
             record = read_record(folder, frame)
             texts.add(record.asked if record is not None else "")
-    return {frame for text in texts - {""} for frame in parse_frames(text)}
+    frames: set[Frame] = set()
+    for text in texts - {""}:
+        frames.update(parse_frames(text))
+        if len(frames) > MOST_FRAMES:  # of records that somebody else wrote
+            raise ParameterError("frames", f"more than {MOST_FRAMES}", "are asked for by the records")
+    return frames
 
 
 def inspect(folder: Path, job: Job, frame: Frame) -> Finding:
