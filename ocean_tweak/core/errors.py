@@ -36,4 +36,3 @@ class _Writer(reprlib.Repr):
 
 
 _WRITER = _Writer()
-

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
@@ -46,17 +47,21 @@ def parse_frames(text: str) -> tuple[Frame, ...]:
         if max(abs(first), abs(last)) > LARGEST_FRAME:
             raise ParameterError("frames", text, f"must lie between -{LARGEST_FRAME} and {LARGEST_FRAME}")
         parts.append((first, step, count))
-    frames: set[Frame] = set()
-    for first, step, count in parts:  # only now: they are counted before they are made
-        frames.update(_series(first, step, count))
+    # only now: they are counted before they are made
+    series = [_series(*part) for part in parts]
+    if len(series) == 1:
+        return tuple(series[0])
     # as floats, in which frames of six decimals differ: fractions take seconds to compare
-    return tuple(sorted(frames, key=float))
+    return tuple(sorted({frame for part in series for frame in part}, key=float))
 
 
 def _series(first: Fraction, step: Fraction, count: int) -> Iterable[Frame]:
-    if first.denominator == step.denominator == 1:
-        return range(int(first), int(first + count * step), int(step))
-    return (as_frame(first + index * step) for index in range(count))
+    whole = math.lcm(first.denominator, step.denominator)
+    start, stride = int(first * whole), int(step * whole)
+    numerators = range(start, start + count * stride, stride)
+    if whole == 1:
+        return numerators
+    return (n // whole if n % whole == 0 else Fraction(n, whole) for n in numerators)
 
 
 def as_frame(value: float | Fraction) -> Frame:

@@ -27,7 +27,7 @@ LARGEST_SIDE, MOST_CHANNELS = 4096, 4
 MOST_NUMBERS = 8 * LARGEST_SIDE**2
 
 #: shares of red, green and blue in a grey that looks as bright (ITU-R BT.709)
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 #: how numbers are written, smallest first, and the factor by which they are multiplied before
 _ENCODINGS: dict[str, tuple[np.dtype[Any], float]] = {
@@ -80,7 +80,7 @@ class Raster:
         """
         if self.shape[2] not in (3, 4):
             return self
-        return Raster(self.values[..., :3].astype(np.float64) @ _LUMINANCE, self.name)
+        return Raster(self.values[..., :3].astype(np.float64) @ LUMINANCE, self.name)
 
     def brief(self) -> dict[str, Any]:
         """What tells it from others, without its numbers: for headers, where these would be too long."""

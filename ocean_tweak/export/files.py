@@ -47,13 +47,19 @@ def is_link(path: Path) -> bool:
     )
 
 
-def read_bytes(path: Path, most: int) -> bytes:
-    """A file's bytes. Raises OSError for what is no plain file, or has more of them than `most`."""
+def open_file(path: Path) -> BinaryIO:
+    """A file's bytes, to be read. Raises OSError for what is no plain file."""
     # a pipe would keep whoever opens it waiting for ever
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    with open(descriptor, "rb") as file:  # noqa: PTH123
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise OSError(None, "is no file", str(path))
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(None, "is no file", str(path))
+    return open(descriptor, "rb")  # noqa: PTH123
+
+
+def read_bytes(path: Path, most: int) -> bytes:
+    """A file's bytes. Raises OSError for what is no plain file, or has more of them than `most`."""
+    with open_file(path) as file:
         content = file.read(most + 1)
     if len(content) > most:
         raise OSError(None, f"is larger than {most / 1e6:g} MB", str(path))

@@ -106,7 +106,7 @@ def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
         source_images.forget(image)
     for item in oceans_in(scene):
         settings = settings_of(item)
-        if settings.source == "LIVE" and changed & settings.source_images():
+        if settings.source == "LIVE" and changed & {source.image for source in settings.source_images()}:
             show(item, scene, dragged=True)
 
 

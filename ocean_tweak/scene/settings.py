@@ -14,6 +14,7 @@ from typing import NamedTuple, Protocol
 import bpy
 
 from ..core import OceanParameters
+from .source_images import ImageSource
 
 METHODS = {
     "DISPLACE": (
@@ -165,7 +166,7 @@ class OceanSettings(Protocol):
     def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
         """Take over a sea; the scene is not changed."""
 
-    def source_images(self) -> set[bpy.types.Image]:
+    def source_images(self) -> set[ImageSource]:
         """The images from which waves or masks are made."""
 
     def mask_objects(self) -> set[bpy.types.Object]:

@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images of the file as the rasters that parameters hold, and the other way.
 
-An image's numbers are taken as they are in its file: 8 bits divided by 255, decimals as decimals. Row 0 is
-the bottom row in both.
+An image's numbers are taken as they are in its file: whole numbers as shares of the largest of their kind,
+decimals as decimals. Row 0 is the bottom row in both. EXR images are read here as they are outside Blender:
+its own reader takes what is stored of one for the whole picture, and no other channels than R, G, B.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
 import time
 import zlib
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import bpy
 import numpy as np
@@ -20,7 +23,9 @@ from numpy.typing import NDArray
 
 from ..core import ParameterError, Raster
 from ..core.raster import LARGEST_SIDE
-from ..export.pictures import read_picture
+from ..export.pictures import exr_pictures, read_picture, tiff
+from ..export.pictures.checks import UnusableError, opened
+from ..export.pictures.reading import raster_in
 from .live_image import mark_as_data
 
 #: how an image's numbers become a wind: the number that is calm, and the factor
@@ -37,6 +42,13 @@ _SINGLE = ("FILE", "GENERATED")
 _LOOK = 0.25
 
 
+class ImageSource(NamedTuple):
+    """An image that gives numbers, and which of its channels are meant: "" for R, G, B or grey."""
+
+    image: bpy.types.Image
+    channels: str = ""
+
+
 class _Known(NamedTuple):
     """A raster, what its image was like, a sum of its texels while they are unsaved, and when it was seen."""
 
@@ -46,8 +58,9 @@ class _Known(NamedTuple):
     seen: float
 
 
-# What images hold, by their session uid and the number of channels. Nothing that cannot be read again.
-_known: dict[tuple[int, int], _Known] = {}
+# What images hold, by their session uid, the number of channels and their names. Nothing that cannot be read
+# again.
+_known: dict[tuple[int, int, str], _Known] = {}
 
 
 def forget_all() -> None:
@@ -62,7 +75,36 @@ def forget(image: bpy.types.Image) -> None:
         del _known[key]
 
 
-def raster_of(image: bpy.types.Image, channels: int) -> Raster:
+def source_of(group: bpy.types.PropertyGroup) -> ImageSource | None:
+    """What is chosen in properties `image` and `image_channels`, if something is."""
+    if group.image is None:
+        return None
+    # the choice may be of an image that was there before
+    return ImageSource(group.image, group.image_channels if has_named_channels(group.image) else "")
+
+
+def choose(group: bpy.types.PropertyGroup, source: ImageSource) -> None:
+    """Set these properties."""
+    group.image_channels = source.channels
+    group.image = source.image
+
+
+def has_named_channels(image: bpy.types.Image) -> bool:
+    """Whether it is an EXR image, whose channels may be chosen."""
+    if image.source != "FILE" or image.size is None:  # its size makes Blender look what it is
+        return False
+    return image.type == "MULTILAYER" or image.file_format == "OPEN_EXR"
+
+
+def channel_names(image: bpy.types.Image) -> tuple[str, ...]:
+    """The channels that its file has; none for other files than EXR images."""
+    with _opened_file(image) as stream, contextlib.suppress(UnusableError):
+        if stream is not None and exr_pictures.is_exr(stream):
+            return exr_pictures.channel_names(stream)
+    return ()
+
+
+def raster_of(source: ImageSource, channels: int) -> Raster:
     """The image's numbers: 1 channel of a colour image is its luminance, otherwise the first so many.
 
     Read anew only where the image has changed: painting and reloading are seen, by Blender's own notes and,
@@ -71,37 +113,44 @@ def raster_of(image: bpy.types.Image, channels: int) -> Raster:
     Raises ParameterError, naming it, for an image that is missing, too large, constant where it should hold
     waves, or not finite.
     """
-    key, likeness = (image.session_uid, channels), _likeness(image)
+    image, names = source
+    key, likeness = (image.session_uid, channels, names), _likeness(image)
     known = _known.get(key)
     if known is not None and known.likeness == likeness and not _is_painted(image, known):
         return known.raster
-    texels = _texels(image)
-    summed = _sum(texels) if image.is_dirty else 0
-    if known is None or known.likeness != likeness or known.sum != summed or not image.is_dirty:
-        known = _Known(likeness, _raster(texels, image.name, channels), summed, 0.0)
+    if not image.is_dirty:
+        known = _Known(likeness, _saved_raster(image, channels, names), 0, 0.0)
+    else:
+        texels = _texels(image)
+        summed = _sum(texels)
+        if known is None or known.likeness != likeness or known.sum != summed:
+            known = _Known(likeness, _painted_raster(image, texels, channels, names), summed, 0.0)
     _known[key] = known._replace(seen=time.monotonic())
     return known.raster
 
 
-def image_of(raster: Raster, candidates: Iterable[bpy.types.Image]) -> bpy.types.Image:
-    """The image among the candidates that holds this raster, or a new one, packed into the file."""
-    channels = raster.shape[2]
-    for image in candidates:
+def source_with(raster: Raster, candidates: Iterable[ImageSource]) -> ImageSource:
+    """What among the candidates gives this raster, or else a new image, packed into the file.
+
+    An image of the file by the raster's name is a candidate too.
+    """
+    named = bpy.data.images.get(raster.name) if raster.name else None
+    for source in (*candidates, *([ImageSource(named)] if named is not None else [])):
         try:
-            if raster_of(image, channels) == raster:
-                return image
+            if raster_of(source, raster.shape[2]) == raster:
+                return source
         except ParameterError:
             continue
-    return _new_image(raster)
+    return ImageSource(_new_image(raster))
 
 
-def open_image(path: Path, channels: int) -> Raster:
-    """The raster of a file, which becomes an image of this .blend file; arrays of NumPy do not.
+def open_image(path: Path, channels: int, names: str = "", axes: str = "") -> Raster:
+    """The raster of a file, which becomes an image of this .blend file; arrays and chosen channels do not.
 
     Raises ParameterError, naming the file.
     """
-    if path.suffix.lower() == ".npy":
-        return read_picture(path, channels)
+    if path.suffix.lower() == ".npy" or names or axes:
+        return read_picture(path, channels, names, axes)
     try:
         image = bpy.data.images.load(str(path), check_existing=True)
     except RuntimeError:
@@ -109,7 +158,7 @@ def open_image(path: Path, channels: int) -> Raster:
     if image.users == 0:  # otherwise something else shows it in its colours
         mark_as_data(image)
     try:
-        return raster_of(image, channels)
+        return raster_of(ImageSource(image), channels)
     except ParameterError:
         if image.users == 0:
             bpy.data.images.remove(image)
@@ -141,17 +190,8 @@ def made_layer(kind: type, values: tuple[tuple[str, Hashable], ...]) -> object:
 def _likeness(image: bpy.types.Image) -> Hashable:
     if image.source not in _SINGLE:
         raise ParameterError("image", image.name, "must be a single picture, not a movie, sequence or tiles")
-    columns, rows = image.size
-    if not (columns and rows):
-        raise ParameterError(
-            "image", image.name, f"its file cannot be read: {image.filepath or 'it has none'}"
-        )
-    if max(columns, rows) > LARGEST_SIDE:
-        raise ParameterError(
-            "image", image.name, f"has {columns} x {rows} samples: make it at most {LARGEST_SIDE} a side"
-        )
     space = image.colorspace_settings
-    return columns, rows, image.source, image.filepath, image.is_float, space.name, space.is_data
+    return *image.size, image.source, image.filepath, image.is_float, space.name, space.is_data
 
 
 def _is_painted(image: bpy.types.Image, known: _Known) -> bool:
@@ -165,17 +205,71 @@ def _sum(texels: NDArray[np.float32]) -> int:
     return zlib.crc32(texels) or 1
 
 
+@contextlib.contextmanager
+def _opened_file(image: bpy.types.Image) -> Iterator[BinaryIO | None]:
+    """The bytes of an image's file, packed or on disk; None where there are none."""
+    with contextlib.ExitStack() as stack:
+        stream: BinaryIO | None = None
+        if image.source == "FILE" and image.packed_file is not None:
+            stream = io.BytesIO(image.packed_file.data)
+        elif image.source == "FILE":
+            with contextlib.suppress(UnusableError):
+                path = Path(bpy.path.abspath(image.filepath, library=image.library))
+                stream = stack.enter_context(opened(path))
+        yield stream
+
+
+def _saved_raster(image: bpy.types.Image, channels: int, names: str) -> Raster:
+    """Of an image without unsaved changes: by its file where Blender would give other numbers."""
+    with _opened_file(image) as stream:
+        try:
+            if stream is not None and exr_pictures.is_exr(stream):
+                return raster_in(stream, image.name, channels, names)
+            if stream is not None and tiff.is_tiff(stream):
+                tiff.number_kind(stream)
+        except UnusableError as error:
+            raise _refused(image, str(error)) from None
+    if has_named_channels(image):
+        raise _unreadable(image)
+    return _raster(_texels(image), image.name, channels, names)
+
+
+def _painted_raster(image: bpy.types.Image, texels: NDArray[np.float32], channels: int, names: str) -> Raster:
+    """Of an image with unsaved changes: as Blender has it, but where its file says that this lies."""
+    with _opened_file(image) as stream:
+        try:
+            if stream is not None and exr_pictures.is_exr(stream):
+                texels = exr_pictures.in_picture(stream, texels)
+        except UnusableError as error:
+            raise _refused(image, str(error)) from None
+    return _raster(texels, image.name, channels, names)
+
+
+def _refused(image: bpy.types.Image, reason: str) -> ParameterError:
+    return ParameterError("image", image.name, reason)
+
+
+def _unreadable(image: bpy.types.Image) -> ParameterError:
+    return _refused(image, f"its file cannot be read: {image.filepath or 'it has none'}")
+
+
 def _texels(image: bpy.types.Image) -> NDArray[np.float32]:
     """(rows, columns, channels), the bottom row first."""
     columns, rows = image.size
+    if not (columns and rows):
+        raise _unreadable(image)
+    if max(columns, rows) > LARGEST_SIDE:
+        raise _refused(image, f"has {columns} x {rows} samples: make it at most {LARGEST_SIDE} a side")
     texels = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(texels)
     if not texels.size:
-        raise ParameterError("image", image.name, f"its file cannot be read: {image.filepath}")
+        raise _unreadable(image)
     return texels.reshape(rows, columns, -1)
 
 
-def _raster(texels: NDArray[np.float32], name: str, channels: int) -> Raster:
+def _raster(texels: NDArray[np.float32], name: str, channels: int, names: str) -> Raster:
+    if names:
+        raise ParameterError("image", name, f"has no channels with names such as {names!r}")
     if channels != 1:
         if texels.shape[2] < channels:
             raise ParameterError("image", name, f"must have {channels} channels, but is grey")

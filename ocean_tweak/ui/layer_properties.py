@@ -30,12 +30,14 @@ from ..core import (
     WindKey,
 )
 from ..core.plain_data import to_plain
+from ..core.raster import Raster
 from ..scene import source_images, wind_recording
 from ..scene.settings import LAYER_KINDS, scene_of
+from ..scene.source_images import ImageSource
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties
 from .changes import changed
-from .mask_properties import OCEAN_PG_mask
+from .mask_properties import OCEAN_PG_mask, channels_property
 
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
 _SHOWN = {"options": set(), "update": changed, **_OVERRIDE}
@@ -78,6 +80,7 @@ class OCEAN_PG_wind_field(bpy.types.PropertyGroup):
             name="Image", type=bpy.types.Image, **_SHOWN,
             description="Red and green are the wind along the ocean's x and y; it covers one patch",
         ),
+        "image_channels": channels_property(),
         "image_values": EnumProperty(
             name="Numbers", default="CENTRED", **_SHOWN,
             items=[(key, *texts[:2]) for key, texts in source_images.WIND_VALUES.items()],
@@ -111,6 +114,7 @@ class OCEAN_PG_picture(bpy.types.PropertyGroup):
             description="Picture whose trace the waves bear; without one, white noise. "
             "It covers one patch, of a colour picture the luminance",
         ),
+        "image_channels": channels_property(),
         "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
     }  # fmt: skip
 
@@ -177,10 +181,10 @@ def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> dict[str, l
     return result
 
 
-def images(layers: bpy.types.bpy_prop_collection) -> set[bpy.types.Image]:
+def images(layers: bpy.types.bpy_prop_collection) -> set[ImageSource]:
     """Those from which waves are made, or masks."""
-    found = [*map(source_image, layers), *(mask_properties.image_of(mask) for mask in masks(layers))]
-    return {image for image in found if image is not None}
+    found = [*map(_image_source, layers), *(mask_properties.image_source(mask) for mask in masks(layers))]
+    return {source for source in found if source is not None}
 
 
 def masks(layers: bpy.types.bpy_prop_collection) -> list[bpy.types.PropertyGroup]:
@@ -191,6 +195,10 @@ def masks(layers: bpy.types.bpy_prop_collection) -> list[bpy.types.PropertyGroup
 def source_image(layer: bpy.types.PropertyGroup) -> bpy.types.Image | None:
     """The image from which a layer's waves are made, if it has one."""
     return getattr(layer.group, "image", None)
+
+
+def _image_source(layer: bpy.types.PropertyGroup) -> ImageSource | None:
+    return None if source_image(layer) is None else source_images.source_of(layer.group)
 
 
 def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, metres: Fraction) -> None:
@@ -206,8 +214,10 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
         if isinstance(layer, WindFieldLayer):
             _write_wind(item.wind_field, layer, known_winds, known_images)
         elif isinstance(layer, PictureLayer):
-            picture = layer.picture
-            item.picture.image = None if picture is None else _image_of(picture, known_images)
+            if layer.picture is None:
+                item.picture.image = None
+            else:
+                _choose_image(item.picture, layer.picture, known_images)
 
 
 def kinds(parameters: OceanParameters) -> list[str]:
@@ -246,8 +256,9 @@ def _read_picture(layer: bpy.types.PropertyGroup, metres: Fraction) -> object:
     group = layer.picture
     values = parameter_properties.read(group, PictureLayer, metres)
     values["mask"] = mask_properties.read(group.mask, metres)
-    if group.image is not None:
-        values["picture"] = source_images.raster_of(group.image, 1)
+    source = source_images.source_of(group)
+    if source is not None:
+        values["picture"] = source_images.raster_of(source, 1)
     return source_images.made_layer(PictureLayer, tuple(values.items()))
 
 
@@ -276,11 +287,12 @@ def _keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
 
 
 def _image_keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
-    if group.image is None:
+    source = source_images.source_of(group)
+    if source is None:
         raise ParameterError("image", "", "choose an image, whose red and green are the wind along x and y")
     speed = float(shortest_decimal(group.image_speed))
-    raster = source_images.wind_raster(source_images.raster_of(group.image, 2), group.image_values, speed)
-    return (WindKey(vectors=raster),)
+    numbers = source_images.raster_of(source, 2)
+    return (WindKey(vectors=source_images.wind_raster(numbers, group.image_values, speed)),)
 
 
 def _recorded_keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
@@ -294,8 +306,8 @@ _KEYS = {"UNIFORM": lambda _group: (), "IMAGE": _image_keys, "RECORDING": _recor
 
 #: what a wind field has besides its parameters
 _BESIDES = (
-    "source", "image", "image_values", "image_speed", "recording", "recording_hash", "objects",
-    "show_vectors",
+    "source", "image", "image_channels", "image_values", "image_speed", "recording", "recording_hash",
+    "objects", "show_vectors",
 )  # fmt: skip
 
 
@@ -323,7 +335,7 @@ def _write_wind(
     group: bpy.types.PropertyGroup,
     layer: WindFieldLayer,
     known: list[_KnownWind],
-    known_images: set[bpy.types.Image],
+    known_images: set[ImageSource],
 ) -> None:
     """Let the wind come from where it came from, as far as that gives the same keys."""
     own = [wind for wind in known if wind.id == layer.id]
@@ -339,18 +351,17 @@ def _write_wind(
         group.source = "UNIFORM"
     elif len(layer.keys) == 1 and layer.keys[0].time == 0.0:
         # an image can be seen and painted
-        group.image = _image_of(layer.rasters[0], known_images)
+        _choose_image(group, layer.rasters[0], known_images)
         group.source, group.image_values, group.image_speed = "IMAGE", "PLAIN", 1.0
     else:
         set_recording(group, layer.keys)
 
 
-def _image_of(raster: Any, known: set[bpy.types.Image]) -> bpy.types.Image:
-    """An image of this ocean, one that the file has by this name, or a new one."""
-    named = bpy.data.images.get(raster.name) if raster.name else None
-    image = source_images.image_of(raster, [*known, *([named] if named is not None else [])])
-    known.add(image)
-    return image
+def _choose_image(group: bpy.types.PropertyGroup, raster: Raster, known: set[ImageSource]) -> None:
+    """Let numbers come from an image of this ocean, one that the file has by their name, or a new one."""
+    source = source_images.source_with(raster, known)
+    known.add(source)
+    source_images.choose(group, source)
 
 
 CLASSES = (

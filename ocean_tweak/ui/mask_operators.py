@@ -45,7 +45,8 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
             return refuse(self, error)
         # an image of an earlier reading that nobody else shows is replaced
         before = group.image
-        group.image = source_images.image_of(seen, [] if before is None else [before])
+        candidates = [] if before is None else [source_images.ImageSource(before)]
+        source_images.choose(group, source_images.source_with(seen, candidates))
         if before is not None and before != group.image and before.users == 0:
             bpy.data.images.remove(before)
         group.source = "VERTEX_GROUP"

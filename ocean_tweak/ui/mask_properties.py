@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from fractions import Fraction
 
 import bpy
@@ -12,6 +11,7 @@ from bpy.props import EnumProperty, PointerProperty, StringProperty
 from ..core import Mask, ParameterError
 from ..core.plain_data import to_plain
 from ..scene import source_images
+from ..scene.source_images import ImageSource
 from . import parameter_properties
 from .changes import changed
 
@@ -37,6 +37,21 @@ def _is_mesh(_group: bpy.types.PropertyGroup, item: bpy.types.Object) -> bool:
     return item.type == "MESH"
 
 
+def _known_channels(
+    group: bpy.types.PropertyGroup, _context: bpy.types.Context, _text: str
+) -> tuple[str, ...]:
+    return () if group.image is None else source_images.channel_names(group.image)
+
+
+def channels_property() -> StringProperty:
+    """Which channels of the group's `image` are read."""
+    return StringProperty(
+        name="Channels", **_SHOWN, search=_known_channels, search_options={"SUGGESTION"},
+        description="Channels of the EXR image, such as Z or mask.R, several between commas, or a layer; "
+        "empty for R, G and B, or Y",
+    )  # fmt: skip
+
+
 class OCEAN_PG_mask(bpy.types.PropertyGroup):
     """Where the waves of a layer or patch are."""
 
@@ -50,6 +65,7 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
             name="Image", type=bpy.types.Image, **_SHOWN,
             description="White lets all waves through, black none; it covers the domain, and repeats with it",
         ),
+        "image_channels": channels_property(),
         "object": PointerProperty(
             name="Object", type=bpy.types.Object, options=set(), update=_placed, **_OVERRIDE,
             description="Waves are told by the distance to it. It is followed when it is moved by hand",
@@ -65,9 +81,9 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
     }  # fmt: skip
 
 
-def image_of(group: bpy.types.PropertyGroup) -> bpy.types.Image | None:
+def image_source(group: bpy.types.PropertyGroup) -> ImageSource | None:
     """The image that gives the weights, if one does."""
-    return group.image if group.source in _IMAGES else None
+    return source_images.source_of(group) if group.source in _IMAGES else None
 
 
 def place(group: bpy.types.PropertyGroup) -> None:
@@ -89,17 +105,18 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
     try:
         if group.source not in _IMAGES:
             return Mask(**{**values, "source": "DISTANCE"})
-        if group.image is None:
+        source = source_images.source_of(group)
+        if source is None:
             remedy = "choose one, or no mask" if group.source == "IMAGE" else "press Read Weights"
             raise ParameterError("image", "", remedy)
-        image = source_images.raster_of(group.image, 1)
+        image = source_images.raster_of(source, 1)
         return source_images.made_layer(Mask, (*values.items(), ("source", "IMAGE"), ("image", image)))
     except ParameterError as error:
         raise error.inside("mask") from None
 
 
 def write(
-    group: bpy.types.PropertyGroup, mask: Mask | None, metres: Fraction, known_images: set[bpy.types.Image]
+    group: bpy.types.PropertyGroup, mask: Mask | None, metres: Fraction, known_images: set[ImageSource]
 ) -> None:
     """Take over a mask; an image that holds the same numbers stays, and so does what it was read from."""
     if mask is None:
@@ -111,16 +128,11 @@ def write(
             group.object = None
         group.source = "DISTANCE"
         return
-    image = source_images.image_of(mask.image, [*known_images, *_named(mask)])
-    known_images.add(image)
-    if group.source not in _IMAGES or group.image != image:
+    source = source_images.source_with(mask.image, known_images)
+    known_images.add(source)
+    if group.source not in _IMAGES or group.image != source.image:
         group.source = "IMAGE"
-    group.image = image
-
-
-def _named(mask: Mask) -> Iterable[bpy.types.Image]:
-    named = bpy.data.images.get(mask.image.name) if mask.image.name else None
-    return () if named is None else (named,)
+    source_images.choose(group, source)
 
 
 def _is_at(group: bpy.types.PropertyGroup, mask: Mask, metres: Fraction) -> bool:

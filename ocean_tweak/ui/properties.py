@@ -27,6 +27,7 @@ from ..scene.settings import (
     VIEWPORT_RESOLUTION,
     OceanObjectError,
 )
+from ..scene.source_images import ImageSource
 from ..scene.units import frame_rate, metres_per_unit, time_stretch
 from . import layer_properties, mask_properties, parameter_properties, patch_properties
 from .changes import changed
@@ -219,10 +220,10 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
 
-    def source_images(self) -> set[bpy.types.Image]:
+    def source_images(self) -> set[ImageSource]:
         """The images from which waves or masks are made."""
-        of_patches = (mask_properties.image_of(patch.mask) for patch in self.patches)
-        return layer_properties.images(self.layers) | {image for image in of_patches if image is not None}
+        of_patches = (mask_properties.image_source(patch.mask) for patch in self.patches)
+        return layer_properties.images(self.layers) | {source for source in of_patches if source is not None}
 
     def mask_objects(self) -> set[bpy.types.Object]:
         """Those from which the distance of a mask is measured."""

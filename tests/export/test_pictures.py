@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import builtins
+import os
 import struct
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,25 +18,13 @@ from ocean_tweak.core.errors import ParameterError
 from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.validation import Validated, nested, raster
 from ocean_tweak.export.pictures import read_picture, with_pictures
+from tests.picture_files import exr as exr_by_hand
+from tests.picture_files import png, tiff
 
 Image = pytest.importorskip("PIL.Image")
 
 #: two rows and three columns, as they stand in a picture: the top row first
 TOP, BOTTOM = (0, 51, 255), (10, 20, 30)
-
-
-def png(path: Path, depth: int, colour: int, rows: list[bytes], columns: int) -> Path:
-    """A PNG file from its specification: no filter, one block of data."""
-
-    def chunk(kind: bytes, content: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-        )
-
-    head = struct.pack(">IIBBBBB", columns, len(rows), depth, colour, 0, 0, 0)
-    data = zlib.compress(b"".join(b"\0" + row for row in rows))
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", data) + chunk(b"IEND", b""))
-    return path
 
 
 def test_grey_of_8_bits_is_upright_and_divided_by_255(tmp_path: Path) -> None:
@@ -99,13 +87,12 @@ def test_what_cannot_be_read_names_the_file_and_the_reason(tmp_path: Path) -> No
     exr(tmp_path / "nan.exr", R=[[np.nan]], G=[[0.0]])
     exr(tmp_path / "depth.exr", depth=[[1.0]])
     png(tmp_path / "wide.png", 8, 0, [bytes(5000)], 5000)
-    png(tmp_path / "deep.png", 16, 2, [bytes(6)], 1)
     short = png(tmp_path / "short.png", 8, 0, [bytes(99)] * 99, 99)
     short.write_bytes(short.read_bytes()[:-30])
     reasons = {
         "text.png": "not a picture", "text.exr": "not a readable EXR", "text.npy": "not an array",
         "objects.npy": "not an array", "words.npy": "must hold numbers", "line.npy": "must be an array",
-        "wide.npy": "5000 x 1 samples", "wide.png": "5000 x 1 samples", "deep.png": "save it as .exr",
+        "wide.npy": "5000 x 1 samples", "wide.png": "5000 x 1 samples",
         "nan.npy": "must be finite", "nan.exr": "must be finite", "depth.exr": "it has depth",
         "short.png": "cannot be read", "none.png": "No such file", "none.exr": "No such file",
         "none.npy": "No such file",
@@ -118,6 +105,285 @@ def test_what_cannot_be_read_names_the_file_and_the_reason(tmp_path: Path) -> No
     np.save(tmp_path / "one.npy", np.zeros((2, 2)))
     with pytest.raises(ParameterError, match="must have 2 channels, but has 1"):
         read_picture(tmp_path / "one.npy", 2)
+
+
+PAINTED = np.arange(1.0, 17.0, dtype=np.float32).reshape(4, 4)
+
+
+@pytest.mark.parametrize(
+    ("at", "rows", "columns"),
+    [((1, 1), 2, 2), ((-1, -2), 7, 6), ((-1, 2), 3, 3), ((3, -1), 2, 9), ((0, 0), 4, 4)],
+    ids=["inside", "overscan", "partly", "corner", "same"],
+)
+def test_what_an_exr_stores_lies_where_it_was_painted(
+    tmp_path: Path, at: tuple[int, int], rows: int, columns: int
+) -> None:
+    """Each pixel by itself: that of the picture at (x, y) is the stored one at (x, y) less `at`, or 0."""
+    stored = np.arange(1.0, rows * columns + 1.0, dtype=np.float32).reshape(rows, columns)
+    expected = np.zeros((4, 4))
+    for y in range(4):
+        for x in range(4):
+            i, j = y - at[1], x - at[0]
+            if 0 <= i < rows and 0 <= j < columns:
+                expected[y, x] = stored[i, j]
+    path = exr_by_hand(tmp_path / "a.exr", {"Y": stored}, at, (4, 4))
+    np.testing.assert_array_equal(read_picture(path, 1).values[::-1, :, 0], expected)
+
+
+def test_an_exr_that_stores_nothing_of_its_picture_is_refused(tmp_path: Path) -> None:
+    path = exr_by_hand(tmp_path / "a.exr", {"Y": PAINTED}, (10, 0), (4, 4))
+    with pytest.raises(ParameterError, match="nothing inside its picture"):
+        read_picture(path)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"lineOrder": OpenEXR.DECREASING_Y},
+        {"type": OpenEXR.tiledimage, "tiles": OpenEXR.TileDescription()},
+        {"compression": OpenEXR.PIZ_COMPRESSION},
+    ],
+)
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.uint32])
+def test_every_way_to_store_an_exr(tmp_path: Path, more: dict[str, Any], kind: type) -> None:
+    values = np.arange(70.0 * 70.0).reshape(70, 70) % 1000
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **more}
+    OpenEXR.File(header, {"Y": values.astype(kind)}).write(str(tmp_path / "a.exr"))
+    np.testing.assert_array_equal(read_picture(tmp_path / "a.exr").values[::-1, :, 0], values)
+
+
+CHANNELS = {
+    "R": PAINTED, "G": -PAINTED, "Z": 2 * PAINTED, "mask.R": 3 * PAINTED,
+    "gust.u": 4 * PAINTED, "gust.v": 5 * PAINTED,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("names", "count", "expected"),
+    [
+        ("", 2, (1, -1)), ("Z", 1, (2,)), ("mask.R", 1, (3,)), ("mask", 1, (3,)), ("gust", 2, (4, 5)),
+        ("gust.v, gust.u", 2, (5, 4)), ("R", 1, (1,)), ("R,Z", 2, (1, 2)),
+    ],
+)  # fmt: skip
+def test_channels_of_an_exr_are_chosen_by_name(
+    tmp_path: Path, names: str, count: int, expected: tuple[int, ...]
+) -> None:
+    path = exr_by_hand(tmp_path / "a.exr", CHANNELS)
+    read = read_picture(path, count, names).values[::-1]
+    np.testing.assert_array_equal(read, np.stack([factor * PAINTED for factor in expected], axis=-1))
+
+
+@pytest.mark.parametrize(
+    ("names", "count", "told"),
+    [
+        ("A", 1, "no channel or layer A, it has G, R, Z, gust.u, gust.v, mask.R"),
+        ("Z", 2, "must have 2 channels, but has 1"),
+        ("", 1, "has 2 channels of which one is wanted"),
+        ("gust", 1, "has 2 channels of which one is wanted"),
+    ],
+)
+def test_channels_that_an_exr_lacks_are_told_with_those_that_it_has(
+    tmp_path: Path, names: str, count: int, told: str
+) -> None:
+    with pytest.raises(ParameterError, match=told):
+        read_picture(exr_by_hand(tmp_path / "a.exr", CHANNELS), count, names)
+
+
+def test_parts_of_an_exr_are_layers(tmp_path: Path) -> None:
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    parts = [
+        OpenEXR.Part({**header, "name": "beauty"}, {"R": PAINTED, "G": PAINTED, "B": PAINTED}, "beauty"),
+        OpenEXR.Part({**header, "name": "depth"}, {"Z": 2 * PAINTED}, "depth"),
+    ]
+    OpenEXR.File(parts).write(str(tmp_path / "a.exr"))
+    for names in ("depth.Z", "depth"):
+        read = read_picture(tmp_path / "a.exr", 1, names).values[::-1, :, 0]
+        np.testing.assert_array_equal(read, 2 * PAINTED)
+    with pytest.raises(ParameterError, match="several parts"):
+        read_picture(tmp_path / "a.exr", 2, "R,depth.Z")
+
+
+def test_of_luminance_and_chroma_the_luminance_is_a_picture(tmp_path: Path) -> None:
+    chroma = PAINTED[::2, ::2].copy()
+    path = exr_by_hand(
+        tmp_path / "a.exr", {"Y": PAINTED, "RY": chroma, "BY": chroma}, sampling={"RY": 2, "BY": 2}
+    )
+    np.testing.assert_array_equal(read_picture(path, 1).values[::-1, :, 0], PAINTED)
+    with pytest.raises(ParameterError, match="must have 2 channels"):
+        read_picture(path, 2)
+    with pytest.raises(ParameterError, match="at a part of its resolution"):
+        read_picture(path, 1, "RY")
+
+
+def test_a_grey_with_depth_beside_it_is_grey(tmp_path: Path) -> None:
+    path = exr_by_hand(tmp_path / "a.exr", {"Y": PAINTED, "Z": 2 * PAINTED})
+    np.testing.assert_array_equal(read_picture(path, 1).values[::-1, :, 0], PAINTED)
+
+
+WIND = np.random.default_rng(5).normal(size=(18, 30, 2))
+
+
+@pytest.mark.parametrize("fortran", [False, True])
+@pytest.mark.parametrize("kind", ["<f8", ">f4", ">i2", "<f2"])
+@pytest.mark.parametrize(
+    ("stored", "axes"), [("yxc", ""), ("cyx", ""), ("xyc", "xyc"), ("cxy", "cxy"), ("ycx", "ycx")]
+)
+def test_axes_of_an_array_are_told_by_its_shape_or_asked_for(
+    tmp_path: Path, stored: str, axes: str, kind: str, fortran: bool
+) -> None:
+    values = np.rint(WIND * 100).astype(kind)
+    array = values.transpose(["yxc".index(name) for name in stored])
+    np.save(tmp_path / "a.npy", np.asfortranarray(array) if fortran else np.ascontiguousarray(array))
+    np.testing.assert_array_equal(read_picture(tmp_path / "a.npy", 2, axes=axes).values, values)
+
+
+@pytest.mark.parametrize(
+    ("shape", "count", "told"),
+    [
+        ((2, 30, 2), 2, 'may be yxc or cyx: say which, by "axes": "yxc"'),
+        ((3, 30, 1), 1, "may be yxc or cyx"),
+        ((18, 30, 3), 2, "in which no axis is 2 channels"),
+        ((3, 18, 30), 2, "in which no axis is 2 channels"),
+        ((18, 30, 2), 1, "in which no axis is 1 or 3 or 4 channels"),
+        ((18, 2), 2, "must have 2 channels, but has 1"),
+        ((1, 2, 18, 30), 2, "must be an array"),
+    ],
+)
+def test_axes_and_channels_are_not_guessed(
+    tmp_path: Path, shape: tuple[int, ...], count: int, told: str
+) -> None:
+    np.save(tmp_path / "a.npy", np.random.default_rng(1).normal(size=shape))
+    with pytest.raises(ParameterError) as caught:
+        read_picture(tmp_path / "a.npy", count)
+    assert told in caught.value.reason
+
+
+def test_an_ambiguous_array_is_read_as_asked(tmp_path: Path) -> None:
+    values = np.random.default_rng(1).normal(size=(2, 30, 2)).astype(np.float32)
+    np.save(tmp_path / "a.npy", values)
+    for axes, expected in (("yxc", values), ("cyx", values.transpose(1, 2, 0))):
+        np.testing.assert_array_equal(read_picture(tmp_path / "a.npy", 2, axes=axes).values, expected)
+    np.save(tmp_path / "even.npy", np.ones((2, 2, 2)))  # the same whichever way it is read
+    assert read_picture(tmp_path / "even.npy", 2).shape == (2, 2, 2)
+
+
+def test_truth_values_are_a_mask_and_whole_numbers_themselves(tmp_path: Path) -> None:
+    np.save(tmp_path / "mask.npy", np.array([[True, False]]))
+    assert read_picture(tmp_path / "mask.npy", 1).values.ravel().tolist() == [1.0, 0.0]
+    for kind in (np.int8, np.int16, np.int32, np.uint32, np.int64):
+        np.save(tmp_path / "a.npy", np.array([[3, 127]], kind))
+        assert read_picture(tmp_path / "a.npy", 1).values.ravel().tolist() == [3.0, 127.0]
+
+
+WHOLE = [
+    (np.uint8, 255), (np.uint16, 65535), (np.uint32, 2**32 - 1), (np.int16, 32767), (np.int32, 2**31 - 1),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize(("kind", "largest"), WHOLE)
+def test_whole_numbers_of_a_tiff_are_shares_of_the_largest(
+    tmp_path: Path, kind: type, largest: int, order: str
+) -> None:
+    numbers = np.array(
+        [[0, largest // 5, largest], [-largest if kind(0).dtype.kind == "i" else 1, 7, 2]], kind
+    )
+    path = tiff(tmp_path / "a.tif", numbers, order)
+    if (kind, order) == (np.uint32, ">"):  # Pillow has no word for these
+        with pytest.raises(ParameterError, match="Pillow does not read: save it as .exr"):
+            read_picture(path)
+        return
+    expected = numbers.astype(float)[::-1] / largest
+    np.testing.assert_allclose(read_picture(path, 1).values[..., 0], expected, rtol=1e-6, atol=1e-9)
+
+
+def test_decimals_of_a_tiff_are_themselves(tmp_path: Path) -> None:
+    path = tiff(tmp_path / "a.tif", np.array([[-1.5, 300.25]], np.float32))
+    assert read_picture(path).values.ravel().tolist() == [-1.5, 300.25]
+
+
+@pytest.mark.parametrize(
+    ("values", "tags", "told"),
+    [
+        (np.zeros((1, 1), np.int8), {}, "signed whole numbers of 8 bits"),
+        (np.zeros((1, 1), np.float64), {}, "decimals of 64 bits"),
+        (np.zeros((1, 1), np.uint64), {}, "whole numbers of 64 bits"),
+        (np.zeros((1, 1), np.uint8), {"orientation": 6}, "save it upright"),
+    ],
+)
+def test_tiffs_that_programs_read_differently_are_refused(
+    tmp_path: Path, values: np.ndarray, tags: dict[str, int], told: str
+) -> None:
+    with pytest.raises(ParameterError, match=told):
+        read_picture(tiff(tmp_path / "a.tif", values, **tags))
+
+
+DEEP = np.array([[[13107, 300, 40000], [65534, 1, 255]]], np.uint16)
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+def test_colours_of_16_bits_keep_them(tmp_path: Path, transparent: bool) -> None:
+    values = np.dstack([DEEP, [[9, 65535]]]).astype(np.uint16) if transparent else DEEP
+    rows = [values[0].astype(">u2").tobytes()]
+    paths = [
+        png(tmp_path / "a.png", 16, 6 if transparent else 2, rows, 2),
+        *(tiff(tmp_path / f"{name}.tif", values, order) for name, order in (("le", "<"), ("be", ">"))),
+    ]
+    for path in paths:
+        np.testing.assert_allclose(read_picture(path, 3).values, DEEP / 65535.0, rtol=1e-6)
+
+
+def test_grey_of_16_bits_with_transparency(tmp_path: Path) -> None:
+    path = png(tmp_path / "a.png", 16, 4, [struct.pack(">4H", 13107, 7, 65534, 65535)], 2)
+    np.testing.assert_allclose(read_picture(path, 1).values[0, :, 0], np.array([13107, 65534]) / 65535)
+
+
+def test_no_program_is_started_for_a_picture(tmp_path: Path) -> None:
+    """PostScript is a program: what looks like a picture must not run."""
+    victim = tmp_path / "victim"
+    victim.touch()
+    for name in ("a.png", "a.eps", "a.jpg"):
+        (tmp_path / name).write_bytes(
+            b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 4 4\n%%EndComments\n"
+            + f"({victim}) deletefile\n%%EOF\n".encode()
+        )
+        with pytest.raises(ParameterError, match="not a picture of a kind that is read"):
+            read_picture(tmp_path / name)
+    assert victim.exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such pipes")
+def test_pipes_and_devices_are_no_files(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.png")
+    for path in (tmp_path / "pipe.png", Path("/dev/zero"), tmp_path, Path("a\0b.png")):
+        with pytest.raises(ParameterError, match="cannot be read"):
+            read_picture(path)
+
+
+def test_headers_that_promise_too_much_are_refused_before_it_is_made(tmp_path: Path) -> None:
+    small = np.zeros((1, 1), np.float32)
+    (tmp_path / "zip.npy").write_bytes(b"PK\x03\x04" + bytes(100))
+    for name, head in (
+        ("deep", b"{'descr': " + b"[" * 3000 + b"]" * 3000 + b"}"),
+        ("huge", b"{'descr': '<f8', 'fortran_order': False, 'shape': (4096, 4096, 4)}"),
+        ("less", b"{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 4)}"),
+    ):
+        head += b" " * (-(len(head) + 11) % 64) + b"\n"
+        content = b"\x93NUMPY\x01\0" + struct.pack("<H", len(head)) + head
+        (tmp_path / f"{name}.npy").write_bytes(content)
+    exr_by_hand(tmp_path / "wide.exr", {"Y": small}, display=(10**9, 10**9))
+    many = {f"layer{index}.Y": small for index in range(20)} | {"Y": small}
+    content = exr_by_hand(tmp_path / "many.exr", many).read_bytes()
+    content = content.replace(struct.pack("<4i", 0, 0, 0, 0), struct.pack("<4i", 0, 0, 4095, 4095))
+    (tmp_path / "many.exr").write_bytes(content)
+    reasons = {
+        "zip.npy": "not an array", "deep.npy": "not an array", "huge.npy": "cut off", "less.npy": "samples",
+        "wide.exr": "samples", "many.exr": "must have at most",
+    }  # fmt: skip
+    for name, reason in reasons.items():
+        with pytest.raises(ParameterError) as caught:
+            read_picture(tmp_path / name, 1)
+        assert reason in str(caught.value), str(caught.value)
 
 
 def test_without_pillow_the_message_says_what_to_install(
@@ -155,12 +421,45 @@ def test_references_become_rasters_with_as_many_channels_as_wanted(tmp_path: Pat
     assert resolved["frames"][1] == {"vectors": None}
 
 
+def test_references_say_which_channels_and_axes(tmp_path: Path) -> None:
+    exr_by_hand(tmp_path / "a.exr", {"wind.u": PAINTED, "wind.v": -PAINTED})
+    np.save(tmp_path / "a.npy", WIND.transpose(2, 1, 0))
+    frames = [
+        {"vectors": {"file": "a.exr", "channels": "wind"}},
+        {"vectors": {"file": "a.npy", "axes": "cxy"}},
+    ]
+    resolved = with_pictures(Film, {"frames": frames}, tmp_path)["frames"]
+    read = [Raster.from_plain(frame["vectors"]).values for frame in resolved]
+    np.testing.assert_array_equal(read[0][::-1], np.stack([PAINTED, -PAINTED], axis=-1))
+    np.testing.assert_array_equal(read[1], WIND.astype(np.float32))
+
+
+def test_files_are_counted_before_they_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = []
+
+    def reader(path: Path, *_: Any) -> Raster:
+        read.append(path)
+        return Raster(np.zeros((10, 10, 2)))
+
+    with pytest.raises(ParameterError, match="65 entries"):
+        with_pictures(Film, {"frames": [{"vectors": {"file": "a.npy"}}] * 65}, tmp_path, reader)
+    assert not read
+    monkeypatch.setattr("ocean_tweak.core.raster.MOST_NUMBERS", 500)
+    with pytest.raises(ParameterError, match=r"frames\.2\.vectors.*at most 500 together"):
+        with_pictures(Film, {"frames": [{"vectors": {"file": "a.npy"}}] * 9}, tmp_path, reader)
+    assert len(read) == 3
+
+
 @pytest.mark.parametrize(
     ("reference", "where", "reason"),
     [
         ({"file": "none.png"}, "frames.0.vectors.file", "No such file"),
         ({"file": 3}, "frames.0.vectors.file", "path of a file"),
         ({"file": "a.npy", "strength": 2}, "frames.0.vectors.strength", "unknown key"),
+        ({"file": "a.npy", "channels": 2}, "frames.0.vectors.channels", "names of channels"),
+        ({"file": "a.npy", "channels": "Z"}, "frames.0.vectors.file", "is no EXR image"),
+        ({"file": "a.npy", "axes": "tyx"}, "frames.0.vectors.axes", "must be one of yx, xy"),
+        ({"file": "a.npy", "axes": "xy"}, "frames.0.vectors.file", "has 3 axes, not xy"),
         ({"file": "a.npy", "scale": "2"}, "frames.0.vectors.scale", "must be a number"),
         ({"file": "a.npy", "offset": float("nan")}, "frames.0.vectors.offset", "must be a number"),
     ],

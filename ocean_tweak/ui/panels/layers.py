@@ -5,13 +5,14 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...core.hero_waves.outlook import hero_wave_outlooks
+from ...scene import source_images
 from ...scene.settings import LAYER_KINDS
 from ...scene.units import metres_per_unit
 from .. import layer_operators, wind_operators
 from ..active_ocean import active_layer, nearest
 from ..layer_properties import kind_of
 from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
-from .masks import draw_mask
+from .masks import draw_image, draw_mask
 
 
 class OCEAN_UL_layers(bpy.types.UIList):
@@ -112,7 +113,7 @@ def _draw_wind_field(
     if group.source == "UNIFORM":
         _props(layout.column(align=True), group, "wind_speed", "wind_direction")
     elif group.source == "IMAGE":
-        layout.template_ID(group, "image", new="image.new", open="image.open")
+        draw_image(layout, group)
         if group.image is not None:
             _image_notes(layout, context, group.image)
         _props(layout, group, "image_values", "image_speed")
@@ -136,7 +137,7 @@ def _draw_wind_field(
 def _draw_picture(
     layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
 ) -> None:
-    layout.template_ID(group, "image", new="image.new", open="image.open")
+    draw_image(layout, group)
     if group.image is not None:
         _image_notes(layout, context, group.image)
     else:
@@ -193,7 +194,8 @@ _ANIMATION = {
 
 def _image_notes(layout: bpy.types.UILayout, context: bpy.types.Context, image: bpy.types.Image) -> None:
     layout.operator(wind_operators.OCEAN_OT_reload_image.bl_idname, icon="FILE_REFRESH")
-    if image.is_float and not image.colorspace_settings.is_data:
+    of_blender = not source_images.has_named_channels(image)
+    if of_blender and image.is_float and not image.colorspace_settings.is_data:
         message(
             layout, context,
             f"{image.name} is in the colour space {image.colorspace_settings.name}: choose Non-Color for the "

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ...scene import source_images
 from ..mask_operators import OCEAN_OT_read_weights
 from .drawing import message
 
@@ -18,7 +19,7 @@ def draw_mask(
     if group.source == "NONE":
         return
     if group.source == "IMAGE":
-        layout.template_ID(group, "image", new="image.new", open="image.open")
+        draw_image(layout, group)
     elif group.source == "VERTEX_GROUP":
         _draw_weights(layout, group, patch)
     else:
@@ -27,6 +28,13 @@ def draw_mask(
     if lacking:
         message(layout, context, lacking)
     layout.prop(group, "inverted")
+
+
+def draw_image(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -> None:
+    """Draw the choice of an image, and of its channels where they have names."""
+    layout.template_ID(group, "image", new="image.new", open="image.open")
+    if group.image is not None and source_images.has_named_channels(group.image):
+        layout.prop(group, "image_channels")
 
 
 def _draw_weights(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, patch: int) -> None:

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures that the Pillow package reads, as numbers without colour space and transparency."""
+
+from __future__ import annotations
+
+import struct
+import sys
+import warnings
+import zlib
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import tiff
+from .checks import UnusableError, check_size
+
+#: kinds of files; others may start programs (PostScript), and Blender reads them otherwise or not at all
+FORMATS = ("PNG", "TIFF", "JPEG", "BMP", "TGA", "WEBP", "GIF")
+
+_GREY, _COLOUR = ("1", "L"), ("P", "PA", "CMYK", "YCbCr")
+#: order of the bytes of a 16-bit number in Pillow's names, and the other one
+_ORDERS = {"B": "L", "L": "B", "N": "B" if sys.byteorder == "little" else "L"}
+
+
+def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
+    """The numbers [y, x] or [y, x, channel] of a picture, the first row with the smallest y.
+
+    Whole numbers are shares of the largest of their kind, decimals are themselves.
+
+    Raises UnusableError for what is damaged, too large or of another kind.
+    """
+    try:
+        from PIL import Image, UnidentifiedImageError
+    except ImportError:
+        raise UnusableError(
+            "is read by the Pillow package: install it with 'pip install Pillow', or save it as .exr"
+        ) from None
+    is_tiff = tiff.is_tiff(stream)
+    kind = tiff.number_kind(stream) if is_tiff else (tiff.UNSIGNED, 16)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # its size is checked here
+            return _numbers(stream, *kind)[::-1]
+    except UnusableError:
+        raise
+    except Image.DecompressionBombError:
+        raise UnusableError("has too many samples: make it smaller") from None
+    except UnidentifiedImageError:
+        raise UnusableError(
+            "is a TIFF whose kind of numbers Pillow does not read: save it as .exr"
+            if is_tiff
+            else f"is not a picture of a kind that is read: {', '.join(FORMATS)}, EXR"
+        ) from None
+    except (
+        OSError, ValueError, SyntaxError, EOFError, IndexError, KeyError, TypeError, AttributeError,
+        ZeroDivisionError, OverflowError, AssertionError, RuntimeError, struct.error, zlib.error,
+    ) as error:  # fmt: skip
+        reason = getattr(error, "strerror", None) or " ".join(str(error).split())[:120]
+        raise UnusableError(f"cannot be read: {reason or type(error).__name__}") from None
+
+
+def _numbers(stream: BinaryIO, kind: int, bits: int) -> NDArray[Any]:
+    """Kind and bits are those of a number where a pixel has one of more than 8 bits."""
+    with _opened(stream) as picture:
+        mode, raw = picture.mode, _raw_mode(picture)
+        if ";16" in raw and not mode.startswith("I"):
+            return _of_16_bits(stream, raw)
+        if raw in ("RGBa", "La"):  # the numbers as they stand in the file, not divided by transparency
+            _set_raw_mode(picture, raw.upper())
+        if mode == "F":
+            return np.asarray(picture, np.float32)
+        if mode.startswith("I"):
+            values = np.asarray(picture)
+            if bits == 32 and kind == tiff.UNSIGNED:
+                values = values.view(np.uint32)  # Pillow takes them for signed
+            return np.maximum(values / tiff.largest(kind, bits), -1.0)
+        if mode in _GREY:
+            return np.asarray(picture.convert("L")) / 255.0
+        if mode in ("LA", "La"):
+            return np.asarray(picture)[..., 0] / 255.0
+        if mode in ("RGB", "RGBA", "RGBX", *_COLOUR):
+            return np.asarray(picture.convert("RGB") if mode in _COLOUR else picture)[..., :3] / 255.0
+        raise UnusableError(f"holds the colours {mode}: save it as grey or as red, green and blue")
+
+
+def _opened(stream: BinaryIO) -> Any:
+    from PIL import Image
+
+    stream.seek(0)
+    picture = Image.open(stream, formats=FORMATS)
+    check_size(picture.height, picture.width)
+    return picture
+
+
+def _raw_mode(picture: Any) -> str:
+    """How numbers lie in the file, in Pillow's words; "" where it does not say."""
+    arguments = picture.tile[0].args if picture.tile else ""
+    first = arguments[0] if isinstance(arguments, tuple) and arguments else arguments
+    return first if isinstance(first, str) else ""
+
+
+def _set_raw_mode(picture: Any, raw: str) -> None:
+    picture.tile = [
+        tile._replace(args=raw if isinstance(tile.args, str) else (raw, *tile.args[1:]))
+        for tile in picture.tile
+    ]
+
+
+def _of_16_bits(stream: BinaryIO, raw: str) -> NDArray[Any]:
+    """Numbers of 16 bits in several channels, of which Pillow keeps 8: read twice, each half once."""
+    layout, _, order = raw.partition(";16")
+    if layout == "LA" and order == "B":  # a PNG's; as four channels of 8 bits its bytes are these
+        with _opened(stream) as picture:
+            _set_raw_mode(picture, "RGBA")
+            pairs = np.asarray(picture).astype(np.uint16)
+        return (pairs[..., 0] * 256 + pairs[..., 1]) / 65535.0
+    if layout.upper() not in ("RGB", "RGBA", "RGBX") or order not in _ORDERS:
+        raise UnusableError(f"holds numbers as {raw}, of which 8 bits are read: save it as .exr")
+    halves = []
+    for half in (order, _ORDERS[order]):
+        with _opened(stream) as picture:
+            _set_raw_mode(picture, f"{layout.upper()};16{half}")
+            halves.append(np.asarray(picture)[..., :3].astype(np.uint16))
+    return (halves[0] * 256 + halves[1]) / 65535.0
