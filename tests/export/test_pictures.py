@@ -290,7 +290,7 @@ def test_whole_numbers_of_a_tiff_are_shares_of_the_largest(
     )
     path = tiff(tmp_path / "a.tif", numbers, order)
     if (kind, order) == (np.uint32, ">"):  # Pillow has no word for these
-        with pytest.raises(ParameterError, match="Pillow does not read: save it as .exr"):
+        with pytest.raises(ParameterError, match="Pillow does not read"):
             read_picture(path)
         return
     expected = numbers.astype(float)[::-1] / largest
@@ -360,7 +360,9 @@ def test_pipes_and_devices_are_no_files(tmp_path: Path) -> None:
             read_picture(path)
 
 
-def test_headers_that_promise_too_much_are_refused_before_it_is_made(tmp_path: Path) -> None:
+def test_headers_that_promise_too_much_are_refused_before_it_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     small = np.zeros((1, 1), np.float32)
     (tmp_path / "zip.npy").write_bytes(b"PK\x03\x04" + bytes(100))
     for name, head in (
@@ -372,10 +374,8 @@ def test_headers_that_promise_too_much_are_refused_before_it_is_made(tmp_path: P
         content = b"\x93NUMPY\x01\0" + struct.pack("<H", len(head)) + head
         (tmp_path / f"{name}.npy").write_bytes(content)
     exr_by_hand(tmp_path / "wide.exr", {"Y": small}, display=(10**9, 10**9))
-    many = {f"layer{index}.Y": small for index in range(20)} | {"Y": small}
-    content = exr_by_hand(tmp_path / "many.exr", many).read_bytes()
-    content = content.replace(struct.pack("<4i", 0, 0, 0, 0), struct.pack("<4i", 0, 0, 4095, 4095))
-    (tmp_path / "many.exr").write_bytes(content)
+    exr_by_hand(tmp_path / "many.exr", {f"layer{index}.Y": small for index in range(20)} | {"Y": small})
+    monkeypatch.setattr("ocean_tweak.export.pictures.exr_pictures._MOST_NUMBERS", 20)
     reasons = {
         "zip.npy": "not an array", "deep.npy": "not an array", "huge.npy": "cut off", "less.npy": "samples",
         "wide.exr": "samples", "many.exr": "must have at most",
