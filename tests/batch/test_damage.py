@@ -17,7 +17,7 @@ from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.cache.job import read_job, sealed
 from ocean_tweak.export.cache.records import CacheSink, file_hash, read_record
 from ocean_tweak.export.exr import read_image, write_image
-from tests.batch.bakery import contents, only_folder, times_of_change, write_sea
+from tests.batch.bakery import contents, only_folder, records, times_of_change, write_sea
 
 
 def image(folder: Path, frame: int, name: str = "disp") -> Path:
@@ -276,6 +276,19 @@ def test_the_job_of_an_animated_sea_that_is_lost(tmp_path: Path, capsys: pytest.
     assert main(bake) == 0
     del before["bake.json"]
     assert before.items() <= times_of_change(folder).items()
+
+
+def test_records_that_ask_for_too_many_frames_are_told(
+    copy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each by itself may ask for a million; so many strangers' records together may not."""
+    for index, path in enumerate(records(copy)):
+        data = json.loads(path.read_bytes())
+        del data["sha256"]
+        first = index * 500_000
+        path.write_text(json.dumps(sealed(data | {"asked": f"{first}-{first + 499_999}"})))
+    assert main(["verify", str(copy)]) == 2
+    assert "more than 1000000" in capsys.readouterr().err
 
 
 def test_frames_asked_for_later_are_not_forgotten(tmp_path: Path) -> None:

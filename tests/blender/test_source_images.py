@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images become waves and winds by the numbers of their files, and what is wrong with one is told by name."""
 
-import struct
-import zlib
 from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
+
+from tests import picture_files
 
 from .conftest import sea_of
 
@@ -29,21 +29,8 @@ def wind(ocean):
 
 def png(path, values):
     """Write an 8-bit PNG, the top row first: (rows, columns) grey or (rows, columns, 3)."""
-    rows, columns = values.shape[:2]
-    colour = 2 if values.ndim == 3 else 0
-    content = b"".join(b"\0" + row.astype(np.uint8).tobytes() for row in values)
-
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    head = struct.pack(">IIBBBBB", columns, rows, 8, colour, 0, 0, 0)
-    path.write_bytes(
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", head)
-        + chunk(b"IDAT", zlib.compress(content))
-        + chunk(b"IEND", b"")
-    )
-    return path
+    rows = [row.astype(np.uint8).tobytes() for row in values]
+    return picture_files.png(path, 8, 2 if values.ndim == 3 else 0, rows, values.shape[1])
 
 
 def float_image(values, name="decimal"):
@@ -74,6 +61,97 @@ def test_decimals_are_themselves(ocean, picture, wind):
     values = np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32) * 40
     ocean.ocean_tweak.layers[2].picture.image = float_image(values)
     assert sea_of(ocean).pictures[0].picture.values[..., 0].tolist() == values.tolist()
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("kind", ["u1", "u2", "u4", "i2", "i4", "f4"])
+def test_numbers_of_a_tiff_mean_the_same_here_and_outside(ocean, extension, tmp_path, kind, order):
+    """Shares of the largest of their kind; Pillow, which reads outside, does not read some of big-endian."""
+    largest = 1.0 if kind == "f4" else float(np.iinfo(kind).max)
+    shares = np.array([[0.0, 0.25, 1.0], [-1.0 if kind[0] in "if" else 0.5, 0.125, 0.75]])
+    numbers = np.trunc(shares * largest) if kind != "f4" else shares
+    path = picture_files.tiff(tmp_path / "a.tif", numbers.astype(kind), order)
+    read = extension("scene.source_images").open_image(path, 1)
+    assert np.abs(read.values[::-1, :, 0] - numbers / largest).max() < 1e-6
+    if (kind, order) != ("u4", ">"):
+        pytest.importorskip("PIL")
+        outside = extension("export.pictures").read_picture(path, 1)
+        assert np.abs(outside.values - read.values).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("depth", "colour", "rows"),
+    [(16, 2, "102030405060"), (16, 6, "1020304050607080"), (16, 4, "10203040"), (2, 0, "40"), (8, 4, "2030")],
+)
+def test_pngs_mean_the_same_here_and_outside(ocean, extension, tmp_path, depth, colour, rows):
+    pytest.importorskip("PIL")
+    path = picture_files.png(tmp_path / "a.png", depth, colour, [bytes.fromhex(rows)], 1)
+    read = extension("scene.source_images").open_image(path, 1)
+    outside = extension("export.pictures").read_picture(path, 1)
+    assert np.abs(outside.values - read.values).max() < 1e-6
+    assert 0.05 < read.values[0, 0, 0] < 0.5
+
+
+@pytest.mark.parametrize("values", [np.array([[-9, 9]], np.int8), np.array([[0.5, 1.0]], np.float64)])
+def test_tiffs_of_which_blender_loses_numbers_are_refused(ocean, picture, tmp_path, values):
+    picture.image = bpy.data.images.load(str(picture_files.tiff(tmp_path / "a.tif", values)))
+    assert "pictures.0.image = 'a.tif': holds " in ocean.ocean_tweak.error
+    assert "which are not read" in ocean.ocean_tweak.error
+
+
+PAINTED = np.arange(1.0, 7.0, dtype=np.float32).reshape(2, 3)
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_what_an_exr_stores_lies_where_it_was_painted(ocean, picture, tmp_path, packed):
+    """Of a picture of 4 x 4 the part from column 2, row 1 on, a column of which lies outside."""
+    path = picture_files.exr(tmp_path / "a.exr", {"Y": PAINTED}, (2, 1), (4, 4))
+    picture.image = image = bpy.data.images.load(str(path))
+    if packed:
+        image.pack()
+        path.unlink()
+        bpy.ops.ocean.reload_image()
+    expected = np.zeros((4, 4))
+    expected[1:3, 2:] = PAINTED[:, :2]
+    assert (sea_of(ocean).pictures[0].picture.values[::-1, :, 0] == expected).all()
+    image.pixels[0:3] = (9.0, 9.0, 9.0)  # painted, in the lowest row that is stored
+    image.update()
+    expected[2, 2] = 9.0
+    ocean.ocean_tweak.seed += 1
+    assert (sea_of(ocean).pictures[0].picture.values[::-1, :, 0] == expected).all()
+
+
+def test_channels_of_an_exr_are_chosen_by_name(ocean, picture, wind, extension, tmp_path):
+    """In Blender these are multi-layer images, of which it gives no texels at all."""
+    factors = {"R": 1, "depth.Z": 2, "gust.u": 3, "gust.v": 4}
+    planes = {name: factor * PAINTED for name, factor in factors.items()}
+    image = bpy.data.images.load(str(picture_files.exr(tmp_path / "a.exr", planes)))
+    # the wind's layer comes first, whose property groups are found anew
+    wind, picture = (layer.group for layer in ocean.ocean_tweak.layers[1:])
+    wind.source, wind.image, wind.image_values, wind.image_speed = "IMAGE", image, "PLAIN", 1.0
+    picture.image = image
+    assert "wind_fields.0.image = 'a.exr': must have 2 channels, but has 1" in ocean.ocean_tweak.error
+    wind.image_channels, picture.image_channels = "gust", "depth.X"
+    assert "no channel or layer depth.X, it has R, depth.Z, gust.u, gust.v" in ocean.ocean_tweak.error
+    picture.image_channels = "depth.Z"
+    assert ocean.ocean_tweak.error == ""
+    sea = sea_of(ocean)
+    assert (sea.pictures[0].picture.values[::-1, :, 0] == 2 * PAINTED).all()
+    assert (sea.wind_fields[0].rasters[0].values[::-1] == np.dstack([3 * PAINTED, 4 * PAINTED])).all()
+    names = extension("scene.source_images").channel_names(image)
+    assert sorted(names) == ["R", "depth.Z", "gust.u", "gust.v"]
+    # taking over the same sea changes nothing
+    ocean.ocean_tweak.from_parameters(sea, bpy.context.scene)
+    wind, picture = (layer.group for layer in ocean.ocean_tweak.layers[1:])
+    assert (picture.image, picture.image_channels) == (image, "depth.Z")
+    assert (wind.image, wind.image_channels) == (image, "gust")
+    assert sea_of(ocean) == sea
+
+
+def test_a_choice_of_channels_is_no_matter_to_other_images(ocean, picture):
+    picture.image_channels = "Z"
+    picture.image = float_image(np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32))
+    assert ocean.ocean_tweak.error == ""
 
 
 def test_pictures_that_hold_no_waves_are_told_by_name(ocean, picture):

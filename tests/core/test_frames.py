@@ -68,6 +68,15 @@ def test_frame_ranges_that_are_none(text: str) -> None:
         parse_frames(text)
 
 
+def test_frames_of_all_parts_are_counted_before_any_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    def made(*_: object) -> None:
+        raise AssertionError("frames were made")
+
+    monkeypatch.setattr("ocean_tweak.core.frames._series", made)
+    with pytest.raises(ParameterError, match="at most 1000000 frames"):
+        parse_frames("1-600000,1-600000")
+
+
 @pytest.mark.parametrize(
     ("frame", "label"),
     [

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import OceanParameters, ParameterError, Timing, Water, WaveLayer
+from ocean_tweak.core.raster import Raster
 
 
 def test_json_round_trip_keeps_every_field() -> None:
@@ -84,6 +85,46 @@ def test_bad_values_are_refused_by_name(data: dict, field: str, said: str) -> No
     assert said in str(caught.value)
     assert str(caught.value).startswith(f"{field} = ")
     assert "\n" not in str(caught.value)
+
+
+def test_what_is_said_of_a_huge_or_strange_value_is_one_short_line() -> None:
+    deep: list = []
+    for _ in range(500):
+        deep = [deep]
+    for value in ("x" * 10**6, "\x1b[31m\nred", [[0] * 10**5] * 5, {"a" * 10**5: 1}, deep, 10**4999):
+        for data in ({"seed": value}, {"layers": value}, {"x" * 10**5: value}, {"a\n\x1b": value}):
+            with pytest.raises(ParameterError) as caught:
+                OceanParameters.from_dict(data)
+            assert len(str(caught.value)) < 1000
+            assert str(caught.value).isprintable()
+
+
+def test_entries_of_lists_are_counted_before_they_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    def made(*_: object) -> None:
+        raise AssertionError("a layer was made")
+
+    monkeypatch.setattr(WaveLayer, "__post_init__", made)
+    with pytest.raises(ParameterError, match="layers = '65 entries': must have from 1 to 64"):
+        OceanParameters.from_dict({"layers": [{}] * 65})
+
+
+def test_rasters_of_a_sea_are_counted_before_they_are_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = Raster(np.zeros((10, 10))).to_plain()
+    monkeypatch.setattr("ocean_tweak.core.raster.MOST_NUMBERS", 350)
+
+    def unpacked(_: object) -> None:
+        raise AssertionError("a raster was made")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Raster, "from_plain", unpacked)
+        data = {
+            "pictures": [{"picture": plain, "mask": {"source": "IMAGE", "image": plain}}] * 2,
+            "resolution": 32,
+        }
+        with pytest.raises(ParameterError, match="'400 numbers': must hold at most 350 together"):
+            OceanParameters.from_dict(data)
+    mask = {"source": "IMAGE", "image": plain}
+    assert OceanParameters.from_dict({"resolution": 32, "layers": [{"mask": mask}] * 3}).is_masked
 
 
 def test_direct_construction_is_validated_too() -> None:

@@ -78,6 +78,7 @@ BIG = base64.b64encode(zlib.compress(b"\0" * 10_000_000)).decode()
         ({"values": [[1.0, float("nan")]], "name": "logo.png"}, "'logo.png' = nan: .* row 0, column 1"),
         ({"values": [[1.0, 1e300]]}, "finite"),
         ({"values": [[1.0], [1.0, 2.0]]}, "same number of numbers"),
+        ({"values": [[10**400]]}, "finite in 32 bits"),
         ({"values": [["x"]]}, "numbers"),
         ({"values": []}, "rows and columns"),
         ({"values": [[[1, 2, 3, 4, 5]]]}, "channels"),
