@@ -77,7 +77,10 @@ def _file_shot(path: Path | None) -> Shot:
 
 def _text_of(path: Path) -> str:
     if path == _STDIN:
-        return sys.stdin.buffer.read().decode("utf-8")
+        content = sys.stdin.buffer.read(LARGEST_JSON + 1)
+        if len(content) > LARGEST_JSON:
+            raise OSError(None, f"is larger than {LARGEST_JSON / 1e6:g} MB")
+        return content.decode("utf-8")
     return read_bytes(path, LARGEST_JSON).decode("utf-8")
 
 

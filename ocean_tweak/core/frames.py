@@ -96,7 +96,7 @@ def format_frames(frames: Iterable[Frame], step_sign: str = "x") -> str:
     frames = set(frames)
     whole = sorted(frame for frame in frames if isinstance(frame, int))
     parts = [_range_text(run, step_sign) for run in _runs(whole, bool(step_sign))]
-    between = sorted(frame for frame in frames if not isinstance(frame, int))
+    between = sorted((frame for frame in frames if not isinstance(frame, int)), key=float)
     return ",".join([*parts, *(_digits(frame, 1) for frame in between)])
 
 
