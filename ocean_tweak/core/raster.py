@@ -145,7 +145,7 @@ def numbers_in(data: object) -> int:
         if isinstance(item, list):
             rest += item
         elif isinstance(item, dict):
-            shape = item.get("shape")
+            shape: Any = item.get("shape")
             if "data" in item and _is_shape(shape):
                 total += math.prod(shape)
             else:
