@@ -324,8 +324,10 @@ def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _add_take_over(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--take-over", action="store_true", help="remove the locks of others that died baking the same frames"
-    )
+        "--take-over", action="store_true",
+        help="also remove the locks of processes on other machines that died baking the same frames; "
+        "those of this machine are removed anyway",
+    )  # fmt: skip
 
 
 def _add_openjd(parser: argparse.ArgumentParser) -> None:

@@ -60,7 +60,7 @@ def test_killed_at_any_moment(sea: Path, undisturbed: dict[str, str], tmp_path: 
     chance = random.Random(5)
     with Watch(tmp_path):
         for kill in range(KILLS):
-            process = start(*bake(sea, tmp_path, workers=1 + 2 * (kill % 2)), "--take-over")
+            process = start(*bake(sea, tmp_path, workers=1 + kill % 2))
             before = len(list(tmp_path.glob("*/v*/records/*.json")))
             if chance.random() < 0.8:
                 baking(process, tmp_path, before + 1)
@@ -75,7 +75,7 @@ def test_killed_at_any_moment(sea: Path, undisturbed: dict[str, str], tmp_path: 
             end(process)
         folder = only_folder(tmp_path)
         assert 0 < len(records(folder)) < FRAMES
-        answer = run("resume", folder, "--take-over", "--workers", 2)
+        answer = run(*bake(sea, tmp_path, workers=2))
     assert answer.returncode == 0, answer.stderr
     assert contents(folder) == undisturbed
     assert leftovers(folder) == []

@@ -15,7 +15,7 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.export import files
-from ocean_tweak.export.cache import locks
+from ocean_tweak.export.cache import locks, processes
 from ocean_tweak.export.cache.locks import Held, claimed, claims
 from tests.batch.bakery import (
     baking,
@@ -83,7 +83,7 @@ def beating(copy: Path) -> Iterator[Path]:
 
 
 def test_the_life_of_a_lock(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Held, refused by name, never taken from the living, refused after its death, taken when asked."""
+    """Held, refused by name, never taken from the living, gone on with after its death."""
 
     def attempt(frames: str, *more: str) -> tuple[int, str]:
         code = main(bake(sea, tmp_path, frames, "--workers", 1, *more))
@@ -107,11 +107,7 @@ def test_the_life_of_a_lock(sea: Path, tmp_path: Path, capsys: pytest.CaptureFix
 
     first.kill()
     end(first)
-    for more in ([], ["--wait"]):
-        code, err = attempt("1-2000", "--only", "1-3", *more)
-        assert code == 1
-        assert f"{holder}, which has died: take its lock over with --take-over" in err
-    assert attempt("1-3", "--take-over") == (0, "")
+    assert attempt("1-2000", "--only", "1-3") == (0, "")
     assert all(".part" in name for name in leftovers(folder))
 
 
@@ -185,15 +181,47 @@ def test_another_machine_of_the_same_name(copy: Path, capsys: pytest.CaptureFixt
     """Containers and clones: its processes cannot be asked, so it does not count as dead at once."""
     foreign_lock(copy, host=HOST, process=2**22 + 1)
     assert main(["resume", str(copy)]) == 1
-    assert "which has died" not in capsys.readouterr().err
+    assert (
+        f"process {2**22 + 1} on {HOST}: wait for it with --wait, or, if it died" in capsys.readouterr().err
+    )
 
 
 def test_a_process_number_that_is_used_again(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """This process has the number, but was not started when the holder was."""
-    foreign_lock(copy, host=HOST, machine=locks.this_machine(), process=os.getpid(), started="1")
-    assert main(["resume", str(copy)]) == 1
-    assert "which has died" in capsys.readouterr().err
-    assert main(["resume", str(copy), "--take-over"]) == 0
+    foreign_lock(copy, host=HOST, machine=processes.this_machine(), process=os.getpid(), started="1")
+    assert main(["resume", str(copy)]) == 0
+    assert f"process {os.getpid()} on {HOST} has died: its lock is removed" in capsys.readouterr().out
+    assert claims(copy / "locks") == []
+
+
+@pytest.mark.parametrize(
+    ("hardware", "boot", "freed"),
+    [
+        ("card 1", "before", True),
+        ("card 1", "now", False),
+        ("card 2", "before", False),
+        ("", "before", False),
+    ],
+)
+def test_a_machine_that_was_started_again(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, hardware: str, boot: str, freed: bool
+) -> None:
+    """Its processes are gone; not those of a copy of it, of a container, or of one that has a new name."""
+    monkeypatch.setattr(locks, "hardware", lambda: "card 1")
+    monkeypatch.setattr(locks, "boot", lambda: "now")
+    lock = foreign_lock(copy, host=HOST, process=os.getpid(), hardware=hardware, boot=boot)
+    assert main(["resume", str(copy)]) == (0 if freed else 1)
+    assert lock.exists() is not freed
+
+
+def test_what_this_machine_tells_of_itself_is_of_this_start(folder: Path) -> None:
+    """A claim of this process is alive by what the system says, and says it to the others."""
+    with claimed(folder, (1,)):
+        (claim,) = claims(folder / "locks")
+    assert locks.is_alive_here(claim) is True
+    assert claim.boot in claim.machine
+    ticks = time.clock_gettime(time.CLOCK_BOOTTIME) * os.sysconf("SC_CLK_TCK")
+    assert 0 < int(claim.started) < ticks
 
 
 @pytest.mark.parametrize("jump", [-10 * 365 * 86400, 10 * 365 * 86400])
@@ -246,6 +274,28 @@ def test_a_lock_that_cannot_be_read_holds_all(
     assert main(["resume", str(copy)]) == 1
     assert f"somebody whose lock {lock} cannot be read" in capsys.readouterr().err
     assert main(["resume", str(copy), "--take-over"]) == 0
+
+
+@pytest.mark.parametrize("kind", ["fifo", "folder", "link", "device"])
+def test_a_lock_that_is_no_file_holds_all_and_nobody_up(
+    copy: Path, tmp_path: Path, quick: None, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    lock = copy / "locks" / "00.lock"
+    other = foreign_lock(copy, frames="1000").rename(tmp_path / "other")
+    make = {"fifo": os.mkfifo, "folder": os.mkdir, "link": lambda path: path.symlink_to(other)}
+    make.get(kind, lambda path: path.symlink_to("/dev/zero"))(lock)
+    assert main(["resume", str(copy)]) == 1
+    assert f"somebody whose lock {lock} cannot be read" in capsys.readouterr().err
+    assert main(["resume", str(copy), "--take-over"]) == (1 if kind == "folder" else 0)
+    assert other.exists()
+
+
+def test_what_a_lock_says_is_printed_short_and_plain(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    foreign_lock(copy, host="\x1b[2J\r\nroot" + 5000 * "x", process=10**2000)
+    assert main(["resume", str(copy)]) == 1
+    err = capsys.readouterr().err
+    assert len(err) < 500
+    assert err.rstrip("\n").isprintable()
 
 
 def test_a_full_disk_does_not_silence_a_holder(

@@ -6,8 +6,10 @@ written first and the others are looked at afterwards, so of two that come at th
 the other, also on a disk without file locks and from machines that remember a folder's old contents for a
 while; the system's own file lock only sees to it that one of them always gets in.
 
-Clocks are not compared: a holder that cannot be asked counts as dead only when its counter stands still while
-it is watched. Should it be alive nevertheless, it notices that its claim is gone and stops.
+The claim of a process of this machine that has died counts for nothing, nor does one from before the machine
+was started again. Clocks are not compared: a holder elsewhere, which cannot be asked, counts as dead only
+when somebody wants it taken over and its counter stands still while it is watched. Should it be alive
+nevertheless, it notices that its claim is gone and stops.
 """
 
 from __future__ import annotations
@@ -22,13 +24,14 @@ import time
 import uuid
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ...core.frames import Frame, format_frames, parse_frames
+from ...core.printable import printable
 from ..files import alone, read_bytes, write_text
 from .job import ENTRY, LOCKS, refuse_links
+from .processes import boot, hardware, process_start, this_machine
 
 #: s between two beats
 BEAT = 5.0
@@ -49,7 +52,8 @@ class Held(RuntimeError):
 class Claim:
     """Somebody's claim to frames.
 
-    machine : tells machines of one name apart, and what runs in containers
+    machine : tells machines of one name apart, and what runs in containers; another after a restart
+    boot, hardware : which start of which machine it was; "" where that cannot be told
     started : of the process in the system's own count, to tell it from a later one with the same number
     frames : None for a claim that cannot be read: it may be to any
     beat : how often its holder has said that it lives
@@ -62,13 +66,15 @@ class Claim:
     started: str
     frames: frozenset[Frame] | None
     beat: int
+    boot: str = ""
+    hardware: str = ""
 
     @property
     def holder(self) -> str:
         """Who it is, for a message."""
         if self.frames is None:
             return f"somebody whose lock {self.path} cannot be read"
-        return f"process {self.process} on {self.host}"
+        return f"process {printable(self.process, 20)} on {printable(self.host, 60)}"
 
     def shared(self, frames: frozenset[Frame]) -> frozenset[Frame]:
         """Which of the frames it claims."""
@@ -102,9 +108,9 @@ def claimed(
     """Hold frames of a folder while this is open.
 
     wait : until others have finished with them; otherwise refuse
-    take_over : remove the claims of holders that are dead
+    take_over : also remove the claims of holders on other machines that are dead
     stopped : asked while waiting; True ends it with Held
-    say : is told once whom it waits for
+    say : is told once whom it waits for, and of each claim that it removes
 
     Raises Held naming who has them, CacheError where the folder's own parts are links.
     """
@@ -114,8 +120,10 @@ def claimed(
     own = _own_claim(locks, frames)
     told = None
     while (other := _enter(own)) is not None:
-        if take_over and _has_died(other, stopped, say):
+        alive = is_alive_here(other)
+        if alive is False or (alive is None and take_over and _stands_still(other, stopped, say)):
             other.path.unlink(missing_ok=True)
+            say(f"{other.holder} has died: its lock is removed")
             continue
         problem = _refusal(own, other, wait, take_over, stopped)
         if problem:
@@ -140,12 +148,12 @@ def _refusal(own: Claim, other: Claim, wait: bool, take_over: bool, stopped: Cal
     """Why not to wait for the other claim."""
     if stopped():
         return "; stopped waiting for it"
-    if is_alive_here(other) is False and not take_over:
-        return ", which has died: take its lock over with --take-over"
     if wait:
         return ""
     if take_over:
         return " and is alive: only a dead one's lock is taken over; wait for it with --wait"
+    if is_alive_here(other):
+        return ": wait for it with --wait"
     return ": wait for it with --wait, or, if it died, take its lock over with --take-over"
 
 
@@ -184,30 +192,19 @@ def claims(locks: Path) -> list[Claim]:
 
 def is_alive_here(claim: Claim) -> bool | None:
     """Whether the claim's process runs, where that can be told: on its own machine."""
-    if claim.frames is None or claim.machine != this_machine():
+    if claim.frames is None:
         return None
-    started = _process_start(claim.process)
+    if claim.machine != this_machine():
+        is_of_this = claim.hardware and claim.hardware == hardware()
+        return False if is_of_this and claim.boot and boot() and claim.boot != boot() else None
+    started = process_start(claim.process)
     if started is None:
         return False
     return started == claim.started if started and claim.started else None
 
 
-@cache
-def this_machine() -> str:
-    """What tells this machine from others of its name, from itself restarted, and from a container."""
-    identity = [platform.node()]
-    with contextlib.suppress(OSError):
-        identity.append(Path("/proc/sys/kernel/random/boot_id").read_text().strip())
-        identity.append(str(Path("/proc/self/ns/pid").readlink()))
-    if len(identity) == 1:
-        identity.append(f"{uuid.getnode():012x}")
-    return " ".join(identity)
-
-
-def _has_died(claim: Claim, stopped: Callable[[], bool], say: Callable[[str], None]) -> bool:
-    alive = is_alive_here(claim)
-    if alive is not None:
-        return not alive
+def _stands_still(claim: Claim, stopped: Callable[[], bool], say: Callable[[str], None]) -> bool:
+    """Whether its counter does, or the claim is let go, while it is watched."""
     say(f"watching {claim.holder} for {SILENCE:.0f} s")
     until = time.monotonic() + SILENCE
     while time.monotonic() < until:
@@ -218,21 +215,25 @@ def _has_died(claim: Claim, stopped: Callable[[], bool], say: Callable[[str], No
             if _read(claim.path).beat != claim.beat:
                 return False
         except FileNotFoundError:
-            return True  # it was let go meanwhile
+            return True
     return True
 
 
 def _own_claim(locks: Path, frames: tuple[Frame, ...]) -> Claim:
     process = os.getpid()
     path = locks / f"{uuid.uuid4().hex}.lock"
-    started = _process_start(process) or ""
-    return Claim(path, platform.node(), this_machine(), process, started, frozenset(frames), 0)
+    started = process_start(process) or ""
+    return Claim(
+        path, platform.node(), this_machine(), process, started, frozenset(frames), 0, boot(), hardware()
+    )
 
 
 def _write(claim: Claim) -> None:
     data = {
         "host": claim.host,
         "machine": claim.machine,
+        "boot": claim.boot,
+        "hardware": claim.hardware,
         "process": claim.process,
         "started": claim.started,
         "frames": format_frames(claim.frames or ()),
@@ -258,6 +259,7 @@ def _read(path: Path) -> Claim:
         return Claim(
             path, str(data["host"]), str(data["machine"]), int(data["process"]), str(data["started"]),
             frozenset(parse_frames(data["frames"])), int(beat),
+            str(data.get("boot", "")), str(data.get("hardware", "")),
         )  # fmt: skip
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError):
         return Claim(path, "", "", 0, "", None, 0)
@@ -276,24 +278,3 @@ def _beat(claim: Claim, hold: Hold, ended: threading.Event) -> None:
             return
         except OSError:  # of a disk that fails, the bake's own files tell
             pass
-
-
-def _process_start(process: int) -> str | None:
-    """When a process of this machine was started, in the system's own count.
-
-    "" for one of which it cannot be told, not even whether it runs; None when there is none.
-    """
-    if os.name == "nt":
-        return ""  # asking with a signal would end it
-    try:
-        os.kill(process, 0)
-    except (ProcessLookupError, OverflowError):
-        return None
-    except PermissionError:
-        pass  # it runs, and is somebody else's
-    try:
-        # after the last bracket: a program's name may hold spaces and brackets itself
-        status = Path(f"/proc/{process}/stat").read_text(errors="replace").rpartition(")")[2].split()
-    except OSError:
-        return ""
-    return None if status[0] == "Z" else status[19]
