@@ -39,6 +39,7 @@ def make_parser(in_blender: bool) -> argparse.ArgumentParser:
 
 
 _FOLDER_HELP = "a bake's folder, NAME-UID/vNNN-hash8"
+_PLACE_HELP = f"{_FOLDER_HELP}, or what was given to --out, where it holds one bake"
 
 _Arguments = argparse._ActionsContainer  # a parser or a group of its arguments
 _Commands = argparse._SubParsersAction  # type: ignore[type-arg]
@@ -118,7 +119,7 @@ def _add_files_arguments(parser: _Arguments) -> None:
 
 def _add_resume(commands: _Commands) -> None:
     parser = _command(commands, "resume", "make what is missing, stale or damaged of a bake")
-    _add_folder_arguments(parser)
+    _add_folder_arguments(parser, _PLACE_HELP)
     _add_work_arguments(parser)
     parser.set_defaults(run=lambda arguments, _oceans: baking.resume(arguments))
 
@@ -127,7 +128,7 @@ def _add_verify(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "verify", "read a bake back: hashes, headers, pixels and wave heights")
     parser.add_argument(
         "folder", type=Path, metavar="FOLDER", nargs="?",
-        help=f"{_FOLDER_HELP}; or leave it out and give what the bake was given",
+        help=f"{_PLACE_HELP}; or leave it out and give what the bake was given",
     )  # fmt: skip
     _add_wanted_frames(parser)
     sea = parser.add_argument_group("the sea, instead of a folder")
@@ -140,7 +141,7 @@ def _add_verify(commands: _Commands, in_blender: bool) -> None:
 
 def _add_clean(commands: _Commands) -> None:
     parser = _command(commands, "clean", "delete the frames of a bake, and nothing else")
-    _add_folder_arguments(parser)
+    _add_folder_arguments(parser, _FOLDER_HELP)
     _add_take_over(parser)
     parser.set_defaults(run=lambda arguments, _oceans: checking.clean(arguments))
 
@@ -288,8 +289,8 @@ def _add_usd_verify(commands: _Commands) -> None:
     parser.set_defaults(run=lambda arguments, _oceans: usd.verify(arguments))
 
 
-def _add_folder_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, metavar="FOLDER", help=_FOLDER_HELP)
+def _add_folder_arguments(parser: argparse.ArgumentParser, purpose: str) -> None:
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help=purpose)
     _add_wanted_frames(parser)
 
 

@@ -41,7 +41,7 @@ from .outcome import DONE, FAILED, UsageError, message_of, remedy_of
 from .progress import Progress, duration
 from .seas import Sea
 from .stopping import stop_requested
-from .wanted_bake import cache_of, jobs_of
+from .wanted_bake import cache_of, jobs_of, only_bake
 from .workers import make_in_processes
 
 _LOG = logging.getLogger(__name__)
@@ -70,7 +70,7 @@ def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job) -> int:
 
 def resume(arguments: argparse.Namespace) -> int:
     """Go on with a bake from what its folder tells."""
-    folder = arguments.folder
+    folder = only_bake(arguments.folder, arguments.json)
     try:
         job = read_job(folder)
     except CacheError as error:

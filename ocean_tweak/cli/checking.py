@@ -21,7 +21,7 @@ from .outcome import DONE, FAILED, UsageError
 from .progress import Progress
 from .seas import SceneOceans, chosen_seas
 from .stopping import stop_requested
-from .wanted_bake import cache_of, existing_folder, jobs_of
+from .wanted_bake import cache_of, existing_folder, jobs_of, only_bake
 
 #: names of files in a line
 _MOST_NAMES = 20
@@ -47,7 +47,7 @@ def verify(arguments: argparse.Namespace, scene_oceans: SceneOceans | None = Non
     if arguments.folder is not None:
         if arguments.params or arguments.preset or arguments.assignments or arguments.out:
             raise UsageError(f"{arguments.folder}: give either a folder, or a sea and --out")
-        return _verify_folder(arguments, arguments.folder)
+        return _verify_folder(arguments, only_bake(arguments.folder, arguments.json))
     seas = chosen_seas(arguments, scene_oceans)
     jobs = jobs_of(arguments, seas)
     folders = [existing_folder(cache_of(arguments, seas[name]), job) for name, job in jobs.items()]

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import errno
 
+from ..core.printable import LONGEST, printable
+
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
 
 _NOT_ALLOWED = "give yourself the right to write there, or choose another folder with --out"
@@ -30,10 +32,10 @@ def message_of(error: BaseException) -> str:
     if isinstance(error, KeyboardInterrupt):
         return "interrupted; the frames written so far are whole"
     if isinstance(error, OSError) and error.filename:
-        return f"{error.filename}: {error.strerror}"
+        return printable(f"{error.filename}: {error.strerror}", LONGEST)
     if isinstance(error, MemoryError) and not str(error):
         return "there is not enough memory: lower the resolution"
-    return " ".join(str(error).split())
+    return printable(" ".join(str(error).split()), LONGEST)
 
 
 def remedy_of(error: BaseException) -> str:

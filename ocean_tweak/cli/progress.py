@@ -13,6 +13,7 @@ from typing import Any, TextIO
 from ..core.bake import BakedFrame
 from ..core.frames import format_frames
 from ..core.plain_data import to_plain
+from ..core.printable import LONGEST, printable
 from ..export.logs import PRINTED
 
 _LOG = logging.getLogger(__name__)
@@ -49,7 +50,11 @@ class Progress:
     def say(self, text: str, **data: Any) -> None:
         """A line of text, or its data for a machine."""
         self._note(text)
-        self._print(json.dumps({"sea": self.name, **data}) if self.machine else f"{self.name}: {text}")
+        if self.machine:
+            self._print(json.dumps({"sea": self.name, **data}))
+        else:
+            lines = f"{self.name}: {text}".split("\n")
+            self._print("\n".join(printable(line, LONGEST) for line in lines))
 
     def remark(self, text: str) -> None:
         """A line that says why nothing happens."""

@@ -8,9 +8,11 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..core.frames import Frame
-from ..export.cache.job import CacheError, Job, find_folder, safe_name, uid_of
+from ..core.frames import Frame, format_frames
+from ..export.cache.job import CacheError, Job, bakes_in, find_folder, safe_name, uid_of
+from ..export.cache.records import recorded_frames
 from .outcome import UsageError
+from .progress import Progress
 from .seas import Sea
 
 CACHE_VARIABLE = "OCEAN_TWEAK_CACHE"
@@ -57,3 +59,22 @@ def existing_folder(cache: Path, job: Job) -> Path:
             "bake it with the same parameters, maps and compression"
         )
     return folder
+
+
+def only_bake(place: Path, machine: bool) -> Path:
+    """The folder of the only bake in a folder, which may be the bake's own or what was given to `--out`.
+
+    machine : list several as JSON
+
+    Raises UsageError where there are several, after listing them. Where there is none, the folder itself.
+    """
+    found = bakes_in(place)
+    if len(found) < 2:
+        return found[0] if found else place
+    for folder in found:
+        home, version, frames = folder.parent.name, folder.name, format_frames(recorded_frames(folder))
+        text = f"{folder}, frames {frames}" if frames else f"{folder}, no frames yet"
+        Progress(home.rpartition("-")[0], machine).say(
+            text, folder=str(folder), version=int(version[1:].partition("-")[0]), frames=frames
+        )
+    raise UsageError(f"{place}: holds {len(found)} bakes: give the folder of one of them")

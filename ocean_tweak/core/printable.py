@@ -3,6 +3,11 @@
 
 from __future__ import annotations
 
+import reprlib
+
+#: characters of a whole message
+LONGEST = 4000
+
 
 def printable(text: object, most: int = 80) -> str:
     """The text in one line of at most so many characters, with an escape for each that is no print.
@@ -16,3 +21,24 @@ def printable(text: object, most: int = 80) -> str:
         for letter in whole[: most + 1]
     )
     return shown if len(shown) <= most else shown[: most - 3] + "..."
+
+
+def shown(value: object) -> str:
+    """A value as Python writes it, in one line of at most 80 characters."""
+    return printable(_WRITER.repr(value))
+
+
+class _Writer(reprlib.Repr):
+    """Writes values as Python does, but of many entries only some: what a file gives may be huge or deep."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxtuple = self.maxlist = self.maxdict = self.maxset = 40
+        self.maxstring = self.maxlong = self.maxother = 200
+
+    def repr_int(self, x: int, level: int) -> str:
+        """Digits by the thousand are not written at all: Python refuses to."""
+        return super().repr_int(x, level) if x.bit_length() < 10_000 else f"({x.bit_length()} bits)"
+
+
+_WRITER = _Writer()

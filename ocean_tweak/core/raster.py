@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
+from .printable import shown
 
 #: samples along a side, and channels of a sample
 LARGEST_SIDE, MOST_CHANNELS = 4096, 4
@@ -120,7 +121,9 @@ class Raster:
             return cls(data["values"], name)
         if set(data) == {"name", "shape", "sha256"}:
             raise ParameterError(
-                "sha256", data["sha256"], f"tells which raster {name!r} is, but not its numbers"
+                "sha256",
+                data["sha256"],
+                f"tells which raster {shown(name)} is, but not its numbers",
             )
         if set(data) - {"name"} != {"shape", "encoding", "data"}:
             known = "name, values; or name, shape, encoding, data"
@@ -164,7 +167,7 @@ def _is_shape(shape: Any) -> bool:
 
 
 def _checked_values(values: ArrayLike, name: str) -> NDArray[np.float32]:
-    what = f"raster {name!r}" if name else "raster"
+    what = f"raster {shown(name)}" if name else "raster"
     try:
         with np.errstate(over="ignore"):
             array = np.array(values, dtype=np.float32, order="C")

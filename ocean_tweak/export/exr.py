@@ -22,7 +22,8 @@ from ..core.fields import SurfaceFields
 from ..core.frames import Frame, frame_label
 from ..core.parameters import OceanParameters, Patch
 from ..core.plain_data import to_plain
-from .files import whole_file
+from ..core.printable import printable
+from .files import open_file, whole_file
 
 FORMAT_VERSION = 1
 METADATA_ATTRIBUTE = "oceanTweak"
@@ -202,13 +203,13 @@ def read_image(
         # OpenEXR prints its warnings, and what is printed may be read by machines
         with (
             contextlib.redirect_stdout(io.StringIO()),
-            path.open("rb") as stream,
+            open_file(path) as stream,
             openexr.File(stream, separate_channels=True) as file,
         ):
             channels = file.channels()
             rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
     except _UNREADABLE as error:
-        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({printable(error, 200)})") from error
     return np.ascontiguousarray(rows[::-1], np.float32), metadata
 
 
@@ -228,7 +229,7 @@ def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
     try:
         metadata = json.loads(header[METADATA_ATTRIBUTE])
     except _UNREADABLE as error:
-        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({printable(error, 200)})") from error
     if not isinstance(metadata, dict) or header["type"] != load_openexr().scanlineimage:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak")
     return metadata, _size(header)
@@ -237,10 +238,10 @@ def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
 def _raw_header(path: Path) -> dict[str, Any]:
     openexr = load_openexr()
     try:
-        with path.open("rb") as stream, openexr.File(stream, header_only=True) as file:
+        with open_file(path) as stream, openexr.File(stream, header_only=True) as file:
             header = dict(file.header())  # the file empties its own when it is closed
     except _UNREADABLE as error:
-        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({error})") from error
+        raise ExrError(f"{path}: not a readable image of Ocean Tweak ({printable(error, 200)})") from error
     if not {"type", "dataWindow"} <= header.keys():
         raise ExrError(f"{path}: not a readable image of Ocean Tweak")
     return header

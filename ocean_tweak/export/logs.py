@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ..core.printable import printable
+from ..core.printable import LONGEST, printable
 
 #: of the record of a line that a command has printed itself: it goes to the file alone
 PRINTED = {"printed": True}
@@ -29,7 +29,6 @@ _PACKAGE = logging.getLogger(__name__.rpartition(".export.")[0])
 _PREFIX = "ocean_tweak: "
 #: in front of what nobody hears who did not ask for it
 _QUIET = {logging.INFO: "info: ", logging.DEBUG: "debug: "}
-_LONGEST = 4000  # characters
 
 
 class _Console(logging.Handler):
@@ -123,7 +122,7 @@ def relay(line: str, logger: logging.Logger) -> str:
 
 
 def _line(record: logging.LogRecord) -> str:
-    return printable(" ".join(record.getMessage().split()), _LONGEST)
+    return printable(" ".join(record.getMessage().split()), LONGEST)
 
 
 def _replace(name: str, handler: logging.Handler | None = None, level: int = logging.NOTSET) -> None:

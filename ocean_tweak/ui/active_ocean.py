@@ -5,6 +5,7 @@ from collections.abc import Sized
 
 import bpy
 
+from ..core.printable import LONGEST, printable
 from ..scene.settings import OceanSettings, is_ocean
 
 
@@ -60,5 +61,5 @@ def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]
     text = (
         f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else str(error)
     )
-    operator.report({"ERROR"}, text or missing)
+    operator.report({"ERROR"}, printable(text, LONGEST) or missing)
     return {"CANCELLED"}

@@ -313,3 +313,33 @@ def test_a_frame_that_the_disk_does_not_give_back(copy: Path, capsys: pytest.Cap
     out = capsys.readouterr().out
     assert "frame 2 is damaged" in out
     assert "6 frames: 5 whole, 1 damaged" in out
+
+
+@pytest.mark.parametrize("command", ["resume", "verify"])
+def test_what_was_given_to_out_means_the_bake_in_it(
+    copy: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    """One is meant; of several each is listed, and none is touched."""
+    cache = copy.parent.parent
+    (cache / "notes").mkdir()
+    (copy / "sea_disp.0002.exr").unlink()
+    before = contents(copy)
+    for place in (copy, copy.parent, cache):
+        assert main([command, str(place), "--frames", "2"]) == (1 if command == "verify" else 0)
+    capsys.readouterr()
+    shutil.copytree(copy, copy.with_name("v002-01234567"))
+    shutil.copytree(copy.parent, cache / "Other sea-1a")
+    (cache / "Other sea-1a" / "v002-01234567" / "records" / "0006.json").unlink()
+    before = contents(copy)
+    assert main([command, str(cache)]) == 2
+    printed = capsys.readouterr()
+    assert printed.err == f"ocean_tweak: {cache}: holds 4 bakes: give the folder of one of them\n"
+    assert [line.partition(": ")[0] for line in printed.out.splitlines()] == 2 * ["Other sea"] + 2 * ["sea"]
+    assert f"Other sea: {cache / 'Other sea-1a' / 'v002-01234567'}, frames 1-5\n" in printed.out
+    assert main([command, str(copy.parent), "--json"]) == 2
+    listed = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [(bake["sea"], bake["version"], bake["frames"]) for bake in listed] == [
+        ("sea", 1, "1-6"), ("sea", 2, "1-6"),
+    ]  # fmt: skip
+    assert contents(copy) == before
+    assert main([command, str(cache / "notes")]) == 1

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import subprocess
+from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -14,6 +17,7 @@ from ocean_tweak.cli import Sea, main
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.cache.job import CacheError, read_job, sealed
+from ocean_tweak.export.exr import read_image, write_image
 from tests.batch.bakery import ROOT, command, contents
 
 SMALL = OceanParameters(resolution=16)
@@ -102,6 +106,52 @@ def test_pipes_keep_nobody_waiting(
     assert main(["verify", str(copy), "--frames", "2"]) == 1
     printed = capsys.readouterr()
     assert said in printed.out + printed.err
+
+
+HOSTILE = "\x1b]0;owned\x07\r\n\u202e" + 100_000 * "x"
+
+
+def resealed(path: Path, **changes: object) -> None:
+    data = json.loads(path.read_text())
+    del data["sha256"]
+    path.write_text(json.dumps(sealed({**data, **changes})))
+
+
+def other_header(path: Path) -> None:
+    """A whole image that its record vouches for, and that says it is something else."""
+    pixels, metadata = read_image(path)
+    write_image(path, pixels, {**metadata, "map": HOSTILE}, Fraction(24))
+    record = path.parent / "records" / "0002.json"
+    files = json.loads(record.read_text())["files"]
+    for entry in files:
+        if entry["name"] == path.name:
+            entry.update(bytes=path.stat().st_size, sha256=hashlib.sha256(path.read_bytes()).hexdigest())
+    resealed(record, files=files)
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda home: resealed(home / "bake.json", maps=[HOSTILE]),
+        lambda home: resealed(home / "bake.json", name=HOSTILE),
+        lambda home: resealed(home / "bake.json", shot={HOSTILE: 1}),
+        lambda home: resealed(home / "records" / "0002.json", frame=HOSTILE),
+        lambda home: resealed(
+            home / "records" / "0002.json", files=[{"map": "", "name": HOSTILE, "bytes": 0, "sha256": ""}]
+        ),
+        lambda home: other_header(home / "sea_disp.0002.exr"),
+    ],
+)
+def test_what_files_say_is_printed_short_and_plain(
+    copy: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[Path], None]
+) -> None:
+    spoil(copy)
+    assert main(["verify", str(copy), "--frames", "2"]) == 1
+    printed = capsys.readouterr()
+    for line in (printed.out + printed.err).splitlines():
+        assert line.isprintable()
+        assert len(line) < 2000
+    assert "owned" in printed.out + printed.err
 
 
 def test_a_pipe_is_nobodys_claim_and_no_parameters(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:

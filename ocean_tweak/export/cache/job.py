@@ -26,6 +26,7 @@ from ...core.errors import ParameterError
 from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.parameters import OceanParameters
+from ...core.printable import shown
 from ...core.shot import Shot
 from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
@@ -146,20 +147,20 @@ class Job:
             raise ValueError("is not a JSON object")
         if data.get("format") != FORMAT or data.get("synthesis") != SYNTHESIS_VERSION:
             raise ValueError(
-                f"is of format {data.get('format')!r} and synthesis {data.get('synthesis')!r}; "
+                f"is of format {shown(data.get('format'))} and synthesis {shown(data.get('synthesis'))}; "
                 f"this version bakes format {FORMAT} and synthesis {SYNTHESIS_VERSION}"
             )
         check_seal(data)
         name, uid, maps = data.get("name"), data.get("uid"), data.get("maps")
         if not (isinstance(name, str) and isinstance(uid, str)):
-            raise ValueError(f"has the name {name!r} and uid {uid!r}")
+            raise ValueError(f"has the name {shown(name)} and uid {shown(uid)}")
         if not (isinstance(maps, list) and maps and all(isinstance(m, str) and m in MAPS for m in maps)):
-            raise ValueError(f"has the maps {maps!r}")
+            raise ValueError(f"has the maps {shown(maps)}")
         compression, frames = data.get("compression"), data.get("frames")
         if not (isinstance(compression, str) and compression in COMPRESSION_ERROR):
-            raise ValueError(f"has the compression {compression!r}")
+            raise ValueError(f"has the compression {shown(compression)}")
         if not isinstance(frames, str):
-            raise ValueError(f"has the frames {frames!r}")
+            raise ValueError(f"has the frames {shown(frames)}")
         job = cls(
             name, uid, Shot.from_dict(data.get("shot")), tuple(maps), compression,
             parse_frames(frames) if frames else (),
@@ -269,6 +270,14 @@ def is_bake(folder: Path) -> bool:
     except CacheError:
         return False
     return True
+
+
+def bakes_in(place: Path) -> list[Path]:
+    """The folders of bakes in a cache, or in the folder that a sea has there; of a bake's folder, itself."""
+    if is_bake(place):
+        return [place]
+    homes = [place, *sorted(path for path in place.iterdir() if path.is_dir())] if place.is_dir() else []
+    return [folder for home in homes for folder, _ in _versions(home) if is_bake(folder)]
 
 
 def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:

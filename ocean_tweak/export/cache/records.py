@@ -20,7 +20,8 @@ from ...core.errors import ParameterError
 from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
 from ...core.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
-from ..files import PART, begun_file, read_bytes, sync_folder, write_text
+from ...core.printable import shown
+from ..files import PART, begun_file, open_file, read_bytes, sync_folder, write_text
 from .job import FORMAT, RECORDS, Job, check_seal, made_with, record_path, sealed
 
 _LARGEST_RECORD = 2**20
@@ -254,7 +255,7 @@ def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
 def file_hash(path: Path) -> str:
     """SHA-256 of a file's bytes, 64 hexadecimal digits."""
     digest = hashlib.sha256()
-    with path.open("rb") as file:
+    with open_file(path) as file:
         while block := file.read(_BLOCK):
             digest.update(block)
     return digest.hexdigest()
@@ -264,13 +265,13 @@ def _frame(value: object) -> Frame:
     try:
         (frame,) = parse_frames(_text(value))
     except ParameterError:
-        raise ValueError(f"{value!r} is no frame") from None
+        raise ValueError(f"{shown(value)} is no frame") from None
     return frame
 
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{value!r} is no text")
+        raise ValueError(f"{shown(value)} is no text")
     return value
 
 
@@ -279,8 +280,8 @@ def _entry(data: Any) -> FileEntry:
         raise ValueError("it lists a file in another way")
     size = data["bytes"]
     if isinstance(size, bool) or not isinstance(size, int) or size < 0:
-        raise ValueError(f"{size!r} is no number of bytes")
+        raise ValueError(f"{shown(size)} is no number of bytes")
     name = _text(data["name"])
     if name in ("", ".", "..") or Path(name).name != name or "\\" in name:
-        raise ValueError(f"{name!r} is no name of a file in the folder")
+        raise ValueError(f"{shown(name)} is no name of a file in the folder")
     return FileEntry(_text(data["map"]), name, size, _text(data["sha256"]))

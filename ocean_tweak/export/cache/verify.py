@@ -14,6 +14,7 @@ from ...core.bake import ShotSurfaces
 from ...core.frames import Frame
 from ...core.grid_sea import GridSea
 from ...core.plain_data import to_plain
+from ...core.printable import printable
 from ...core.propagation import propagate
 from ...core.shot import Moment
 from ..exr import MAPS, ExrError, ExrSequence, read_image
@@ -74,7 +75,7 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: GridSea) -> str
             "unit": MAPS[name].unit,
         }
         if told != wanted:
-            return f"{path.name} says it is {told}, not {wanted}"
+            return f"{path.name} says it is {printable(told, 200)}, not {wanted}"
         if not np.all(np.isfinite(image)):
             return f"{path.name} holds values that are not finite"
         if name == "disp":

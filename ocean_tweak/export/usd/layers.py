@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.frames import Frame
+from ...core.printable import shown
 from ..files import PART, begun_file, whole_file
 from .library import UsdError, pxr
 from .package import FORMAT, Package
@@ -134,5 +135,6 @@ def refuse_foreign(paths: Iterable[Path], package: Package) -> None:
             )
         if owner != package.name:
             raise UsdError(
-                f"{path} belongs to the asset {owner!r}: give each asset a folder of its own, or {_REPLACE}"
+                f"{path} belongs to the asset {shown(owner)}: give each asset a folder of its own, "
+                f"or {_REPLACE}"
             )

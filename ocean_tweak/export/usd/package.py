@@ -15,6 +15,7 @@ from typing import Any
 from ...core import ParameterError
 from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint, shot_fingerprint
 from ...core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
+from ...core.printable import shown
 from ...core.shot import Shot
 from .attributes import ATTRIBUTES
 
@@ -142,7 +143,7 @@ class Package:
     def from_record(cls, data: dict[str, Any]) -> Package:
         """The package that `record` described. Raises ValueError or KeyError for what is none."""
         if data.get("format") != FORMAT:
-            raise ValueError(f"is of format {data.get('format')!r}, and this version reads {FORMAT}")
+            raise ValueError(f"is of format {shown(data.get('format'))}, and this version reads {FORMAT}")
         across, along = str(data["tiles"]).split("x")
         package = cls(
             data["name"],

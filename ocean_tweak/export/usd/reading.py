@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core import ParameterError
+from ...core.printable import printable
 from ...core.shot import Shot
 from .layers import MARK, reason
 from .library import UsdError, pxr
@@ -43,7 +44,9 @@ def read_package(path: Path) -> tuple[str, Package]:
     except ParameterError as error:
         raise UsdError(f"{path}: {prim_path} {error}") from error
     except (KeyError, ValueError, TypeError) as error:
-        raise UsdError(f"{path}: what {prim_path} says of its sea cannot be used: {error}") from error
+        raise UsdError(
+            f"{path}: what {prim_path} says of its sea cannot be used: {printable(error, 200)}"
+        ) from error
 
 
 def _record(prim: Any) -> dict[str, Any] | None:
