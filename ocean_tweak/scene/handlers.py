@@ -15,6 +15,7 @@ from ..nodes.renewal import renew_groups
 from . import (
     alarm,
     bake_process,
+    bake_state,
     evaluation,
     live_image,
     patch_objects,
@@ -65,6 +66,8 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
         else:  # Blender reads the files itself
             check_files(item, scene)
             if not is_animated(item):
+                if bake_state.moves(item):
+                    bake_state.check(item, scene)
                 refresh_patches(item, scene)
 
 
@@ -77,7 +80,9 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
         if settings_of(item).source == "LIVE":
             show(item, scene, shown=shown_settings(item, depsgraph))
         else:
-            refresh_patches(item, scene, shown_settings(item, depsgraph))
+            shown = shown_settings(item, depsgraph)
+            bake_state.check(item, scene, shown)
+            refresh_patches(item, scene, shown)
 
 
 @_loud
@@ -128,9 +133,11 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 
 
 @persistent
-def begin_render(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """The console hears all again that is wrong with a shot."""
     alarm.render_begins()
+    for item in oceans_in(scene):
+        bake_state.warn(item, scene)
 
 
 @persistent
@@ -168,10 +175,13 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
 
 
 def refresh_live_oceans() -> None:
-    """Refresh every live ocean of the file in its own scene."""
+    """Refresh every live ocean of the file in its own scene, and look at the files of the others."""
     for item in list(all_oceans()):
-        if settings_of(item).source == "LIVE" and item.users_scene:
+        if item.users_scene and settings_of(item).source == "LIVE":
             show(item, item.users_scene[0])
+        elif item.users_scene:
+            check_files(item, item.users_scene[0])
+            bake_state.check(item, item.users_scene[0])
 
 
 def refresh_all_oceans() -> None:

@@ -176,24 +176,33 @@ def _parsed(text: str) -> tuple[int, ...]:
     return tuple(frame for frame in parse_frames(text) if isinstance(frame, int))
 
 
+def file_of(settings: OceanSettings, frame: int) -> Path | None:
+    """The file that moves an ocean at a frame of its sequence, there or not; None without a sequence."""
+    maps = settings.early_maps if frame < 0 else settings.sequence_maps
+    return _file_at(maps.disp, frame)
+
+
 def folder_of(settings: OceanSettings) -> Path | None:
     """Where the files of an ocean's sequence are looked for; None where it has none."""
-    image = settings.sequence_maps.disp
+    file = file_of(settings, baked_frames(settings)[0])
+    return None if file is None else file.parent
+
+
+def missing_file(settings: OceanSettings, frame: int) -> Path | None:
+    """The first file of a frame of an ocean's sequence that is not there; None where all are."""
+    maps = settings.early_maps if frame < 0 else settings.sequence_maps
+    files = (_file_at(getattr(maps, name), frame) for name in MAPS)
+    return next((file for file in files if file is not None and not file.is_file()), None)
+
+
+def _file_at(image: bpy.types.Image | None, frame: int) -> Path | None:
     if image is None or image.source != "SEQUENCE":
         return None
-    return _absolute(bpy.path.abspath(image.filepath, library=image.library)).parent
-
-
-def missing_file(image: bpy.types.Image | None, frame: int) -> str:
-    """The file that a sequence's image shows at a frame, where it is not there; "" otherwise."""
-    if image is None:
-        return ""
-    path = _absolute(image.filepath)
+    path = _absolute(bpy.path.abspath(image.filepath, library=image.library))
     match = _FILE.fullmatch(path.name)
     if match is None:
-        return ""
-    file = path.with_name(f"{match['name']}_{match['map']}.{frame_label(frame)}.exr")
-    return "" if file.is_file() else str(file)
+        return None
+    return path.with_name(f"{match['name']}_{match['map']}.{frame_label(frame)}.exr")
 
 
 def _samples(path: Path) -> int:

@@ -18,17 +18,16 @@ from typing import Any
 import bpy
 
 from ..core import OceanParameters
-from . import evaluation
+from . import bake_state, evaluation
 from .refresh import (
     EXPECTED_ERRORS,
     foam_job,
     has_statistics,
     refresh_and_tell,
-    set_changed,
     tell,
     waves_job,
 )
-from .settings import OceanSettings, all_oceans, scene_of, settings_of
+from .settings import OceanSettings, all_oceans, scene_of, set_changed, settings_of
 
 # s without a change after which all samples are shown
 PAUSE = 0.15
@@ -233,7 +232,7 @@ def _start_statistics(oceans: dict[int, bpy.types.Object]) -> None:
         item = oceans[uid]
         if has_statistics(item, scene_of(item)):
             continue
-        parameters = settings_of(item).to_parameters(scene_of(item))
+        parameters = bake_state.shown_parameters(settings_of(item), scene_of(item))
         future = _outstanding.submit(partial(evaluation.computed_statistics, parameters))
         _outstanding.counting[uid] = (parameters, future)
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from fractions import Fraction
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -15,6 +14,7 @@ from ..core import ParameterError
 from ..core.frames import format_frames
 from . import (
     alarm,
+    bake_state,
     evaluation,
     grid_mesh,
     image_sequence,
@@ -30,7 +30,7 @@ from .maps import ATTRIBUTES, MAPS, Fields, outputs_of
 from .modifiers import Images, Shown, Textures
 from .plan import Plan, plan_of, velocity_scale
 from .resampling import resampled, tiled
-from .settings import OceanObjectError, OceanSettings, settings_of
+from .settings import OceanObjectError, OceanSettings, set_changed, settings_of
 
 #: what a user can cause: shown with the object; anything else is a bug and raises
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
@@ -78,7 +78,10 @@ def refresh(
     with _turn:
         settings = settings_of(item)
         plan = plan_of(shown or settings, scene)
-        text = (evaluation.statistics_of if statistics else evaluation.known_statistics)(plan.parameters)
+        counted = (
+            bake_state.shown_parameters(settings, scene) if settings.source != "LIVE" else plan.parameters
+        )
+        text = (evaluation.statistics_of if statistics else evaluation.known_statistics)(counted)
         complete = True
         if settings.source == "LIVE":
             complete = _refresh_live(item, settings, plan, scene, coarse, patient)
@@ -88,8 +91,9 @@ def refresh(
             _refresh_baked(item, settings, plan, scene)
         patch_objects.refresh(item, plan, coarse)
         check_files(item, scene)
+        bake_state.check(item, scene, shown)
         if text is not None:
-            evaluation.keep_statistics(plan.parameters, text)
+            evaluation.keep_statistics(counted, text)
             set_changed(settings, statistics=text)
         set_changed(settings, error="")
         alarm.is_well(item)
@@ -136,35 +140,31 @@ def refresh_render(
 
 def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Keep for the panel which file of the present frame is not there, and let the console hear it."""
-    settings = settings_of(item)
-    file = ""
+    settings, file = settings_of(item), None
     if settings.source == "SEQUENCE":
         if settings.sequence_maps.disp is None:
             alarm.failed(item, _NO_SEQUENCE)
-        present = scene.frame_current
+        present, frames = scene.frame_current, image_sequence.baked_frames(settings)
         frame = image_sequence.shown_frame(settings, scene, present)
-        maps = settings.early_maps if frame < 0 else settings.sequence_maps
-        images = [getattr(maps, name) for name in MAPS]
-        file = next(filter(None, (image_sequence.missing_file(image, frame) for image in images)), "")
-        if file:
-            path = Path(file)
+        file = image_sequence.missing_file(settings, frame)
+        if file is not None:
             alarm.failed(
-                item, f"{path.name} is not in {path.parent}: bake this frame again or choose other files"
+                item, f"{file.name} is not in {file.parent}: bake this frame again or choose other files"
             )
         elif settings.out_of_range == "WARN" and image_sequence.unbaked_frames(settings, scene, (present,)):
-            folder, frames = image_sequence.folder_of(settings), image_sequence.baked_frames(settings)
+            folder = image_sequence.folder_of(settings)
             alarm.warned(
                 item, "frames",
                 f"this frame was not baked, {frame} is held; {folder} has {format_frames(frames)}",
             )  # fmt: skip
-    set_changed(settings, missing_file=file)
+    set_changed(settings, missing_file="" if file is None else str(file))
 
 
 def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
-    """Whether the statistics that the ocean shows are those of its settings, or there can be none."""
+    """Whether the statistics that the ocean shows are those of its sea, or there can be none."""
     settings = settings_of(item)
     return bool(settings.error) or (
-        evaluation.known_statistics(settings.to_parameters(scene)) == settings.statistics
+        evaluation.known_statistics(bake_state.shown_parameters(settings, scene)) == settings.statistics
     )
 
 
@@ -181,13 +181,6 @@ def foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], obj
     plan = plan_of(settings_of(item), scene)
     maker = evaluation.sea_of(plan.viewport_sea()).foam_of(plan.is_whole)
     return lambda: maker.at(plan.time)
-
-
-def set_changed(target: object, **values: object) -> None:
-    """Set what differs: writing a property again would mark the file as changed on every frame."""
-    for name, value in values.items():
-        if getattr(target, name) != value:
-            setattr(target, name, value)
 
 
 def tell(item: bpy.types.Object, error: BaseException) -> None:

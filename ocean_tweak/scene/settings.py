@@ -110,6 +110,8 @@ class OceanSettings(Protocol):
     use_ocean_time, ocean_time : seconds on the waves' own clock, where it does not follow the frames
     error : why the ocean cannot be shown, "" when all is well
     missing_file : the file that the present frame of a sequence should show and that is not there, or ""
+    baked_sea : JSON of the sea that the shown bake is of, at the present frame; "" where that is not known
+    bake_differs : JSON of path, value there and value here of all that differs in the settings; or ""
     statistics : JSON of the sea's statistics, "" when there are none
     usd : how it becomes USD layers
     use_foam, use_normals, use_velocity : whether these maps are made and shown
@@ -156,6 +158,8 @@ class OceanSettings(Protocol):
     render_texture: bpy.types.Texture | None
     error: str
     missing_file: str
+    baked_sea: str
+    bake_differs: str
     statistics: str
     usd: UsdSettings
     id_data: bpy.types.Object
@@ -188,6 +192,13 @@ def settings_of(item: bpy.types.Object) -> OceanSettings:
         return item.ocean_tweak
     except AttributeError:
         raise RuntimeError("Ocean Tweak is not enabled: call registration.register() first") from None
+
+
+def set_changed(target: object, **values: object) -> None:
+    """Set what differs: writing a property again would mark the file as changed on every frame."""
+    for name, value in values.items():
+        if getattr(target, name) != value:
+            setattr(target, name, value)
 
 
 def scene_of(item: bpy.types.Object) -> bpy.types.Scene:

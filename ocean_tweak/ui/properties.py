@@ -190,6 +190,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "sequence_stretch": StringProperty(**_HIDDEN),
         "error": StringProperty(**_HIDDEN),
         "missing_file": StringProperty(**_HIDDEN),
+        "baked_sea": StringProperty(**_HIDDEN),
+        "bake_differs": StringProperty(**_HIDDEN),
         "statistics": StringProperty(**_HIDDEN),
         "usd": PointerProperty(type=OCEAN_PG_usd, **_OVERRIDE),
     }  # fmt: skip

@@ -1,20 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What moves the active ocean: baked files, or a live sea again."""
 
-from typing import Any
-
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..core import OceanParameters, ParameterError
 from ..core.frames import format_frames
-from ..export.cache.job import CacheError, read_job
-from ..export.exr import ExrError, read_header
-from ..scene import ocean_object
-from ..scene.image_sequence import ImageSequence, SequenceError, find_sequence
+from ..export.exr import ExrError
+from ..scene import bake_state, ocean_object
+from ..scene.image_sequence import find_sequence
 from ..scene.settings import settings_of
+from ..scene.shots import animate
 from .active_ocean import OfActiveOcean, refuse
 from .parameter_operators import apply_parameters
 
@@ -41,7 +38,9 @@ class OCEAN_OT_use_sequence(OfActiveOcean, bpy.types.Operator, ImportHelper):
         try:
             sequence = find_sequence(self.filepath)
             if self.use_parameters:
-                apply_parameters(context, _baked_parameters(sequence), use_frame_rate=True)
+                first = sequence.frames[0]
+                parameters = bake_state.parameters_of(sequence.path(first), first)
+                apply_parameters(context, parameters, use_frame_rate=True)
             ocean_object.use_sequence(item, scene, sequence)
         except (ExrError, *ocean_object.EXPECTED_ERRORS) as error:
             return refuse(self, error)
@@ -68,32 +67,37 @@ class OCEAN_OT_use_live(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _baked_parameters(sequence: ImageSequence) -> OceanParameters:
-    path = sequence.path(sequence.frames[0])
-    metadata = read_header(path)
-    if "parameters" not in metadata:
-        raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
-    told = metadata["parameters"]
-    try:
-        return OceanParameters.from_dict(told)
-    except ParameterError:
-        if not _has_brief_pictures(told):
-            raise
-    # images name their pictures and winds, which stand in the job beside them
-    try:
-        parameters = read_job(path.parent).shot.at(sequence.frames[0]).parameters
-    except (CacheError, ParameterError) as error:
-        raise SequenceError(
-            f"{path} names the pictures or winds of its sea, but does not hold them, and the bake's job does "
-            f"not either ({error}): switch off Use Its Parameters"
-        ) from None
-    if parameters.to_dict(brief=True) != told:
-        raise SequenceError(f"{path} is of another sea than the job beside it: switch off Use Its Parameters")
-    return parameters
+class OCEAN_OT_settings_from_bake(OfActiveOcean, bpy.types.Operator):
+    """Give the active ocean the settings of the bake that it shows."""
+
+    bl_idname = "ocean.settings_from_bake"
+    bl_description = "Give the ocean the settings, keys and frame rate of the bake that it shows"
+    bl_label = "Settings From Bake"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """A bake moves the ocean."""
+        if not super().poll(context):
+            return False
+        if settings_of(context.active_object).source != "SEQUENCE":
+            cls.poll_message_set("No bake moves the ocean")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Take over the sea, or change nothing."""
+        item, scene = context.active_object, context.scene
+        shot = bake_state.baked_shot(settings_of(item))
+        if shot is None:
+            return refuse(self, "The files do not say what they were baked from")
+        try:
+            apply_parameters(context, shot.parameters, use_frame_rate=True)
+        except ocean_object.EXPECTED_ERRORS as error:
+            return refuse(self, error)
+        animate(item, scene, shot)
+        bake_state.check(item, scene)
+        return {"FINISHED"}
 
 
-def _has_brief_pictures(told: Any) -> bool:
-    return isinstance(told, dict) and bool(told.get("pictures") or told.get("wind_fields"))
-
-
-CLASSES = (OCEAN_OT_use_sequence, OCEAN_OT_use_live)
+CLASSES = (OCEAN_OT_use_sequence, OCEAN_OT_use_live, OCEAN_OT_settings_from_bake)

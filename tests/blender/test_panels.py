@@ -332,9 +332,9 @@ def test_errors_and_warnings_can_be_read_in_a_narrow_sidebar(draw, item, make_pa
     text = " ".join(drawn)
     assert "holds only" in text
     assert "The object is scaled" in text
-    item.ocean_tweak.water.depth = 0.0
+    item.ocean_tweak.resolution = 33
     drawn = draw(item)
-    assert "water.depth = 0.0: must be from 0.1 to 11000 m" in " ".join(drawn)
+    assert "resolution = 33: must be an even number from 16 to 8192" in " ".join(drawn)
     assert max(map(len, drawn)) < 45
 
 

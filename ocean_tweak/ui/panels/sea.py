@@ -2,6 +2,7 @@
 """The first panel: the few numbers that make a sea, and what they mean right now."""
 
 import json
+import re
 from typing import Any
 
 import bpy
@@ -14,8 +15,27 @@ from ...scene.conversion import ocean_modifier
 from ...scene.image_sequence import shown_frame, unbaked_frames
 from ...scene.settings import OceanSettings, is_ocean
 from ...scene.units import metres_per_unit
-from .. import operators, preset_operators, scene_operators, sea_operators
-from .drawing import OceanPanel, SidebarPanel, active_settings, length_text, message, row, split
+from .. import (
+    bake_operators,
+    operators,
+    preset_operators,
+    scene_operators,
+    sea_operators,
+    sequence_operators,
+)
+from .drawing import (
+    OceanPanel,
+    SidebarPanel,
+    active_settings,
+    length_text,
+    message,
+    row,
+    speed_text,
+    split,
+)
+
+#: that are named in the panel
+_MOST_DIFFERENCES = 4
 
 
 class OCEAN_PT_start(SidebarPanel, bpy.types.Panel):
@@ -55,6 +75,8 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
         settings = active_settings(context)
         if settings.error:
             message(layout, context, settings.error, alert=True)
+        if settings.source == "SEQUENCE":
+            _bake(layout, context)
         _presets(layout, context)
         for layer in settings.layers[:1]:
             _wind(layout, layer)
@@ -68,6 +90,40 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
         _size(layout, settings)
         layout.row().prop(settings, "source", expand=True)
         _waves(layout, context)
+
+
+def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what is wrong with the bake that is shown, and the remedies."""
+    settings = active_settings(context)
+    if settings.missing_file:
+        folder, _, file = settings.missing_file.replace("\\", "/").rpartition("/")
+        text = f"{file} is missing in {folder}: bake it again or choose other files"
+        message(layout, context, text, alert=True)
+    if settings.bake_differs:
+        found = json.loads(settings.bake_differs)
+        shown = "; ".join(_difference(*entry) for entry in found[:_MOST_DIFFERENCES])
+        more = len(found) - _MOST_DIFFERENCES
+        text = f"Settings differ from the bake, which is shown: {shown}" + (
+            f"; {more} more" if more > 0 else ""
+        )
+        message(layout, context, text, alert=True)
+        buttons = layout.row(align=True)
+        buttons.operator(bake_operators.OCEAN_OT_bake.bl_idname, text="Bake Again", icon="RENDER_ANIMATION")
+        buttons.operator(sequence_operators.OCEAN_OT_settings_from_bake.bl_idname, icon="LOOP_BACK")
+
+
+def _difference(path: str, baked: object, own: object) -> str:
+    """`layer 2: wind speed 8, baked 12`."""
+    match = re.fullmatch(r"(\w+)s\.(\d+)\.(.+)", path)
+    where = f"{match[1]} {int(match[2]) + 1}: " if match and match[2] != "0" else ""
+    name = (match[3] if match else path).replace("_", " ").replace(".", " ")
+    return f"{where}{name} {_number(own)}, baked {_number(baked)}"
+
+
+def _number(value: object) -> str:
+    if isinstance(value, (dict, list)):
+        return "other"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _presets(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -106,9 +162,15 @@ def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
 
 
 def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what the settings mean: the statistics that the last change left, and warnings."""
+    """Draw the sea that is shown: the statistics that the last change left, and warnings."""
     settings, item = active_settings(context), context.active_object
     column = layout.box().column(align=True)
+    baked: dict[str, Any] = {}
+    if settings.source == "SEQUENCE" and settings.baked_sea:
+        column.label(text="The bake", icon="FILE_CACHE")
+        baked = json.loads(settings.baked_sea)
+        for label, text in _baked_rows(context.scene, baked):
+            row(column, label, text)
     if refinement.is_outstanding(item):
         column.label(text="Refining…", icon="SORTTIME")
     elif not settings.statistics:
@@ -116,20 +178,55 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if not settings.statistics:
         return
     values: dict[str, Any] = json.loads(settings.statistics)
-    for label, text in [*_beaufort(settings, context.scene), *_rows(context.scene, values)]:
+    winds = _baked_winds(baked) if baked else _winds(settings, context.scene)
+    for label, text in [*_beaufort(winds), *_rows(context.scene, values)]:
         row(column, label, text)
     for warning in [*values["warnings"], *_object_warnings(context)]:
         message(layout, context, warning)
 
 
-def _beaufort(settings: Any, scene: bpy.types.Scene) -> list[tuple[str, str]]:
-    waves = [layer for layer in settings.layers if layer.kind == "WAVES"]
-    winds = [layer for layer in waves if layer.definition == "WIND" and not layer.muted]
+def _baked_rows(scene: bpy.types.Scene, baked: dict[str, Any]) -> list[tuple[str, str]]:
+    """Label and text of the numbers that the first part of the panel has for the settings."""
+    layer = baked["layers"][0]
+    if layer["definition"] == "WIND":
+        first = [
+            ("Wind", speed_text(scene, layer["wind_speed"])),
+            ("Fetch", length_text(scene, layer["fetch"])),
+        ]
+    else:
+        height = length_text(scene, layer["significant_wave_height"])
+        first = [("Height", height), ("Period", f"{layer['peak_period']:.3g} s")]
+    return [
+        *first,
+        ("Choppiness", f"{baked['choppiness']:.3g}"),
+        ("Depth", length_text(scene, baked["water"]["depth"])),
+        ("Seed", str(baked["seed"])),
+        ("Domain", f"{length_text(scene, baked['domain_size'])}, {baked['resolution']}²"),
+    ]
+
+
+def _winds(settings: Any, scene: bpy.types.Scene) -> list[float]:
+    """Winds of the layers at 10 m, m/s."""
+    metres = float(metres_per_unit(scene))
+    return [
+        wind_at_10_m(layer.wind_speed * metres, layer.wind_height)
+        for layer in settings.layers
+        if layer.kind == "WAVES" and layer.definition == "WIND" and not layer.muted
+    ]
+
+
+def _baked_winds(baked: dict[str, Any]) -> list[float]:
+    return [
+        wind_at_10_m(layer["wind_speed"], layer["wind_height"])
+        for layer in baked["layers"]
+        if layer["definition"] == "WIND" and not layer["muted"]
+    ]
+
+
+def _beaufort(winds: list[float]) -> list[tuple[str, str]]:
     if not winds:
         return []
-    metres = float(metres_per_unit(scene))
-    speed = max(wind_at_10_m(layer.wind_speed * metres, layer.wind_height) for layer in winds)
-    number = sea_scales.beaufort_number(speed)
+    number = sea_scales.beaufort_number(max(winds))
     return [("Beaufort", f"{number}, {translated(sea_scales.BEAUFORT_NAMES[number])}")]
 
 

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which sea the bake of an ocean is, and whether the ocean's settings still are that sea."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import bpy
+
+from ..core import OceanParameters, ParameterError
+from ..core.shot import OCEAN_TIME, Moment, Shot
+from ..export.cache.job import JOB_FILE, CacheError, read_job
+from ..export.exr import ExrError, read_header
+from . import alarm
+from .animated import clock_of, is_animated
+from .image_sequence import SequenceError, baked_frames, file_of, folder_of, shown_frame, unbaked_frames
+from .settings import OceanSettings, set_changed, settings_of
+
+#: s: times that are nearer are the same; Blender keeps them as float32
+_SAME_TIME = 1e-3
+
+
+class Difference(NamedTuple):
+    """A number that is another one in the bake than in the settings, by its path in the parameters."""
+
+    path: str
+    baked: Any
+    own: Any
+
+
+def parameters_of(path: Path, frame: int) -> OceanParameters:
+    """The sea that an image of a frame was baked from.
+
+    Raises ExrError, ParameterError or SequenceError where the image does not tell.
+    """
+    metadata = read_header(path)
+    if "parameters" not in metadata:
+        raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
+    told = metadata["parameters"]
+    try:
+        return OceanParameters.from_dict(told)
+    except ParameterError:
+        if not _has_brief_pictures(told):
+            raise
+    # images name their pictures and winds, which stand in the job beside them
+    try:
+        parameters = read_job(path.parent).shot.at(frame).parameters
+    except (CacheError, ParameterError) as error:
+        raise SequenceError(
+            f"{path} names the pictures or winds of its sea, but does not hold them, and the bake's job does "
+            f"not either ({error}): switch off Use Its Parameters"
+        ) from None
+    if parameters.to_dict(brief=True) != told:
+        raise SequenceError(f"{path} is of another sea than the job beside it: switch off Use Its Parameters")
+    return parameters
+
+
+def _has_brief_pictures(told: Any) -> bool:
+    return isinstance(told, dict) and bool(told.get("pictures") or told.get("wind_fields"))
+
+
+def baked_shot(settings: OceanSettings) -> Shot | None:
+    """The shot that an ocean's files are of, from the job beside them or else from the header of the first.
+
+    None for a live ocean, and where neither tells. What was read is kept as long as the file is the same.
+    """
+    frames = baked_frames(settings)
+    path = file_of(settings, frames[0]) if settings.source == "SEQUENCE" else None
+    if path is None:
+        return None
+    for told in (path.with_name(JOB_FILE), path):
+        try:
+            stamp = told.stat().st_mtime_ns
+        except OSError:
+            continue
+        shot = _read_shot(told, frames[0], stamp)
+        if shot is not None:
+            return shot
+    return None
+
+
+@lru_cache(maxsize=16)
+def _read_shot(path: Path, frame: int, _stamp: int) -> Shot | None:
+    try:
+        return read_job(path.parent).shot if path.name == JOB_FILE else Shot(parameters_of(path, frame))
+    except (CacheError, ExrError, ParameterError, SequenceError):
+        return None
+
+
+def shown_parameters(settings: OceanSettings, scene: bpy.types.Scene) -> OceanParameters:
+    """The sea that an ocean shows: the bake's at the present frame where one moves it, else its settings'.
+
+    Raises ParameterError for settings that are no sea.
+    """
+    shot = baked_shot(settings)
+    if shot is None:
+        return settings.to_parameters(scene)
+    return _moment(shot, shown_frame(settings, scene, scene.frame_current)).parameters
+
+
+def check(item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings | None = None) -> None:
+    """Keep for the panel what the bake of an ocean is, and how its settings differ from that.
+
+    shown : the settings as animation makes them, where it does
+    """
+    settings = settings_of(item)
+    shot = baked_shot(settings)
+    if shot is None:
+        set_changed(settings, baked_sea="", bake_differs="")
+        return
+    frame = shown_frame(settings, scene, scene.frame_current)
+    sea = _moment(shot, frame).parameters.to_dict(brief=True)
+    set_changed(settings, baked_sea=json.dumps(sea, sort_keys=True))
+    if moves(item) and unbaked_frames(settings, scene, (scene.frame_current,)):
+        return  # another frame is held, whose numbers are others anyway
+    try:
+        found = differences(shot, frame, shown or settings, scene)
+    except ParameterError:
+        return  # the panel tells that the settings are no sea at all
+    set_changed(settings, bake_differs=json.dumps(found) if found else "")
+
+
+def moves(item: bpy.types.Object) -> bool:
+    """Whether an ocean's bake or its settings change from frame to frame."""
+    shot = baked_shot(settings_of(item))
+    return shot is not None and (shot.animation is not None or is_animated(item))
+
+
+def warn(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Let the console hear, once a shot, that the settings of a baked ocean are not those of its bake."""
+    check(item, scene)
+    settings = settings_of(item)
+    if settings.bake_differs:
+        found = [Difference(*entry) for entry in json.loads(settings.bake_differs)]
+        more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+        alarm.warned(
+            item, "bake",
+            f"not the settings, but the bake in {folder_of(settings)} is shown: {found[0].path} is "
+            f"{found[0].own} and was {found[0].baked}{more}",
+        )  # fmt: skip
+
+
+def differences(shot: Shot, frame: int, settings: OceanSettings, scene: bpy.types.Scene) -> list[Difference]:
+    """Where settings are another sea than a frame of a bake. Raises ParameterError for what is no sea."""
+    moment, parameters = _moment(shot, frame), settings.to_parameters(scene)
+    baked, own = (sea.to_dict(brief=True) for sea in (moment.parameters, parameters))
+    found = sorted(_different("", baked, own))
+    has_clock = shot.animation is not None and OCEAN_TIME in dict(shot.animation.samples)
+    if has_clock or settings.use_ocean_time:
+        time = clock_of(settings, scene, parameters.timing.start_frame).time
+        if abs(time - moment.time) > _SAME_TIME:
+            found.append(Difference(OCEAN_TIME, float(moment.time), float(time)))
+    return found
+
+
+def _different(path: str, baked: Any, own: Any) -> Iterator[Difference]:
+    if isinstance(baked, dict) and isinstance(own, dict):
+        for name in baked.keys() | own.keys():
+            yield from _different(f"{path}.{name}".lstrip("."), baked.get(name), own.get(name))
+    elif isinstance(baked, list) and isinstance(own, list):
+        if len(baked) != len(own):
+            yield Difference(path, len(baked), len(own))
+            return
+        for index, pair in enumerate(zip(baked, own, strict=True)):
+            yield from _different(f"{path}.{index}", *pair)
+    elif baked != own:
+        yield Difference(path, baked, own)
+
+
+def _moment(shot: Shot, frame: int) -> Moment:
+    if shot.animation is not None:
+        frame = min(max(frame, shot.animation.first_frame), shot.animation.last_frame)
+    return shot.at(frame)

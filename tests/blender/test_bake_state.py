@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""While files move an ocean, panel and console tell which sea they are, and how the settings differ."""
+
+import json
+
+import bpy
+import pytest
+
+from .conftest import sea_of
+from .test_animation import key
+from .test_panels import draw  # noqa: F401 - a fixture
+
+
+@pytest.fixture
+def baked(ocean, empty_scene, tmp_path):
+    """The small sea, baked for three frames and moved by them."""
+    empty_scene.frame_start, empty_scene.frame_end = 1, 3
+    ocean.ocean_tweak.cache_folder = str(tmp_path / "cache")
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert ocean.ocean_tweak.source == "SEQUENCE"
+    return ocean
+
+
+def differences(item):
+    text = item.ocean_tweak.bake_differs
+    return {path: (baked, own) for path, baked, own in json.loads(text or "[]")}
+
+
+def wave_height(item):
+    return json.loads(item.ocean_tweak.statistics)["spectrum"]["significant_wave_height"]
+
+
+def test_a_bake_of_the_settings_is_told_as_such(baked, draw, core):  # noqa: F811
+    assert differences(baked) == {}
+    drawn = draw(baked)
+    assert "The bake" in drawn
+    assert "ocean.settings_from_bake" not in drawn
+    assert wave_height(baked) == core.Ocean(sea_of(baked)).statistics().significant_wave_height
+
+
+def test_other_settings_are_told_and_the_numbers_stay_those_of_the_bake(baked, draw, core):  # noqa: F811
+    before = sea_of(baked)
+    baked.ocean_tweak.layers[0].wind_speed = 5.0
+    baked.ocean_tweak.choppiness = 0.5
+    assert differences(baked) == {"layers.0.wind_speed": (11.0, 5.0), "choppiness": (1.0, 0.5)}
+    assert wave_height(baked) == core.Ocean(before).statistics().significant_wave_height
+    text = " ".join(draw(baked))
+    assert "Settings differ from the bake" in text
+    assert "wind speed 5, baked 11" in text
+    assert "11 m/s" in text
+    assert "ocean.settings_from_bake" in text
+    baked.ocean_tweak.layers[0].wind_speed = 11.0
+    assert set(differences(baked)) == {"choppiness"}
+    assert bpy.ops.ocean.settings_from_bake() == {"FINISHED"}
+    assert sea_of(baked) == before
+    assert differences(baked) == {}
+
+
+def test_bake_again_shows_the_settings(baked):
+    folder = baked.ocean_tweak.sequence_maps.disp.filepath
+    baked.ocean_tweak.seed = 8
+    assert differences(baked) == {"seed": (7, 8)}
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert differences(baked) == {}
+    assert baked.ocean_tweak.sequence_maps.disp.filepath != folder
+
+
+def test_keys_are_compared_frame_by_frame_and_come_back(ocean, empty_scene, tmp_path):
+    empty_scene.frame_start, empty_scene.frame_end = 1, 5
+    ocean.ocean_tweak.cache_folder = str(tmp_path / "cache")
+    key(ocean, "layers[0].wind_speed", {1: 8.0, 5: 12.0})
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    for frame in (1, 2, 5, 6):
+        empty_scene.frame_set(frame)
+        assert differences(ocean) == {}
+    key(ocean, "layers[0].wind_speed", {5: 16.0})
+    seen = {}
+    for frame in (1, 3, 5):
+        empty_scene.frame_set(frame)
+        seen[frame] = differences(ocean)
+    assert seen == {1: {}, 3: {"layers.0.wind_speed": (10.0, 12.0)}, 5: {"layers.0.wind_speed": (12.0, 16.0)}}
+    assert bpy.ops.ocean.settings_from_bake() == {"FINISHED"}
+    for frame in (1, 3, 5):
+        empty_scene.frame_set(frame)
+        assert differences(ocean) == {}
+    assert ocean.ocean_tweak.layers[0].wind_speed == 12.0
+
+
+def test_files_of_other_programs_and_other_jobs_are_compared_by_their_headers(
+    ocean, ocean_object, bake, make_parameters, empty_scene
+):
+    sequence = bake(make_parameters(seed=3), 1, 2)
+    ocean_object.use_sequence(ocean, empty_scene, sequence)
+    assert differences(ocean) == {"seed": (3, 7)}
+    (sequence.directory / "bake.json").write_text("[]")
+    ocean.ocean_tweak.choppiness = 2.0
+    assert set(differences(ocean)) == {"seed", "choppiness"}
+    assert bpy.ops.ocean.settings_from_bake() == {"FINISHED"}
+    assert differences(ocean) == {}
+
+
+def test_an_opened_file_is_looked_at(baked, tmp_path):
+    baked.ocean_tweak.seed = 8
+    with baked.ocean_tweak.quiet():
+        baked.ocean_tweak.bake_differs = ""
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+    assert differences(bpy.data.objects["Ocean"]) == {"seed": (7, 8)}
+
+
+def test_the_console_hears_it_once_a_shot(baked, extension, empty_scene, caplog):
+    handlers = extension("scene.handlers")
+    handlers.begin_render(empty_scene)
+    assert caplog.text == ""
+    baked.ocean_tweak.seed = 8
+    for _ in range(2):
+        caplog.clear()
+        handlers.begin_render(empty_scene)
+        empty_scene.frame_set(2)
+        handlers.end_render(empty_scene)
+        (record,) = caplog.records
+        assert "not the settings, but the bake in" in record.message
+        assert "seed is 8 and was 7" in record.message
+
+
+def test_a_live_ocean_has_no_bake(baked):
+    baked.ocean_tweak.seed = 8
+    bpy.ops.ocean.use_live()
+    assert baked.ocean_tweak.bake_differs == baked.ocean_tweak.baked_sea == ""
+    assert not bpy.ops.ocean.settings_from_bake.poll()
