@@ -11,9 +11,13 @@ _LARGEST = 2**31 - 1
 _WHOLE = "Blender's whole numbers"
 
 
-def direction(description: str = "Direction towards which the waves run, counter-clockwise from +x") -> Any:
+def direction(
+    description: str = "Direction towards which the waves run, counter-clockwise from +x",
+    changes: bool = False,
+) -> Any:
     """Where a layer's waves or its wind go."""
-    return number(0.0, -1e6, 1e6, "rad", description, "any number of turns that a float tells apart")
+    why = "any number of turns that a float tells apart"
+    return number(0.0, -1e6, 1e6, "rad", description, why, changes=changes)
 
 
 def muted() -> Any:

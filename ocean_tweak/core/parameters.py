@@ -157,7 +157,7 @@ class OceanParameters(Validated):
     )
     choppiness: float = number(
         1.0, 0.0, 4.0, "", "Horizontal displacement that sharpens crests; 1 is linear wave theory",
-        "far beyond 1 the surface folds",
+        "far beyond 1 the surface folds", useful=(0.0, 1.5), changes=True,
     )  # fmt: skip
     dispersion: str = choice("CAPILLARY", DISPERSIONS, "How fast a wave of a given length travels")
     loop_duration: Fraction | None = rational(

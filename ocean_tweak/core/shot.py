@@ -19,15 +19,18 @@ from .errors import ParameterError
 from .frames import LARGEST_FRAME, Frame
 from .parameters import OceanParameters, parse_json
 from .plain_data import to_plain
-
-#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer
-ANIMATED = (
-    "layers.*.wind_speed", "layers.*.wind_direction", "layers.*.fetch", "layers.*.swell", "layers.*.gain",
-    "choppiness", "ocean_time",
-)  # fmt: skip
+from .validation import changing_fields
+from .wave_layer import WaveLayer
 
 #: seconds on the waves' own clock, where it does not simply follow the frames
 OCEAN_TIME = "ocean_time"
+
+#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer
+ANIMATED = (
+    *(f"layers.*.{name}" for name in changing_fields(WaveLayer)),
+    *changing_fields(OceanParameters),
+    OCEAN_TIME,
+)
 
 _ONE_SEA = "waves of one frame would not be those of the next, later"
 #: why the rest cannot: first part of the path → reason

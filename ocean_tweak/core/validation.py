@@ -13,15 +13,34 @@ from .errors import ParameterError
 from .raster import Raster
 
 
-def number(default: float, minimum: float, maximum: float, unit: str, description: str, why: str = "") -> Any:
-    """A real-valued dataclass field with its range, unit, description and the reason for the range."""
+def number(
+    default: float,
+    minimum: float,
+    maximum: float,
+    unit: str,
+    description: str,
+    why: str = "",
+    *,
+    useful: tuple[float, float] | None = None,
+    changes: bool = False,
+) -> Any:
+    """A real-valued dataclass field with its range, unit, description and the reason for the range.
+
+    useful : what a slider offers, where the range is much wider
+    changes : whether it can change during a shot; the rest sets which waves there are and how fast they run
+    """
     return dataclasses.field(
         default=default,
         metadata={
-            "kind": float, "minimum": minimum, "maximum": maximum,
-            "unit": unit, "description": description, "why": why,
+            "kind": float, "minimum": minimum, "maximum": maximum, "useful": useful or (minimum, maximum),
+            "unit": unit, "description": description, "why": why, "changes": changes,
         },
     )  # fmt: skip
+
+
+def changing_fields(kind: type) -> tuple[str, ...]:
+    """The fields of a parameter class that can change during a shot."""
+    return tuple(field.name for field in dataclasses.fields(kind) if field.metadata.get("changes"))
 
 
 def integer(

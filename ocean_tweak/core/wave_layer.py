@@ -26,22 +26,23 @@ class WaveLayer(Validated):
     spectrum: str = choice("TMA", SPECTRA, "How the energy is shared among wavelengths")
     wind_speed: float = number(
         12.0, 0.0, 100.0, "m/s", "Mean wind speed. Sets wave height and length; 0 is a calm, without waves",
-        "from calm to beyond the strongest hurricane",
+        "from calm to beyond the strongest hurricane", useful=(0.0, 50.0), changes=True,
     )  # fmt: skip
-    wind_direction: float = direction()
+    wind_direction: float = direction(changes=True)
     fetch: float = number(
         150e3, 0.0, 20e6, "m", "Distance of open water over which the wind has blown; 0 raises no waves",
-        "from the shore to half the Earth's circumference",
+        "from the shore to half the Earth's circumference", changes=True,
     )  # fmt: skip
     limit_fetch: bool = switch(True, "End the growth of the sea where it is fully developed for its wind")
     spreading: str = choice("DONELAN_BANNER", SPREADINGS, "How the energy is shared among directions")
     swell: float = number(
         0.3, 0.0, 4.0, "", "Draws waves out into long parallel trains; 0 to 1 is the useful range",
-        "beyond 4 a wave train is a single direction",
+        "beyond 4 a wave train is a single direction", useful=(0.0, 1.0), changes=True,
     )  # fmt: skip
     gain: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's gain"
-    )
+        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's gain",
+        useful=(0.0, 2.0), changes=True,
+    )  # fmt: skip
     peak_enhancement: float = number(
         constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "γ of JONSWAP and TMA: how far long waves stand out",
         "records lie between 1 and 7",

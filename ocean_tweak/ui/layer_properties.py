@@ -70,7 +70,7 @@ class OCEAN_PG_wind_field(bpy.types.PropertyGroup):
     """
 
     __annotations__ = {
-        **parameter_properties.annotations(WindFieldLayer, changed, animated=False),
+        **parameter_properties.annotations(WindFieldLayer, changed),
         "source": EnumProperty(
             name="Source", default="UNIFORM", **_SHOWN,
             items=[(key, *texts) for key, texts in SOURCES.items()],
@@ -108,7 +108,7 @@ class OCEAN_PG_picture(bpy.types.PropertyGroup):
     """Waves out of a picture."""
 
     __annotations__ = {
-        **parameter_properties.annotations(PictureLayer, changed, animated=False),
+        **parameter_properties.annotations(PictureLayer, changed),
         "image": PointerProperty(
             name="Picture", type=bpy.types.Image, **_SHOWN,
             description="Picture whose trace the waves bear; without one, white noise. "
@@ -122,7 +122,7 @@ class OCEAN_PG_picture(bpy.types.PropertyGroup):
 class OCEAN_PG_hero_wave(bpy.types.PropertyGroup):
     """A single group of waves."""
 
-    __annotations__ = parameter_properties.annotations(HeroWave, changed, animated=False)
+    __annotations__ = parameter_properties.annotations(HeroWave, changed)
 
 
 class OCEAN_PG_layer(bpy.types.PropertyGroup):

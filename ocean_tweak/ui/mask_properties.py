@@ -56,7 +56,7 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
     """Where the waves of a layer or patch are."""
 
     __annotations__ = {
-        **parameter_properties.annotations(Mask, changed, ("source",), animated=False),
+        **parameter_properties.annotations(Mask, changed, ("source",)),
         "source": EnumProperty(
             name="Mask", default="NONE", **_SHOWN, items=[(key, *texts) for key, texts in SOURCES.items()],
             description="Where these waves are",

@@ -19,7 +19,6 @@ import bpy
 import numpy as np
 
 from ..core.raster import Raster
-from ..core.shot import ANIMATED
 from ..scene.settings import scene_of
 from ..scene.units import metres_per_unit, shortest_decimal
 
@@ -32,12 +31,7 @@ _LENGTHS = {"m": "LENGTH", "m/s": "VELOCITY"}
 _ABSOLUTE = {"wind_height"}
 _SUBTYPES = {"rad": {"subtype": "ANGLE", "unit": "ROTATION", "soft_min": -math.pi, "soft_max": math.pi}}
 _FLOAT32_MAX = 3e38
-#: what may change during a shot; the rest sets which waves there are and how fast they run
-_ANIMATED = {path.rpartition(".")[2] for path in ANIMATED}
 _ACRONYMS = {"TMA", "JONSWAP"}
-
-#: what sliders offer, where the allowed range is much wider than the useful one
-_SOFT_RANGES = {"swell": (0.0, 1.0), "choppiness": (0.0, 1.5), "gain": (0.0, 2.0), "wind_speed": (0.0, 50.0)}
 
 #: hundredths that a number moves a pixel while it is dragged; Blender has no more than 100
 _STEPS = {"m": 100, "m/s": 10}
@@ -47,19 +41,16 @@ def annotations(
     kind: type,
     update: _Update,
     without: tuple[str, ...] = (),
-    animated: bool = True,
     updates: Mapping[str, _Update] | None = None,
 ) -> dict[str, Any]:
     """Blender properties for the plain fields of a parameter class, and the hidden `exact`.
 
     without : fields that come from elsewhere
-    animated : whether those that may change during a shot in any class may do so in this one
     updates : by field, where a change does more than `update`
     """
-    moving, own = _ANIMATED if animated else set(), updates or {}
+    own = updates or {}
     properties = {
-        field.name: _property(field, own.get(field.name, update), moving)
-        for field in _plain_fields(kind, without)
+        field.name: _property(field, own.get(field.name, update)) for field in _plain_fields(kind, without)
     }
     return {
         **properties,
@@ -109,12 +100,12 @@ def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
             yield field
 
 
-def _property(field: _Field, update: _Update, moving: set[str]) -> Any:
+def _property(field: _Field, update: _Update) -> Any:
     common = {
         "name": field.name.replace("_", " ").title(),
         "default": field.default,
         "update": _limited(field, update) if _is_length(field) else update,
-        "options": {"ANIMATABLE"} if field.name in moving else set(),
+        "options": {"ANIMATABLE"} if field.metadata.get("changes") else set(),
         "override": {"LIBRARY_OVERRIDABLE"},
     }
     return _BUILDERS[field.metadata["kind"]](field, common)
@@ -123,7 +114,7 @@ def _property(field: _Field, update: _Update, moving: set[str]) -> Any:
 def _float_property(field: _Field, common: dict[str, Any]) -> Any:
     meta = field.metadata
     low, high = meta["minimum"], meta["maximum"]
-    soft_low, soft_high = _SOFT_RANGES.get(field.name, (low, high))
+    soft_low, soft_high = meta["useful"]
     limits = {"min": low, "max": high, "soft_min": soft_low, "soft_max": soft_high}
     if _is_length(field):
         # the range is in metres and the property in Blender units: `_within` keeps to it

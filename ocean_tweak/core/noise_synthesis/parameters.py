@@ -44,14 +44,16 @@ class PictureLayer(Validated):
     )  # fmt: skip
     wind_speed: float = number(
         12.0, 0.0, 100.0, "m/s", "Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter",
-        "from calm to beyond the strongest hurricane",
+        "from calm to beyond the strongest hurricane", useful=(0.0, 50.0),
     )  # fmt: skip
     wind_direction: float = direction()
     significant_wave_height: float = number(
         1.0, 0.0, 100.0, "m", "Wave height Hs of every filter but the physical one: four standard deviations",
         "thrice the largest measured",
     )  # fmt: skip
-    gain: float = number(1.0, 0.0, 100.0, "", "Multiplies the layer's wave height", "an artist's gain")
+    gain: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height", "an artist's gain", useful=(0.0, 2.0)
+    )
     fractal_dimension: float = number(
         2.1, 2.0, 4.0, "", "D of the filters 1/f^β with β = 8 - 2D: 2 is smooth, 3 rough, 4 no filter at all",
         "a surface's dimension, and beyond",

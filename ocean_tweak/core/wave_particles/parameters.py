@@ -46,7 +46,7 @@ class WindFieldLayer(Validated):
 
     wind_speed: float = number(
         12.0, 0.0, 100.0, "m/s", "Speed of the wind where it is the same everywhere: without keys",
-        "from calm to beyond the strongest hurricane",
+        "from calm to beyond the strongest hurricane", useful=(0.0, 50.0),
     )  # fmt: skip
     wind_direction: float = direction("Direction towards which it blows, counter-clockwise from +x")
     keys: tuple[WindKey, ...] = nested(WindKey, many=True, empty=True, most=MOST_KEYS)
@@ -92,7 +92,9 @@ class WindFieldLayer(Validated):
     height_per_speed: float = number(
         0.05, 0.0, 10.0, "s", "k of the height k·V of a particle, V the wind's speed", "an artist's gain"
     )
-    gain: float = number(1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's gain")
+    gain: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's gain", useful=(0.0, 2.0)
+    )
     muted: bool = muted()
     id: int = identity()
     seed: int = own_seed()
