@@ -44,6 +44,9 @@ def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
 
 def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
     """The value of an input; KeyError when the group has none of that name."""
+    socket = modifier.node_group.interface.items_tree.get(name)  # many times quicker than a look at all
+    if getattr(socket, "in_out", "") == "INPUT":
+        return _get(modifier, socket.identifier)
     return _get(modifier, _identifiers(modifier)[name])
 
 

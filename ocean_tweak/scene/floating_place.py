@@ -26,7 +26,7 @@ from .animated import shown_settings
 from .floating import FloatError, Ride
 from .image_sequence import SequenceError, shown_frame
 from .plan import plan_of
-from .settings import OceanSettings
+from .settings import OceanSettings, is_ocean
 
 RealArray = NDArray[np.float32]
 Array = NDArray[np.float64]
@@ -64,6 +64,8 @@ def water_at(ocean: bpy.types.Object, scene: bpy.types.Scene, frame: int) -> Wat
 
     Raises ParameterError, OceanObjectError or MemoryError for an ocean that has no surface there.
     """
+    if not is_ocean(ocean):
+        raise FloatError(f"{ocean.name} is no ocean any more: its modifier was applied or removed")
     settings = shown_settings(ocean, scene.view_layers[0].depsgraph)
     plan = plan_of(settings, scene)
     if settings.source == "LIVE":

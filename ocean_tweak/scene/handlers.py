@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 
@@ -18,6 +18,7 @@ from . import (
     bake_state,
     evaluation,
     live_image,
+    ocean_object,
     patch_objects,
     refinement,
     source_images,
@@ -27,7 +28,7 @@ from . import (
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, refresh_and_tell, refresh_patches, refresh_render
-from .settings import all_oceans, oceans_in, settings_of
+from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, was_ocean
 
 # scene settings that change an ocean and have no update callback of ours
 _FOLLOWED = (
@@ -59,6 +60,7 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
 @_loud
 def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """Show the frame that the scene is about to evaluate, sub-frame included."""
+    _end_those_without_modifier(once_oceans_in(scene))
     for item in oceans_in(scene):
         if settings_of(item).source == "LIVE":
             if not is_animated(item):
@@ -147,6 +149,22 @@ def end_render(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
 
 
 @persistent
+def end_without_modifier(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Notice oceans whose modifier was applied or removed, or that were converted to a mesh."""
+    if depsgraph is None or not depsgraph.id_type_updated("OBJECT"):
+        return
+    changed = (update.id.original for update in depsgraph.updates if update.is_updated_geometry)
+    _end_those_without_modifier(item for item in changed if isinstance(item, bpy.types.Object))
+
+
+def _end_those_without_modifier(items: Iterable[bpy.types.Object]) -> None:
+    # found before any ends: what showed its sea goes with it
+    lost = [item for item in items if was_ocean(item) and not is_ocean(item) and item.library is None]
+    for item in lost:
+        ocean_object.end(item)
+
+
+@persistent
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels. Its node
     groups may be of another version."""
@@ -156,6 +174,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     _subscribe()
     stored_values.mend_all()
     renew_groups(ALL_KINDS)
+    _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
     refresh_live_oceans()
 
@@ -195,6 +214,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_pre", refresh_on_frame_change),
     ("frame_change_post", refresh_animated),
     ("frame_change_post", refresh_for_render),
+    ("depsgraph_update_post", end_without_modifier),
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),

@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 
 from ..nodes.grid import GRID
-from ..nodes.modifier_inputs import all_inputs, set_inputs
+from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import MAP_INPUTS, TEXTURE_COORDINATES
 from ..nodes.ocean import ocean_group
 from ..nodes.shown_frame import baked_text
@@ -96,12 +96,23 @@ def own_modifiers(item: bpy.types.Object, textures: Textures) -> list[tuple[str,
     return [(purpose, modifier) for purpose, modifier in purposes if purpose is not None]
 
 
+def is_moved(item: bpy.types.Object, textures: Textures) -> bool:
+    """Whether the object has the modifier of ours that moves it in the viewport."""
+    return any(_purpose(modifier, textures) in ("NODES", "VIEW") for modifier in item.modifiers)
+
+
+def remove_own(item: bpy.types.Object, textures: Textures) -> None:
+    """Take the modifiers of ours away."""
+    for name in [modifier.name for _, modifier in own_modifiers(item, textures)]:
+        item.modifiers.remove(item.modifiers[name])
+
+
 def _purpose(modifier: bpy.types.Modifier, textures: Textures) -> str | None:
     if modifier.type == "NODES":
         if is_of_kind(modifier.node_group, GRID):
             return "GRID"
         if is_of_kind(modifier.node_group, OCEAN):
-            purpose = all_inputs(modifier).get("Purpose")
+            purpose = _given_purpose(modifier)
             return purpose if purpose in _PURPOSES else None
     if modifier.type == "DISPLACE" and modifier.texture is not None:
         if modifier.texture == textures.view:
@@ -109,6 +120,13 @@ def _purpose(modifier: bpy.types.Modifier, textures: Textures) -> str | None:
         if modifier.texture == textures.render:
             return "RENDER"
     return None
+
+
+def _given_purpose(modifier: bpy.types.NodesModifier) -> str | None:
+    try:
+        return get_input(modifier, "Purpose")
+    except KeyError:  # a group that somebody changed
+        return None
 
 
 def apply_nodes(item: bpy.types.Object, textures: Textures, shown: Shown) -> None:
@@ -191,7 +209,7 @@ def _grid_inputs(grid: Grid) -> dict[str, Any]:
 def _set_group(modifier: bpy.types.NodesModifier, values: dict[str, Any]) -> None:
     kind = GRID if is_of_kind(modifier.node_group, GRID) else OCEAN
     if modifier.node_group != node_group(kind):
-        purpose = all_inputs(modifier).get("Purpose")
+        purpose = _given_purpose(modifier)
         modifier.node_group = node_group(kind)
         if kind is OCEAN:
             set_inputs(modifier, {"Purpose": purpose})

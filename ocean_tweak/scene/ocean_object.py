@@ -3,17 +3,24 @@
 
 from __future__ import annotations
 
+import logging
+
 import bpy
 
 from ..core import OceanParameters
 from ..core.frames import format_frames
+from . import modifiers, patch_objects, vertex_attributes
 from .cache_place import new_uid
+from .camera_surface import camera_surface_of, remove_camera_surface
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
 from .maps import MAPS
+from .modifiers import Textures
 from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
 from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
 
-__all__ = ["EXPECTED_ERRORS", "add", "refresh", "refresh_and_tell", "use_live", "use_sequence"]
+__all__ = ["EXPECTED_ERRORS", "add", "end", "refresh", "refresh_and_tell", "use_live", "use_sequence"]
+
+_log = logging.getLogger(__name__)
 
 
 def add(
@@ -87,6 +94,31 @@ def use_live(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     with settings.quiet():
         settings.source = "LIVE"
     refresh(item, scene)
+
+
+def end(item: bpy.types.Object) -> None:
+    """Let an object whose modifier was applied or removed be the still mesh that it is, in a scene or not.
+
+    Nothing of ours stays on it but what the mesh has: the surface around the camera and the patches that
+    showed the moving sea go, so that the mesh itself is seen.
+    """
+    settings = settings_of(item)
+    has_surface = camera_surface_of(item) is not None
+    if has_surface:
+        remove_camera_surface(item)
+    patch_objects.remove(item)
+    vertex_attributes.make_still(item.data)
+    with settings.quiet():
+        settings.is_ocean = False
+        modifiers.remove_own(item, Textures(settings.texture, settings.render_texture))
+        settings.texture = settings.render_texture = None
+        for maps in (settings.live_maps, settings.render_maps, settings.sequence_maps, settings.early_maps):
+            for name in MAPS:
+                setattr(maps, name, None)
+    _log.warning(
+        "%s: its modifier was applied or removed, so it is a mesh like any other from now on%s",
+        item.name, "; its camera surface is gone with the sea" if has_surface else "",
+    )  # fmt: skip
 
 
 def _set_sequence(settings: OceanSettings, sequence: ImageSequence, baked: LoadedSequence) -> None:

@@ -17,6 +17,7 @@ import re
 import sys
 from fractions import Fraction
 from pathlib import Path
+from types import ModuleType
 
 import bpy
 
@@ -139,15 +140,21 @@ def show(bake: Bake, frames: list[int], alone: bool) -> None:
 
 def is_ocean(item: bpy.types.Object) -> bool:
     """Whether the extension is there and takes the object for an ocean."""
-    settings = getattr(item, "ocean_tweak", None)
-    return bool(getattr(settings, "is_ocean", False)) and bool(item.users_scene)
+    if not hasattr(item, "ocean_tweak") or not item.users_scene:
+        return False
+    return bool(of_extension(item, "scene.settings").is_ocean(item))
+
+
+def of_extension(item: bpy.types.Object, name: str) -> ModuleType:
+    """A module of the extension that knows an object's settings."""
+    package = type(item.ocean_tweak).__module__.rpartition(".ui.")[0]
+    return importlib.import_module(f"{package}.{name}")
 
 
 def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
     """Let the extension switch an ocean to the bake. Raises RenderError where it cannot."""
-    package = type(item.ocean_tweak).__module__.rpartition(".ui.")[0]
-    ocean_object = importlib.import_module(f"{package}.scene.ocean_object")
-    sequences = importlib.import_module(f"{package}.scene.image_sequence")
+    ocean_object = of_extension(item, "scene.ocean_object")
+    sequences = of_extension(item, "scene.image_sequence")
     scene = item.users_scene[0]
     baked = bake.domain_size
     own = item.ocean_tweak.to_parameters(scene).domain_size

@@ -14,6 +14,7 @@ from typing import NamedTuple, Protocol
 import bpy
 
 from ..core import OceanParameters
+from .modifiers import Textures, is_moved
 from .source_images import ImageSource
 
 METHODS = {
@@ -208,12 +209,28 @@ def scene_of(item: bpy.types.Object) -> bpy.types.Scene:
 
 
 def is_ocean(item: bpy.types.Object | None) -> bool:
-    """Whether an object was made as an ocean."""
+    """Whether an object was made as an ocean and still has the modifier that moves it.
+
+    Where somebody applied or removed that one, or converted the object, it is a mesh like any other.
+    """
+    if not was_ocean(item):
+        return False
+    settings = settings_of(item)
+    return is_moved(item, Textures(settings.texture, settings.render_texture))
+
+
+def was_ocean(item: bpy.types.Object | None) -> bool:
+    """Whether an object was made as an ocean, whatever became of it."""
     return item is not None and item.type == "MESH" and settings_of(item).is_ocean
 
 
 def oceans_in(scene: bpy.types.Scene) -> Iterator[bpy.types.Object]:
     """Each ocean of a scene once: its own objects, instanced collections and background scenes."""
+    return filter(is_ocean, once_oceans_in(scene))
+
+
+def once_oceans_in(scene: bpy.types.Scene) -> Iterator[bpy.types.Object]:
+    """As `oceans_in`, whatever became of them."""
     seen: set[bpy.types.Object] = set()
     waiting: list[bpy.types.Object] = []
     background: bpy.types.Scene | None = scene
@@ -229,7 +246,7 @@ def oceans_in(scene: bpy.types.Scene) -> Iterator[bpy.types.Object]:
         seen.add(item)
         if item.instance_collection is not None:
             waiting += item.instance_collection.all_objects
-        if is_ocean(item):
+        if was_ocean(item):
             yield item
 
 

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..nodes.names import POINT_TYPES
+from ..nodes.names import POINT_TYPES, VELOCITY
 from .grid_mesh import Grid
 
 # the name of the numbers in Blender's attribute types
@@ -49,6 +49,11 @@ def remove(mesh: bpy.types.Mesh, keep: Mapping[str, object] | None = None) -> No
         attribute = mesh.attributes.get(name)
         if attribute is not None and name not in (keep or {}) and _is_ours(attribute):
             mesh.attributes.remove(attribute)
+
+
+def make_still(mesh: bpy.types.Mesh) -> None:
+    """Take away what would blur a mesh that moves no more: Cycles goes by the attribute alone."""
+    remove(mesh, keep=dict.fromkeys(name for name in POINT_TYPES if name != VELOCITY))
 
 
 def _is_ours(attribute: bpy.types.Attribute) -> bool:

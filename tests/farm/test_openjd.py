@@ -88,7 +88,7 @@ def test_oceans_of_a_file_are_baked_side_by_side(openjd: Run, tmp_path: Path) ->
     assert steps[-1]["dependencies"] == [{"dependsOn": "Verify 1"}, {"dependsOn": "Verify 2"}]
     assert json.loads((out / "seas" / "Bay_001.json").read_text())["resolution"] == 32
     render = steps[-1]["script"]["actions"]["onRun"]["args"]
-    assert [word for word in render if word.startswith("--bake=Bay_001-0123abcd/")]
+    assert [word for word in render if word.startswith("Bay_001-0123abcd/")]
     assert openjd("check", out / "template.json").returncode == 0
 
 

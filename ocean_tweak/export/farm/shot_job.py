@@ -111,16 +111,16 @@ def chunks(frames: Sequence[Frame], size: int) -> list[str]:
 def sea_arguments(bake: Job, seas: str, cache: str) -> list[str]:
     """What `bake` and `verify` are told alike: the sea, its files and their place.
 
-    With equals signs all of them: a name, a folder or a range may begin with a minus.
+    What the farm fills in stands behind an equals sign: a folder or a range may begin with a minus.
 
     seas, cache : folders, as the farm writes them
     """
     return [
         f"--params={seas}/{bake.name}.json",
-        f"--name={bake.name}",
-        f"--uid={bake.uid}",
-        f"--maps={','.join(bake.maps)}",
-        f"--compression={bake.compression}",
+        *_option("--name", bake.name),
+        *_option("--uid", bake.uid),
+        *_option("--maps", ",".join(bake.maps)),
+        *_option("--compression", bake.compression),
         f"--out={cache}",
     ]
 
@@ -144,8 +144,13 @@ def verify_arguments(job: ShotJob, bake: Job, seas: str, cache: str, only: str, 
 
 def render_arguments(job: ShotJob, cache: str, frames: str, pictures: str, openjd: bool) -> list[str]:
     """What the render's script is told, behind Blender's own arguments."""
-    bakes = [f"--bake={bake.home}/{bake.hash8}" for bake in job.bakes]
+    bakes = [word for bake in job.bakes for word in _option("--bake", f"{bake.home}/{bake.hash8}")]
     return [f"--cache={cache}", *bakes, f"--pictures={pictures}", *_openjd(openjd), f"--frames={frames}"]
+
+
+def _option(name: str, value: str) -> list[str]:
+    """An option and its value; as one word where the value would be taken for another option."""
+    return [f"{name}={value}"] if value.startswith("-") else [name, value]
 
 
 def _openjd(openjd: bool) -> list[str]:

@@ -13,7 +13,7 @@ from ...core.wind_profile import wind_at_10_m
 from ...scene import cache_place, refinement
 from ...scene.conversion import ocean_modifier
 from ...scene.image_sequence import shown_frame, unbaked_frames
-from ...scene.settings import OceanSettings, is_ocean
+from ...scene.settings import OceanSettings, is_ocean, settings_of
 from ...scene.units import metres_per_unit
 from .. import (
     bake_operators,
@@ -52,7 +52,11 @@ class OCEAN_PT_start(SidebarPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Offer to add one."""
         layout = self.layout
-        layout.label(text="No ocean is active")
+        item = context.active_object
+        if item is not None and item.type == "MESH" and settings_of(item).uid:
+            message(layout, context, "This mesh was an ocean: its modifier was applied or removed")
+        else:
+            layout.label(text="No ocean is active")
         column = layout.column(align=True)
         column.scale_y = 1.2
         column.operator(operators.MESH_OT_ocean_tweak_add.bl_idname, text="Add Ocean", icon="MOD_OCEAN")
