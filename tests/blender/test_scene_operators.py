@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A whole scene at one press: what it makes, what it leaves alone, and that undo takes it back."""
 
+import math
+
 import bpy
 import numpy as np
 import pytest
@@ -264,3 +266,39 @@ def test_an_unknown_mood_is_refused(extension, empty_scene):
     with pytest.raises(ValueError, match="mood = 'HAPPY'"):
         stage.build(empty_scene, "HAPPY", stage.Wishes())
     assert not empty_scene.objects
+
+
+def luminance_of(file):
+    """(rows, columns) 0…1 of a picture as it is shown, row 0 at its top; and its (…, 3) colours."""
+    image = bpy.data.images.load(str(file))
+    columns, rows = image.size
+    pixels = np.empty(4 * columns * rows, np.float32)
+    image.pixels.foreach_get(pixels)
+    colours = pixels.reshape(rows, columns, 4)[::-1, :, :3]
+    return colours @ np.array([0.2126, 0.7152, 0.0722], np.float32), colours
+
+
+def test_the_first_picture_is_a_sea(startup_scene, tmp_path):
+    """Start-up file, Ocean Scene, F12: sky above, sea below, the horizon where the camera's tilt puts it."""
+    bpy.ops.ocean.add_scene()
+    render, cycles, camera = startup_scene.render, startup_scene.cycles, startup_scene.camera
+    render.resolution_x, render.resolution_y, render.filepath = 160, 90, str(tmp_path / "first.png")
+    cycles.samples, cycles.seed, cycles.device, cycles.use_denoising = 4, 1, "CPU", False
+    bpy.ops.render.render(write_still=True)
+    shown, colours = luminance_of(tmp_path / "first.png")
+
+    tilt = 0.5 * math.pi - camera.rotation_euler.x
+    horizon = 90.0 * (0.5 - 0.5 * math.tan(tilt) / math.tan(0.5 * camera.data.angle_y))
+    sky, sea = shown[: int(horizon) - 2], shown[int(horizon) + 3 :]
+    assert 0.4 < sky.mean() < 0.85
+    assert 0.05 < sea.mean() < 0.4
+    # in each column, from the top, the first row that is darker than midway between the two
+    begins = (shown < 0.5 * (sky[-8:].mean() + sea.mean())).argmax(axis=0)
+    thirds = [np.median(part) for part in np.array_split(begins, 3)]
+    assert thirds == pytest.approx([horizon] * 3, abs=1.5)
+    # waves, not a plane: what neighbours 4 pixels apart differ by; and neither black nor burnt out
+    assert np.abs(sea[:, 4:] - sea[:, :-4]).mean() > 0.02
+    assert np.mean(shown < 0.02) < 0.01
+    assert np.mean(shown > 0.97) < 0.01
+    below = colours[int(horizon) + 3 :]
+    assert np.mean(below[..., 2] > below[..., 0] + 0.02) > 0.85, "the sea is not blue"

@@ -60,11 +60,9 @@ def open_tab(hand, _zip, _folder):
 
 
 def add_scene(hand, _zip, _folder):
-    hand.to_viewport()
-    hand.key("a", "Delete")
-    hand.wait("len(bpy.data.objects)", 0)
     hand.press("ocean.add_scene(")
     hand.wait("len(oceans())", 1)
+    assert not hand.ask("'Cube' in bpy.data.objects")
     hand.wait("area().spaces.active.region_3d.view_perspective", "CAMERA")
     fine = os.environ.get("OCEAN_TWEAK_FINE_PICTURES")
     hand.ask(f"run({QUICK.format(**FINE if fine else COARSE)!r})")
