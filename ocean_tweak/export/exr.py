@@ -9,7 +9,9 @@ from __future__ import annotations
 import contextlib
 import io
 import json
-from collections.abc import Callable
+import os
+import threading
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -28,6 +30,9 @@ from .files import open_file, whole_file
 FORMAT_VERSION = 1
 METADATA_ATTRIBUTE = "oceanTweak"
 
+#: numbers of all channels together, all of which OpenEXR reads at once: a gigabyte
+MOST_NUMBERS = 2**28
+
 #: largest relative error of a stored value, by compression
 COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0, "HTJ2K": 0.0}
 
@@ -40,6 +45,26 @@ _OPENEXR_NAMES = {"NONE": "NO", "HTJ2K": "HTJ2K256"}
 
 class ExrError(RuntimeError):
     """An image that cannot be written or read, with its path and the reason."""
+
+
+@contextlib.contextmanager
+def silenced() -> Iterator[None]:
+    """Without what libraries print of files that they cannot read: the error says it in one line.
+
+    In other threads than the main one their messages stay: two at once could not put back what they find.
+    """
+    with contextlib.ExitStack() as stack:
+        # what Python prints may be read by machines
+        stack.enter_context(contextlib.redirect_stdout(io.StringIO()))
+        if threading.current_thread() is threading.main_thread():
+            with contextlib.suppress(OSError):  # a program in a window may have no place for messages
+                kept = os.dup(2)
+                stack.callback(os.close, kept)
+                stack.callback(os.dup2, kept, 2)
+                nothing = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nothing, 2)
+                os.close(nothing)
+        yield
 
 
 def load_openexr() -> Any:
@@ -200,12 +225,7 @@ def read_image(
     if shape is not None and found != shape:
         raise ExrError(f"{path}: has {found[1]} x {found[0]} texels, not {shape[1]} x {shape[0]}")
     try:
-        # OpenEXR prints its warnings, and what is printed may be read by machines
-        with (
-            contextlib.redirect_stdout(io.StringIO()),
-            open_file(path) as stream,
-            openexr.File(stream, separate_channels=True) as file,
-        ):
+        with silenced(), open_file(path) as stream, openexr.File(stream, separate_channels=True) as file:
             channels = file.channels()
             rows = np.stack([channels[name].pixels for name in "RGB"], axis=-1)
     except _UNREADABLE as error:
@@ -230,15 +250,21 @@ def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
         metadata = json.loads(header[METADATA_ATTRIBUTE])
     except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({printable(error, 200)})") from error
-    if not isinstance(metadata, dict) or header["type"] != load_openexr().scanlineimage:
+    rows, columns = _size(header)
+    numbers = rows * columns * len(header.get("channels", ()))
+    if (
+        not isinstance(metadata, dict)
+        or header["type"] != load_openexr().scanlineimage
+        or numbers > MOST_NUMBERS
+    ):
         raise ExrError(f"{path}: not a readable image of Ocean Tweak")
-    return metadata, _size(header)
+    return metadata, (rows, columns)
 
 
 def _raw_header(path: Path) -> dict[str, Any]:
     openexr = load_openexr()
     try:
-        with open_file(path) as stream, openexr.File(stream, header_only=True) as file:
+        with silenced(), open_file(path) as stream, openexr.File(stream, header_only=True) as file:
             header = dict(file.header())  # the file empties its own when it is closed
     except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({printable(error, 200)})") from error

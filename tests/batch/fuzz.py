@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Damages a bake in many ways and lets every command read it, in a process that may use little memory.
+"""Damages files in many ways and lets what reads them read them, in a process that may use little memory.
 
-`python -m tests.batch.fuzz FOLDER SCRATCH FIRST LAST`: prints the number of each damage before it is tried,
-so that whoever started this knows which one ended it.
+`python -m tests.batch.fuzz KIND SCRATCH FIRST LAST STEP` prints the number of each damage before it is tried,
+so that whoever started this knows which one ended it, and at its end the most memory that was used, in kB.
 """
 
 from __future__ import annotations
@@ -15,84 +15,276 @@ import resource
 import shutil
 import signal
 import sys
+import traceback
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from ocean_tweak.cli import main
+from ocean_tweak.core import OceanParameters, ParameterError
+from ocean_tweak.core.plain_data import parse_json
+from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.cache.job import sealed
 from ocean_tweak.export.cache.records import file_hash
+from ocean_tweak.export.exr import ExrError, read_header, read_image
+from ocean_tweak.export.pictures import read_picture, with_pictures
+from tests.batch import mutations
+from tests.batch.bakery import only_folder, write_sea
+from tests.picture_files import exr, png, tiff
 
-MEMORY = 1_500 * 2**20
+MEMORY = 2 * 2**30
 #: of the processor; whoever started this limits the time that passes
-SECONDS = 20
-WORDS = (
-    b"nan", b"1e999", b"-1", b"null", b"[]", b"{}", b'"', b"1e999999999", b"9" * 400, b"9" * 5000, b"true",
-    b"[" * 100_000, b'{"a":' * 5000, b"\xff\xfe", b"\x00" * 40, b"../../x", b"\\ud800", b"0.1e-400",
-    b"1-20000", b"4294967295", b"\xff\xff\xff\x7f",
-)  # fmt: skip
-
-VALUES = (
-    None, -1, 0, 10**400, 1e300, 5e-324, True, "", "x" * 1000, [], {}, "\ud800", "1e99999999", float("nan"),
-    "1-20000", ["disp"] * 3, {"a": 1},
-)  # fmt: skip
+SECONDS = 10
+#: failures that are told before a process gives up
+MOST_FAILURES = 20
 
 
-def mutated(content: bytes, chance: random.Random) -> bytes:
-    """The bytes with one to four changes; of JSON mostly other values, which its syntax does not tell."""
-    data = bytearray(content)
-    if chance.random() < 0.7:
-        data = _other_value(data, chance)
-        if data != content:
-            return bytes(data)
-    for _ in range(chance.randint(1, 4)):
-        # half of them in front, where what an image is stands
-        place = chance.randrange(chance.choice((200, 1000, *2 * [len(data) + 1]))) % (len(data) + 1)
-        kind = chance.randrange(6)
-        if kind == 0:
-            del data[place:]
-        elif kind == 1 and data:
-            data[place % len(data)] ^= 1 << chance.randrange(8)
-        elif kind == 2:
-            del data[place : place + chance.choice((1, 4, 100, 4000))]
-        elif kind == 3:
-            data[place : place + 4] = chance.choice(WORDS)
-        elif kind == 4:
-            data[place : place + 4] = chance.randrange(2**32).to_bytes(4, "little")
+class Fuzz:
+    """Whole files in a folder of its own, and what reads a damaged one."""
+
+    def __init__(self, scratch: Path) -> None:
+        self.scratch = scratch
+        scratch.mkdir(parents=True, exist_ok=True)
+
+    def attempt(self, chance: random.Random) -> None:
+        """One damage, read. Raises where that ends otherwise than it is promised."""
+        raise NotImplementedError
+
+    def command(self, *arguments: object) -> int:
+        """A command's code; it must have said what is wrong in a line."""
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            code = main([str(argument) for argument in arguments])
+        assert code in (0, 1, 2), code
+        assert "Traceback" not in said.getvalue(), said.getvalue()
+        assert "enough memory" not in said.getvalue(), said.getvalue()
+        return code
+
+
+class Pictures(Fuzz):
+    """Pictures and arrays of one kind, as parameters name them."""
+
+    def __init__(self, scratch: Path, suffix: str, mutated: mutations.Mutation) -> None:
+        super().__init__(scratch)
+        self.suffix, self.mutated = suffix, mutated
+        whole = scratch / "whole"
+        whole.mkdir(exist_ok=True)
+        _WHOLE[suffix](whole)
+        self.whole = [path.read_bytes() for path in sorted(whole.iterdir())]
+        for path in whole.iterdir():
+            read_picture(path, names="a" if path.stem == "layers" else "")
+
+    def attempt(self, chance: random.Random) -> None:
+        """Read as a picture, a wind, or whatever it holds."""
+        path = self.scratch / f"damaged{self.suffix}"
+        path.write_bytes(self.mutated(chance.choice(self.whole), chance))
+        names = chance.choice(("", "", "", "a", "Y")) if self.suffix == ".exr" else ""
+        with contextlib.suppress(ParameterError):
+            read_picture(path, chance.choice((None, 1, 2)), names)
+        if self.suffix == ".exr":  # a map of a bake too
+            for read in (read_header, read_image):
+                with contextlib.suppress(ExrError):
+                    read(path)
+
+
+def _whole_pngs(folder: Path) -> None:
+    noise = np.random.default_rng(1).integers(0, 256, (5, 64), dtype=np.uint8)
+    for depth, colour, bytes_a_row in (
+        (8, 0, 4),
+        (8, 2, 12),
+        (16, 0, 8),
+        (16, 2, 24),
+        (16, 6, 32),
+        (1, 0, 1),
+    ):
+        rows = [row[:bytes_a_row].tobytes() for row in noise]
+        png(folder / f"{depth}-{colour}.png", depth, colour, rows, 4)
+
+
+def _whole_tiffs(folder: Path) -> None:
+    values = np.arange(15).reshape(3, 5)
+    for kind in ("u1", "u2", "u4", "i2", "i4", "f4"):
+        for order in "<>" if kind != "u4" else "<":
+            tiff(folder / f"{kind}{'lb'[order == '>']}.tif", values.astype(kind), order)
+    tiff(folder / "rgb8.tif", np.arange(45, dtype=np.uint8).reshape(3, 5, 3))
+    tiff(folder / "rgb16.tif", np.arange(45, dtype=np.uint16).reshape(3, 5, 3))
+    with contextlib.suppress(ImportError):
+        from PIL import Image
+
+        for name in ("tiff_lzw", "tiff_adobe_deflate", "packbits", "jpeg"):
+            grey = Image.fromarray(values.astype(np.uint8))
+            grey.save(folder / f"{name}.tif", compression=name)
+
+
+def _whole_exrs(folder: Path) -> None:
+    import OpenEXR
+
+    values = np.arange(20, dtype=np.float32).reshape(4, 5)
+    exr(folder / "window.exr", {"Y": values}, (1, 1), (9, 9))
+    exr(folder / "half.exr", {name: values.astype(np.float16) for name in "RGB"})
+    exr(folder / "layers.exr", {"a.R": values, "a.G": values, "Z": values})
+    for name in ("ZIP", "PXR24", "PIZ", "HTJ2K256", "B44", "DWAA", "RLE"):
+        header = {"compression": getattr(OpenEXR, f"{name}_COMPRESSION"), "type": OpenEXR.scanlineimage}
+        OpenEXR.File(header, {"Y": values}).write(str(folder / f"{name}.exr"))
+    header |= {"type": OpenEXR.tiledimage, "tiles": OpenEXR.TileDescription()}
+    OpenEXR.File(header, {"Y": values}).write(str(folder / "tiles.exr"))
+
+
+def _whole_arrays(folder: Path) -> None:
+    values = np.arange(24.0)
+    for index, shape in enumerate(((4, 6), (3, 4, 2), (2, 3, 4))):
+        np.save(folder / f"{index}.npy", values.reshape(shape))
+    np.save(folder / "grey.npy", values.astype(np.uint16).reshape(4, 6))
+    np.save(folder / "mask.npy", values.reshape(4, 6) > 5)
+
+
+_WHOLE: dict[str, Callable[[Path], None]] = {
+    ".png": _whole_pngs, ".tif": _whole_tiffs, ".exr": _whole_exrs, ".npy": _whole_arrays,
+}  # fmt: skip
+
+
+_MASK = {"source": "IMAGE", "image": {"file": "a.npy"}}
+_WIND = {"values": [[[4, 0], [4, 0]], [[8, 0], [8, 2]]]}
+_SEAS = (
+    {"layers": [{"wind_speed": 9.0, "mask": _MASK}, {"definition": "SEA_STATE"}], "water": {"depth": 20}},
+    {"wind_fields": [{"keys": [{"time": 0, "vectors": _WIND}], "columns": 2, "rows": 2}]},
+    {"hero_waves": [{"wavelength": 10.0, "group_length": 2, "group_width": 2}], "loop_duration": 10},
+    {"patches": [{"domain_size": size, "resolution": 16} for size in (90.0, 9.0)], "foam": {"half_life": 2}},
+    {"animation": {"first_frame": 1, "samples": {"choppiness": [0.5, 1.0], "ocean_time": [1, 2]}}},
+)
+
+
+class Parameters(Fuzz):
+    """Parameters as JSON, with everything that a sea may have."""
+
+    def __init__(self, scratch: Path) -> None:
+        super().__init__(scratch)
+        ramp = Raster(np.arange(64.0).reshape(8, 8))
+        np.save(scratch / "a.npy", ramp.values)
+        pictures = {"pictures": [{"picture": ramp.to_plain(), "filter": "FRACTAL"}, {"noise_resolution": 16}]}
+        plain = {"resolution": 16, "domain_size": 100.0}
+        self.whole = [json.dumps(plain | more).encode() for more in (pictures, *_SEAS)]
+        for content in self.whole:
+            self._shot(content)
+
+    def attempt(self, chance: random.Random) -> None:
+        """Read; what is a small sea is told of too."""
+        content = mutations.of_json(chance.choice(self.whole), chance)
+        (self.scratch / "sea.json").write_bytes(content)
+        try:
+            parameters = self._shot(content).parameters
+        except (ParameterError, UnicodeDecodeError):
+            return
+        if chance.random() < 0.05 and _is_small(parameters):
+            self.command("info", "--params", self.scratch / "sea.json")
+
+    def _shot(self, content: bytes) -> Shot:
+        plain = parse_json(content.decode("utf-8"))
+        return Shot.from_dict(with_pictures(OceanParameters, plain, self.scratch))
+
+
+def _is_small(parameters: OceanParameters) -> bool:
+    """Whether a sea is told of in less than seconds."""
+    sides = [parameters.resolution, *(patch.resolution for patch in parameters.patches)]
+    sides += [layer.noise_resolution for layer in parameters.pictures]
+    return max(sides) <= 64 and not parameters.wind_fields
+
+
+class Records(Fuzz):
+    """A bake of two frames, of which a record or the job is damaged, and mostly sealed anew."""
+
+    def __init__(self, scratch: Path) -> None:
+        super().__init__(scratch)
+        self.folder = _baked(scratch, "ZIP")
+        self.files = [self.folder / "bake.json", *sorted((self.folder / "records").glob("*.json"))]
+        self.whole = {path: path.read_bytes() for path in self.files}
+
+    def attempt(self, chance: random.Random) -> None:
+        """Verified, which reads the job, each record and all frames that they tell."""
+        path = chance.choice(self.files)
+        path.write_bytes(mutations.of_json(self.whole[path], chance))
+        if chance.random() < 0.8:
+            vouch(self.folder, path)
+        self.command("verify", self.folder)
+        path.write_bytes(self.whole[path])
+
+
+class Usd(Fuzz):
+    """An asset of points, of whose layers one is damaged."""
+
+    def __init__(self, scratch: Path) -> None:
+        super().__init__(scratch)
+        sea = write_sea(scratch / "sea.json", resolution=16)
+        self.top = scratch / "asset" / "sea.usda"
+        options = ("--frames", "1-2", "--form", "points", "--proxy", "0", "--attributes", "velocities")
+        assert self.command("usd", "--params", sea, "--out", self.top, *options) == 0
+        assert self.command("usd-verify", self.top) == 0
+        self.files = sorted(path for path in self.top.parent.iterdir() if path.is_file())
+        self.whole = {path: path.read_bytes() for path in self.files}
+
+    def attempt(self, chance: random.Random) -> None:
+        """Verified, or read as parameters."""
+        path = chance.choice((self.top, *self.files))
+        path.write_bytes(mutations.of_usd(self.whole[path], chance))
+        if path == self.top and chance.random() < 0.5:
+            self.command("info", "--params", self.top)
         else:
-            data[place:place] = data[: chance.choice((1, 8, 1000))]
-    return bytes(data)
+            self.command("usd-verify", self.top)
+        path.write_bytes(self.whole[path])
 
 
-def _other_value(data: bytearray, chance: random.Random) -> bytearray:
-    """Another value for a key, where the bytes are JSON."""
-    try:
-        plain = json.loads(data)
-    except (ValueError, RecursionError):
-        return data
-    place = plain
-    while isinstance(place, (dict, list)) and place:
-        key = chance.choice(list(place) if isinstance(place, dict) else range(len(place)))
-        inner = place[key]
-        if not isinstance(inner, (dict, list)) or not inner or chance.random() < 0.3:
-            place[key] = chance.choice(VALUES)
-            break
-        place = inner
-    return bytearray(json.dumps(plain).encode())
+class Bakes(Fuzz):
+    """A bake whose files are damaged, and every command on it."""
+
+    def __init__(self, scratch: Path) -> None:
+        super().__init__(scratch)
+        self.folders = [_baked(scratch / name, name) for name in ("ZIP", "PXR24", "HTJ2K")]
+
+    def attempt(self, chance: random.Random) -> None:
+        """One damage, and every command on it."""
+        pristine, scratch = chance.choice(self.folders), self.scratch / "damaged"
+        shutil.rmtree(scratch, ignore_errors=True)
+        home = scratch / pristine.parent.name
+        shutil.copytree(pristine.parent, home)
+        folder = home / pristine.name
+        damage(folder, chance)
+        sea = scratch / "sea.json"
+        text = json.dumps(json.loads((pristine / "bake.json").read_text())["shot"]).encode()
+        sea.write_bytes(mutations.of_json(text, chance))
+        self.command("verify", folder)
+        self.command("resume", folder, "--frames", "1-2", "--workers", "1", "--take-over")
+        with contextlib.suppress(ParameterError, UnicodeDecodeError):
+            if _is_small(Shot.from_json(sea.read_text()).parameters):
+                self.command("info", "--params", sea)
+        self.command("clean", folder)
 
 
-def damage(folder: Path, chance: random.Random) -> str:
+def _baked(place: Path, compression: str) -> Path:
+    place.mkdir(exist_ok=True)
+    sea = write_sea(place / "sea.json", resolution=16)
+    arguments = ["--frames", "1-2", "--maps", "disp,vel", "--compression", compression, "--workers", "1"]
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(["bake", "--params", str(sea), "--out", str(place / "cache"), *arguments]) == 0
+    return only_folder(place / "cache")
+
+
+def damage(folder: Path, chance: random.Random) -> None:
     """Change one file; often its record vouches for it, so that its contents are looked at."""
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".exr", ".json"))
     images = [path for path in files if path.suffix == ".exr"]
     path = chance.choice(images if chance.random() < 0.5 else files)
+    mutated = mutations.of_exr if path.suffix == ".exr" else mutations.of_json
     path.write_bytes(mutated(path.read_bytes(), chance))
     if chance.random() < 0.8:
-        _vouch(folder, path)
+        vouch(folder, path)
     if chance.random() < 0.1:
         (folder / "bake.json").unlink(missing_ok=True)
-    return path.name
 
 
-def _vouch(folder: Path, changed: Path) -> None:
+def vouch(folder: Path, changed: Path) -> None:
+    """Seal a record or job that was changed, and let records tell what images are now."""
     records = [changed] if changed.parent.name == "records" else (folder / "records").iterdir()
     for record in records if changed.name != "bake.json" else [changed]:
         try:
@@ -106,39 +298,36 @@ def _vouch(folder: Path, changed: Path) -> None:
             continue  # no longer a record
 
 
-def attempt(pristine: Path, scratch: Path, seed: int) -> None:
-    """One damage, and every command on it. Raises where one does anything but end with a code."""
-    chance = random.Random(seed)
-    shutil.rmtree(scratch, ignore_errors=True)
-    home = scratch / pristine.parent.name
-    shutil.copytree(pristine.parent, home)
-    folder = home / pristine.name
-    name = damage(folder, chance)
-    sea = scratch / "sea.json"
-    text = json.dumps(json.loads((pristine / "bake.json").read_text())["shot"]).encode()
-    sea.write_bytes(mutated(text, chance))
-    said = io.StringIO()
-    commands = (
-        ["verify", str(folder)],
-        ["resume", str(folder), "--frames", "1-2", "--workers", "1", "--take-over"],
-        ["info", "--params", str(sea)],
-        ["clean", str(folder)],
-    )
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        codes = [main(arguments) for arguments in commands]
-    assert set(codes) <= {0, 1, 2}, (name, codes)
-    assert "Traceback" not in said.getvalue(), name
+KINDS: dict[str, Callable[[Path], Fuzz]] = {
+    "json": Parameters,
+    "records": Records,
+    "exr": lambda scratch: Pictures(scratch, ".exr", mutations.of_exr),
+    "usd": Usd,
+    "png": lambda scratch: Pictures(scratch, ".png", mutations.of_png),
+    "tiff": lambda scratch: Pictures(scratch, ".tif", mutations.of_tiff),
+    "npy": lambda scratch: Pictures(scratch, ".npy", mutations.of_npy),
+    "bake": Bakes,
+}
 
 
-def run(pristine: Path, scratch: Path, seeds: range) -> None:
+def run(kind: str, scratch: Path, seeds: range) -> int:
+    """Try every damage; how many ended otherwise than they must."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    fuzz, failures = KINDS[kind](scratch), 0
     for seed in seeds:
         print(seed, flush=True)
-        signal.setitimer(signal.ITIMER_PROF, SECONDS)  # ends the process where a command goes on and on
-        attempt(pristine, scratch, seed)
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)  # ends the process where something goes on and on
+        try:
+            fuzz.attempt(random.Random(f"{kind} {seed}"))
+        except Exception:  # noqa: BLE001 - whatever it is, it was not promised
+            failures += 1
+            print(f"{kind}, damage {seed}:\n{traceback.format_exc()[-3000:]}", file=sys.stderr, flush=True)
+        if failures >= MOST_FAILURES:
+            break
     signal.setitimer(signal.ITIMER_PROF, 0)
-    print("done", flush=True)
+    print("done", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, flush=True)
+    return failures
 
 
 if __name__ == "__main__":
-    run(Path(sys.argv[1]), Path(sys.argv[2]), range(int(sys.argv[3]), int(sys.argv[4])))
+    sys.exit(min(run(sys.argv[1], Path(sys.argv[2]), range(*map(int, sys.argv[3:6]))), 1))

@@ -375,7 +375,7 @@ def test_headers_that_promise_too_much_are_refused_before_it_is_made(
         (tmp_path / f"{name}.npy").write_bytes(content)
     exr_by_hand(tmp_path / "wide.exr", {"Y": small}, display=(10**9, 10**9))
     exr_by_hand(tmp_path / "many.exr", {f"layer{index}.Y": small for index in range(20)} | {"Y": small})
-    monkeypatch.setattr("ocean_tweak.export.pictures.exr_pictures._MOST_NUMBERS", 20)
+    monkeypatch.setattr("ocean_tweak.export.pictures.exr_pictures.MOST_NUMBERS", 20)
     reasons = {
         "zip.npy": "not an array", "deep.npy": "not an array", "huge.npy": "cut off", "less.npy": "samples",
         "wide.exr": "samples", "many.exr": "must have at most",

@@ -82,8 +82,8 @@ def _header(stream: BinaryIO) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     except (
         ValueError, KeyError, TypeError, EOFError, SyntaxError, AttributeError, OverflowError, MemoryError,
         RecursionError, tokenize.TokenError,
-    ) as error:  # fmt: skip
-        raise UnusableError(f"is not an array of NumPy: {str(error)[:80]}") from None
+    ):  # fmt: skip
+        raise UnusableError("is not an array of NumPy: its header cannot be read") from None
 
 
 def _fitting(shape: tuple[int, ...], channels: int | None) -> list[str]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 import sys
 import warnings
@@ -12,11 +13,15 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from ..exr import silenced
 from . import tiff
 from .checks import UnusableError, check_size
 
 #: kinds of files; others may start programs (PostScript), and Blender reads them otherwise or not at all
 FORMATS = ("PNG", "TIFF", "JPEG", "BMP", "TGA", "WEBP", "GIF")
+
+#: of a file: more than decimals of the largest size, in four channels
+_MOST_BYTES = 300_000_000
 
 _GREY, _COLOUR = ("1", "L"), ("P", "PA", "CMYK", "YCbCr")
 #: order of the bytes of a 16-bit number in Pillow's names, and the other one
@@ -36,10 +41,15 @@ def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
         raise UnusableError(
             "is read by the Pillow package: install it with 'pip install Pillow', or save it as .exr"
         ) from None
+    stream.seek(0)
+    # of a file Pillow would ask for as many bytes as a chunk claims to have
+    stream = io.BytesIO(stream.read(_MOST_BYTES + 1))
+    if len(stream.getbuffer()) > _MOST_BYTES:
+        raise UnusableError(f"is larger than {_MOST_BYTES / 1e6:g} MB")
     is_tiff = tiff.is_tiff(stream)
     kind = tiff.number_kind(stream) if is_tiff else (tiff.UNSIGNED, 16)
     try:
-        with warnings.catch_warnings():
+        with silenced(), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # its size is checked here
             return _numbers(stream, *kind)[::-1]
     except UnusableError:

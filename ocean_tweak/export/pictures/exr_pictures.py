@@ -8,7 +8,6 @@ the picture is cropped, what is missing is 0.
 from __future__ import annotations
 
 import contextlib
-import io
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 from typing import Any, BinaryIO, NamedTuple
@@ -16,16 +15,13 @@ from typing import Any, BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..exr import ExrError, load_openexr
+from ..exr import MOST_NUMBERS, ExrError, load_openexr, silenced
 from .checks import UnusableError, check_size, listed
 
 _MAGIC = b"\x76\x2f\x31\x01"
 
 #: what channels may be called where nobody says which: as many of a group as there are from its first
 _GROUPS = (("R", "G", "B"), ("X", "Y", "Z"), ("U", "V"), ("u", "v"), ("Y",))
-
-#: numbers of all channels together, all of which OpenEXR reads: a gigabyte
-_MOST_NUMBERS = 2**28
 
 #: what damaged images give
 _DAMAGED = (RuntimeError, KeyError, ValueError, TypeError, IndexError, OverflowError, AttributeError)
@@ -102,8 +98,7 @@ def _file(stream: BinaryIO, **options: bool) -> Iterator[Any]:
         raise UnusableError(str(error)) from None
     try:
         stream.seek(0)
-        # OpenEXR prints its warnings, and what is printed may be read by machines
-        with contextlib.redirect_stdout(io.StringIO()), library.File(stream, **options) as file:
+        with silenced(), library.File(stream, **options) as file:
             yield file
     except UnusableError:
         raise
@@ -128,9 +123,9 @@ def _measured(stream: BinaryIO) -> tuple[dict[str, tuple[int, str]], _Window]:
             for channel in header["channels"]:
                 label = _label(index, str(header.get("name", "")), channel.name)
                 labels.setdefault(label, (index, channel.name))
-    if numbers > _MOST_NUMBERS:
+    if numbers > MOST_NUMBERS:
         raise UnusableError(
-            f"has {numbers} numbers in {len(labels)} channels; must have at most {_MOST_NUMBERS}: "
+            f"has {numbers} numbers in {len(labels)} channels; must have at most {MOST_NUMBERS}: "
             "save the channels that are wanted alone"
         )
     return labels, display
