@@ -16,7 +16,7 @@ from tests.batch.bakery import ROOT, SOON
 LONG = os.environ.get("OCEAN_TWEAK_LONG_TESTS") == "1"
 #: damages of each kind, now and in the long run
 COUNTS = {
-    "json": (100, 20_000), "records": (100, 20_000), "exr": (100, 20_000), "usd": (30, 20_000),
+    "json": (100, 20_000), "records": (100, 20_000), "exr": (100, 20_000),
     "png": (100, 20_000), "tiff": (100, 20_000), "npy": (100, 20_000), "bake": (100, 3_000),
 }  # fmt: skip
 PROCESSES = os.cpu_count() or 1 if LONG else 1
