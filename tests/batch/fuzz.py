@@ -147,11 +147,15 @@ _WHOLE: dict[str, Callable[[Path], None]] = {
 
 _MASK = {"source": "IMAGE", "image": {"file": "a.npy"}}
 _WIND = {"values": [[[4, 0], [4, 0]], [[8, 0], [8, 2]]]}
+_PATCHES = [
+    {"domain_size": 90.0, "resolution": 16, "shortest_wavelength": 15.0},
+    {"domain_size": 30.0, "resolution": 16, "longest_wavelength": 15.0},
+]
 _SEAS = (
     {"layers": [{"wind_speed": 9.0, "mask": _MASK}, {"definition": "SEA_STATE"}], "water": {"depth": 20}},
     {"wind_fields": [{"keys": [{"time": 0, "vectors": _WIND}], "columns": 2, "rows": 2}]},
-    {"hero_waves": [{"wavelength": 10.0, "group_length": 2, "group_width": 2}], "loop_duration": 10},
-    {"patches": [{"domain_size": size, "resolution": 16} for size in (90.0, 9.0)], "foam": {"half_life": 2}},
+    {"hero_waves": [{"wavelength": 30.0, "group_length": 2, "group_width": 30}], "loop_duration": 10},
+    {"patches": _PATCHES, "foam": {"half_life": 2}},
     {"animation": {"first_frame": 1, "samples": {"choppiness": [0.5, 1.0], "ocean_time": [1, 2]}}},
 )
 
