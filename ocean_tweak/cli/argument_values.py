@@ -5,15 +5,25 @@ from __future__ import annotations
 
 import argparse
 import re
+from pathlib import Path
 
 from ..core.cascades.plan import Wish
 from ..core.errors import ParameterError
 from ..core.frames import Frame, parse_frames
 from ..export.cache.job import UID
 from ..export.exr import MAPS
+from ..export.places import path_of
 
 _BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
 _WISHED = re.compile(r"(finest|area|memory)=(\d+(?:\.\d*)?|\.\d+)([a-z]*)", re.IGNORECASE)
+
+
+def path(text: str) -> Path:
+    """a path of this system; ~ is the user's home, also where no shell replaced it."""
+    try:
+        return path_of(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def wish(text: str) -> Wish:

@@ -4,18 +4,17 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import Any
 
 from .. import __version__
 from ..core.presets import built_in
 from ..export.exr import COMPRESSION_ERROR, MAPS
+from ..export.places import CACHE_VARIABLE
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS, written
 from ..export.usd.package import FORMS, UP_AXES
 from . import argument_values, baking, checking, info, job, usd
 from .seas import chosen_seas
-from .wanted_bake import CACHE_VARIABLE
 
 
 def make_parser(in_blender: bool) -> argparse.ArgumentParser:
@@ -62,7 +61,7 @@ def _add_info(commands: _Commands, in_blender: bool) -> None:
     _add_sea_arguments(parser, in_blender)
     parser.add_argument(
         "--save",
-        type=Path,
+        type=argument_values.path,
         metavar="FILE.json",
         help="write the sea with all changes, and planned patches, as parameters",
     )
@@ -92,7 +91,7 @@ def _add_frames(parser: argparse.ArgumentParser, in_blender: bool) -> None:
 
 def _add_cache(parser: _Arguments, in_blender: bool, option: str) -> None:
     parser.add_argument(
-        option, type=Path, metavar="DIR",
+        option, type=argument_values.path, metavar="DIR",
         help="cache folder, in which the sea gets one of its own; by default "
         + ("the file's, or " if in_blender else "")
         + f"${CACHE_VARIABLE}",
@@ -127,7 +126,7 @@ def _add_resume(commands: _Commands) -> None:
 def _add_verify(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "verify", "read a bake back: hashes, headers, pixels and wave heights")
     parser.add_argument(
-        "folder", type=Path, metavar="FOLDER", nargs="?",
+        "folder", type=argument_values.path, metavar="FOLDER", nargs="?",
         help=f"{_PLACE_HELP}; or leave it out and give what the bake was given",
     )  # fmt: skip
     _add_wanted_frames(parser)
@@ -154,7 +153,7 @@ def _add_job(commands: _Commands, in_blender: bool) -> None:
     _add_cache(parser, in_blender, "--cache")
     parser.add_argument(
         "--out",
-        type=Path,
+        type=argument_values.path,
         metavar="DIR",
         required=True,
         help="folder for the job, on a disk that the farm reads",
@@ -198,10 +197,13 @@ def _add_program_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_render_arguments(parser: argparse.ArgumentParser) -> None:
     rendering = parser.add_argument_group("rendering")
     rendering.add_argument(
-        "--blend", type=Path, metavar="FILE.blend", help="render this file from the bake; not without it"
+        "--blend",
+        type=argument_values.path,
+        metavar="FILE.blend",
+        help="render this file from the bake; not without it",
     )
     rendering.add_argument(
-        "--pictures", type=Path, metavar="DIR", help="by default a folder in the job's own"
+        "--pictures", type=argument_values.path, metavar="DIR", help="by default a folder in the job's own"
     )
     rendering.add_argument(
         "--render-chunk",
@@ -226,7 +228,11 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
         help="; ".join(f"{form}: {option.text}" for form, option in FORM_OPTIONS.items()),
     )  # fmt: skip
     parser.add_argument(
-        "--out", type=Path, required=True, metavar="FILE.usd", help="the asset; its other layers go beside it"
+        "--out",
+        type=argument_values.path,
+        required=True,
+        metavar="FILE.usd",
+        help="the asset; its other layers go beside it",
     )
     parser.add_argument("--name", help="of the asset, by default that of the file")
     parser.add_argument("--force", action="store_true", help=OPTIONS["force"].text)
@@ -247,7 +253,10 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
     )
     forms.add_argument("--stitch", action="store_true", help="clips: write the top of clips that are there")
     forms.add_argument(
-        "--bake", type=Path, metavar="FOLDER", help="displacement: by this bake instead of one of its own"
+        "--bake",
+        type=argument_values.path,
+        metavar="FOLDER",
+        help="displacement: by this bake instead of one of its own",
     )
     parser.set_defaults(run=usd.run)
 
@@ -279,7 +288,7 @@ def _add_usd_verify(commands: _Commands) -> None:
     parser = _command(
         commands, "usd-verify", "read USD layers back: what is missing, still or of another sea"
     )
-    parser.add_argument("file", type=Path, metavar="FILE.usd", help="the asset's own layer")
+    parser.add_argument("file", type=argument_values.path, metavar="FILE.usd", help="the asset's own layer")
     parser.add_argument(
         "--frames",
         type=argument_values.frames,
@@ -290,7 +299,7 @@ def _add_usd_verify(commands: _Commands) -> None:
 
 
 def _add_folder_arguments(parser: argparse.ArgumentParser, purpose: str) -> None:
-    parser.add_argument("folder", type=Path, metavar="FOLDER", help=purpose)
+    parser.add_argument("folder", type=argument_values.path, metavar="FOLDER", help=purpose)
     _add_wanted_frames(parser)
 
 
@@ -344,7 +353,7 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
         "--params",
-        type=Path,
+        type=argument_values.path,
         metavar="FILE",
         help=f"parameters: JSON, - for what is piped in, or a USD layer of ours; without them {default}",
     )

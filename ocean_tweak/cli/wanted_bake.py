@@ -4,18 +4,16 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Mapping
 from pathlib import Path
 
 from ..core.frames import Frame, format_frames
 from ..export.cache.job import CacheError, Job, bakes_in, find_folder, safe_name, uid_of
 from ..export.cache.records import recorded_frames
+from ..export.places import CACHE_VARIABLE, environment_cache
 from .outcome import UsageError
 from .progress import Progress
 from .seas import Sea
-
-CACHE_VARIABLE = "OCEAN_TWEAK_CACHE"
 
 
 def jobs_of(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> dict[str, Job]:
@@ -45,9 +43,16 @@ def cache_of(arguments: argparse.Namespace, sea: Sea) -> Path:
 
 
 def known_cache(chosen: Path | None, sea: Sea) -> Path | None:
-    """The folder of all bakes: the chosen one, else the .blend file's, else the environment's."""
-    variable = os.environ.get(CACHE_VARIABLE)
-    return chosen or sea.cache or (Path(variable) if variable else None)
+    """The folder of all bakes: the chosen one, else the .blend file's, else the environment's.
+
+    Raises UsageError where the environment's is none of this system.
+    """
+    if chosen or sea.cache:
+        return chosen or sea.cache
+    try:
+        return environment_cache()
+    except ValueError as error:
+        raise UsageError(str(error)) from None
 
 
 def existing_folder(cache: Path, job: Job) -> Path:

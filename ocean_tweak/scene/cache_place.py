@@ -3,22 +3,25 @@
 
 from __future__ import annotations
 
-import os
+import logging
 import shutil
 import uuid
 from pathlib import Path
 
 import bpy
 
-from ..export.cache.job import JOB_FILE, UID, safe_name, uid_of
+from ..export.cache.job import JOB_FILE, UID, is_bake, safe_name, uid_of
 from ..export.files import is_link
+from ..export.places import environment_cache
+from . import stored_paths
 from .image_sequence import ImageSequence, find_sequence
 from .settings import OceanObjectError, all_oceans, settings_of
 from .user_folder import user_folder
 
+_log = logging.getLogger(__name__)
+
 #: beside the .blend file
 DEFAULT_CACHE = "//cache"
-CACHE_VARIABLE = "OCEAN_TWEAK_CACHE"
 
 
 def cache_folder(item: bpy.types.Object) -> Path:
@@ -26,14 +29,19 @@ def cache_folder(item: bpy.types.Object) -> Path:
 
     A path that begins with // is relative to the file that the ocean is stored in, a library's too. While
     that file has never been saved, the user's own folder takes its place. Raises OSError where that cannot
-    be made.
+    be made, OceanObjectError for a path of another system.
     """
     path = settings_of(item).cache_folder or DEFAULT_CACHE
-    if path == DEFAULT_CACHE and os.environ.get(CACHE_VARIABLE):
-        return Path(os.environ[CACHE_VARIABLE])
+    if path == DEFAULT_CACHE:
+        try:
+            named = environment_cache()
+        except ValueError as error:
+            raise OceanObjectError(str(error)) from None
+        if named is not None:
+            return named
     if path.startswith("//") and item.library is None and not bpy.data.filepath:
         return user_folder("cache")
-    return Path(bpy.path.abspath(path, library=item.library)).resolve()
+    return stored_paths.absolute(path, item.library)
 
 
 def own_uid(item: bpy.types.Object) -> str:
@@ -71,7 +79,7 @@ def shown_bake(item: bpy.types.Object) -> Path | None:
     image = settings_of(item).sequence_maps.disp
     if image is None or image.source != "SEQUENCE":
         return None
-    folder = Path(bpy.path.abspath(image.filepath, library=image.library)).resolve().parent
+    folder = stored_paths.image_file(image).parent
     return folder if (folder / JOB_FILE).is_file() else None
 
 
@@ -80,7 +88,28 @@ def is_left_behind(item: bpy.types.Object) -> bool:
     folder = shown_bake(item)
     if folder is None or not bpy.data.filepath:
         return False
-    return cache_folder(item) not in folder.parents
+    try:
+        return cache_folder(item) not in folder.parents
+    except OceanObjectError:  # a bake will tell
+        return False
+
+
+def find_moved(item: bpy.types.Object) -> None:
+    """Let an ocean read its bake from its cache, where it is not where the file says: an absolute path of an
+    older file, or of another machine."""
+    for image in stored_paths.images_of(item):
+        file = stored_paths.image_file(image)
+        if image.source != "SEQUENCE" or file.parent.is_dir():
+            continue
+        try:
+            there = cache_folder(item).joinpath(*file.parts[-3:])
+        except (OceanObjectError, OSError):
+            continue
+        if is_bake(there.parent) and there.is_file():
+            _log.warning(
+                "%s: %s is not there; its frames are read from %s", item.name, file.parent, there.parent
+            )
+            image.filepath = stored_paths.relative(there)
 
 
 def take_along(item: bpy.types.Object) -> ImageSequence:

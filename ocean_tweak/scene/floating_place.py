@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -27,6 +26,7 @@ from .floating import FloatError, Ride
 from .image_sequence import SequenceError, shown_frame
 from .plan import plan_of
 from .settings import OceanSettings, is_ocean
+from .stored_paths import image_file
 
 RealArray = NDArray[np.float32]
 Array = NDArray[np.float64]
@@ -124,7 +124,7 @@ def _baked(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> RealA
     image = settings.sequence_maps.disp
     if image is None:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
-    path = Path(bpy.path.abspath(image.filepath))
+    path = image_file(image)
     label = frame_label(shown_frame(settings, scene, frame))
     try:
         return read_image(path.with_name(_NUMBER.sub(label, path.name)))[0]

@@ -16,12 +16,14 @@ from . import (
     alarm,
     bake_process,
     bake_state,
+    cache_place,
     evaluation,
     live_image,
     ocean_object,
     patch_objects,
     refinement,
     source_images,
+    stored_paths,
     stored_values,
     usd_process,
 )
@@ -38,6 +40,8 @@ _FOLLOWED = (
     ("RenderSettings", "frame_map_old"),
     ("RenderSettings", "frame_map_new"),
 )
+# paths that were changed for the save that is under way, and what they were
+_changed_paths: list[tuple[stored_paths.Kept, str]] = []
 # subscriptions to properties are made and cleared under this owner
 _OWNER = object()
 
@@ -176,7 +180,25 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     renew_groups(ALL_KINDS)
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
+    for item in all_oceans():
+        cache_place.find_moved(item)
     refresh_live_oceans()
+
+
+@persistent
+def make_paths_relative(path: str, _unused: object = None) -> None:
+    """The file is about to be saved at this path."""
+    if path:
+        _changed_paths[:] = stored_paths.make_relative(path)
+
+
+@persistent
+def take_paths_back(path: str, _unused: object = None) -> None:
+    """Where it was not saved there, or only a copy of it was, its own paths are what they were before."""
+    if not stored_paths.is_saved_beside(path):
+        for kept, before in _changed_paths:
+            setattr(kept.owner, kept.name, before)
+    _changed_paths.clear()
 
 
 @persistent
@@ -222,6 +244,9 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("render_complete", end_render),
     ("render_cancel", end_render),
     ("load_post", refresh_after_load),
+    ("save_pre", make_paths_relative),
+    ("save_post", take_paths_back),
+    ("save_post_fail", take_paths_back),
     ("blend_import_post", mend_after_import),
     ("undo_post", refresh_after_undo),
     ("redo_post", refresh_after_undo),

@@ -19,6 +19,7 @@ from ..export.exr import ExrError, read_header, read_size
 from .live_image import mark_as_data
 from .maps import MAPS
 from .settings import OceanObjectError, OceanSettings
+from .stored_paths import absolute, image_file, relative
 from .units import time_stretch
 
 _FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
@@ -44,15 +45,15 @@ class ImageSequence:
 
     def path(self, frame: int, map_name: str = _MOVING) -> Path:
         """Where a map of a frame is."""
-        return _absolute(self.directory) / f"{self.name}_{map_name}.{frame_label(frame)}.exr"
+        return absolute(self.directory) / f"{self.name}_{map_name}.{frame_label(frame)}.exr"
 
     def check(self) -> tuple[str, ...]:
         """The maps that there are. Raises SequenceError unless every frame has a file of each of them."""
-        available = _frames_by_map(_absolute(self.directory))
+        available = _frames_by_map(absolute(self.directory))
         if (self.name, _MOVING) not in available:
             names = sorted(name for name, map_name in available if map_name == _MOVING)
             hint = f"; it holds {', '.join(names)}" if names else ""
-            raise SequenceError(f"No files {self.name}_disp.####.exr in {_absolute(self.directory)}{hint}")
+            raise SequenceError(f"No files {self.name}_disp.####.exr in {absolute(self.directory)}{hint}")
         wanted = set(self.frames)
         frames = {name: available[self.name, name] for name in MAPS if (self.name, name) in available}
         # a map that was baked for other frames only is none of this sequence
@@ -94,7 +95,7 @@ def find_sequence(path: str | Path) -> ImageSequence:
 
     Raises SequenceError when there is none, more than one, or a map of it lacks some of the frames.
     """
-    chosen = _absolute(path)
+    chosen = absolute(path)
     directory, name = chosen, None
     if not chosen.is_dir():
         match = _FILE.fullmatch(chosen.name)
@@ -198,7 +199,7 @@ def missing_file(settings: OceanSettings, frame: int) -> Path | None:
 def _file_at(image: bpy.types.Image | None, frame: int) -> Path | None:
     if image is None or image.source != "SEQUENCE":
         return None
-    path = _absolute(bpy.path.abspath(image.filepath, library=image.library))
+    path = image_file(image)
     match = _FILE.fullmatch(path.name)
     if match is None:
         return None
@@ -222,7 +223,7 @@ def _image(path: Path) -> bpy.types.Image:
     if present is not None:
         present.reload()
         return present
-    image = bpy.data.images.load(str(path), check_existing=False)
+    image = bpy.data.images.load(relative(path), check_existing=False)
     image.source = "SEQUENCE"
     image.name = path.name.partition(".")[0]
     mark_as_data(image)
@@ -239,15 +240,7 @@ def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
 
 
 def _shows(image: bpy.types.Image, path: Path) -> bool:
-    return (
-        image.source == "SEQUENCE"
-        and image.library is None
-        and Path(bpy.path.abspath(image.filepath)).resolve() == path.resolve()
-    )
-
-
-def _absolute(path: str | Path) -> Path:
-    return Path(bpy.path.abspath(str(path))).resolve()
+    return image.source == "SEQUENCE" and image.library is None and image_file(image) == path
 
 
 def _frames_by_map(directory: Path) -> dict[tuple[str, str], set[int]]:

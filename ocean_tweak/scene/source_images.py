@@ -27,6 +27,7 @@ from ..export.pictures import exr_pictures, read_picture, tiff
 from ..export.pictures.checks import UnusableError, opened
 from ..export.pictures.reading import raster_in
 from .live_image import mark_as_data
+from .stored_paths import relative
 
 #: how an image's numbers become a wind: the number that is calm, and the factor
 WIND_VALUES = {
@@ -152,7 +153,7 @@ def open_image(path: Path, channels: int, names: str = "", axes: str = "") -> Ra
     if path.suffix.lower() == ".npy" or names or axes:
         return read_picture(path, channels, names, axes)
     try:
-        image = bpy.data.images.load(str(path), check_existing=True)
+        image = bpy.data.images.load(relative(path), check_existing=True)
     except RuntimeError:
         raise ParameterError("file", str(path), "cannot be read as an image") from None
     if image.users == 0:  # otherwise something else shows it in its colours

@@ -16,6 +16,7 @@ from ..core.frames import Frame, format_frames
 from ..core.shot import Shot
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import OPTIONS, command_arguments
+from . import stored_paths
 from .cache_place import bake_name, shown_bake
 from .command_process import CommandProcess, Running
 from .settings import OceanObjectError, settings_of
@@ -109,28 +110,19 @@ def default_file(item: bpy.types.Object) -> str:
 
 
 def usd_file(item: bpy.types.Object) -> Path:
-    """The asset's own layer. Raises OceanObjectError where that depends on a file that was never saved.
+    """The asset's own layer. Raises OceanObjectError where that depends on a file that was never saved, or is
+    on another system.
 
     An ocean that says no place goes into the user's own folder while its file has none.
     """
     path = settings_of(item).usd.file
     if bpy.data.filepath or item.library is not None:
-        return Path(bpy.path.abspath(path or default_file(item), library=item.library)).resolve()
+        return stored_paths.absolute(path or default_file(item), item.library)
     if not path:
         return user_folder(_FOLDER).joinpath(*default_file(item).split("/")[3:])
     if path.startswith("//"):
         raise OceanObjectError(f"{path} lies beside this file, which was never saved: save it first")
-    return Path(path).resolve()
-
-
-def beside_the_file(path: Path) -> str:
-    """The path as the .blend file keeps it: relative to itself, where it has a place and there is a way."""
-    if not bpy.data.filepath:
-        return str(path)
-    try:
-        return str(bpy.path.relpath(str(path)))
-    except ValueError:  # on another drive
-        return str(path)
+    return stored_paths.absolute(path)
 
 
 _running = Running()

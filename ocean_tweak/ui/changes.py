@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a changed property does: the ocean is shown anew."""
 
+from collections.abc import Callable
+
 import bpy
 
+from ..scene import stored_paths
 from ..scene.refinement import show
 from ..scene.settings import scene_of
 
@@ -17,3 +20,15 @@ def changed(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None
         settings.preset = ""
     if item.users_scene:
         show(item, scene_of(item), dragged=True)
+
+
+def path_changed(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
+    """What a changed path of this name does: it is kept relative to the file, where it can be."""
+
+    def update(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+        path = getattr(group, name)
+        kept = stored_paths.relative(path)
+        if kept != path:
+            setattr(group, name, kept)
+
+    return update

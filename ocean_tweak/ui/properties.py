@@ -30,7 +30,7 @@ from ..scene.settings import (
 from ..scene.source_images import ImageSource
 from ..scene.units import frame_rate, metres_per_unit, time_stretch
 from . import layer_properties, mask_properties, parameter_properties, patch_properties
-from .changes import changed
+from .changes import changed, path_changed
 from .layer_properties import OCEAN_PG_layer
 from .patch_properties import OCEAN_PG_patch
 from .usd_properties import OCEAN_PG_usd
@@ -124,8 +124,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "uid": StringProperty(**_HIDDEN),
         "cache_folder": StringProperty(
             name="Cache", default=DEFAULT_CACHE, subtype="DIR_PATH",
-            options={"PATH_SUPPORTS_BLEND_RELATIVE"}, **_OVERRIDE,
-            description="Folder of baked frames; each bake gets one of its own in it. // is beside the file",
+            options={"PATH_SUPPORTS_BLEND_RELATIVE"}, update=path_changed("cache_folder"), **_OVERRIDE,
+            description="Folder of baked frames; each bake gets one of its own in it. // is beside the file, "
+            "~ the user's home",
         ),
         "preset": StringProperty(**_HIDDEN),
         "active_layer": IntProperty(name="Active Layer", min=0, options={"HIDDEN"}, **_OVERRIDE),

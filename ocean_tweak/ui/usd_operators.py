@@ -107,7 +107,7 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
         """Note the file in the ocean, and export."""
         file = Path(self.filepath)
         file = file if file.suffix else file.with_suffix(_EXTENSION)
-        settings_of(context.active_object).usd.file = usd_process.beside_the_file(file)
+        settings_of(context.active_object).usd.file = str(file)
         try:
             return bpy.ops.ocean.export_usd("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")
         except RuntimeError as error:  # what the other operator reported

@@ -17,6 +17,7 @@ from bpy.props import (
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS
 from ..export.usd.package import MOST_TILES, UNITS, UP_AXES
+from .changes import path_changed
 
 _KEPT = {"options": set(), "override": {"LIBRARY_OVERRIDABLE"}}
 
@@ -37,7 +38,8 @@ class OCEAN_PG_usd(bpy.types.PropertyGroup):
 
     __annotations__ = {
         "file": StringProperty(
-            name="File", subtype="FILE_PATH", **{**_KEPT, "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}},
+            name="File", subtype="FILE_PATH", update=path_changed("file"),
+            **{**_KEPT, "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}},
             description="The asset's own layer, .usd, .usda or .usdc; the others go beside it, so give each "
             "ocean a folder of its own. // is beside the file",
         ),

@@ -126,6 +126,8 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
         (["bake", "--frames", "1", "--out", "/proc/nowhere/x"], 1, "/proc/nowhere"),
         (["bake", "--frames", "1", "--out", "x", "--maps", "disp,heat"], 2, "'heat' is no map"),
         (["bake", "--frames", "1-4", "--only", "4-5", "--out", "x"], 2, "--only 4-5: must be some of"),
+        (["bake", "--frames", "1", "--out", "D:\\water"], 2, "is a path of Windows"),
+        (["usd-verify", "~nobody_here/x.usd"], 2, "write ./~nobody_here/x.usd"),
         (["verify", "/nowhere"], 1, "/nowhere/bake.json: No such file"),
         (["resume", "/nowhere"], 1, "/nowhere/bake.json cannot be read"),
         (["clean", "/nowhere"], 2, "/nowhere: is no folder"),
@@ -158,6 +160,29 @@ def test_a_folder_that_is_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert main(["bake", "--frames", "1", "--out", str(target), "--set", "resolution=16"]) == 1
     assert str(target) in capsys.readouterr().err
     assert target.read_text() == "mine"
+
+
+def test_a_tilde_is_the_home_without_a_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setenv("OCEAN_TWEAK_CACHE", "~/water")
+    sea = ["--set", "resolution=16", "--frames", "1"]
+    assert main(["bake", *sea]) == 0
+    assert main(["bake", *sea, "--out", "~/more", "--name", "bay"]) == 0
+    assert main(["verify", *sea]) == 0
+    assert [path.name for path in sorted(home.glob("*/*/*/*.exr"))] == [
+        "bay_disp.0001.exr",
+        "ocean_disp.0001.exr",
+    ]
+    assert [path.name for path in tmp_path.iterdir()] == ["home"]
+    monkeypatch.setenv("OCEAN_TWEAK_CACHE", "D:\\water")
+    capsys.readouterr()
+    assert main(["bake", *sea]) == 2
+    assert "OCEAN_TWEAK_CACHE: 'D:" in capsys.readouterr().err
 
 
 def test_scene_oceans(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

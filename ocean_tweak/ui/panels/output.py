@@ -5,7 +5,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...core.frames import format_frames
-from ...scene import bake_process, cache_place
+from ...scene import bake_process, cache_place, stored_paths
 from ...scene.image_sequence import baked_frames
 from ...scene.maps import MAPS
 from ...scene.shots import scene_frames
@@ -55,7 +55,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     folder = cache_place.shown_bake(context.active_object)
     if folder is not None:
         row(column, "Version", folder.name)
-    row(column, "Files", bpy.path.basename(image.filepath) if image else "none chosen")
+    row(column, "Files", stored_paths.image_file(image).name if image else "none chosen")
     if image:
         row(column, "Frames", format_frames(baked_frames(settings)))
         row(column, "Maps", ", ".join(name for name in MAPS if getattr(settings.sequence_maps, name)))

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+r"""The paths that a .blend file keeps for its oceans: relative to it wherever there is a way, so that a
+project may be moved, copied, reached through a link and opened on another system.
+
+Links and mapped drives are never replaced by what they lead to. `//` is the folder of the file, as in
+Blender, and a backslash separates as `/` does, on every system: a file may come from Windows.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import bpy
+
+from ..export.places import is_foreign, path_of
+from .maps import MAPS
+from .settings import OceanObjectError, all_oceans, settings_of
+
+_BESIDE = "//"
+
+
+class Kept(NamedTuple):
+    """A path that the file keeps, as a property.
+
+    follows : whether Blender itself makes it relative to the new place when the file is saved elsewhere
+    """
+
+    owner: Any
+    name: str
+    follows: bool
+
+
+def _of_settings() -> Iterator[Kept]:
+    for item in all_oceans():
+        settings = settings_of(item)
+        # what was never chosen is beside the file, wherever that is
+        for group, name in ((settings, "cache_folder"), (settings.usd, "file")):
+            if item.library is None and getattr(group, name) != group.bl_rna.properties[name].default:
+                yield Kept(group, name, follows=False)
+
+
+def _of_images() -> Iterator[Kept]:
+    images = {image for item in all_oceans() for image in images_of(item)}
+    # raw: a file that is not there, while the .blend file is not where it will be, must not be looked for
+    yield from (Kept(image, "filepath_raw", follows=True) for image in images if image.library is None)
+
+
+#: all that keeps paths
+_KEEPERS: tuple[Callable[[], Iterator[Kept]], ...] = (_of_settings, _of_images)
+
+
+def images_of(item: bpy.types.Object) -> set[bpy.types.Image]:
+    """The images of files that an ocean reads: those of its bake, of its layers and of its masks."""
+    settings = settings_of(item)
+    baked = {getattr(maps, name) for maps in (settings.sequence_maps, settings.early_maps) for name in MAPS}
+    return {image for image in baked | settings.source_images() if image is not None and image.filepath}
+
+
+def absolute(path: str | Path, library: bpy.types.Library | None = None) -> Path:
+    """Where a path leads. Raises OceanObjectError for one of another system.
+
+    library : the file that keeps the path, where it is not the open one
+    """
+    try:
+        return Path(os.path.abspath(path_of(_led(str(path), library))))  # noqa: PTH100  # takes `..` away
+    except ValueError as error:
+        raise OceanObjectError(str(error)) from None
+
+
+def image_file(image: bpy.types.Image) -> Path:
+    """Where an image looks for its file, or for the first of them; on another system that may be nowhere."""
+    return Path(os.path.normpath(_led(image.filepath, image.library).replace("\\", "/")))
+
+
+def relative(path: str | Path, folder: str | None = None) -> str:
+    """A path as the file keeps it: relative to the file's folder, where it has one and there is a way.
+
+    A path that says no place, such as cache, is beside the file; one that begins with ~ stays.
+
+    folder : by default that of the open file; "" while there is none
+    """
+    text = _tidy(str(path))
+    folder = _folder() if folder is None else folder
+    if not text or text.startswith("~") or is_foreign(text):
+        return text
+    if not os.path.isabs(text) and not text.startswith(_BESIDE):  # noqa: PTH117
+        text = _BESIDE + text
+    if not folder:
+        return text
+    way = _way(folder, _join(folder, text) if text.startswith(_BESIDE) else text)
+    return text if way is None else _BESIDE + way
+
+
+def make_relative(path: str) -> list[tuple[Kept, str]]:
+    """Make all paths of the open file relative to it, just before it is saved at `path`.
+
+    Returns those that were changed and what they were.
+    """
+    here, there = _folder(), str(absolute(path).parent)
+    changed = []
+    for kept in [kept for keeper in _KEEPERS for kept in keeper()]:
+        before = wanted = getattr(kept.owner, kept.name)
+        if here and not kept.follows and before.startswith(_BESIDE):
+            wanted = _join(here, _tidy(before))
+        wanted = relative(wanted, (here or there) if kept.follows else there)
+        if wanted != before:
+            setattr(kept.owner, kept.name, wanted)
+            changed.append((kept, before))
+    return changed
+
+
+def is_saved_beside(path: str) -> bool:
+    """Whether the open file lies in the folder of this path: not after only a copy was saved there."""
+    return _folder() == str(absolute(path).parent)
+
+
+def _led(path: str, library: bpy.types.Library | None = None) -> str:
+    text = _tidy(path)
+    return _join(_folder(library), text) if text.startswith(_BESIDE) else text
+
+
+def _tidy(path: str) -> str:
+    r"""A path with the separators of this system; one of a drive or of \\\\server stays as it is."""
+    is_other = is_foreign(path) or (os.name == "nt" and not path.startswith(_BESIDE))
+    return path if is_other else path.replace("\\", "/")
+
+
+def _folder(library: bpy.types.Library | None = None) -> str:
+    """The folder of the open file or of a library; "" for a file that was never saved."""
+    if library is not None:
+        return str(Path(_led(library.filepath, library.parent)).parent)
+    return str(Path(bpy.data.filepath).parent) if bpy.data.filepath else ""
+
+
+def _join(folder: str, path: str) -> str:
+    return os.path.normpath(f"{folder}/{path.removeprefix(_BESIDE)}")
+
+
+def _way(folder: str, path: str) -> str | None:
+    """The way from a folder to a path; None where there is none, from one drive to another."""
+    straight = _relpath(folder, path)
+    if straight is not None and not _climbs(straight):
+        return straight
+    # both may lie below one folder that has two names, by a link or a mapped drive
+    real = os.path.realpath(path)
+    inside = _relpath(os.path.realpath(folder), real)
+    is_better = inside is not None and (straight is None or _climbs(inside) < _climbs(straight))
+    # above a link is not above what it leads to
+    return inside if is_better and os.path.realpath(_join(folder, inside)) == real else straight
+
+
+def _relpath(folder: str, path: str) -> str | None:
+    try:
+        way = os.path.relpath(path, folder)
+    except ValueError:
+        return None
+    return "" if way == os.curdir else way.replace(os.sep, "/")
+
+
+def _climbs(way: str) -> int:
+    """How often a way goes up."""
+    return way.split("/").count(os.pardir)
