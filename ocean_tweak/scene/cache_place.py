@@ -14,7 +14,7 @@ from ..export.cache.job import JOB_FILE, UID, is_bake, safe_name, uid_of
 from ..export.files import is_link
 from ..export.places import environment_cache
 from . import stored_paths
-from .image_sequence import ImageSequence, find_sequence
+from .image_sequence import ImageSequence, find_sequence, folder_of
 from .settings import OceanObjectError, all_oceans, settings_of
 from .user_folder import user_folder
 
@@ -76,11 +76,8 @@ def bake_name(item: bpy.types.Object) -> str:
 
 def shown_bake(item: bpy.types.Object) -> Path | None:
     """The folder of the bake that the ocean reads, None where it reads none of ours."""
-    image = settings_of(item).sequence_maps.disp
-    if image is None or image.source != "SEQUENCE":
-        return None
-    folder = stored_paths.image_file(image).parent
-    return folder if (folder / JOB_FILE).is_file() else None
+    folder = folder_of(settings_of(item))
+    return folder if folder is not None and (folder / JOB_FILE).is_file() else None
 
 
 def is_left_behind(item: bpy.types.Object) -> bool:

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import bpy
 
 from ..core import OceanParameters
 from .modifiers import Textures, is_moved
-from .source_images import ImageSource
+
+if TYPE_CHECKING:  # it reads the settings' paths itself
+    from .source_images import ImageSource
 
 METHODS = {
     "DISPLACE": (

@@ -27,7 +27,7 @@ from ..export.pictures import exr_pictures, read_picture, tiff
 from ..export.pictures.checks import UnusableError, opened
 from ..export.pictures.reading import raster_in
 from .live_image import mark_as_data
-from .stored_paths import relative
+from .stored_paths import image_file, relative
 
 #: how an image's numbers become a wind: the number that is calm, and the factor
 WIND_VALUES = {
@@ -215,8 +215,7 @@ def _opened_file(image: bpy.types.Image) -> Iterator[BinaryIO | None]:
             stream = io.BytesIO(image.packed_file.data)
         elif image.source == "FILE":
             with contextlib.suppress(UnusableError):
-                path = Path(bpy.path.abspath(image.filepath, library=image.library))
-                stream = stack.enter_context(opened(path))
+                stream = stack.enter_context(opened(image_file(image)))
         yield stream
 
 

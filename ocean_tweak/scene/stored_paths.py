@@ -55,8 +55,9 @@ _KEEPERS: tuple[Callable[[], Iterator[Kept]], ...] = (_of_settings, _of_images)
 def images_of(item: bpy.types.Object) -> set[bpy.types.Image]:
     """The images of files that an ocean reads: those of its bake, of its layers and of its masks."""
     settings = settings_of(item)
-    baked = {getattr(maps, name) for maps in (settings.sequence_maps, settings.early_maps) for name in MAPS}
-    return {image for image in baked | settings.source_images() if image is not None and image.filepath}
+    images = {getattr(maps, name) for maps in (settings.sequence_maps, settings.early_maps) for name in MAPS}
+    images |= {source.image for source in settings.source_images()}
+    return {image for image in images if image is not None and image.filepath}
 
 
 def absolute(path: str | Path, library: bpy.types.Library | None = None) -> Path:
