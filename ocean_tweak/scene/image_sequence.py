@@ -137,8 +137,9 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
     early = [frame for frame in sequence.frames if frame < 0]
     later = [frame for frame in sequence.frames if frame >= 0]
     # where all frames are early ones, the others are never read
-    images = {name: _image(sequence.path((later or early)[0], name)) for name in maps}
-    early_images = {name: _image(sequence.path(early[0], name)) for name in maps if early}
+    # by the shortest number: Blender writes others with as many digits or more
+    images = {name: _image(sequence.path(later[0] if later else early[-1], name)) for name in maps}
+    early_images = {name: _image(sequence.path(early[-1], name)) for name in maps if early}
     return LoadedSequence(images, early_images, sizes[_MOVING], *_timing(paths[_MOVING]))
 
 

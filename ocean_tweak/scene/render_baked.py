@@ -126,16 +126,16 @@ def show(bake: Bake, frames: list[int], alone: bool) -> None:
         use_sequence(item, bake, frames)
     if meant:
         return
-    for image in images:
-        image.filepath = str(bake.folder / file_name(image))
-        image.reload()
-    show_frames(images, frames)
     if not images:
         known = ", ".join(item.name for item in oceans) or "none that this Blender knows"
         raise RenderError(
             f"{bpy.data.filepath} has no images named {bake.name}_disp and no ocean {bake.name} (its oceans: "
             f"{known}): let its ocean read a baked sequence, or name the bake like the ocean"
         )
+    for image in images:
+        image.filepath = str(bake.folder / file_name(image))
+        image.reload()
+    show_frames(images, frames)
 
 
 def is_ocean(item: bpy.types.Object) -> bool:
@@ -173,13 +173,15 @@ def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
 def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:
     """Let the modifiers that read images of a bake know its frames, which may be others than before.
 
-    Raises RenderError for frames before 0 that they have no image for.
+    Raises RenderError for frames before 0, or from 0 on, where they have no images of such.
     """
-    early = {image for image in images if file_name(image).split(".")[-2].startswith("-")}
-    if min(frames) < 0 and not early:
+    shown = {file_name(image).split(".")[-2].startswith("-") for image in images}
+    lost = [frame for frame in frames if (frame < 0) not in shown]
+    if lost:
+        side = "before 0" if lost[0] < 0 else "from 0 on"
         raise RenderError(
-            f"frame {min(frames)}: {bpy.data.filepath} reads no frames before 0: let its ocean read a baked "
-            "sequence that has such"
+            f"frame {lost[0]}: {bpy.data.filepath} reads no frames {side}: let its ocean read a baked sequence "
+            "that has some"
         )
     first, last, baked = min(frames), max(frames), set(frames)
     values = {
@@ -199,8 +201,10 @@ def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:
             modifier.id_data.update_tag()
     for texture in bpy.data.textures:
         if getattr(texture, "image", None) in images:
-            user = texture.image_user
-            user.frame_start, user.frame_offset, user.frame_duration = first + 1, first, max(last - first, 1)
+            # as `scene.textures` does, which says why
+            begin, user = int(first == last), texture.image_user
+            user.frame_start, user.frame_offset = first + 1 - begin, first - begin
+            user.frame_duration = last - first + begin
             texture.update_tag()
 
 

@@ -89,15 +89,18 @@ def expected(core):
 
 @pytest.fixture
 def bake(extension, core, tmp_path):
-    """Write a sequence; returns where it is."""
+    """Write a sequence from a first to a last frame, or at some frames; returns where it is."""
 
-    def write(parameters, first, last, name="sea", directory=tmp_path / "frames", maps=("disp",)):
+    def write(
+        parameters, first=0, last=0, name="sea", directory=tmp_path / "frames", maps=("disp",), frames=None
+    ):
+        frames = frames or tuple(range(first, last + 1))
         directory.mkdir(exist_ok=True)
         sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP", maps)
         sea = core.grid_sea(parameters)
-        for frame in range(first, last + 1):
+        for frame in frames:
             sink.write(frame, sea.frame(frame, sink.outputs))
-        return extension("scene.image_sequence").ImageSequence(directory, name, tuple(range(first, last + 1)))
+        return extension("scene.image_sequence").ImageSequence(directory, name, frames)
 
     return write
 

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bakes with steps, with gaps, of single frames and of frames before 0: shown, without this extension too."""
+
+import json
+import subprocess
+import sys
+
+import bpy
+import numpy as np
+import pytest
+
+from .conftest import vertices
+from .surfaces import ALL_MAPS
+from .test_missing_frames import METHODS, warnings
+
+#: the frames of a bake, and a frame that it lacks with the one that is held there
+BAKES = {
+    "step": ((1, 3, 5, 7, 9), {2: 1, 8: 7, 20: 9, -4: 1}),
+    "apart": ((1, 2, 3, 50, 51), {4: 3, 49: 3, 60: 51}),
+    "early": ((-1234, -3, -2, 0, 4), {-4: -1234, -1: -2, 3: 0}),
+    "all early": ((-3, -2), {-9: -3, 1: -2}),
+    "pick-up": ((12,), {11: 12, 13: 12}),
+}
+#: opens a file and tells heights of its oceans: FILE, {name: [frame]} → {name: [[height]]}
+READER = """
+import json, sys, bpy
+assert not hasattr(bpy.types.Object, "ocean_tweak")
+bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
+found = {}
+for name, frames in json.loads(sys.argv[2]).items():
+    found[name] = []
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        item = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+        found[name].append([vertex.co.z for vertex in item.data.vertices])
+open(sys.argv[3], "w").write(json.dumps(found))
+"""
+
+
+@pytest.fixture
+def baked(ocean_object, bake, make_parameters, empty_scene):
+    """Make an ocean that reads some of the frames of a bake."""
+
+    def make(frames, method, name="Ocean", **changes):
+        sequence = bake(make_parameters(**changes), frames=frames, name=name, maps=ALL_MAPS)
+        return ocean_object.add(
+            empty_scene, make_parameters(**changes), method, "SEQUENCE", sequence, name=name
+        )
+
+    return make
+
+
+def others(frames, held):
+    """The frames to look at, and those that they show."""
+    return [*((frame, frame) for frame in frames), *held.items()]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", BAKES)
+def test_each_frame_shows_its_file_or_the_one_before(
+    baked, make_parameters, expected, empty_scene, method, name
+):
+    frames, held = BAKES[name]
+    item = baked(frames, method)
+    for frame, shown in others(frames, held):
+        empty_scene.frame_set(frame)
+        np.testing.assert_allclose(vertices(item), expected(make_parameters(), shown), atol=2e-3)
+        told = [("WARNING", f"Frame {frame} was not baked: frame {shown} is held")] if frame != shown else []
+        assert warnings(item) == told
+        assert item.ocean_tweak.missing_file == ""
+    item.ocean_tweak.out_of_range = "HOLD"
+    empty_scene.frame_set(next(iter(held)))
+    assert warnings(item) == []
+
+
+def test_a_blender_without_the_extension_shows_them(baked, make_parameters, expected, tmp_path):
+    wanted = {}
+    for method in METHODS:
+        for kind, (frames, held) in BAKES.items():
+            item = baked(frames, method, name=f"{method} {kind}")
+            wanted[item.name] = dict(others(frames, held))
+    file, reader, found = (tmp_path / name for name in ("shot.blend", "reader.py", "found.json"))
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    reader.write_text(READER)
+    frames = json.dumps({name: list(shown) for name, shown in wanted.items()})
+    subprocess.run([sys.executable, str(reader), str(file), frames, str(found)], check=True)
+    heights = json.loads(found.read_text())
+    for name, shown in wanted.items():
+        for height, frame in zip(heights[name], shown.values(), strict=True):
+            sea = expected(make_parameters(), frame)[..., 2]
+            np.testing.assert_allclose(height, sea.ravel(), atol=2e-3, err_msg=f"{name}, frame {frame}")
+
+
+def test_frames_that_are_baked_later_are_used(ocean, expected, make_parameters, empty_scene):
+    empty_scene.frame_start, empty_scene.frame_end, empty_scene.frame_step = 1, 7, 3
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert ocean.ocean_tweak.sequence_frames == "1-7x3"
+    empty_scene.frame_set(3)
+    np.testing.assert_allclose(vertices(ocean), expected(make_parameters(), 1), atol=2e-3)
+    empty_scene.frame_step = 1
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert ocean.ocean_tweak.sequence_frames == "1-7"
+    for frame in (2, 3, 4, 7):
+        empty_scene.frame_set(frame)
+        np.testing.assert_allclose(vertices(ocean), expected(make_parameters(), frame), atol=2e-3)
+
+
+def test_a_file_from_before_there_were_gaps(baked, make_parameters, expected, empty_scene):
+    item = baked((1, 2, 3), "NODES")
+    settings = item.ocean_tweak
+    settings.sequence_frames, settings.sequence_first, settings.sequence_last = "", 1, 3
+    settings.repeats_x = 1
+    for frame, shown in ((0, 1), (2, 2), (9, 3)):
+        empty_scene.frame_set(frame)
+        np.testing.assert_allclose(vertices(item), expected(make_parameters(), shown), atol=2e-3)
+
+
+def test_what_floats_on_a_bake_with_gaps_stays_on_it(baked, extension, empty_scene):
+    item = baked((-3, 1, 5), "NODES")
+    boat = bpy.data.objects.new("Boat", bpy.data.meshes.new("Boat"))
+    boat.location = (60.0, 60.0, 0.0)
+    empty_scene.collection.objects.link(boat)
+    empty_scene.view_layers.update()
+    extension("scene.floating").float_on(boat, item, empty_scene)
+    live = {frame: height_of(boat, empty_scene, frame) for frame in range(-4, 7)}
+    ride = extension("scene.floating").Ride()
+    bake = extension("scene.float_bake").FloatBake(empty_scene, [boat], item, ride, range(-4, 7))
+    for _ in bake.frames:
+        bake.advance()
+    bake.finish()
+    assert len({round(height, 4) for height in live.values()}) == 3
+    for frame, height in live.items():
+        assert height_of(boat, empty_scene, frame) == pytest.approx(height, abs=1e-3)
+
+
+def height_of(item, scene, frame):
+    scene.frame_set(frame)
+    return item.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z
