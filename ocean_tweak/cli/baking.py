@@ -12,6 +12,8 @@ from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
+from fractions import Fraction
+from math import lcm
 from pathlib import Path
 
 from .. import __version__
@@ -60,12 +62,29 @@ def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job) -> int:
     frames = job.frames
     if not frames:
         raise UsageError("--frames: say which frames to bake")
+    _check_whole(job)
     chosen = arguments.only or frames
     if not set(chosen) <= set(frames):
         raise UsageError(
             f"--only {format_frames(chosen)}: must be some of the frames {format_frames(frames)}"
         )
     return _make(arguments, open_folder(writable_folder(cache), job), job, chosen)
+
+
+def _check_whole(job: Job) -> None:
+    """Refuse frames between two: what reads NAME_disp.####.exr would pass them over. Raises UsageError."""
+    between = [Fraction(frame) for frame in job.frames if not isinstance(frame, int)]
+    if not between:
+        return
+    parts = lcm(*(frame.denominator for frame in between))
+    stretch = job.shot.parameters.timing.stretch * parts
+    remedy = (
+        f", or {parts} for each with --set timing.stretch={stretch}" if job.shot.animation is None else ""
+    )
+    raise UsageError(
+        f"--frames: {format_frames(between[:1])} lies between two frames, and #### in the name of a file is "
+        f"a whole number: bake whole frames{remedy}"
+    )
 
 
 def resume(arguments: argparse.Namespace) -> int:

@@ -180,8 +180,8 @@ def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:
     if lost:
         side = "before 0" if lost[0] < 0 else "from 0 on"
         raise RenderError(
-            f"frame {lost[0]}: {bpy.data.filepath} reads no frames {side}: let its ocean read a baked sequence "
-            "that has some"
+            f"frame {lost[0]}: {bpy.data.filepath} reads no frames {side}: let its ocean read a baked "
+            "sequence that has some"
         )
     first, last, baked = min(frames), max(frames), set(frames)
     values = {

@@ -85,6 +85,17 @@ def test_the_range_never_moves_time(params: Path, tmp_path: Path) -> None:
     assert whole.read_bytes() == part.read_bytes()
 
 
+def test_slow_motion_is_the_sea_between_two_frames(params: Path, tmp_path: Path) -> None:
+    command = ["bake", "--params", str(params), "--maps", "disp,vel", "--out", str(tmp_path)]
+    assert main([*command, "--frames", "7", "--set", "timing.stretch=4", "--start-frame", "1"]) == 0
+    pixels, metadata = read_image(only_folder(tmp_path) / "small_disp.0007.exr")
+    assert metadata["parameters"]["timing"] == {"fps": 25, "start_frame": 1, "stretch": 4}
+    fields = Ocean(OceanParameters.from_dict(SMALL)).surface((7 / 4 - 1) / 25, {"displacement", "velocity"})
+    np.testing.assert_allclose(pixels, fields.displacement, atol=1e-3)
+    velocity, _ = read_image(only_folder(tmp_path) / "small_vel.0007.exr")
+    np.testing.assert_allclose(velocity, fields.velocity / 4, atol=1e-3)
+
+
 def test_set_fps_and_start_frame(params: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["info", "--json", "--params", str(params), "--set", "layers.0.wind_speed=25",
                  "--set", "dispersion=DEEP", "--fps", "24000/1001", "--start-frame", "7"]  # fmt: skip
@@ -128,6 +139,8 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
         (["bake", "--frames", "1-4", "--only", "4-5", "--out", "x"], 2, "--only 4-5: must be some of"),
         (["bake", "--frames", "1", "--out", "D:\\water"], 2, "is a path of Windows"),
         (["usd-verify", "~nobody_here/x.usd"], 2, "write ./~nobody_here/x.usd"),
+        (["bake", "--frames", "1-2x0.25", "--out", "x"], 2, "1.25 lies between two frames, and #### in"),
+        (["bake", "--frames", "1-2x0.25", "--out", "x"], 2, "or 4 for each with --set timing.stretch=4"),
         (["verify", "/nowhere"], 1, "/nowhere/bake.json: No such file"),
         (["resume", "/nowhere"], 1, "/nowhere/bake.json cannot be read"),
         (["clean", "/nowhere"], 2, "/nowhere: is no folder"),
