@@ -136,9 +136,7 @@ def other_header(path: Path) -> None:
         lambda home: resealed(home / "bake.json", name=HOSTILE),
         lambda home: resealed(home / "bake.json", shot={HOSTILE: 1}),
         lambda home: resealed(home / "records" / "0002.json", frame=HOSTILE),
-        lambda home: resealed(
-            home / "records" / "0002.json", files=[{"map": "", "name": HOSTILE, "bytes": 0, "sha256": ""}]
-        ),
+        lambda home: resealed(home / "records" / "0002.json", fingerprint=[HOSTILE]),
         lambda home: other_header(home / "sea_disp.0002.exr"),
     ],
 )
