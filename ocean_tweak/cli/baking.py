@@ -15,6 +15,7 @@ from dataclasses import replace
 from fractions import Fraction
 from math import lcm
 from pathlib import Path
+from typing import NoReturn
 
 from .. import __version__
 from ..core.bake import BakedFrame
@@ -34,15 +35,15 @@ from ..export.cache.job import (
     recovered_job,
     write_job,
 )
-from ..export.cache.locks import Held, claimed
-from ..export.cache.records import CacheSink, Finding, remove_leftovers, unfinished
+from ..export.cache.locks import Held, claimed, let_go
+from ..export.cache.records import CacheSink, Finding, give_up_writing, remove_leftovers, unfinished
 from ..export.exr import ExrError
 from ..export.files import writable_folder
 from .checking import known_frames, wanted_frames
 from .outcome import DONE, FAILED, UsageError, message_of, remedy_of
 from .progress import Progress, duration
 from .seas import Sea
-from .stopping import stop_requested
+from .stopping import end_now, stop_requested
 from .wanted_bake import cache_of, jobs_of, only_bake
 from .workers import make_in_processes
 
@@ -113,7 +114,7 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
         )
     progress = Progress(job.name, arguments.json, arguments.openjd)
     with (
-        stop_requested() as stop,
+        stop_requested(lambda: _give_up(progress, folder)) as stop,
         claimed(
             folder, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark
         ) as hold,
@@ -134,8 +135,19 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
     if progress.is_complete:
         return DONE
     progress.fail("stopped")
-    _LOG.error("stopped after a whole frame; %s", _go_on(folder))
+    _LOG.error("stopped; %s", _go_on(folder))
     return FAILED
+
+
+def _give_up(progress: Progress, folder: Path) -> NoReturn:
+    """End in the middle of a frame."""
+    try:
+        give_up_writing(folder)
+        let_go(folder)
+        progress.fail("stopped")
+        _LOG.error("stopped; %s", _go_on(folder))
+    finally:
+        end_now(FAILED)
 
 
 def _make_frames(

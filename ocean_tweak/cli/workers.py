@@ -3,7 +3,8 @@
 
 A process runs this module with the folder as its argument: it reads a JSON line that says which frames, makes
 them from what lies in the folder and prints a JSON line a frame. It locks nothing: whoever started it holds
-the lock. It ends after a frame when its input is closed, as it is when whoever started it is gone.
+the lock. When its input is closed, as it is when whoever started it is gone, it ends: after its frame or,
+where that takes too long, in the middle of it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -26,10 +28,11 @@ from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames, parse_frames
 from ..export import logs
 from ..export.cache.job import CacheError, Job, read_job
-from ..export.cache.records import CacheSink
+from ..export.cache.records import CacheSink, give_up_writing
 from ..export.exr import ExrError
 from ..export.python_process import environment, module_command
 from .outcome import DONE, FAILED, message_of
+from .stopping import WORKERS_PATIENCE, end_now
 
 _LOG = logging.getLogger(__name__)
 
@@ -207,6 +210,7 @@ def main(argv: Sequence[str]) -> int:
         if not order:
             return DONE  # nobody wants it any more
         threading.Thread(target=_watch, args=(ended,), daemon=True).start()
+        threading.Thread(target=_give_up, args=(ended, Path(argv[0])), daemon=True).start()
         logs.to_console(order["log"])
         folder = Path(argv[0])
         job = read_job(folder, parse_frames(order["asked"]) if order["asked"] else ())
@@ -223,6 +227,16 @@ def main(argv: Sequence[str]) -> int:
 def _watch(ended: threading.Event) -> None:
     sys.stdin.read()
     ended.set()
+
+
+def _give_up(ended: threading.Event, folder: Path) -> None:
+    """End in the middle of a frame that takes too long."""
+    ended.wait()
+    time.sleep(WORKERS_PATIENCE)
+    try:
+        give_up_writing(folder)
+    finally:
+        end_now(DONE)
 
 
 def _make(folder: Path, job: Job, frames: Sequence[Frame], ended: threading.Event) -> None:
@@ -245,7 +259,4 @@ def _say(line: dict[str, Any]) -> None:
 
 if __name__ == "__main__":
     code = main(sys.argv[1:])
-    # the thread that waits for stdin would hold up the interpreter's own way out
-    with contextlib.suppress(OSError):
-        sys.stdout.flush()
-    os._exit(code)
+    end_now(code)  # the thread that waits for stdin would hold up the interpreter's own way out

@@ -30,9 +30,20 @@ _LOCK_PATIENCE = 10.0
 _NO_FOLDER_SYNC = {errno.EINVAL, errno.ENOTSUP, errno.EBADF, errno.EACCES, errno.EISDIR}
 
 
+#: of the names of what this process writes: no other has it, on this machine or another
+_OWN = uuid.uuid4().hex
+
+
 def _beside(path: Path) -> Path:
-    """A name that no other process has, on this machine or another, even where process numbers agree."""
-    return path.with_name(f".{path.name}.{uuid.uuid4().hex}{PART}")
+    """A name that nobody else has, even where process numbers agree."""
+    return path.with_name(f".{path.name}.{_OWN[:16]}{uuid.uuid4().hex[:16]}{PART}")
+
+
+def remove_begun(folder: Path) -> None:
+    """Remove what this process has begun to write in a folder; it is about to end."""
+    for part in folder.glob(f".*.{_OWN[:16]}*{PART}"):
+        with contextlib.suppress(OSError):
+            part.unlink()
 
 
 def is_link(path: Path) -> bool:

@@ -21,9 +21,9 @@ LONG = os.environ.get("OCEAN_TWEAK_LONG_TESTS") == "1"
 SOON = 60.0  # s; more than anything here takes on a busy machine
 
 
-def times(count: int) -> int:
-    """How often a test repeats itself: ten times as often in the long run."""
-    return 10 * count if LONG else count
+def times(count: int, more: int = 10) -> int:
+    """How often a test repeats itself: ten times as often, or `more`, in the long run."""
+    return more * count if LONG else count
 
 
 def command(*arguments: object) -> list[str]:

@@ -7,6 +7,8 @@ import contextlib
 import os
 import random
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -15,11 +17,13 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.export.cache import records as cache_records
 from tests.batch.bakery import (
+    ROOT,
     Watch,
     baking,
     children,
     contents,
     end,
+    image_contents,
     leftovers,
     only_folder,
     records,
@@ -27,10 +31,11 @@ from tests.batch.bakery import (
     start,
     times,
     times_of_change,
+    wait_for,
     write_sea,
 )
 
-KILLS = times(10)
+KILLS = times(10, more=20)
 FRAMES = 30 * KILLS  # more than three fast workers make between the kills
 
 
@@ -135,14 +140,69 @@ def test_asked_to_stop(
         code, _, err = end(process)
     folder = only_folder(tmp_path)
     assert code == 1
-    assert (
-        err == f"ocean_tweak: stopped after a whole frame; whole frames stay; go on with: resume {folder}\n"
-    )
+    assert err == f"ocean_tweak: stopped; whole frames stay; go on with: resume {folder}\n"
     assert 3 <= len(records(folder)) < FRAMES
     assert leftovers(folder) == []  # nor a lock
     assert contents(folder).items() <= undisturbed.items()
     assert main(["resume", str(folder), "--workers", "1"]) == 0
     assert contents(folder) == undisturbed
+
+
+#: a bake that does not come to an end of its third frame, whose image lies half written beside its place
+STUCK = """
+import os, sys, time
+from ocean_tweak.cli import main, stopping
+stopping.PATIENCE = float(sys.argv[1])
+def stuck(file, sync=os.fsync):
+    if "_disp.0003." in os.readlink(f"/proc/self/fd/{file}"):
+        print("stuck", flush=True)
+        time.sleep(600)
+    sync(file)
+os.fsync = stuck
+sys.exit(main(sys.argv[2:]))
+"""
+
+
+@pytest.mark.parametrize(("patience", "signals"), [(0.5, 1), (600.0, 2)])
+def test_a_frame_that_does_not_end_is_given_up(
+    sea: Path, undisturbed: dict[str, str], tmp_path: Path, patience: float, signals: int
+) -> None:
+    """A while after it was asked to stop, or at once where it is asked again."""
+    arguments = map(str, bake(sea, tmp_path, frames=4))
+    process = subprocess.Popen(
+        [sys.executable, "-c", STUCK, str(patience), *arguments], cwd=ROOT, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert "stuck\n" in iter(process.stdout.readline, "")
+    asked = time.monotonic()
+    for _ in range(signals):
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+    code, _, err = end(process)
+    assert time.monotonic() - asked < 5.0
+    folder = only_folder(tmp_path)
+    assert (code, err) == (
+        1, f"ocean_tweak: stopped; whole frames stay; go on with: resume {folder}\n",
+    )  # fmt: skip
+    assert leftovers(folder) == []
+    assert len(records(folder)) == 2
+    assert main([str(a) for a in bake(sea, tmp_path, frames=4)]) == 0
+    assert len(image_contents(folder)) == 4
+    assert image_contents(folder).items() <= undisturbed.items()
+
+
+def test_workers_give_long_frames_up(tmp_path: Path) -> None:
+    sea = write_sea(tmp_path / "sea.json", resolution=2048)
+    process = start(*bake(sea, tmp_path / "c", frames=4, workers=2), "--maps", "disp,foam")
+    wait_for(lambda: len(children(process)) == 2, "two workers")
+    time.sleep(1.0)
+    asked = time.monotonic()
+    process.terminate()
+    code, _, err = end(process)
+    assert time.monotonic() - asked < 5.0
+    assert code == 1
+    assert "ocean_tweak: stopped; whole frames stay" in err
+    assert leftovers(only_folder(tmp_path / "c")) == []
 
 
 def test_stopped_while_it_looks_at_what_is_there(
@@ -159,5 +219,5 @@ def test_stopped_while_it_looks_at_what_is_there(
 
     monkeypatch.setattr(cache_records, "file_hash", interrupted)
     assert main(["resume", str(copy), "--workers", "1"]) == 1
-    assert "stopped after a whole frame" in capsys.readouterr().err
+    assert "ocean_tweak: stopped; whole frames stay" in capsys.readouterr().err
     assert times_of_change(copy) == before

@@ -190,6 +190,15 @@ def claims(locks: Path) -> list[Claim]:
     return found
 
 
+def let_go(folder: Path) -> None:
+    """Remove the claims of this process to frames of a folder; it is about to end."""
+    own = (this_machine(), os.getpid(), process_start(os.getpid()) or "")
+    for claim in claims(folder / LOCKS):
+        if (claim.machine, claim.process, claim.started) == own:
+            with contextlib.suppress(OSError):
+                claim.path.unlink(missing_ok=True)
+
+
 def is_alive_here(claim: Claim) -> bool | None:
     """Whether the claim's process runs, where that can be told: on its own machine."""
     if claim.frames is None:

@@ -21,8 +21,8 @@ from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
 from ...core.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
 from ...core.printable import shown
-from ..files import PART, begun_file, open_file, read_bytes, sync_folder, write_text
-from .job import FORMAT, RECORDS, Job, check_seal, made_with, record_path, sealed
+from ..files import PART, begun_file, open_file, read_bytes, remove_begun, sync_folder, write_text
+from .job import FORMAT, LOCKS, RECORDS, Job, check_seal, made_with, record_path, sealed
 
 _LARGEST_RECORD = 2**20
 _BLOCK = 2**20
@@ -239,6 +239,12 @@ def unfinished(
     for finding in inspect_all(folder, job, frames, stopped):
         if finding.state is not State.WHOLE:
             yield finding
+
+
+def give_up_writing(folder: Path) -> None:
+    """Remove what this process has begun to write of a bake; it is about to end."""
+    for part in (folder, folder / RECORDS, folder / LOCKS):
+        remove_begun(part)
 
 
 def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
