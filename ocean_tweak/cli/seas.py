@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,6 +15,7 @@ from ..core.cascades.plan import planned
 from ..core.frames import Frame
 from ..core.parameters import parse_json
 from ..core.presets import built_in
+from ..core.printable import printable
 from ..core.shot import Shot
 from ..export.files import LARGEST_JSON, read_bytes
 from ..export.pictures import with_pictures
@@ -140,10 +142,12 @@ def _assign(data: Any, path: str, value: Any) -> None:
 
 def _entry(data: Any, key: str, path: str) -> Any:
     if isinstance(data, list):
-        if not key.isdecimal() or int(key) >= len(data):
-            raise UsageError(f"--set {path}: {key} must be a number from 0 to {len(data) - 1}")
+        if not re.fullmatch("[0-9]{1,6}", key) or int(key) >= len(data):
+            raise UsageError(
+                f"--set {printable(path)}: {printable(key)} must be a number from 0 to {len(data) - 1}"
+            )
         return data[int(key)]
     if not isinstance(data, dict) or key not in data:
         known = f"; known keys: {', '.join(data)}" if isinstance(data, dict) else ""
-        raise UsageError(f"--set {path}: there is no {key}{known}")
+        raise UsageError(f"--set {printable(path)}: there is no {printable(key)}{known}")
     return data[key]

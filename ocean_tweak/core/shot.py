@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -48,6 +49,7 @@ _CONSTANT = {
     "hero_waves": "a wave that runs freely keeps what it is; place a second one, or animate ocean_time",
     "timing": "frames become seconds in one way; animate ocean_time instead",
 }
+_LAYER = re.compile(r"layers\.[0-9]{1,6}\.")
 _MOST_SAMPLES = 1_000_000
 _KEY = "animation"
 
@@ -244,11 +246,9 @@ def time_text(time: Fraction) -> Any:
 
 
 def _check_path(path: str) -> None:
-    parts = path.split(".")
-    general = ".".join("*" if index == 1 and part.isdecimal() else part for index, part in enumerate(parts))
-    if general in ANIMATED:
+    if _LAYER.sub("layers.*.", path) in ANIMATED:
         return
-    reason = _CONSTANT.get(parts[0], f"only {', '.join(ANIMATED)} can change during a shot")
+    reason = _CONSTANT.get(path.partition(".")[0], f"only {', '.join(ANIMATED)} can change during a shot")
     raise ParameterError(f"samples.{path}", "animated", f"is constant over a shot: {reason}")
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import random
 import struct
@@ -82,7 +83,7 @@ def _change_value(plain: object, chance: random.Random) -> None:
             elif kind == 2:
                 del place[key]
             else:
-                place[key] = chance.choice(VALUES)
+                place[key] = copy.deepcopy(chance.choice(VALUES))  # of which parts are changed later
             return
         place = inner
 

@@ -126,6 +126,7 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
         (["info", "--set", "layers.0.wind_speed=NaN"], 2, "finite"),
         (["info", "--set", "layers.0.wind_sped=3"], 2, "did you mean wind_speed?"),
         (["info", "--set", "layers.4.wind_speed=3"], 2, "from 0 to 0"),
+        (["info", "--set", f"layers.{'9' * 5000}.wind_speed=3"], 2, "from 0 to 0"),
         (["info", "--set", "water.depth.x=3"], 2, "water.depth.x"),
         (["info", "--set", "resolution"], 2, "must look like"),
         (["info", "--params", "absent.json"], 2, "absent.json"),

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 
 from ocean_tweak.cli import main
@@ -39,3 +40,31 @@ def test_a_picture_that_is_missing_is_named(tmp_path: Path, capsys: pytest.Captu
     error = capsys.readouterr().err
     assert "pictures.0.picture.file" in error
     assert "nowhere.png" in error
+
+
+@pytest.mark.parametrize("kind", ["exr", "tif", "png", "npy"])
+def test_what_is_wrong_with_a_file_is_said_in_one_line(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str
+) -> None:
+    """Libraries print lines of their own on the process's own streams, past Python's."""
+    file = tmp_path / f"a.{kind}"
+    values = np.arange(1024.0).reshape(32, 32)
+    if kind == "exr":
+        header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+        OpenEXR.File(header, {"Y": values.astype(np.float32)}).write(str(file))
+    elif kind == "npy":
+        np.save(file, values)
+    else:
+        image = pytest.importorskip("PIL.Image").fromarray(values.astype(np.uint8))
+        image.save(file, **({"compression": "tiff_lzw"} if kind == "tif" else {}))
+    content = bytearray(file.read_bytes())
+    damaged = slice(len(content) // 2, len(content) // 2 + 100)
+    content[damaged] = bytes(byte ^ 0xFF for byte in content[damaged])
+    file.write_bytes(content[:-200] if kind in ("exr", "npy") else content)
+    params = tmp_path / "sea.json"
+    params.write_text(json.dumps({"resolution": 16, "pictures": [{"picture": {"file": file.name}}]}))
+    assert main(["info", "--params", str(params)]) == 2
+    said = capfd.readouterr()
+    assert said.out == ""
+    (line,) = said.err.splitlines()
+    assert f"a.{kind}" in line

@@ -117,6 +117,7 @@ def test_velocity_follows_the_clock_between_frames() -> None:
         ({"first_frame": 1, "samples": {"layers.0.spectrum": [1, 2]}}, "only layers"),
         ({"first_frame": 1, "samples": {"layers.x.gain": [1, 2]}}, "only layers"),
         ({"first_frame": 1, "samples": {"layers.7.gain": [1, 2]}}, "only 2 layers"),
+        ({"first_frame": 1, "samples": {f"layers.{'9' * 5000}.gain": [1, 2]}}, "only layers"),
         ({"first_frame": 1, "samples": {"layers.0.gain": [1, -2]}}, "layers.0.gain = -2.0: must be from 0"),
         ({"first_frame": 1, "samples": {"layers.0.gain": [1, "2"]}}, "layers.0.gain.1"),
         ({"first_frame": 1, "samples": {"layers.0.gain": [1, float("nan")]}}, "finite"),
