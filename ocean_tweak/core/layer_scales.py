@@ -40,7 +40,8 @@ class LayerScales:
     fetch: float = float("nan")
 
 
-def _from_fetch(layer: WaveLayer, U: float, g: float) -> LayerScales:
+def jonswap(layer: WaveLayer, U: float, g: float) -> LayerScales:
+    """JONSWAP, and TMA before its depth factor. Horvath (2015), eq. 28."""
     limit = spectra.full_development_fetch(U, g) if layer.limit_fetch else np.inf
     fetch = min(layer.fetch, limit)
     omega_p = spectra.jonswap_peak(U, fetch, g)
@@ -48,27 +49,35 @@ def _from_fetch(layer: WaveLayer, U: float, g: float) -> LayerScales:
     return LayerScales(alpha, omega_p, layer.peak_enhancement, U * omega_p / g, fetch)
 
 
-def _pierson_moskowitz(layer: WaveLayer, U: float, g: float) -> LayerScales:
+def pierson_moskowitz(_layer: WaveLayer, U: float, g: float) -> LayerScales:
+    """A fully developed sea. Horvath (2015), eq. 18: α = 8.1·10⁻³."""
     omega_p = spectra.pierson_moskowitz_peak(U, g)
     return LayerScales(constants.PM_ALPHA, omega_p, 1.0, U * omega_p / g)
 
 
-def _phillips(layer: WaveLayer, U: float, g: float) -> LayerScales:
+def phillips(_layer: WaveLayer, U: float, g: float) -> LayerScales:
+    """The Phillips (Tessendorf) spectrum with the energy of Pierson-Moskowitz at the same wind.
+
+    Horvath (2015), eq. 26: A = 2 A_T g². Chen (2014) sets its constant so that both spectra hold the same
+    energy, A/4B: A = α g²/β.
+    """
     omega_p = spectra.phillips_peak(U, g)
     return LayerScales(constants.PM_ALPHA / constants.PM_BETA, omega_p, 1.0, U * omega_p / g)
 
 
-def _generalized_ab(layer: WaveLayer, U: float, g: float) -> LayerScales:
+def generalized_ab(layer: WaveLayer, U: float, g: float) -> LayerScales:
+    """A/ω⁵ exp(-B/ω⁴). Horvath (2015), eq. 20."""
     omega_p = (layer.generalized_b / constants.DEVELOPMENT) ** 0.25
     return LayerScales(layer.generalized_a / g**2, omega_p, 1.0, U * omega_p / g)
 
 
+#: by the name of a spectrum, from a layer, U in m/s at 10 m and g in m/s²
 FROM_WIND: dict[str, Callable[[WaveLayer, float, float], LayerScales]] = {
-    "TMA": _from_fetch,
-    "JONSWAP": _from_fetch,
-    "PIERSON_MOSKOWITZ": _pierson_moskowitz,
-    "PHILLIPS": _phillips,
-    "GENERALIZED_AB": _generalized_ab,
+    "TMA": jonswap,
+    "JONSWAP": jonswap,
+    "PIERSON_MOSKOWITZ": pierson_moskowitz,
+    "PHILLIPS": phillips,
+    "GENERALIZED_AB": generalized_ab,
 }
 
 
@@ -84,11 +93,10 @@ def layer_scales(layer: WaveLayer, water: Water) -> LayerScales:
 
 def scaled_spectrum(omega: ArrayLike, layer: WaveLayer, scales: LayerScales, water: Water) -> Array:
     """S(ω) in m²·s/rad of a layer's spectrum, before its gain and its band; any shape."""
-    base = spectra.jonswap(omega, scales.alpha, scales.peak_frequency, scales.peak_enhancement, water.gravity)
-    if layer.spectrum != "TMA":
-        return base
-    omega_h = np.asarray(omega, np.float64) * np.sqrt(water.depth / water.gravity)
-    return base * spectra.DEPTH_FACTORS[layer.depth_factor](omega_h)
+    alpha, omega_p, gamma = scales.alpha, scales.peak_frequency, scales.peak_enhancement
+    if layer.spectrum == "TMA":
+        return spectra.tma(omega, alpha, omega_p, water, gamma, layer.depth_factor)
+    return spectra.jonswap(omega, alpha, omega_p, gamma, water.gravity)
 
 
 @lru_cache(maxsize=64)

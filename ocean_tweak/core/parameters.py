@@ -279,17 +279,19 @@ class OceanParameters(Validated):
 
     def at_resolution(self, resolution: int) -> OceanParameters:
         """The same sea on other samples; hero waves that are too short for them are muted."""
-        waves = tuple(
-            wave if is_held(wave, self.domain_size, resolution) else dataclasses.replace(wave, muted=True)
-            for wave in self.hero_waves
-        )
-        return self.replace(resolution=resolution, hero_waves=waves)
+        return self.replace(resolution=resolution, hero_waves=self._held_by(resolution))
 
     def on_one_grid(self, resolution: int) -> OceanParameters:
         """The same sea on the samples of one grid over the domain, also of several patches."""
         if not self.is_cascade:
             return self.at_resolution(resolution)
-        return self.replace(joined=resolution, patches=self.patches).at_resolution(resolution)
+        return self.replace(joined=resolution, patches=self.patches, hero_waves=self._held_by(resolution))
+
+    def _held_by(self, resolution: int) -> tuple[HeroWave, ...]:
+        return tuple(
+            wave if is_held(wave, self.domain_size, resolution) else dataclasses.replace(wave, muted=True)
+            for wave in self.hero_waves
+        )
 
     @property
     def apart(self) -> OceanParameters:

@@ -41,30 +41,18 @@ def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
     return A / w**5 * np.exp(-B / w**4)
 
 
-def pierson_moskowitz(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
-    """Pierson-Moskowitz spectrum of a fully developed sea. Horvath (2015), eq. 18."""
-    omega_0 = _over(g, constants.PM_WIND_FACTOR * U)
-    return generalized_ab(omega, constants.PM_ALPHA * g**2, constants.PM_BETA * _fourth(omega_0))
-
-
 def pierson_moskowitz_peak(U: float, g: float = constants.GRAVITY) -> float:
-    """ω_p in rad/s, 0.855 g/U. Horvath (2015), eq. 19, as it follows from eq. 18."""
+    """ω_p in rad/s of the Pierson-Moskowitz spectrum, 0.855 g/U. Horvath (2015), eq. 19, as it follows from
+    the factor 0.74 of eq. 18."""
     factor = (constants.PM_BETA / constants.DEVELOPMENT) ** 0.25
     return _over(factor * g, constants.PM_WIND_FACTOR * U)
 
 
-def phillips(omega: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
-    """The Phillips (Tessendorf) spectrum with the energy of Pierson-Moskowitz at the same wind.
-
-    Horvath (2015), eq. 26 and 27: A = 2 A_T g², B = (g/U)⁴ with U at 19.5 m. Chen (2014) sets its
-    constant so that both spectra hold the same energy, A/4B: A = α g²/β.
-    """
-    A = constants.PM_ALPHA / constants.PM_BETA * g**2
-    return generalized_ab(omega, A, _fourth(_over(g, constants.PM_WIND_FACTOR * U)))
-
-
 def phillips_peak(U: float, g: float = constants.GRAVITY) -> float:
-    """ω_p in rad/s of the Phillips spectrum: (4B/5)^¼."""
+    """ω_p in rad/s of the Phillips (Tessendorf) spectrum: (4B/5)^¼ with B = (g/U)⁴, U at 19.5 m.
+
+    Horvath (2015), eq. 27.
+    """
     return _over(constants.DEVELOPMENT**-0.25 * g, constants.PM_WIND_FACTOR * U)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from ocean_tweak.core import OceanParameters
@@ -27,7 +27,13 @@ EACH = 25
 @pytest.mark.parametrize("part", range(20 if LONG else 1))
 def test_any_sea_bakes_every_map(part: int) -> None:
     @seed(part)
-    @settings(max_examples=EACH, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=EACH,
+        deadline=None,
+        database=None,
+        phases=[Phase.generate],  # shrinking a sea bakes it hundreds of times
+        suppress_health_check=list(HealthCheck),
+    )
     @given(sea=any_seas(), frame=st.one_of(st.integers(-1000, 100_000), st.just(Fraction(5, 2))))
     def bakes(sea: OceanParameters, frame: int | Fraction) -> None:
         if sea.is_cascade and sea.is_masked:

@@ -104,8 +104,6 @@ def test_the_weakest_seas_tend_to_a_calm(layer: WaveLayer, field: str) -> None:
 def test_the_formulas_have_their_limits() -> None:
     omega = np.linspace(0.0, 1e4, 64)
     for zero in (0.0, 5e-324):
-        assert not spectra.pierson_moskowitz(omega, zero).any()
-        assert not spectra.phillips(omega, zero).any()
         for wind, fetch in ((zero, 1e5), (10.0, zero), (zero, zero)):
             alpha, peak = spectra.jonswap_alpha(wind, fetch), spectra.jonswap_peak(wind, fetch)
             assert not spectra.jonswap(omega, alpha, peak).any()

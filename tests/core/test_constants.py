@@ -8,10 +8,11 @@ import math
 import numpy as np
 import pytest
 
-from ocean_tweak.core import OceanParameters, Water, dispersion, spectra
+from ocean_tweak.core import OceanParameters, Water, dispersion
 from ocean_tweak.core.initial_state import initial_state
 from ocean_tweak.core.spreading import donelan_banner_beta, hasselmann_s
 from ocean_tweak.core.trough_damping import trough_damping
+from tests.core.layer_spectra import spectrum_of
 
 
 def test_slowest_ripples() -> None:
@@ -42,9 +43,10 @@ def test_branches_of_hasselmann() -> None:
 
 def test_widths_of_the_jonswap_peak() -> None:
     # eq. 28 with γ = e: S/S(γ = 1) is exp(r); half a width away r = exp(-⅛)
+    peaked, base = (spectrum_of(peak_enhancement=gamma) for gamma in (math.e, 1.0))
     for width, side in ((0.07, -1.0), (0.09, 1.0)):
-        omega = 1.0 + 0.5 * side * width
-        ratio = spectra.jonswap(omega, 0.01, 1.0, math.e) / spectra.jonswap(omega, 0.01, 1.0, 1.0)
+        omega = base.peak_frequency * (1.0 + 0.5 * side * width)
+        ratio = peaked.frequency_spectrum(omega) / base.frequency_spectrum(omega)
         assert math.log(ratio) == pytest.approx(math.exp(-0.125), rel=1e-9)
 
 

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, Water, WaveLayer
+from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, Patch, Water, WaveLayer
 from ocean_tweak.core.fingerprint import frame_fingerprint
 from ocean_tweak.core.foam_field import foam_model
 from ocean_tweak.core.hero_waves.group import needed_samples
@@ -264,6 +264,12 @@ def test_coarser_samples_leave_out_what_they_do_not_hold() -> None:
     assert [wave.muted for wave in coarse.hero_waves] == [False, True]
     np.testing.assert_array_equal(height(coarse, 1.0), height(sea(long, resolution=48), 1.0))
     assert sea(long, short).at_resolution(SAMPLES) == sea(long, short)
+    halves = (
+        Patch(400.0, shortest_wavelength=60.0, resolution=SAMPLES),
+        Patch(90.0, longest_wavelength=60.0, resolution=SAMPLES),
+    )
+    of_patches = sea(long, short).replace(patches=halves)
+    assert [wave.muted for wave in of_patches.on_one_grid(48).hero_waves] == [False, True]
 
 
 # as parameters

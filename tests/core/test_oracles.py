@@ -10,11 +10,13 @@ from scipy import constants as si
 from scipy import integrate, signal
 from wavespectra.construct import frequency
 
-from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, spectra
+from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
+from tests.core.layer_spectra import jonswap_scales, spectrum_of
 
 HERTZ = np.geomspace(0.03, 2.0, 400)
 OMEGA = 2.0 * np.pi * HERTZ
+THEIR_WATER = Water(depth=11e3, gravity=si.g)
 
 SEAS = {
     "wind sea": OceanParameters(
@@ -47,9 +49,10 @@ SEAS = {
 
 @pytest.mark.parametrize("gamma", [1.0, 3.3, 7.0])
 def test_jonswap_agrees_with_wavespectra(gamma: float) -> None:
-    alpha, peak = 0.0113, 0.11
-    theirs = frequency.jonswap(HERTZ, fp=peak, alpha=alpha, gamma=gamma).values
-    ours = 2.0 * np.pi * spectra.jonswap(OMEGA, alpha, 2.0 * np.pi * peak, gamma, g=si.g)
+    alpha, peak = jonswap_scales(15.0, 200e3, si.g)
+    theirs = frequency.jonswap(HERTZ, fp=peak / (2.0 * np.pi), alpha=alpha, gamma=gamma).values
+    layer = {"wind_speed": 15.0, "fetch": 200e3, "peak_enhancement": gamma}
+    ours = 2.0 * np.pi * spectrum_of(THEIR_WATER, **layer).frequency_spectrum(OMEGA)
     np.testing.assert_allclose(ours, theirs, rtol=1e-12)
 
 
@@ -58,7 +61,11 @@ def test_pierson_moskowitz_agrees_with_wavespectra() -> None:
     # 0.74 (ω₀/ω)⁴ is 5/4 (ω_p/ω)⁴ at ω_p = (0.592)^¼ ω₀
     peak = 0.592**0.25 * si.g / (1.026 * U) / (2.0 * np.pi)
     theirs = frequency.pierson_moskowitz(HERTZ, fp=peak, alpha=8.1e-3).values
-    ours = 2.0 * np.pi * spectra.pierson_moskowitz(OMEGA, U, g=si.g)
+    ours = (
+        2.0
+        * np.pi
+        * spectrum_of(THEIR_WATER, spectrum="PIERSON_MOSKOWITZ", wind_speed=U).frequency_spectrum(OMEGA)
+    )
     np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-300)
 
 
@@ -66,9 +73,10 @@ def test_pierson_moskowitz_agrees_with_wavespectra() -> None:
 def test_tma_agrees_with_wavespectra(depth: float) -> None:
     """Its depth factor is the exact one at an approximate wave number, up to 0.1 % beside the true one: that
     makes up to 0.12 % of the spectrum."""
-    alpha, peak = 0.0113, 0.11
-    theirs = frequency.tma(HERTZ, fp=peak, dep=depth, alpha=alpha, gamma=3.3).values
-    ours = 2.0 * np.pi * spectra.tma(OMEGA, alpha, 2.0 * np.pi * peak, Water(depth=depth, gravity=si.g))
+    alpha, peak = jonswap_scales(15.0, 200e3, si.g)
+    theirs = frequency.tma(HERTZ, fp=peak / (2.0 * np.pi), dep=depth, alpha=alpha, gamma=3.3).values
+    layer = {"spectrum": "TMA", "wind_speed": 15.0, "fetch": 200e3}
+    ours = 2.0 * np.pi * spectrum_of(Water(depth=depth, gravity=si.g), **layer).frequency_spectrum(OMEGA)
     np.testing.assert_allclose(ours, theirs, rtol=1.3e-3)
 
 

@@ -12,7 +12,6 @@ from ocean_tweak.core import (
     OceanParameters,
     Water,
     WaveLayer,
-    dispersion,
     spectra,
     wave_number_spectra,
 )
@@ -26,8 +25,8 @@ from ocean_tweak.core.spreading import (
     swell_s,
 )
 from ocean_tweak.core.wind_profile import wind_at, wind_at_10_m, wind_factor
+from tests.core.layer_spectra import spectrum_of
 
-DEEP = Water(depth=11e3)
 RATIOS = np.append(np.geomspace(0.1, 30.0, 25), [0.95, 1.0, 1.05, 1.6])
 
 
@@ -44,44 +43,53 @@ def moment(spectrum, order: int, peak: float) -> float:
 def test_pierson_moskowitz() -> None:
     # Hs = 0.02133 U² for the wind at 19.5 m, 0.02245 U² for the one at 10 m, ω_p = 0.855 g/U, Tz = 0.7104 Tp
     for U in (5.0, 20.0):
-        peak = spectra.pierson_moskowitz_peak(U)
+        spectrum = spectrum_of(spectrum="PIERSON_MOSKOWITZ", wind_speed=U)
+        peak = spectrum.peak_frequency
         assert peak == pytest.approx(0.855 * 9.81 / U, rel=3e-4)
-        m0, m2 = (moment(lambda w, U=U: spectra.pierson_moskowitz(w, U), n, peak) for n in (0, 2))
+        m0, m2 = (moment(spectrum.frequency_spectrum, n, peak) for n in (0, 2))
         assert 4 * np.sqrt(m0) == pytest.approx(0.02245 * U**2, rel=4e-4)
         assert 4 * np.sqrt(m0) == pytest.approx(0.02133 * (1.026 * U) ** 2, rel=4e-4)
         assert np.sqrt(m0 / m2) * peak == pytest.approx(0.7104, rel=1e-3)
         w = peak * np.linspace(0.9, 1.1, 2001)
-        assert w[np.argmax(spectra.pierson_moskowitz(w, U))] == pytest.approx(peak, rel=2e-4)
+        assert w[np.argmax(spectrum.frequency_spectrum(w))] == pytest.approx(peak, rel=2e-4)
 
 
 def test_pierson_moskowitz_is_an_ab_spectrum() -> None:
-    # Horvath (2015), § 5.1.2: A = α g², B = 0.6678 (g/U)⁴
+    # Horvath (2015), § 5.1.2: A = α g², B = 0.6678 (g/U)⁴; and A/ω⁵ exp(-B/ω⁴) itself
     U, w = 14.0, np.linspace(0.2, 4.0, 50)
-    expected = spectra.generalized_ab(w, 8.1e-3 * 9.81**2, 0.6678 * (9.81 / U) ** 4)
-    np.testing.assert_allclose(spectra.pierson_moskowitz(w, U), expected, rtol=1e-3)
+    A, B = 8.1e-3 * 9.81**2, 0.6678 * (9.81 / U) ** 4
+    expected = A / w**5 * np.exp(-B / w**4)
+    fully_developed = spectrum_of(spectrum="PIERSON_MOSKOWITZ", wind_speed=U).frequency_spectrum(w)
+    np.testing.assert_allclose(fully_developed, expected, rtol=1e-3)
+    of_ab = spectrum_of(spectrum="GENERALIZED_AB", generalized_a=A, generalized_b=B).frequency_spectrum(w)
+    np.testing.assert_allclose(of_ab, expected, rtol=1e-9)
 
 
 def test_phillips_has_the_energy_of_pierson_moskowitz() -> None:
     U = 9.0
-    phillips = moment(lambda w: spectra.phillips(w, U), 0, spectra.phillips_peak(U))
-    assert 4 * np.sqrt(phillips) == pytest.approx(0.02245 * U**2, rel=4e-4)
-    w = spectra.phillips_peak(U) * np.linspace(0.9, 1.1, 2001)
-    assert w[np.argmax(spectra.phillips(w, U))] == pytest.approx(spectra.phillips_peak(U), rel=2e-4)
+    spectrum = spectrum_of(spectrum="PHILLIPS", wind_speed=U)
+    m0 = moment(spectrum.frequency_spectrum, 0, spectrum.peak_frequency)
+    assert 4 * np.sqrt(m0) == pytest.approx(0.02245 * U**2, rel=4e-4)
+    # its peak is (4/5)^¼ (g/U) with U at 19.5 m, and its tail α/β g²/ω⁵
+    assert spectrum.peak_frequency == pytest.approx(0.8**0.25 * 9.81 / (1.026 * U), rel=1e-9)
+    assert spectrum.frequency_spectrum(50.0) * 50.0**5 == pytest.approx(8.1e-3 / 0.74 * 9.81**2, rel=1e-4)
 
 
 def test_jonswap_zero_crossing_period() -> None:
     # Tz/Tp = 0.777 for γ = 3.3, 0.7104 for γ = 1
     for gamma, ratio in ((1.0, 0.7104), (3.3, 0.777)):
-        m0, m2 = (moment(lambda w, g=gamma: spectra.jonswap(w, 0.01, 0.7, g), n, 0.7) for n in (0, 2))
-        assert np.sqrt(m0 / m2) * 0.7 == pytest.approx(ratio, rel=1e-3)
+        spectrum = spectrum_of(peak_enhancement=gamma)
+        peak = spectrum.peak_frequency
+        m0, m2 = (moment(spectrum.frequency_spectrum, n, peak) for n in (0, 2))
+        assert np.sqrt(m0 / m2) * peak == pytest.approx(ratio, rel=1e-3)
 
 
 def test_jonswap_peak_is_gamma_times_the_base() -> None:
-    assert spectra.jonswap(0.7, 0.01, 0.7, 5.0) == pytest.approx(5.0 * spectra.jonswap(0.7, 0.01, 0.7, 1.0))
-    # one relative width away, r = exp(-½): σ = 0.07 below and 0.09 above
-    for w in (0.7 * 0.93, 0.7 * 1.09):
-        ratio = spectra.jonswap(w, 0.01, 0.7, 5.0) / spectra.jonswap(w, 0.01, 0.7, 1.0)
-        assert ratio == pytest.approx(5.0 ** np.exp(-0.5))
+    # at the peak 5, and one relative width away, where r = exp(-½): σ = 0.07 below and 0.09 above
+    peaked, base = (spectrum_of(peak_enhancement=gamma) for gamma in (5.0, 1.0))
+    for w, ratio in ((1.0, 5.0), (0.93, 5.0 ** np.exp(-0.5)), (1.09, 5.0 ** np.exp(-0.5))):
+        omega = w * base.peak_frequency
+        assert peaked.frequency_spectrum(omega) / base.frequency_spectrum(omega) == pytest.approx(ratio)
 
 
 def test_thompson_vincent() -> None:
@@ -127,28 +135,21 @@ def test_layer_takes_wind_at_its_height() -> None:
 def test_wave_number_forms_equal_the_change_of_variables(U: float) -> None:
     k = np.geomspace(0.01, 10.0, 40)[:, np.newaxis]
     theta = np.linspace(-np.pi, np.pi, 25)
-    omega, rate = np.sqrt(9.81 * k), dispersion.group_velocity(k, "DEEP", DEEP)
     U10 = U / 1.026  # Chen's wind for Phillips and Pierson-Moskowitz is the one at 19.5 m
-
-    def changed(spectrum: np.ndarray, model: Spreading) -> np.ndarray:
-        return spectrum * directional_spreading(omega / 0.7, theta, model) * rate / k
-
-    cosine_squared, half_angle = Spreading("COSINE_SQUARED"), Spreading("COSINE_2S", exponent=1.0)
-    np.testing.assert_allclose(
-        wave_number_spectra.phillips(k, theta, U), changed(spectra.phillips(omega, U10), cosine_squared),
-        rtol=1e-6, atol=1e-30,
-    )  # fmt: skip
-    np.testing.assert_allclose(
-        wave_number_spectra.pierson_moskowitz(k, theta, U),
-        changed(spectra.pierson_moskowitz(omega, U10), half_angle),
-        rtol=1e-6, atol=1e-30,
-    )  # fmt: skip
-    alpha, omega_p = spectra.jonswap_alpha(U, 50e3), spectra.jonswap_peak(U, 50e3)
-    np.testing.assert_allclose(
-        wave_number_spectra.jonswap(k, theta, U, 50e3),
-        changed(spectra.jonswap(omega, alpha, omega_p), half_angle),
-        rtol=1e-6, atol=1e-30,
-    )  # fmt: skip
+    half_angle = {"spreading": "COSINE_2S", "spreading_exponent": 1.0}
+    for chens, layer in (
+        (
+            wave_number_spectra.phillips(k, theta, U),
+            {"spectrum": "PHILLIPS", "wind_speed": U10, "spreading": "COSINE_SQUARED"},
+        ),
+        (
+            wave_number_spectra.pierson_moskowitz(k, theta, U),
+            {"spectrum": "PIERSON_MOSKOWITZ", "wind_speed": U10, **half_angle},
+        ),
+        (wave_number_spectra.jonswap(k, theta, U, 50e3), {"wind_speed": U, "fetch": 50e3, **half_angle}),
+    ):
+        shipped = spectrum_of(swell=0.0, **layer).density(k * np.cos(theta), k * np.sin(theta))
+        np.testing.assert_allclose(chens, shipped, rtol=1e-6, atol=1e-30, err_msg=str(layer))
 
 
 def test_chens_spectral_constant() -> None:

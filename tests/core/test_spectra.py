@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import integrate
+from scipy import integrate, special
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, spectra
 from ocean_tweak.core.spreading import Spreading, directional_spreading, donelan_banner_beta
 from tests import reference
+from tests.core.layer_spectra import jonswap_scales, spectrum_of
 
 
 def test_depth_factor_has_the_published_values() -> None:
@@ -27,9 +28,10 @@ def test_depth_factor_has_the_published_values() -> None:
 @pytest.mark.parametrize(("gamma", "factor"), [(1.0, 0.2000), (3.3, 0.3050), (7.0, 0.4450)])
 def test_energy_of_jonswap(gamma: float, factor: float) -> None:
     # m0 = factor · α g² ω_p⁻⁴
-    alpha, omega_p, g = 0.0123, 0.61, 9.81
+    (alpha, omega_p), g = jonswap_scales(17.0, 300e3), 9.81
+    spectrum = spectrum_of(wind_speed=17.0, fetch=300e3, peak_enhancement=gamma).frequency_spectrum
     m0, _ = integrate.quad(
-        lambda w: float(spectra.jonswap(w, alpha, omega_p, gamma)),
+        lambda w: float(spectrum(w)),
         0.0,
         60.0 * omega_p,
         points=[omega_p],
@@ -49,16 +51,55 @@ def test_jonswap_parameters() -> None:
 
 
 def test_peak_lies_at_the_peak_frequency() -> None:
+    # 22 · 0.981 · 9810^(-1/3) and, for a fully developed sea, 0.855 g/U; (4/5)^¼ / 1.026 for Phillips' factor
     w = np.linspace(0.3, 3.0, 27001)
-    for gamma in (1.0, 3.3, 7.0):
-        assert w[np.argmax(spectra.jonswap(w, 0.01, 0.8, gamma))] == pytest.approx(0.8, abs=2e-4)
+    for changes, peak in (
+        ({"peak_enhancement": 1.0}, 1.0082),
+        ({"peak_enhancement": 7.0}, 1.0082),
+        ({"spectrum": "TMA"}, 1.0082),
+        ({"spectrum": "PIERSON_MOSKOWITZ"}, 0.8386),
+        ({"spectrum": "PHILLIPS"}, 0.9043),
+        ({"spectrum": "GENERALIZED_AB", "generalized_b": 2.0}, 1.1247),
+    ):
+        spectrum = spectrum_of(wind_speed=10.0, fetch=100e3, **changes)
+        assert w[np.argmax(spectrum.frequency_spectrum(w))] == pytest.approx(peak, abs=2e-4), changes
+        assert spectrum.peak_frequency == pytest.approx(peak, abs=1e-4), changes
 
 
 def test_tma_is_jonswap_in_deep_water() -> None:
     w = np.linspace(0.3, 5.0, 100)
-    deep = spectra.tma(w, 0.01, 0.8, Water(depth=11e3))
-    np.testing.assert_allclose(deep, spectra.jonswap(w, 0.01, 0.8), rtol=1e-9)
-    assert np.all(spectra.tma(w, 0.01, 0.8, Water(depth=5.0)) <= deep)
+    jonswap = spectrum_of().frequency_spectrum(w)
+    np.testing.assert_allclose(spectrum_of(spectrum="TMA").frequency_spectrum(w), jonswap, rtol=1e-9)
+    # at 5 m, ω_h = ω√(h/g) is 0.5, 1, 1.5 and 2: there Φ is known
+    shallow = Water(depth=5.0)
+    w = np.array([0.5, 1.0, 1.5, 2.0]) * np.sqrt(9.81 / 5.0)
+    share = spectrum_of(shallow, spectrum="TMA").frequency_spectrum(w) / spectrum_of().frequency_spectrum(w)
+    np.testing.assert_allclose(share, [0.1248, 0.4828, 0.8785, 0.9934], atol=5e-5)
+    share = spectrum_of(shallow, spectrum="TMA", depth_factor="THOMPSON_VINCENT").frequency_spectrum(
+        w
+    ) / spectrum_of().frequency_spectrum(w)
+    np.testing.assert_allclose(share, [0.125, 0.5, 0.875, 1.0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("model", ["MITSUYASU", "HASSELMANN"])
+def test_spreading_knows_the_wind_of_its_spectrum(model: str) -> None:
+    """U ω_p / g, by hand: 22 X^(-1/3), 0.855, (4/5)^¼ / 1.026, U/g (B/1.25)^¼, and of a sea state the fully
+    developed one. At the peak D(0) = Γ(s+1) / (2√π Γ(s+½)) with s = 11.5 (U ω_p/g)^-2.5 (Mitsuyasu), at
+    1.1 ω_p with s = 9.77 · 1.1^(-2.33 - 1.45 (U ω_p/g - 1.17)) (Hasselmann)."""
+    for changes, ratio in (
+        ({}, 22.0 * 9810.0 ** (-1.0 / 3.0)),
+        ({"spectrum": "TMA"}, 22.0 * 9810.0 ** (-1.0 / 3.0)),
+        ({"spectrum": "PIERSON_MOSKOWITZ"}, 0.592**0.25 / 1.026),
+        ({"spectrum": "PHILLIPS"}, 0.8**0.25 / 1.026),
+        ({"spectrum": "GENERALIZED_AB", "generalized_b": 2.0}, 10.0 / 9.81 * 1.6**0.25),
+        ({"definition": "SEA_STATE"}, 0.855),
+    ):
+        spectrum = spectrum_of(wind_speed=10.0, fetch=100e3, spreading=model, swell=0.0, **changes)
+        x = 1.0 if model == "MITSUYASU" else 1.1
+        s = 11.5 * ratio**-2.5 if x == 1.0 else 9.77 * x ** (-2.33 - 1.45 * (ratio - 1.17))
+        expected = special.gamma(s + 1.0) / (2.0 * np.sqrt(np.pi) * special.gamma(s + 0.5))
+        found = spectrum.directional_spreading(x * spectrum.peak_frequency, 0.0)
+        assert found == pytest.approx(expected, rel=1e-4), changes
 
 
 @pytest.mark.parametrize("row", reference.rows("reference_seas.csv"), ids=lambda row: row["name"])

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, Water, WaveLayer, constants, dispersion, spectra
+from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.spreading import Spreading, directional_spreading
 from ocean_tweak.core.statistics import Statistics
 
@@ -57,11 +58,16 @@ FIGURE_7 = sea(
     seed=1, foam=Foam(coverage=0.15),  # the law of whitecaps, measured below 20 m/s, leaves no water here
 )  # fmt: skip
 
+#: as many m/s as g has m/s²
+FULLY_DEVELOPED = DirectionalSpectrum(
+    WaveLayer(spectrum="PIERSON_MOSKOWITZ", wind_speed=9.81), Water(depth=11e3), "DEEP"
+)
+
 
 def constants_table() -> Table:
     """Numbers that stand in the text."""
     w = np.linspace(0.5, 1.2, 70001)
-    peak = float(w[np.argmax(spectra.pierson_moskowitz(w, 9.81))])
+    peak = float(w[np.argmax(FULLY_DEVELOPED.frequency_spectrum(w))])
     B = constants.PM_BETA / constants.PM_WIND_FACTOR**4
     wind = (1.0 / B) ** 0.25
     omega_h = np.linspace(0.0, 2.2, 2201)
