@@ -10,13 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from ...core.frames import Frame
-from ...core.printable import shown
+from ...core.printable import printable, shown
 from ..files import PART, begun_file, whole_file
 from .library import UsdError, pxr
 from .package import FORMAT, Package
 
 #: key of customData and customLayerData
 MARK = "ocean_tweak"
+#: what OpenUSD raises for damaged layers: errors of its own, and Python's for values of other types than they
+#: should be, and for text that is none
+UNREADABLE = (RuntimeError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError)
+_LONGEST = 300  # characters of a reason
 _REPLACE = "replace it with --force (in Blender: Overwrite)"
 
 
@@ -35,7 +39,7 @@ def whole_layer(
         # OpenUSD chooses the format by the ending
         draft = beside.with_name(beside.name + path.suffix)
         try:
-            with _errors_named(pxr().Tf, path):
+            with named_errors(path):
                 yield from _filled(draft, path, text)
             draft.replace(beside)
         finally:
@@ -68,26 +72,30 @@ def _format(path: Path, text: bool) -> dict[str, str]:
 
 
 @contextlib.contextmanager
-def _errors_named(tf: Any, path: Path) -> Iterator[None]:
+def named_errors(path: Path) -> Iterator[None]:
+    """Turns what OpenUSD says of a layer into UsdError with the file's name, in a line."""
     try:
         yield
-    except tf.ErrorException as error:
+    except UsdError:
+        raise
+    except UNREADABLE as error:
         raise UsdError(f"{path}: {reason(error)}") from error
 
 
 def reason(error: Exception) -> str:
     """What OpenUSD's error says, without the place in its source."""
-    said = [line.rpartition(" : ")[2].strip().strip("'") for line in str(error).splitlines() if line.strip()]
-    return "; ".join(dict.fromkeys(said)) or "OpenUSD failed without a word"
+    try:
+        lines = str(error).splitlines()
+    except UnicodeDecodeError:
+        return "it holds bytes that are no text"
+    said = [line.rpartition(" : ")[2].strip().strip("'") for line in lines if line.strip()]
+    return printable("; ".join(dict.fromkeys(said)), _LONGEST) or "OpenUSD failed without a word"
 
 
 def save(layer: Any, path: Path) -> None:
     """Save a layer; what it held in memory is in the file afterwards. Raises UsdError."""
-    tf = pxr().Tf
-    try:
+    with named_errors(path):
         saved = layer.Save()
-    except tf.ErrorException as error:
-        raise UsdError(f"{path}: {reason(error)}") from error
     if not saved:
         raise UsdError(f"{path}: OpenUSD could not save it")
 
@@ -113,12 +121,11 @@ def write_header(
 
 def mark_of(path: Path) -> dict[str, Any] | None:
     """Our mark in a layer; None where there is none, or where it cannot be read."""
-    sdf, tf = pxr().Sdf, pxr().Tf
     try:
-        layer = sdf.Layer.OpenAsAnonymous(str(path))
-    except tf.ErrorException:
+        layer = pxr().Sdf.Layer.OpenAsAnonymous(str(path))
+        mark = layer.customLayerData.get(MARK) if layer is not None else None
+    except UNREADABLE:
         return None
-    mark = layer.customLayerData.get(MARK) if layer is not None else None
     return dict(mark) if isinstance(mark, dict) else None
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from ...core import ParameterError
 from ...core.printable import printable
 from ...core.shot import Shot
-from .layers import MARK, reason
+from .layers import MARK, UNREADABLE, named_errors
 from .library import UsdError, pxr
 from .package import Package
 
@@ -29,11 +29,9 @@ def read_package(path: Path) -> tuple[str, Package]:
     modules = pxr()
     if not path.is_file():
         raise UsdError(f"{path}: there is no such file")
-    try:
+    with named_errors(path):
         stage = modules.Usd.Stage.Open(str(path), modules.Usd.Stage.LoadNone)
-    except modules.Tf.ErrorException as error:
-        raise UsdError(f"{path}: {reason(error)}") from error
-    found = {str(prim.GetPath()): data for prim in stage.TraverseAll() if (data := _record(prim))}
+        found = {str(prim.GetPath()): data for prim in stage.TraverseAll() if (data := _record(prim))}
     if not found:
         raise UsdError(f"{path}: holds no sea of Ocean Tweak")
     if len(found) > 1:
@@ -43,7 +41,7 @@ def read_package(path: Path) -> tuple[str, Package]:
         return prim_path, Package.from_record(data)
     except ParameterError as error:
         raise UsdError(f"{path}: {prim_path} {error}") from error
-    except (KeyError, ValueError, TypeError) as error:
+    except UNREADABLE as error:
         raise UsdError(
             f"{path}: what {prim_path} says of its sea cannot be used: {printable(error, 200)}"
         ) from error

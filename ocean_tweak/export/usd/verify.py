@@ -16,7 +16,7 @@ from ...core.frames import Frame, format_frames
 from ..exr import COMPRESSION_ERROR, ExrError, read_image
 from .asset import VARIANT_SET, sea_path
 from .attributes import POINTS, Attribute
-from .layers import mark_of, reason
+from .layers import UNREADABLE, mark_of, named_errors, reason
 from .library import UsdError, pxr
 from .material import MATERIAL, SCOPE
 from .mesh import SURFACE, Edition
@@ -53,6 +53,11 @@ class _Opened:
         """The prim above the meshes."""
         return sea_path(self.package, self.prim)
 
+    @property
+    def material(self) -> str:
+        """The prim of the material."""
+        return f"{self.prim}/{SCOPE}/{MATERIAL}"
+
     def attribute(self, name: str, mesh: str = SURFACE) -> Any:
         return self.stage.GetAttributeAtPath(f"{self.sea}/{mesh}.{name}")
 
@@ -79,29 +84,30 @@ def verify(path: Path, frames: Sequence[Frame] | None = None) -> Iterator[Proble
         )
     for resolution in package.resolutions:
         opened = _open(path, prim, package, resolution)
-        yield from _stage_problems(opened)
-        yield from _gaps(opened)
-        yield from _readable(_CHECKS[package.form](opened, chosen))
+        yield from _readable(_stage_problems(opened))
+        if not opened.attribute(POINTS.name):
+            yield Problem(None, f"{opened.sea}/{SURFACE} has no points: a layer is missing or was moved")
+            continue
+        for problems in (_gaps, _CHECKS[package.form]):
+            yield from _readable(problems(opened, chosen))
 
 
 def _readable(problems: Iterator[Problem]) -> Iterator[Problem]:
     """The problems; a layer that cannot be read ends them and is one itself."""
     try:
         yield from problems
-    except pxr().Tf.ErrorException as error:
+    except UNREADABLE as error:
         yield Problem(None, f"a layer cannot be read: {reason(error)}")
 
 
 def _open(path: Path, prim: str, package: Package, resolution: int) -> _Opened:
     modules = pxr()
-    try:
+    with named_errors(path):
         stage = modules.Usd.Stage.Open(str(path))
         stage.Reload()  # what was replaced on disk is not what this process may have opened before
-    except modules.Tf.ErrorException as error:
-        raise UsdError(f"{path}: {reason(error)}") from error
-    if package.variants:
-        with modules.Usd.EditContext(stage, stage.GetSessionLayer()):
-            stage.GetPrimAtPath(prim).GetVariantSet(VARIANT_SET).SetVariantSelection(str(resolution))
+        if package.variants:
+            with modules.Usd.EditContext(stage, stage.GetSessionLayer()):
+                stage.GetPrimAtPath(prim).GetVariantSet(VARIANT_SET).SetVariantSelection(str(resolution))
     return _Opened(stage, prim, Edition(package, resolution))
 
 
@@ -119,15 +125,15 @@ def _stage_problems(opened: _Opened) -> Iterator[Problem]:
     for name, (found, wanted) in told.items():
         if found != wanted:
             yield Problem(None, f"{name} is {found}, and the sea was exported with {wanted}")
-    if not opened.attribute(POINTS.name):
-        yield Problem(None, f"{opened.sea}/{SURFACE} has no points: a layer is missing or was moved")
+    if not stage.GetPrimAtPath(opened.material):
+        yield Problem(None, f"{opened.material} is not there: a layer is missing, damaged or was moved")
 
 
-def _gaps(opened: _Opened) -> Iterator[Problem]:
+def _gaps(opened: _Opened, _frames: Sequence[Frame]) -> Iterator[Problem]:
     """Frames that nothing is there for."""
     if opened.package.form == "clips":
         yield from _missing_clips(opened)
-    yield from _readable(_missing_samples(opened))
+    yield from _missing_samples(opened)
 
 
 def _missing_samples(opened: _Opened) -> Iterator[Problem]:
@@ -195,7 +201,7 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
         for path, patch in edition.meshes():
             mesh = path.rpartition("/")[2]
             points = _value(opened, POINTS.name, mesh, frame)
-            if points is None:
+            if points is None or points.shape[1:] != (3,):
                 yield Problem(frame, f"{mesh} has no points")
                 continue
             for attribute in edition.attributes:
@@ -210,8 +216,8 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
 
 
 def _value(opened: _Opened, name: str, mesh: str, frame: Frame) -> NDArray[np.floating] | None:
-    value = opened.attribute(name, mesh).Get(float(frame))
-    return None if value is None else np.array(value)
+    value = np.array(opened.attribute(name, mesh).Get(float(frame)))
+    return value if value.dtype.kind in "fiu" and value.size else None  # of another type, or missing
 
 
 def _difference(
@@ -223,7 +229,7 @@ def _difference(
     wanted: NDArray[np.floating],
 ) -> Iterator[Problem]:
     if found is None or found.shape != wanted.shape:
-        there = "nothing" if found is None else f"{len(found)} values"
+        there = "nothing" if found is None else f"{len(np.atleast_1d(found))} values"
         yield Problem(frame, f"{name} holds {there} instead of {len(wanted)}")
         return
     tolerance = _HALF if opened.package.half and attribute.halved else _SINGLE
@@ -235,12 +241,17 @@ def _difference(
 
 def _outside(opened: _Opened, frame: Frame, mesh: str, points: NDArray[np.floating]) -> Iterator[Problem]:
     extent = _value(opened, "extent", mesh, frame)
-    if extent is None or np.any(points.min(axis=0) < extent[0]) or np.any(points.max(axis=0) > extent[1]):
+    if (
+        extent is None
+        or extent.shape != (2, 3)
+        or np.any(points.min(axis=0) < extent[0])
+        or np.any(points.max(axis=0) > extent[1])
+    ):
         yield Problem(frame, f"{mesh} has points outside its extent")
 
 
 def _texture(opened: _Opened) -> Any:
-    return opened.stage.GetAttributeAtPath(f"{opened.prim}/{SCOPE}/{MATERIAL}/mtlx_image.inputs:file")
+    return opened.stage.GetAttributeAtPath(f"{opened.material}/mtlx_image.inputs:file")
 
 
 def _check_images(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]:
@@ -248,15 +259,15 @@ def _check_images(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
     package = opened.package
     texture = _texture(opened)
     if not texture:
-        yield Problem(None, f"{opened.prim}/{SCOPE}/{MATERIAL} has no displacement image")
+        yield Problem(None, f"{opened.material} has no displacement image")
         return
     surfaces = ShotSurfaces(package.shot)
     for frame in package.frames:
-        path = texture.Get(float(frame)).resolvedPath
-        if not path:
-            yield Problem(frame, f"{texture.Get(float(frame)).path} is missing")
+        image = texture.Get(float(frame))
+        if image is None or not image.resolvedPath:
+            yield Problem(frame, f"{image.path if image else 'its image'} is missing")
         elif frame in frames:
-            yield from _image_difference(Path(path), frame, surfaces)
+            yield from _image_difference(Path(image.resolvedPath), frame, surfaces)
     yield from _still_grid(opened)
 
 
@@ -280,7 +291,11 @@ def _image_difference(path: Path, frame: Frame, surfaces: ShotSurfaces) -> Itera
 def _still_grid(opened: _Opened) -> Iterator[Problem]:
     _, patch = next(iter(opened.edition.meshes()))
     points = opened.attribute(POINTS.name).Get()
-    if points is None or not np.allclose(np.array(points), patch.positions(None), atol=_SINGLE):
+    if (
+        points is None
+        or len(points) != patch.vertices
+        or not np.allclose(np.array(points), patch.positions(None), atol=_SINGLE)
+    ):
         yield Problem(None, f"{opened.sea}/{SURFACE} is not the flat grid that the images displace")
 
 
