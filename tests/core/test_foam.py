@@ -12,7 +12,7 @@ import pytest
 
 from ocean_tweak.core import Cascade, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer, grid_sea
 from ocean_tweak.core.foam import FoamHistory, FoamModel, strength_levels
-from ocean_tweak.core.foam_field import resampled
+from ocean_tweak.core.foam_field import foam_outlook, resampled
 from ocean_tweak.core.foam_threshold import foam_wind, strains, whitecap_coverage
 
 SEA = OceanParameters(
@@ -71,6 +71,22 @@ def test_coverage_can_be_multiplied_and_made_coarser() -> None:
     assert shares["twice"] / shares["as it is"] == pytest.approx(2.0, rel=0.25)
     assert shares["coarse"] / shares["as it is"] == pytest.approx(1.0, rel=0.35)
     assert shares["none"] == 0.0
+
+
+def test_foam_wants_the_wind_at_10_m() -> None:
+    """Of layers the strongest there: 10.6357 m/s at 19.5 m are 10 m/s (`test_wind_over_height`)."""
+    high = WaveLayer(wind_speed=10.6357, wind_height=19.5, wind_direction=0.3)
+    for layers, speed, direction in (
+        ((high,), 10.0, 0.3),
+        ((high, WaveLayer(wind_speed=10.3, wind_direction=2.0)), 10.3, 2.0),
+        ((high, WaveLayer(wind_speed=9.7, wind_direction=2.0)), 10.0, 0.3),
+    ):
+        wind = foam_wind(SEA.replace(layers=layers))
+        assert wind is not None
+        assert wind.speed == pytest.approx(speed, rel=1e-5)
+        assert wind.direction == direction
+    # 3.84e-6 · 10^3.41
+    assert foam_outlook(SEA.replace(layers=(high,))).coverage == pytest.approx(0.009870, rel=1e-3)
 
 
 def test_swell_without_wind_has_no_foam() -> None:

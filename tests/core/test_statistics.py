@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, sea_scales
+from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer, sea_scales
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.statistics import field_state, mode_state
 
@@ -123,3 +123,23 @@ def test_scales_refuse_what_is_not_on_them() -> None:
     ):
         with pytest.raises(ValueError, match="="):
             call()
+
+
+@pytest.mark.parametrize(
+    ("periods", "change"), [(4.54, 0.1013), (4.56, 0.0965), (4.43, 0.0971), (4.46, 0.1031)]
+)
+def test_loops_that_change_speeds_by_more_than_a_tenth_are_warned_about(
+    periods: float, change: float
+) -> None:
+    """One wave of 25 m, in deep water √(2π·25/g) = 4.0014 s long, must go round a whole number of times."""
+    wave = WaveLayer(
+        definition="SEA_STATE", peak_period=4.0, shortest_wavelength=24.9, longest_wavelength=25.1
+    )
+    period = (2.0 * np.pi * 25.0 / 9.81) ** 0.5
+    sea = OceanParameters(
+        resolution=32, domain_size=100.0, dispersion="DEEP", layers=(wave,),
+        loop_duration=f"{periods * period:.3f}", timing=Timing(fps=1000),
+    )  # fmt: skip
+    statistics = Ocean(sea).statistics()
+    assert statistics.loop_speed_change == pytest.approx(change, abs=1e-4)
+    assert any("changes the speed" in warning for warning in statistics.warnings) == (change > 0.1)

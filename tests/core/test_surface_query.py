@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import optimize
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core.surface_query import Values, newton
 
 SEA = OceanParameters(resolution=128, domain_size=200.0, seed=3)
 GENERATOR = np.random.default_rng(5)
@@ -106,3 +108,28 @@ def test_what_cannot_be_asked_is_said() -> None:
     with pytest.raises(ValueError, match="trough damping"):
         Ocean(SEA.replace(trough_damping=0.5)).height_at(0.0, 0.0, 1.0, "exact")
     assert np.all(np.isfinite(Ocean(SEA.replace(trough_damping=0.5)).height_at([0.0, 5.0], 1.0, 1.0)))
+
+
+@pytest.mark.parametrize("steepness", [0.5, 0.9, 0.97])
+def test_crests_that_are_nearly_folded_are_met(steepness: float) -> None:
+    """One trochoidal wave: above x is the water whose angle E at rest solves Kepler's E - e sin E = kx."""
+    k, places = 2.0 * np.pi / 20.0, np.linspace(0.0, 20.0, 401)
+
+    def trochoid(x: np.ndarray, _y: np.ndarray, _velocity: bool) -> tuple[Values, None]:
+        sine, cosine, zero = np.sin(k * x), np.cos(k * x), np.zeros_like(x)
+        amplitude = steepness / k
+        value = np.stack((-amplitude * sine, zero, amplitude * cosine), axis=1)
+        by_x = np.stack((-steepness * cosine, zero, -steepness * sine), axis=1)
+        return Values(value, by_x, np.zeros_like(value)), None
+
+    def rest(place: float) -> float:
+        return optimize.brentq(lambda E: E - steepness * np.sin(E) - k * place, -0.1, 6.4, xtol=1e-13) / k
+
+    expected = [rest(place) for place in places]
+    for spacing in (1.0, 0.1, 0.03):
+        found_x, _, met = newton(places, np.zeros(401), places, np.zeros(401), trochoid, spacing)
+        assert met.all()
+        moved = found_x - steepness / k * np.sin(k * found_x)
+        np.testing.assert_allclose(moved, places, atol=1e-5 * spacing)
+        # where the surface is steep a small step above is a large one at rest
+        np.testing.assert_allclose(found_x, expected, atol=2e-5 * spacing / (1.0 - steepness))
