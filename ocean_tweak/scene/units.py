@@ -12,6 +12,7 @@ from fractions import Fraction
 import bpy
 import numpy as np
 
+_LARGEST_MAP = 900  # of scene.render.frame_map_old and frame_map_new
 _LARGEST_FPS = 32767  # of scene.render.fps
 _SMALLEST_BASE = Fraction(1, 100_000)
 
@@ -34,6 +35,16 @@ def frame_rate(scene: bpy.types.Scene) -> Fraction:
 def time_stretch(scene: bpy.types.Scene) -> Fraction:
     """Frames of the scene in a frame of its animation, of Time Stretching: 2 is half the speed."""
     return Fraction(scene.render.frame_map_new, scene.render.frame_map_old)
+
+
+def set_time_stretch(scene: bpy.types.Scene, stretch: Fraction) -> None:
+    """Set the scene's Time Stretching to a fraction, as near as Blender can hold it."""
+    held = min(max(stretch, Fraction(1, _LARGEST_MAP)), Fraction(_LARGEST_MAP))
+    old = max(min(_LARGEST_MAP, int(_LARGEST_MAP / held)), 1)
+    near = held.limit_denominator(old)
+    # as artists write it: 100 to 200
+    times = max(min(100 // near.denominator, _LARGEST_MAP // near.numerator), 1)
+    scene.render.frame_map_old, scene.render.frame_map_new = near.denominator * times, near.numerator * times
 
 
 def set_frame_rate(scene: bpy.types.Scene, fps: Fraction) -> None:

@@ -11,7 +11,7 @@ from ..export.usd.reading import read_package
 from . import ocean_object
 from .settings import VIEWPORT_RESOLUTION
 from .shots import animate
-from .units import frame_rate, set_frame_rate
+from .units import frame_rate, set_frame_rate, set_time_stretch, time_stretch
 
 
 def add_from_layer(
@@ -28,16 +28,18 @@ def add_from_layer(
     is changed.
     """
     prim, package = read_package(path)
-    shot, before = package.shot, frame_rate(scene)
+    shot, before = package.shot, (frame_rate(scene), time_stretch(scene))
     if use_frame_rate:
         set_frame_rate(scene, shot.parameters.timing.fps)
+        set_time_stretch(scene, shot.parameters.timing.stretch)
     try:
         item = ocean_object.add(
             scene, shot.parameters, name=prim.rpartition("/")[2], collection=collection,
             viewport_resolution=VIEWPORT_RESOLUTION, repeats=package.tiles,
         )  # fmt: skip
     except ocean_object.EXPECTED_ERRORS:
-        set_frame_rate(scene, before)
+        set_frame_rate(scene, before[0])
+        set_time_stretch(scene, before[1])
         raise
     animate(item, scene, shot)
     return item

@@ -16,20 +16,22 @@ from ..export.pictures import with_pictures
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import animate, shot_of
 from ..scene.source_images import open_image
-from ..scene.units import frame_rate, set_frame_rate
+from ..scene.units import frame_rate, set_frame_rate, set_time_stretch, time_stretch
 from .active_ocean import OfActiveOcean, refuse
 
 
 def apply_parameters(context: bpy.types.Context, parameters: OceanParameters, use_frame_rate: bool) -> None:
     """Give the active ocean a sea, or change nothing. Raises OceanObjectError for one it cannot show."""
     scene = context.scene
-    before = frame_rate(scene)
+    before = frame_rate(scene), time_stretch(scene)
     if use_frame_rate:
         set_frame_rate(scene, parameters.timing.fps)
+        set_time_stretch(scene, parameters.timing.stretch)
     try:
         settings_of(context.active_object).from_parameters(parameters, scene)
     except OceanObjectError:
-        set_frame_rate(scene, before)
+        set_frame_rate(scene, before[0])
+        set_time_stretch(scene, before[1])
         raise
 
 
