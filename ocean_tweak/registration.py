@@ -17,6 +17,7 @@ from .ui import (
     asset_operators,
     bake_operators,
     camera_operators,
+    error_overlay,
     float_operators,
     layer_operators,
     mask_operators,
@@ -112,6 +113,7 @@ def register(package: str | None = None) -> None:
     bpy.types.TOPBAR_MT_file_import.append(usd_operators.draw_import_menu)
     handlers.register()
     wind_overlay.register()
+    error_overlay.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
 
@@ -120,6 +122,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
+    error_overlay.unregister()
     wind_overlay.unregister()
     handlers.unregister()
     asset_library.remove()

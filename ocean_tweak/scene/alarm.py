@@ -13,10 +13,11 @@ import os
 import signal
 import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import bpy
 
-from .settings import scene_of
+from .settings import OceanSettings, all_oceans, scene_of, settings_of
 
 _log = logging.getLogger(__name__)
 
@@ -31,11 +32,13 @@ class _Shot:
     said : what the console has heard: each thing once a shot
     is_rendered : whether it is being rendered now
     has_failed : whether this render met a frame that cannot be shown
+    troubled : oceans that could not be shown at some time since the file was opened, by session uid
     """
 
     said: set[tuple[int, str]] = field(default_factory=set)
     is_rendered: bool = False
     has_failed: bool = False
+    troubled: set[int] = field(default_factory=set)
 
 
 _shot = _Shot()
@@ -43,6 +46,7 @@ _shot = _Shot()
 
 def failed(item: bpy.types.Object, text: str) -> None:
     """The present frame of an ocean cannot be shown; a render in the background ends."""
+    _shot.troubled.add(item.session_uid)
     # while a number is dragged, the console hears of its parameter once
     _say(logging.ERROR, item, text.partition(" = ")[0], text)
     fail_render(item)
@@ -90,9 +94,32 @@ def render_ends() -> None:
         os._exit(EXIT_CODE)
 
 
+def troubles() -> list[str]:
+    """What is wrong now with oceans of the file that cannot be shown, a line each, for the 3D view."""
+    if not _shot.troubled:  # asked for whenever a view is drawn
+        return []
+    found = {}
+    for item in all_oceans():
+        settings = settings_of(item)
+        text = settings.error or missing_text(settings)
+        if item.session_uid in _shot.troubled and text:
+            found[item.session_uid] = f"{item.name}: {text}"
+    _shot.troubled &= found.keys()
+    return list(found.values())
+
+
+def missing_text(settings: OceanSettings) -> str:
+    """What to say of the file that the present frame of a sequence lacks; "" where it lacks none."""
+    if not settings.missing_file:
+        return ""
+    path = Path(settings.missing_file)
+    return f"{path.name} is not in {path.parent}: bake this frame again or choose other files"
+
+
 def forget_all() -> None:
     """Another file is opened."""
     _shot.said.clear()
+    _shot.troubled.clear()
 
 
 def _say(level: int, item: bpy.types.Object, subject: str, text: str) -> None:

@@ -148,9 +148,8 @@ def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
         frame = image_sequence.shown_frame(settings, scene, present)
         file = image_sequence.missing_file(settings, frame)
         if file is not None:
-            alarm.failed(
-                item, f"{file.name} is not in {file.parent}: bake this frame again or choose other files"
-            )
+            set_changed(settings, missing_file=str(file))
+            alarm.failed(item, alarm.missing_text(settings))
         elif settings.out_of_range == "WARN" and image_sequence.unbaked_frames(settings, scene, (present,)):
             folder = image_sequence.folder_of(settings)
             alarm.warned(

@@ -10,7 +10,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core import sea_scales
 from ...core.wind_profile import wind_at_10_m
-from ...scene import cache_place, refinement
+from ...scene import alarm, cache_place, refinement
 from ...scene.conversion import ocean_modifier
 from ...scene.image_sequence import shown_frame, unbaked_frames
 from ...scene.settings import OceanSettings, is_ocean, settings_of
@@ -100,9 +100,7 @@ def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw what is wrong with the bake that is shown, and the remedies."""
     settings = active_settings(context)
     if settings.missing_file:
-        folder, _, file = settings.missing_file.replace("\\", "/").rpartition("/")
-        text = f"{file} is missing in {folder}: bake it again or choose other files"
-        message(layout, context, text, alert=True)
+        message(layout, context, alarm.missing_text(settings), alert=True)
     if settings.bake_differs:
         found = json.loads(settings.bake_differs)
         shown = "; ".join(_difference(*entry) for entry in found[:_MOST_DIFFERENCES])
