@@ -113,7 +113,7 @@ def missing_text(settings: OceanSettings) -> str:
     if not settings.missing_file:
         return ""
     path = Path(settings.missing_file)
-    return f"{path.name} is not in {path.parent}: bake this frame again or choose other files"
+    return f"{path.name} is missing: bake it again or choose other files. Looked in {path.parent}"
 
 
 def forget_all() -> None:

@@ -17,6 +17,7 @@ from ..export.cache.job import JOB_FILE, CacheError, read_job
 from ..export.exr import ExrError, read_header
 from . import alarm
 from .animated import clock_of, is_animated
+from .cache_place import is_left_behind
 from .image_sequence import SequenceError, baked_frames, file_of, folder_of, shown_frame, unbaked_frames
 from .settings import OceanSettings, set_changed, settings_of
 
@@ -108,6 +109,8 @@ def check(item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings |
     shown : the settings as animation makes them, where it does
     """
     settings = settings_of(item)
+    is_elsewhere = settings.source == "SEQUENCE" and is_left_behind(item)
+    set_changed(settings, bake_is_elsewhere=is_elsewhere)
     shot = baked_shot(settings)
     if shot is None:
         set_changed(settings, baked_sea="", bake_differs="")

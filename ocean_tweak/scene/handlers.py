@@ -139,6 +139,14 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 
 
 @persistent
+def look_after_save(_path: object = None, _unused: object = None) -> None:
+    """A file that was saved elsewhere may have left its bakes behind."""
+    for item in all_oceans():
+        if settings_of(item).source == "SEQUENCE" and item.users_scene:
+            bake_state.check(item, item.users_scene[0])
+
+
+@persistent
 def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """The console hears all again that is wrong with a shot."""
     alarm.render_begins()
@@ -248,6 +256,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("save_post", take_paths_back),
     ("save_post_fail", take_paths_back),
     ("blend_import_post", mend_after_import),
+    ("save_post", look_after_save),
     ("undo_post", refresh_after_undo),
     ("redo_post", refresh_after_undo),
 )

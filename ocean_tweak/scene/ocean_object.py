@@ -82,10 +82,14 @@ def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: Image
     """Let baked files move the ocean. Raises SequenceError, and then changes nothing."""
     baked = load_sequence(sequence)
     settings = settings_of(item)
+    before = _sequence_images(settings)
     with settings.quiet():
         _set_sequence(settings, sequence, baked)
         settings.source = "SEQUENCE"
     refresh(item, scene)
+    for image in before - _sequence_images(settings):
+        if image.users == image.use_fake_user and image.library is None:  # of a bake that nobody shows now
+            bpy.data.images.remove(image)
 
 
 def use_live(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -119,6 +123,11 @@ def end(item: bpy.types.Object) -> None:
         "%s: its modifier was applied or removed, so it is a mesh like any other from now on%s",
         item.name, "; its camera surface is gone with the sea" if has_surface else "",
     )  # fmt: skip
+
+
+def _sequence_images(settings: OceanSettings) -> set[bpy.types.Image]:
+    owners = (settings.sequence_maps, settings.early_maps)
+    return {getattr(maps, name) for maps in owners for name in MAPS} - {None}
 
 
 def _set_sequence(settings: OceanSettings, sequence: ImageSequence, baked: LoadedSequence) -> None:

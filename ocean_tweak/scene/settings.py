@@ -115,6 +115,7 @@ class OceanSettings(Protocol):
     missing_file : the file that the present frame of a sequence should show and that is not there, or ""
     baked_sea : JSON of the sea that the shown bake is of, at the present frame; "" where that is not known
     bake_differs : JSON of path, value there and value here of all that differs in the settings; or ""
+    bake_is_elsewhere : whether the shown bake lies outside of the ocean's cache folder
     statistics : JSON of the sea's statistics, "" when there are none
     usd : how it becomes USD layers
     use_foam, use_normals, use_velocity : whether these maps are made and shown
@@ -163,6 +164,7 @@ class OceanSettings(Protocol):
     missing_file: str
     baked_sea: str
     bake_differs: str
+    bake_is_elsewhere: bool
     statistics: str
     usd: UsdSettings
     id_data: bpy.types.Object

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Baking the active ocean beside Blender, and taking a bake along to another folder."""
 
+from contextlib import suppress
+
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
-from bpy.props import BoolProperty
+from bpy.props import BoolProperty, StringProperty
 
-from ..scene import bake_process, cache_place, ocean_object
+from ..export.cache.estimate import readable_bytes
+from ..export.cache.job import CacheError
+from ..export.cache.locks import Held
+from ..scene import bake_process, bake_versions, cache_place, ocean_object
 from ..scene.bake_process import BakeProcess
 from ..scene.image_sequence import find_sequence
 from ..scene.settings import settings_of
@@ -45,6 +50,8 @@ class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
         item, scene = bpy.data.objects.get(self._item), bpy.data.scenes.get(self._scene)
         if item is None or scene is None:
             return refuse(self, f"{bake.name} is gone; its frames are in {bake.folder}")
+        with suppress(OSError):  # the panel's list of what is on disk is a help, no more
+            bake_versions.look(item)
         settings = settings_of(item)
         settings.bake_total = len(bake.frames)
         settings.bake_done = len(bake.frames) - bake.left + bake.done if bake.left else len(bake.frames)
@@ -82,6 +89,58 @@ class OCEAN_OT_stop_bake(StopsProcess, bpy.types.Operator):
     idle = "The active object is not being baked"
 
 
+class OCEAN_OT_look_at_bakes(OfActiveOcean, bpy.types.Operator):
+    """Look at the disk for the active ocean's bakes, and try out what the next one takes."""
+
+    bl_idname = "ocean.look_at_bakes"
+    bl_description = "List the bakes of this ocean with their sizes, and try out what the next one takes"
+    bl_label = "Show Sizes"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Keep what is found for the panel."""
+        try:
+            bake_versions.foresee(context.active_object, context.scene)
+        except (OSError, *ocean_object.EXPECTED_ERRORS) as error:
+            return refuse(self, error)
+        return {"FINISHED"}
+
+
+class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
+    """Delete old bakes of the active ocean from the disk."""
+
+    bl_idname = "ocean.delete_bake"
+    bl_description = "Delete the baked frames of this version from the disk; undo does not bring them back"
+    bl_label = "Delete Bake"
+    bl_options = {"INTERNAL"}
+
+    version: StringProperty(
+        name="Version", options={"SKIP_SAVE"},
+        description="Name of the bake's folder; empty for all bakes that no ocean of the file shows",
+    )  # fmt: skip
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask first."""
+        what = self.version or "all bakes of this ocean that are not shown"
+        return context.window_manager.invoke_confirm(
+            self, event, title=translated("Delete from the disk?"), message=what, icon="WARNING"
+        )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Delete, and tell what stayed."""
+        try:
+            cleaned = bake_versions.delete(context.active_object, [self.version] if self.version else [])
+        except (OSError, CacheError, Held, *ocean_object.EXPECTED_ERRORS) as error:
+            return refuse(self, error)
+        size = readable_bytes(cleaned.bytes)
+        if cleaned.left:
+            return refuse(self, f"{cleaned.files} files deleted, {size}; left: {cleaned.left[0]}")
+        self.report(
+            {"INFO"}, translated("{count} files deleted, {size}").format(count=cleaned.files, size=size)
+        )
+        return {"FINISHED"}
+
+
 class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
     """Copy the bake that the active ocean reads beside the file."""
 
@@ -95,7 +154,7 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
         """The bake lies elsewhere."""
         if not super().poll(context):
             return False
-        if not cache_place.is_left_behind(context.active_object):
+        if not settings_of(context.active_object).bake_is_elsewhere:
             cls.poll_message_set("The ocean reads no bake from outside its cache folder")
             return False
         return True
@@ -113,4 +172,10 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (OCEAN_OT_bake, OCEAN_OT_stop_bake, OCEAN_OT_take_cache_along)
+CLASSES = (
+    OCEAN_OT_bake,
+    OCEAN_OT_stop_bake,
+    OCEAN_OT_look_at_bakes,
+    OCEAN_OT_delete_bake,
+    OCEAN_OT_take_cache_along,
+)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import bpy
 
-from ..scene import stored_paths
+from ..scene import bake_state, bake_versions, stored_paths
 from ..scene.refinement import show
 from ..scene.settings import scene_of
 
@@ -16,6 +16,7 @@ def changed(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None
     settings = item.ocean_tweak
     if settings.is_quiet or not settings.is_ocean:
         return
+    bake_versions.settings_changed(item)
     if settings.preset:
         settings.preset = ""
     if item.users_scene:
@@ -23,12 +24,17 @@ def changed(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None
 
 
 def path_changed(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
-    """What a changed path of this name does: it is kept relative to the file, where it can be."""
+    """What a changed path of this name does: it is kept relative to the file, where it can be.
+
+    Whether the shown bake lies in the ocean's cache may be another matter then.
+    """
 
     def update(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
         path = getattr(group, name)
         kept = stored_paths.relative(path)
         if kept != path:
-            setattr(group, name, kept)
+            setattr(group, name, kept)  # which updates
+        elif group.id_data.users_scene:
+            bake_state.check(group.id_data, scene_of(group.id_data))
 
     return update

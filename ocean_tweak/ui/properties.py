@@ -193,6 +193,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "missing_file": StringProperty(**_HIDDEN),
         "baked_sea": StringProperty(**_HIDDEN),
         "bake_differs": StringProperty(**_HIDDEN),
+        "bake_is_elsewhere": BoolProperty(**_HIDDEN),
         "statistics": StringProperty(**_HIDDEN),
         "usd": PointerProperty(type=OCEAN_PG_usd, **_OVERRIDE),
     }  # fmt: skip

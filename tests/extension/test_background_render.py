@@ -80,6 +80,6 @@ def test_a_missing_frame_ends_the_render_and_an_unbaked_one_is_told_once(shot, r
     assert answer.returncode == EXIT_CODE, answer.stdout
     assert pictures == [1]
     assert lines(answer) == [
-        f"ocean_tweak: Ocean, frame 2: Ocean_disp.0002.exr is not in {folder}: "
-        "bake this frame again or choose other files"
+        "ocean_tweak: Ocean, frame 2: Ocean_disp.0002.exr is missing: bake it again or choose other files. "
+        f"Looked in {folder}"
     ]

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Baking, and which of live and baked is shown."""
 
+from datetime import datetime
+
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...core.frames import format_frames
-from ...scene import bake_process, cache_place, stored_paths
+from ...export.cache.estimate import Estimate, readable_bytes
+from ...scene import alarm, bake_process, bake_versions, stored_paths
 from ...scene.image_sequence import baked_frames
 from ...scene.maps import MAPS
+from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
 from .. import bake_operators, sequence_operators
 from .drawing import OceanPanel, active_settings, message, progress_bar, row, split
@@ -38,6 +42,7 @@ class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
             _sequence(layout, context)
         choose = "Choose Another" if settings.sequence_maps.disp else "Use Baked Sequence"
         layout.operator(sequence_operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
+        _disk(layout, context)
 
 
 def _bake_label(context: bpy.types.Context) -> str:
@@ -52,21 +57,68 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings = active_settings(context)
     image = settings.sequence_maps.disp
     column = layout.column(align=True)
-    folder = cache_place.shown_bake(context.active_object)
-    if folder is not None:
-        row(column, "Version", folder.name)
+    if image:
+        row(column, "Version", _folder_name(settings))
     row(column, "Files", stored_paths.image_file(image).name if image else "none chosen")
     if image:
         row(column, "Frames", format_frames(baked_frames(settings)))
         row(column, "Maps", ", ".join(name for name in MAPS if getattr(settings.sequence_maps, name)))
     if settings.missing_file:
-        file = bpy.path.basename(settings.missing_file)
-        message(layout, context, f"{file} is missing: bake it again or choose other files", alert=True)
-    if cache_place.is_left_behind(context.active_object):
+        message(layout, context, alarm.missing_text(settings), alert=True)
+    if settings.bake_is_elsewhere:
         layout.operator(bake_operators.OCEAN_OT_take_cache_along.bl_idname, icon="DUPLICATE")
     layout.prop(settings, "out_of_range")
     if settings.error:
         layout.operator(sequence_operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
+
+
+def _folder_name(settings: OceanSettings) -> str:
+    """Of the folder that the shown files are in; the disk is not asked."""
+    image = settings.sequence_maps.disp
+    return "" if image is None else stored_paths.image_file(image).parent.name
+
+
+def _disk(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what the next bake takes and what is on disk, as it was found when somebody looked last."""
+    listing = bake_versions.known(context.active_object)
+    look = bake_operators.OCEAN_OT_look_at_bakes.bl_idname
+    if listing is None:
+        layout.operator(look, icon="DISK_DRIVE")
+        return
+    column = layout.box().column(align=True)
+    if listing.to_come is not None:
+        row(column, "To Come", _takes(listing.to_come, len(scene_frames(context.scene))))
+        row(column, "Disk", translated("{} free").format(readable_bytes(listing.to_come.free)))
+    total = readable_bytes(sum(version.bytes for version in listing.versions))
+    row(column, "On Disk", translated("{} bakes, {}").format(len(listing.versions), total))
+    shown = _folder_name(active_settings(context))
+    for version in reversed(listing.versions):
+        _version(column, version, is_shown=version.folder.name == shown)
+    buttons = layout.row(align=True)
+    buttons.operator(look, text="Look Again", icon="FILE_REFRESH")
+    if any(version.folder.name != shown for version in listing.versions):
+        delete = buttons.operator(
+            bake_operators.OCEAN_OT_delete_bake.bl_idname, text="Delete Others", icon="TRASH"
+        )
+        delete.version = ""
+
+
+def _takes(to_come: Estimate, frames: int) -> str:
+    """Bytes and minutes of so many frames."""
+    share = frames / max(to_come.frames, 1)
+    seconds = round(to_come.seconds * share)
+    return f"about {readable_bytes(to_come.bytes * share)}, {seconds // 60}:{seconds % 60:02d}"
+
+
+def _version(layout: bpy.types.UILayout, version: bake_versions.Version, is_shown: bool) -> None:
+    line = layout.row(align=True)
+    day = datetime.fromtimestamp(version.time).strftime("%Y-%m-%d %H:%M")
+    count = translated("1 frame") if version.frames == 1 else translated("{} frames").format(version.frames)
+    text = f"{version.folder.name}  {count}, {readable_bytes(version.bytes)}, {day}"
+    line.label(text=text, icon="CHECKMARK" if is_shown else "BLANK1", translate=False)
+    if not is_shown:
+        delete = line.operator(bake_operators.OCEAN_OT_delete_bake.bl_idname, text="", icon="TRASH")
+        delete.version = version.folder.name
 
 
 CLASSES = (OCEAN_PT_bake,)

@@ -10,7 +10,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core import sea_scales
 from ...core.wind_profile import wind_at_10_m
-from ...scene import alarm, cache_place, refinement
+from ...scene import alarm, refinement
 from ...scene.conversion import ocean_modifier
 from ...scene.image_sequence import shown_frame, unbaked_frames
 from ...scene.settings import OceanSettings, is_ocean, settings_of
@@ -259,7 +259,7 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
         )
     if settings.out_of_range == "WARN" and unbaked_frames(settings, scene, (frame,)):
         warnings.append(f"Frame {frame} has no file: frame {shown_frame(settings, scene, frame)} is held")
-    if settings.source == "SEQUENCE" and cache_place.is_left_behind(item):
+    if settings.bake_is_elsewhere:
         warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
     return warnings
 

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The bakes of an ocean on disk, and the next one: looked at when something happens, kept for the panel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+import bpy
+
+from ..export.cache import clean
+from ..export.cache.estimate import Estimate, estimate
+from ..export.cache.job import Job, bakes_in
+from ..export.cache.locks import claimed
+from ..export.cache.records import recorded_frames
+from .cache_place import bake_name, cache_folder, own_uid
+from .image_sequence import folder_of
+from .maps import wanted_maps
+from .settings import OceanObjectError, all_oceans, settings_of
+from .shots import scene_frames, shot_of
+
+
+class Version(NamedTuple):
+    """A bake on disk.
+
+    frames, bytes : that it has, and takes
+    time : of its last change, s since 1970
+    """
+
+    folder: Path
+    frames: int
+    bytes: int
+    time: float
+
+
+class Listing(NamedTuple):
+    """What was found of an ocean's bakes.
+
+    versions : from the oldest number to the newest
+    to_come : what its next bake takes; None where the settings changed since
+    """
+
+    versions: tuple[Version, ...]
+    to_come: Estimate | None
+
+
+# by session uid; what is on disk and how long a frame takes is no data of the file
+_listings: dict[int, Listing] = {}
+
+
+def known(item: bpy.types.Object) -> Listing | None:
+    """What was found when it was looked at last."""
+    return _listings.get(item.session_uid)
+
+
+def look(item: bpy.types.Object) -> None:
+    """Look at the disk for what is there of an ocean's bakes. Raises OSError."""
+    before = known(item)
+    versions = tuple(map(_version, bakes_in(_home(item))))
+    _listings[item.session_uid] = Listing(versions, None if before is None else before.to_come)
+
+
+def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Try out what a frame of the next bake takes, and look at the disk.
+
+    Raises ParameterError for settings that are no sea, OSError.
+    """
+    frames = scene_frames(scene)
+    shot, maps = shot_of(item, scene, frames), tuple(wanted_maps(settings_of(item)))
+    job = Job(bake_name(item), own_uid(item), shot, maps, frames=frames)
+    place = cache_folder(item)
+    while not place.is_dir() and place != place.parent:
+        place = place.parent
+    to_come = estimate(place, job, frames)
+    look(item)
+    _listings[item.session_uid] = _listings[item.session_uid]._replace(to_come=to_come)
+
+
+def settings_changed(item: bpy.types.Object) -> None:
+    """What was foreseen is of other settings."""
+    listing = known(item)
+    if listing is not None and listing.to_come is not None:
+        _listings[item.session_uid] = listing._replace(to_come=None)
+
+
+def shown_folders() -> dict[Path, str]:
+    """The folders that oceans of the file read, each with the name of one that does."""
+    found = {folder_of(settings_of(item)): item.name for item in all_oceans()}
+    return {folder.resolve(): name for folder, name in found.items() if folder is not None}
+
+
+def delete(item: bpy.types.Object, names: Iterable[str] = ()) -> clean.Cleaned:
+    """Delete versions of an ocean's bakes by the names of their folders; without names, all that none shows.
+
+    Only what records list goes, as by the command `clean`. Raises OceanObjectError for a version that is not
+    there or is shown, CacheError, Held where somebody bakes it, OSError.
+    """
+    shown = shown_folders()
+    versions = {folder.name: folder for folder in bakes_in(_home(item))}
+    wanted = list(names) or [name for name, folder in versions.items() if folder.resolve() not in shown]
+    for name in wanted:
+        if name not in versions:
+            raise OceanObjectError(f"{_home(item)} has no bake {name}: look at the disk again")
+        reader = shown.get(versions[name].resolve())
+        if reader is not None:
+            raise OceanObjectError(f"{reader} shows {name}: choose another bake there, or go back to live")
+    files, size, left = 0, 0, []
+    try:
+        for folder in map(versions.__getitem__, wanted):
+            frames = recorded_frames(folder)
+            with claimed(folder, frames):
+                cleaned = clean.clean(folder, frames)
+            files, size = files + cleaned.files, size + cleaned.bytes
+            left += [*cleaned.left, *(() if cleaned.left else clean.remove_rest(folder))]
+    finally:
+        look(item)
+    return clean.Cleaned(files, size, tuple(left))
+
+
+def _home(item: bpy.types.Object) -> Path:
+    """The folder of all bakes of an ocean."""
+    return cache_folder(item) / f"{bake_name(item)}-{own_uid(item)}"
+
+
+def _version(folder: Path) -> Version:
+    size, time = 0, 0.0
+    for path in folder.rglob("*"):
+        with suppress(OSError):  # what goes meanwhile takes no room
+            found = path.lstat()
+            size, time = size + found.st_size, max(time, found.st_mtime)
+    return Version(folder, len(recorded_frames(folder)), size, time)
