@@ -13,7 +13,7 @@ from ..export.cache.locks import Held
 from ..scene import bake_process, bake_versions, cache_place, ocean_object
 from ..scene.bake_process import BakeProcess
 from ..scene.image_sequence import find_sequence
-from ..scene.settings import settings_of
+from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from .active_ocean import OfActiveOcean, refuse
 from .beside_window import BesideWindow, StopsProcess
@@ -50,7 +50,7 @@ class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
         item, scene = bpy.data.objects.get(self._item), bpy.data.scenes.get(self._scene)
         if item is None or scene is None:
             return refuse(self, f"{bake.name} is gone; its frames are in {bake.folder}")
-        with suppress(OSError):  # the panel's list of what is on disk is a help, no more
+        with suppress(OSError, OceanObjectError):  # the panel's list of what is on disk is a help, no more
             bake_versions.look(item)
         settings = settings_of(item)
         settings.bake_total = len(bake.frames)
