@@ -14,7 +14,7 @@ from pathlib import Path
 import bpy
 
 from ..core import ParameterError, Timing
-from ..core.frames import format_frames, frame_label, held_frame, parse_frames
+from ..core.frames import MOST_FRAMES, format_frames, frame_label, held_frame, parse_frames
 from ..export.exr import ExrError, read_header, read_size
 from .live_image import mark_as_data
 from .maps import MAPS
@@ -49,6 +49,11 @@ class ImageSequence:
 
     def check(self) -> tuple[str, ...]:
         """The maps that there are. Raises SequenceError unless every frame has a file of each of them."""
+        first, last = self.frames[0], self.frames[-1]
+        if last - first >= MOST_FRAMES:  # which of them are baked is written out, one by one
+            raise SequenceError(
+                f"Frames {first} and {last} are {last - first} apart: {MOST_FRAMES} is too far"
+            )
         available = _frames_by_map(absolute(self.directory))
         if (self.name, _MOVING) not in available:
             names = sorted(name for name, map_name in available if map_name == _MOVING)

@@ -22,7 +22,8 @@ from types import ModuleType
 import bpy
 
 _FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel)\.[^.]*\.exr")
-_RANGE = re.compile(r"(-?\d+)(?:-(-?\d+)(?:[x:](\d+))?)?")
+_RANGE = re.compile(r"(-?\d{1,10})(?:-(-?\d{1,10})(?:[x:](\d{1,10}))?)?")
+_MOST_FRAMES = 1_000_000
 
 
 class RenderError(RuntimeError):
@@ -110,6 +111,11 @@ def frame_ranges(text: str) -> list[range]:
             print(f"render_baked: --frames {text}: {part!r} holds no frames", file=sys.stderr)
             sys.exit(2)
         ranges.append(range(first, last + 1, step))
+    least, most = min(part[0] for part in ranges), max(part[-1] for part in ranges)
+    # counted before they are made; which of those in between are baked is written out too
+    if max(sum(map(len, ranges)), most - least) > _MOST_FRAMES:
+        print(f"render_baked: --frames {text[:80]}: must be at most {_MOST_FRAMES} frames", file=sys.stderr)
+        sys.exit(2)
     return ranges
 
 

@@ -32,6 +32,7 @@ def test_refused(sequences, bake, make_parameters, tmp_path):
     for sequence, said in (
         (baked, "1 of the frames 1-4 have no file, the first of them .*sea_disp.0003.exr"),
         (dataclasses.replace(baked, name="lake"), "No files lake_disp.####.exr .*it holds sea"),
+        (dataclasses.replace(baked, frames=(1, 10**9)), "Frames 1 and 1000000000 are 999999999 apart"),
         (dataclasses.replace(baked, directory=tmp_path / "nowhere"), "The folder .*nowhere does not exist"),
     ):
         with pytest.raises(sequences.SequenceError, match=said):
@@ -40,6 +41,16 @@ def test_refused(sequences, bake, make_parameters, tmp_path):
         sequences.find_sequence(tmp_path)
     with pytest.raises(sequences.SequenceError, match="neither a folder nor"):
         sequences.find_sequence(tmp_path / "picture.png")
+
+
+def test_frames_for_a_render_are_counted_before_they_are_made(extension, capsys):
+    frame_ranges = extension("scene.render_baked").frame_ranges
+    assert frame_ranges("1-9:4,20") == [range(1, 10, 4), range(20, 21)]
+    for text in ("1-600000,1-600000", "1,1000000000", "9" * 5000):
+        with pytest.raises(SystemExit) as ended:
+            frame_ranges(text)
+        assert ended.value.code == 2
+        assert "--frames" in capsys.readouterr().err
 
 
 def test_nothing_is_added_for_a_sequence_that_cannot_be_used(
