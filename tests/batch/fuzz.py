@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Damages files in many ways and lets what reads them read them, in a process that may use little memory.
 
-`python -m tests.batch.fuzz KIND SCRATCH FIRST LAST STEP` prints the number of each damage before it is tried,
+`python -m tests.batch.fuzz KIND SCRATCH FIRST LAST` prints the number of each damage before it is tried,
 so that whoever started this knows which one ended it, and at its end the most memory that was used, in kB.
 """
 
@@ -334,4 +334,4 @@ def run(kind: str, scratch: Path, seeds: range) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(min(run(sys.argv[1], Path(sys.argv[2]), range(*map(int, sys.argv[3:6]))), 1))
+    sys.exit(min(run(sys.argv[1], Path(sys.argv[2]), range(*map(int, sys.argv[3:5]))), 1))
