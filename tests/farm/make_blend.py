@@ -15,14 +15,22 @@ ROOT = Path(__file__).parents[2]
 
 def main():
     kind, path, params = sys.argv[sys.argv.index("--") + 1 :]
-    if kind == "live":
+    if kind in ("live", "baked"):
         sys.path.insert(0, str(ROOT / "examples"))
         from extension import enable
 
         extension = enable()
         bpy.ops.wm.read_homefile(use_empty=True)
         parameters = extension.module("core").OceanParameters.from_json(Path(params).read_text())
-        extension.module("scene.ocean_object").add(bpy.context.scene, parameters, name="Ocean")
+        add = extension.module("scene.ocean_object").add
+        if kind == "live":
+            add(bpy.context.scene, parameters, name="Ocean")
+        else:
+            sequence = bake(extension, parameters, Path(path).parent / "elsewhere", (-1, 2))
+            item = add(bpy.context.scene, parameters, source="SEQUENCE", sequence=sequence, name="Ocean")
+            attribute = light(item.data).new("ShaderNodeAttribute")
+            attribute.attribute_name = "displacement"
+            shine(item.data, attribute.outputs["Vector"])
         look_at(bpy.context.scene, parameters.domain_size)
     else:
         bpy.ops.wm.read_homefile(use_empty=True)
@@ -41,25 +49,45 @@ def plane():
     image.source = "SEQUENCE"
     image.filepath = "//elsewhere/storm_disp.0001.exr"
     image.colorspace_settings.is_data = True
-    material = bpy.data.materials.new("Light")
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture = light(mesh).new("ShaderNodeTexImage")
     texture.image, texture.interpolation = image, "Closest"
     user = texture.image_user
     user.frame_start, user.frame_duration, user.use_auto_refresh = 1, 3, True
+    shine(mesh, texture.outputs["Color"])
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Plane", mesh))
+
+
+def bake(extension, parameters, folder, frames):
+    """The displacement of some frames, as the sequence storm."""
+    folder.mkdir()
+    sink = extension.module("export.exr").ExrSequence(folder, "storm", parameters, "ZIP", ("disp",))
+    sea = extension.module("core").grid_sea(parameters)
+    for frame in frames:
+        sink.write(frame, sea.frame(frame, sink.outputs))
+    return extension.module("scene.image_sequence").ImageSequence(folder, "storm", frames)
+
+
+def light(mesh):
+    """The nodes of a new material on a mesh."""
+    material = bpy.data.materials.new("Light")
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    mesh.materials.append(material)
+    return material.node_tree.nodes
+
+
+def shine(mesh, metres):
+    """Let a mesh shine as a socket of its material says."""
+    tree = mesh.materials[0].node_tree
     scale = tree.nodes.new("ShaderNodeVectorMath")
     scale.operation = "MULTIPLY_ADD"
     scale.inputs[1].default_value = (PER_METRE,) * 3
     scale.inputs[2].default_value = (NOTHING,) * 3
-    light = tree.nodes.new("ShaderNodeEmission")
+    emission = tree.nodes.new("ShaderNodeEmission")
     out = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(texture.outputs["Color"], scale.inputs[0])
-    tree.links.new(scale.outputs["Vector"], light.inputs["Color"])
-    tree.links.new(light.outputs[0], out.inputs["Surface"])
-    mesh.materials.append(material)
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Plane", mesh))
+    tree.links.new(metres, scale.inputs[0])
+    tree.links.new(scale.outputs["Vector"], emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], out.inputs["Surface"])
 
 
 def look_at(scene, size):

@@ -68,6 +68,24 @@ def test_tasks_wait_for_what_they_need(compile_job: Callable[..., dict[str, Any]
     assert "@SHOT@" not in text
 
 
+def test_stepped_frames_are_named_one_by_one(
+    compile_job: Callable[..., dict[str, Any]], tmp_path: Path
+) -> None:
+    """Flamenco knows no steps; what it makes of them is what the render's script reads."""
+    seas = {"A": Sea(SeaOfShot(OceanParameters(resolution=32)), None, (1,))}
+    blend = tmp_path / "shot.blend"
+    blend.touch()
+    arguments = ["job", "--form", "flamenco", "--out", str(tmp_path / "job"), "--blend", str(blend)]
+    assert main([*arguments, "--frames", "1-9x2", "--chunk", "2", "--render-chunk", "3"], lambda: seas) == 0
+    job = compile_job(tmp_path / "job", blendfile=str(blend))
+    assert [task["name"] for task in job["tasks"] if task["name"].startswith(("bake", "render"))] == [
+        "bake-A-1,3", "bake-A-5,7", "bake-A-9", "render-1,3,5", "render-7,9",
+    ]  # fmt: skip
+    (render,) = [task for task in job["tasks"] if task["name"] == "render-7,9"]
+    assert render["commands"][0]["parameters"]["args"][-1] == "--frames=7,9"
+    assert render["dependencies"] == ["verify-A-5,7", "verify-A-9"]
+
+
 def test_settings_are_of_kinds_that_flamenco_knows(
     compile_job: Callable[..., dict[str, Any]], make_shot: Callable[[str], Shot], wheel: Path, run: Run
 ) -> None:

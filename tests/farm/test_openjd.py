@@ -140,6 +140,36 @@ def test_the_job_bakes_verifies_and_renders(openjd: Run, shot: Shot, bundle: Pat
     assert "openjd_progress: 100.0" in said
 
 
+def test_frames_with_a_step_and_before_0_are_rendered(
+    openjd: Run, make_shot: Callable[[str], Shot], wheel: Path
+) -> None:
+    """By the file's own modifiers, without the extension; they knew other frames of another bake."""
+    stepped = make_shot("baked")
+    job = stepped.write(
+        "job", "--frames=-2-40x14", "--chunk", "3", "--render-chunk", "3", "--set", "choppiness=0",
+        "--blend", stepped.folder / "shot.blend", "--blender", wheel,
+    )  # fmt: skip
+    frames = {-2: "-002", 12: "0012", 26: "0026", 40: "0040"}
+    said = run_step(openjd, stepped, job, "Render", "--run-dependencies")
+    assert said.startswith("OK"), said
+    pictures = {
+        frame: pixels(stepped.pictures / f"shot_{'-' * (frame < 0)}{abs(frame):04d}.exr") for frame in frames
+    }
+    assert len(list(stepped.pictures.iterdir())) == 4
+    heights = {
+        frame: pixels(stepped.bake / f"storm_disp.{label}.exr")[..., 2] for frame, label in frames.items()
+    }
+    for frame, picture in pictures.items():
+        height = (picture[..., 2] - NOTHING) / PER_METRE
+        # a pixel is a quad, seen from above
+        quads = {
+            other: sum(field[y : y + PIXELS, x : x + PIXELS] for y in (0, 1) for x in (0, 1)) / 4
+            for other, field in heights.items()
+        }
+        errors = {other: float(np.abs(height - field).mean()) for other, field in quads.items()}
+        assert all(errors[frame] < 0.5 * error for other, error in errors.items() if other != frame), errors
+
+
 def test_a_damaged_frame_stops_the_job_until_its_task_ran_again(
     openjd: Run, run: Run, shot: Shot, bundle: Path
 ) -> None:
