@@ -102,8 +102,9 @@ def is_moved(item: bpy.types.Object, textures: Textures) -> bool:
 
 
 def remove_own(item: bpy.types.Object, textures: Textures) -> None:
-    """Take the modifiers of ours away."""
-    for name in [modifier.name for _, modifier in own_modifiers(item, textures)]:
+    """Take the modifiers of ours away; those of a library stay."""
+    own = own_modifiers(item, textures)
+    for name in [modifier.name for _, modifier in own if not _is_of_library(modifier)]:
         item.modifiers.remove(item.modifiers[name])
 
 
@@ -234,9 +235,18 @@ def _set_texture(
 def _only_modifiers(
     item: bpy.types.Object, textures: Textures, purposes: list[str]
 ) -> dict[str, bpy.types.Modifier]:
-    """The object's modifiers of ours for these purposes, at the place in the stack where ours were."""
+    """The object's modifiers of ours for these purposes, at the place in the stack where ours were.
+
+    Those of a library cannot go, and Blender forgets most of what is set on them: others stand in for them.
+    """
     own = own_modifiers(item, textures)
     place = min((list(item.modifiers).index(modifier) for _, modifier in own), default=0)
+    for modifier in [modifier for _, modifier in own if _is_of_library(modifier)]:
+        assign(modifier, show_viewport=False, show_render=False)
+        place += 1
+    own = [(purpose, modifier) for purpose, modifier in own if not _is_of_library(modifier)]
+    # one that others stood in for before the object was made local comes last
+    own.sort(key=lambda each: not (each[1].show_viewport or each[1].show_render))
     names: dict[str, str] = {}
     for purpose, modifier in own:
         if purpose in purposes and purpose not in names:
@@ -254,6 +264,11 @@ def _only_modifiers(
     made = {purpose: item.modifiers[name] for purpose, name in names.items()}
     _share_out(made, had)
     return made
+
+
+def _is_of_library(modifier: bpy.types.Modifier) -> bool:
+    """Whether it came to a library override from its library."""
+    return modifier.id_data.override_library is not None and modifier.is_override_data
 
 
 def _share_out(made: dict[str, bpy.types.Modifier], had: set[str]) -> None:

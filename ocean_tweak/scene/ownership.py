@@ -35,7 +35,9 @@ def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
     shared = getattr(settings, name)
     if shared is None:
         setattr(settings, name, new_texture(label))
-    elif any(getattr(settings_of(other), name) == shared for other in _elders(item)):
+    elif shared.library is not None or any(
+        getattr(settings_of(other), name) == shared for other in _elders(item)
+    ):
         setattr(settings, name, shared.copy())
         for modifier in item.modifiers:
             if modifier.type == "DISPLACE" and modifier.texture == shared:
