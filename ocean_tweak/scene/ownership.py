@@ -35,7 +35,7 @@ def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
     shared = getattr(settings, name)
     if shared is None:
         setattr(settings, name, new_texture(label))
-    elif shared.library is not None or any(
+    elif (shared.library is not None and item.library is None) or any(
         getattr(settings_of(other), name) == shared for other in _elders(item)
     ):
         setattr(settings, name, shared.copy())

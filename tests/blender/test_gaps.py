@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bakes with steps, with gaps, of single frames and of frames before 0: shown, without this extension too."""
 
-import json
-import subprocess
-import sys
-
 import bpy
 import numpy as np
 import pytest
@@ -12,6 +8,7 @@ import pytest
 from .conftest import vertices
 from .surfaces import ALL_MAPS
 from .test_missing_frames import METHODS, warnings
+from .without_extension import heights_without_extension
 
 #: the frames of a bake, and a frame that it lacks with the one that is held there
 BAKES = {
@@ -21,20 +18,6 @@ BAKES = {
     "all early": ((-3, -2), {-9: -3, 1: -2}),
     "pick-up": ((12,), {11: 12, 13: 12}),
 }
-#: opens a file and tells heights of its oceans: FILE, {name: [frame]} → {name: [[height]]}
-READER = """
-import json, sys, bpy
-assert not hasattr(bpy.types.Object, "ocean_tweak")
-bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
-found = {}
-for name, frames in json.loads(sys.argv[2]).items():
-    found[name] = []
-    for frame in frames:
-        bpy.context.scene.frame_set(frame)
-        item = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
-        found[name].append([vertex.co.z for vertex in item.data.vertices])
-open(sys.argv[3], "w").write(json.dumps(found))
-"""
 
 
 @pytest.fixture
@@ -79,16 +62,15 @@ def test_a_blender_without_the_extension_shows_them(baked, make_parameters, expe
         for kind, (frames, held) in BAKES.items():
             item = baked(frames, method, name=f"{method} {kind}")
             wanted[item.name] = dict(others(frames, held))
-    file, reader, found = (tmp_path / name for name in ("shot.blend", "reader.py", "found.json"))
+    file = tmp_path / "shot.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(file))
-    reader.write_text(READER)
-    frames = json.dumps({name: list(shown) for name, shown in wanted.items()})
-    subprocess.run([sys.executable, str(reader), str(file), frames, str(found)], check=True)
-    heights = json.loads(found.read_text())
+    frames = sorted(set().union(*wanted.values()))
+    heights = heights_without_extension(tmp_path, [file], frames)[str(file)]
     for name, shown in wanted.items():
-        for height, frame in zip(heights[name], shown.values(), strict=True):
-            sea = expected(make_parameters(), frame)[..., 2]
-            np.testing.assert_allclose(height, sea.ravel(), atol=2e-3, err_msg=f"{name}, frame {frame}")
+        for frame, baked_frame in shown.items():
+            sea = expected(make_parameters(), baked_frame)[..., 2]
+            seen = heights[name][frame]
+            np.testing.assert_allclose(seen, sea.ravel(), atol=2e-3, err_msg=f"{name}, frame {frame}")
 
 
 def test_frames_that_are_baked_later_are_used(ocean, expected, make_parameters, empty_scene):

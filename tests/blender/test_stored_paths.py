@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Paths in a .blend file: a project is moved, copied, linked and opened elsewhere, and shows its bake."""
 
-import json
 import ntpath
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,41 +11,9 @@ import bpy
 import numpy as np
 import pytest
 
+from .without_extension import heights_without_extension
+
 TOLERANCE = 2e-3  # m; images keep 2⁻¹⁶ of their values
-
-#: heights of every mesh of each file at a frame, in a Blender without the extension
-SHOWN = """
-import json, sys
-import bpy
-*files, frame = sys.argv[sys.argv.index("--") + 1 :]
-shown = {}
-for file in files:
-    bpy.ops.wm.open_mainfile(filepath=file)
-    assert not hasattr(bpy.types.Object, "ocean_tweak"), "the extension is here"
-    bpy.context.scene.frame_set(int(frame))
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    for item in bpy.data.objects:
-        if item.type == "MESH":
-            mesh = item.evaluated_get(depsgraph).data
-            shown[f"{file} {item.name}"] = [vertex.co.z for vertex in mesh.vertices]
-print("shown", json.dumps(shown), flush=True)
-"""
-
-
-def seen_without_the_extension(folder, frame, *files):
-    """Heights by file and object, as a new Blender without the extension shows them."""
-    script = folder / "shown.py"
-    script.write_text(SHOWN)
-    start = [sys.executable, script]
-    if "OCEAN_TWEAK_ZIP" in os.environ:
-        start = [bpy.app.binary_path, "--factory-startup", "--background", "--python", script]
-    command = [*start, "--", *files, frame]
-    answer = subprocess.run(
-        [str(word) for word in command], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120
-    )
-    lines = [line for line in answer.stdout.splitlines() if line.startswith("shown ")]
-    assert lines, answer.stdout + answer.stderr
-    return json.loads(lines[0].removeprefix("shown "))
 
 
 @pytest.fixture
@@ -87,10 +52,11 @@ def test_a_moved_copied_or_linked_project_shows_its_bake(
     desk.rename(moved)
     link.symlink_to(copy, target_is_directory=True)
     heights = expected(make_parameters(), 2)[..., 2].ravel()
-    shown = seen_without_the_extension(tmp_path, 2, *(place / "shot.blend" for place in (copy, moved, link)))
-    assert len(shown) == 3 * 2
+    shown = heights_without_extension(tmp_path, [place / "shot.blend" for place in (copy, moved, link)], (2,))
+    assert len(shown) == 3
     for place, seen in shown.items():
-        np.testing.assert_allclose(seen, heights, atol=TOLERANCE, err_msg=place)
+        for name in ("Nodes", "Displace"):
+            np.testing.assert_allclose(seen[name][2], heights, atol=TOLERANCE, err_msg=f"{place} {name}")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Oceans that a shot overrides from an asset file: what the shot does with them is there when it opens."""
+
+import bpy
+import numpy as np
+import pytest
+
+from .without_extension import heights_without_extension
+
+TOLERANCE = 2e-3  # m; images keep 2⁻¹⁶ of their values
+METHODS = ("NODES", "DISPLACE")
+
+
+@pytest.fixture
+def asset(empty_scene, ocean_object, make_parameters, tmp_path, monkeypatch):
+    """A file with an ocean of each method in one collection."""
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    water = bpy.data.collections.new("Water")
+    empty_scene.collection.children.link(water)
+    for method in METHODS:
+        item = ocean_object.add(empty_scene, make_parameters(), method, name=method, collection=water)
+        item.ocean_tweak.use_foam = item.ocean_tweak.use_velocity = item.ocean_tweak.use_normals = False
+    path = tmp_path / "asset.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+@pytest.fixture
+def shot(asset, tmp_path):
+    """A file that overrides them."""
+    bpy.ops.wm.read_homefile(use_empty=True)
+    path = tmp_path / "shots" / "shot.blend"
+    path.parent.mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 3
+    override_all(asset)
+    return path
+
+
+def override_all(asset):
+    with bpy.data.libraries.load(str(asset), link=True) as (_, wanted):
+        wanted.collections = ["Water"]
+    wanted.collections[0].override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
+
+
+def overrides():
+    return {item.name: item for item in bpy.data.objects if item.override_library and item.type == "MESH"}
+
+
+def bake_all():
+    for item in overrides().values():
+        bpy.context.view_layer.objects.active = item
+        assert bpy.ops.ocean.bake() == {"FINISHED"}
+
+
+def open_again(path):
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+
+
+def check(expected, evaluated, sea, frames=(1, 3)):
+    """All of them are where this sea is."""
+    assert overrides() or bpy.data.objects["NODES"]
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        for name, item in overrides().items():
+            np.testing.assert_allclose(
+                evaluated(item), expected(sea, frame), atol=TOLERANCE, err_msg=f"{name}, frame {frame}"
+            )
+
+
+def test_baked_overrides_keep_their_bakes(asset, shot, expected, evaluated, make_parameters, tmp_path):
+    override_all(asset)
+    assert len(overrides()) == 2 * len(METHODS)
+    bake_all()
+    assert len(list((shot.parent / "cache").glob("*/v*"))) == 4
+    open_again(shot)
+    assert {item.ocean_tweak.source for item in overrides().values()} == {"SEQUENCE"}
+    check(expected, evaluated, make_parameters())
+    heights = heights_without_extension(tmp_path, [shot], (3,))[str(shot)]
+    assert set(heights) == set(overrides())
+    for name, seen in heights.items():
+        wanted = expected(make_parameters(), 3)[..., 2].ravel()
+        np.testing.assert_allclose(seen[3], wanted, atol=TOLERANCE, err_msg=name)
+
+
+def test_an_override_that_is_live_again_or_local_moves(shot, expected, evaluated, make_parameters):
+    bake_all()
+    open_again(shot)
+    for item in overrides().values():
+        item.ocean_tweak.source = "LIVE"
+    open_again(shot)
+    check(expected, evaluated, make_parameters(), (2, 9))
+    bake_all()
+    names = list(overrides())
+    for item in overrides().values():
+        item.make_local()
+    for frame in (1, 3):
+        bpy.context.scene.frame_set(frame)
+        for name in names:
+            item = bpy.data.objects[name]
+            assert item.override_library is None
+            item.ocean_tweak.out_of_range = "HOLD"  # all modifiers are made anew
+            wanted = expected(make_parameters(), frame)
+            np.testing.assert_allclose(evaluated(item), wanted, atol=TOLERANCE, err_msg=name)
+
+
+def test_a_changed_asset_leaves_the_bake(asset, shot, expected, evaluated, make_parameters, ocean_object):
+    """The shot is brought into step with an asset that has more in it, and whose oceans changed."""
+    bake_all()
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=str(asset))
+    water, scene = bpy.data.collections["Water"], bpy.context.scene
+    for name in METHODS:
+        item = bpy.data.objects[name]
+        item.ocean_tweak.choppiness = 0.2
+        item.modifiers.new("Subdivide", "SUBSURF").levels = 0
+    buoy = bpy.data.objects.new("Buoy", None)
+    water.objects.link(buoy)
+    buoy.parent = bpy.data.objects["NODES"]
+    scene.frame_set(2)
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=str(shot))
+    assert any(item.name.startswith("Buoy") and item.override_library for item in bpy.data.objects)
+    check(expected, evaluated, make_parameters())
+
+
+def test_a_linked_bake_is_shown_with_its_library_wherever_both_go(
+    asset, expected, evaluated, make_parameters, tmp_path
+):
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 2
+    for method in METHODS:
+        bpy.context.view_layer.objects.active = bpy.data.objects[method]
+        assert bpy.ops.ocean.bake() == {"FINISHED"}
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.read_homefile(use_empty=True)
+    (tmp_path / "shots").mkdir()
+    file = tmp_path / "shots" / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    with bpy.data.libraries.load(str(asset), link=True, relative=True) as (_, wanted):
+        wanted.collections = ["Water"]
+    bpy.context.scene.collection.children.link(wanted.collections[0])
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.read_homefile(use_empty=True)
+    farm = tmp_path / "farm"
+    farm.mkdir()
+    for name in ("asset.blend", "cache", "shots"):
+        (tmp_path / name).rename(farm / name)
+    bpy.ops.wm.open_mainfile(filepath=str(farm / "shots" / "shot.blend"))
+    bpy.context.scene.frame_set(2)
+    for method in METHODS:
+        item = bpy.data.objects[method]
+        assert item.library is not None
+        assert item.ocean_tweak.missing_file == ""
+        np.testing.assert_allclose(evaluated(item), expected(make_parameters(), 2), atol=TOLERANCE)
