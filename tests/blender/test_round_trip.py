@@ -163,3 +163,12 @@ def test_ranges_and_units_of_the_core_reach_the_panel(settings, core):
     assert (shown["domain_size"].unit, layer["wind_speed"].unit) == ("LENGTH", "VELOCITY")
     assert layer["wind_direction"].subtype == "ANGLE"
     assert shown["resolution"].hard_max == 8192
+
+
+@pytest.mark.parametrize(
+    ("stretch", "old", "new"),
+    [("2", 100, 200), ("1/3", 99, 33), ("900", 1, 900), ("7/900", 900, 7), ("1000", 1, 900), ("1", 100, 100)],
+)
+def test_time_stretching_is_exact_where_blender_can_hold_it(extension, empty_scene, stretch, old, new):
+    extension("scene.units").set_time_stretch(empty_scene, Fraction(stretch))
+    assert (empty_scene.render.frame_map_old, empty_scene.render.frame_map_new) == (old, new)

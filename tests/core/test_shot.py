@@ -160,3 +160,16 @@ def test_a_change_elsewhere_leaves_a_frame_alone(shot: Shot) -> None:
     assert frame_fingerprint(changed, 11) == frame_fingerprint(shot, 11)
     assert frame_fingerprint(changed, 12) != frame_fingerprint(shot, 12)
     assert shot_fingerprint(changed) != shot_fingerprint(shot)
+
+
+def test_a_stretched_shot_is_slower_and_says_so_only_where_it_is() -> None:
+    timing = Timing(fps=Fraction(24), start_frame=11, stretch=Fraction(3))
+    stretched = Shot(SEA.replace(timing=timing))
+    # frame 36 of the shot is frame 12 of its animation
+    assert stretched.at(36).time == Fraction(1, 24)
+    assert stretched.at(36).rate == pytest.approx(1 / 3)
+    assert timing.frame(1 / 24) == pytest.approx(36)
+    assert stretched.to_dict()["timing"]["stretch"] == 3
+    assert Shot.from_json(stretched.to_json()) == stretched
+    # the hash of a shot without one is what it was before there were such
+    assert "stretch" not in Shot(SEA).to_dict()["timing"]
