@@ -11,7 +11,10 @@ from pathlib import Path
 from .project import ROOT
 
 BIN = Path(sys.executable).parent
-CHECKS = (("ruff", "format", "--check"), ("ruff", "check"), ("mypy",), ("lint-imports",))
+CHECKS = (
+    ("ruff", "format", "--check"), ("ruff", "check"), ("mypy",), ("lint-imports",),
+    ("python", "-m", "tools.unused"),
+)  # fmt: skip
 FIXES = (("ruff", "format"), ("ruff", "check", "--fix"))
 
 

@@ -124,8 +124,3 @@ def _sides(layer: DirectionalSpectrum, edge: float, corner: float) -> float:
     kx, ky = (k[:, np.newaxis, np.newaxis] * part for part in (np.cos(theta), np.sin(theta)))
     along_arcs = np.sum(layer.density(kx, ky) * arc_weight, axis=(1, 2)) * half_width
     return float(np.sum(along_arcs * k**3 * radial_weight))
-
-
-def roughness(slope_variance: float) -> float:
-    """Blender's roughness of a surface with this mean square slope: the square root of alpha, 0…1."""
-    return float(min(max(slope_variance, 0.0) ** 0.25, 1.0))

@@ -27,13 +27,6 @@ class Shading:
         self.tree = tree
         self._count = 0
 
-    @classmethod
-    def on(cls, tree: bpy.types.NodeTree) -> Shading:
-        """To add to the nodes that a tree has."""
-        result = cls.__new__(cls)
-        result.tree, result._count = tree, len(tree.nodes)
-        return result
-
     def interface(self, outputs: Iterable[Plug], panels: Iterable[Panel]) -> bpy.types.Node:
         """Give a group its sockets; returns the node that holds its inputs."""
         for plug in outputs:

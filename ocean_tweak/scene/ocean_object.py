@@ -18,7 +18,7 @@ from .modifiers import Textures
 from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
 from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
 
-__all__ = ["EXPECTED_ERRORS", "add", "end", "refresh", "refresh_and_tell", "use_live", "use_sequence"]
+__all__ = ["EXPECTED_ERRORS", "add", "end", "refresh", "refresh_and_tell", "use_sequence"]
 
 _log = logging.getLogger(__name__)
 
@@ -90,14 +90,6 @@ def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: Image
     for image in before - _sequence_images(settings):
         if image.users == image.use_fake_user and image.library is None:  # of a bake that nobody shows now
             bpy.data.images.remove(image)
-
-
-def use_live(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Let the ocean be computed on every frame."""
-    settings = settings_of(item)
-    with settings.quiet():
-        settings.source = "LIVE"
-    refresh(item, scene)
 
 
 def end(item: bpy.types.Object) -> None:

@@ -14,7 +14,6 @@ import bpy
 from ..core import OceanParameters
 from ..core.foam_threshold import foam_wind
 from ..core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
-from ..nodes.names import TEXTURE_COORDINATES
 from ..nodes.shading import Shading
 from ..nodes.versioned import is_stale, node_group
 from ..nodes.water import WATER
@@ -139,11 +138,6 @@ def water_material(water: str = "OCEANIC") -> bpy.types.Material:
     return material
 
 
-def is_water(material: bpy.types.Material | None) -> bool:
-    """Whether a material was made here."""
-    return material is not None and _KEY in material
-
-
 def renew(material: bpy.types.Material) -> None:
     """Give a material this version of the group; its inputs keep their values by name."""
     for node in material.node_tree.nodes:
@@ -168,25 +162,6 @@ def set_air(material: bpy.types.Material, visibility: float, haze: tuple[float, 
 
 def _group(material: bpy.types.Material) -> bpy.types.Node:
     return next(node for node in material.node_tree.nodes if node.type == "GROUP")
-
-
-def use_normal_image(
-    material: bpy.types.Material, image: bpy.types.Image, frames: tuple[int, int] | None = None
-) -> None:
-    """Let an image of normals, as the normal files hold them, shade waves finer than the mesh.
-
-    frames : first and last file of a sequence
-    """
-    shade = Shading.on(material.node_tree)
-    group = _group(material)
-    vector = shade.attribute(TEXTURE_COORDINATES).outputs["Vector"]
-    texture = shade.node("ShaderNodeTexImage", {"Vector": vector}, image=image, extension="REPEAT")
-    if frames is not None:
-        first, last = frames
-        user = texture.image_user
-        user.frame_start, user.frame_offset, user.frame_duration = first, first - 1, last - first + 1
-        user.use_auto_refresh = True
-    material.node_tree.links.new(texture.outputs[0], group.inputs["Normal Map"])
 
 
 def _fill(material: bpy.types.Material, values: Mapping[str, object]) -> None:

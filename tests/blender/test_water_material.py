@@ -169,12 +169,16 @@ def test_haze_hides_far_water(inputs, seen):
     np.testing.assert_allclose(seen(), 0.98 * np.array([0.5, 0.25, 0.0]) + 0.02 * bare, atol=2e-3)
 
 
-def test_a_normal_image_turns_the_surface(inputs, sea, water, seen):
+def test_a_normal_image_turns_the_surface(inputs, sea, seen):
     """Tilted away by 15°, water seen at 45° reflects as at 60°."""
     tilted = bpy.data.images.new("Normals", 4, 4, float_buffer=True, is_data=True)
     normal = (0.0, math.sin(math.radians(15.0)), math.cos(math.radians(15.0)), 1.0)
     tilted.pixels.foreach_set(np.tile(np.array(normal, np.float32), 16))
-    water.use_normal_image(sea.active_material, tilted)
+    tree = sea.active_material.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = tilted
+    group = next(node for node in tree.nodes if node.type == "GROUP")
+    tree.links.new(texture.outputs[0], group.inputs["Normal Map"])
     assert seen(45.0)[0] == pytest.approx(fresnel(60.0), rel=0.04)
 
 

@@ -18,8 +18,8 @@ from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.wave_particles.bounds import most_particles
 from ocean_tweak.core.wave_particles.convolution import deposit
-from ocean_tweak.core.wave_particles.stamping import stamp
 from ocean_tweak.core.wave_particles.wind_waves import WindWaves
+from tests.core.stamping import stamp
 from tests.core.wind_seas import FLAT, LONE, OUTPUTS, G, keyed, particles, random_wind, sea
 
 Array = NDArray[np.float64]

@@ -9,7 +9,6 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.unresolved_slopes import (
     capillary_limit,
-    roughness,
     total_slope_variance,
     unresolved_slope_variance,
 )
@@ -77,9 +76,3 @@ def test_ends():
     assert unresolved_slope_variance(muted) == total_slope_variance(muted) == 0.0
     cut = wind_sea(layers=(WaveLayer(shortest_wavelength=20.0),))
     assert unresolved_slope_variance(cut) == 0.0
-
-
-def test_roughness_is_the_root_of_alpha():
-    """alpha² is the mean square slope: 0.0256 is alpha 0.16, which Blender calls a roughness of 0.4."""
-    assert roughness(0.0256) == pytest.approx(0.4)
-    assert (roughness(-1.0), roughness(0.0), roughness(9.0)) == (0.0, 0.0, 1.0)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..grid import WaveVectorGrid
 from ..splines import spline_weights
-from .shape import RadiusClasses, bump
+from .shape import bump
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
@@ -153,8 +153,3 @@ def along_x(values: Array, dtype: type) -> ComplexArray:
         else:
             result[block] = np.fft.rfft(values[block], axis=-1)
     return result
-
-
-def radii_of(classes: RadiusClasses) -> tuple[float, ...]:
-    """The radii as numbers that a cache can hold."""
-    return tuple(float(radius) for radius in classes.radii)
