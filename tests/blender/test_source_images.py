@@ -132,7 +132,7 @@ def test_channels_of_an_exr_are_chosen_by_name(ocean, picture, wind, extension, 
     picture.image = image
     assert "wind_fields.0.image = 'a.exr': must have 2 channels, but has 1" in ocean.ocean_tweak.error
     wind.image_channels, picture.image_channels = "gust", "depth.X"
-    assert "no channel or layer depth.X, it has R, depth.Z, gust.u, gust.v" in ocean.ocean_tweak.error
+    assert "no channel or layer depth.X; it has R, depth.Z, gust.u, gust.v" in ocean.ocean_tweak.error
     picture.image_channels = "depth.Z"
     assert ocean.ocean_tweak.error == ""
     sea = sea_of(ocean)

@@ -176,7 +176,7 @@ def test_channels_of_an_exr_are_chosen_by_name(
 @pytest.mark.parametrize(
     ("names", "count", "told"),
     [
-        ("A", 1, "no channel or layer A, it has G, R, Z, gust.u, gust.v, mask.R"),
+        ("A", 1, "no channel or layer A; it has G, R, Z, gust.u, gust.v, mask.R"),
         ("Z", 2, "must have 2 channels, but has 1"),
         ("", 1, "has 2 channels of which one is wanted"),
         ("gust", 1, "has 2 channels of which one is wanted"),

@@ -10,6 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.printable import printable
 from ...core.raster import MOST_CHANNELS
 from .checks import UnusableError, check_size
 
@@ -48,7 +49,7 @@ def read_array(stream: BinaryIO, channels: int | None, axes: str) -> NDArray[Any
     if len(shape) not in (2, 3):
         raise UnusableError("must be an array [y, x] or [y, x, channel]")
     if dtype.kind not in "biuf":
-        raise UnusableError(f"must hold numbers, not {str(dtype)[:40]}")
+        raise UnusableError(f"must hold numbers, not {printable(dtype, 40)}")
     order = axes or ("yx" if len(shape) == 2 else "")
     if order and len(order) != len(shape):
         raise UnusableError(f"has {len(shape)} axes, not {order}")

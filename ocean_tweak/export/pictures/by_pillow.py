@@ -13,6 +13,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.printable import printable
 from ..exr import silenced
 from . import tiff
 from .checks import UnusableError, check_size
@@ -66,8 +67,8 @@ def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
         OSError, ValueError, SyntaxError, EOFError, IndexError, KeyError, TypeError, AttributeError,
         ZeroDivisionError, OverflowError, AssertionError, RuntimeError, struct.error, zlib.error,
     ) as error:  # fmt: skip
-        reason = getattr(error, "strerror", None) or " ".join(str(error).split())[:120]
-        raise UnusableError(f"cannot be read: {reason or type(error).__name__}") from None
+        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        raise UnusableError(f"cannot be read: {printable(reason, 120)}") from None
 
 
 def _numbers(stream: BinaryIO, kind: int, bits: int) -> NDArray[Any]:
@@ -76,8 +77,8 @@ def _numbers(stream: BinaryIO, kind: int, bits: int) -> NDArray[Any]:
         mode, raw = picture.mode, _raw_mode(picture)
         if ";16" in raw and not mode.startswith("I"):
             return _of_16_bits(stream, raw)
-        if raw in ("RGBa", "La"):  # the numbers as they stand in the file, not divided by transparency
-            _set_raw_mode(picture, raw.upper())
+        if raw == "RGBa":  # the numbers as they stand in the file, not divided by transparency
+            _set_raw_mode(picture, "RGBA")
         if mode == "F":
             return np.asarray(picture, np.float32)
         if mode.startswith("I"):

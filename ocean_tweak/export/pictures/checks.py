@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
+from ...core.printable import printable
 from ...core.raster import LARGEST_SIDE
 from ..files import open_file
 
@@ -36,6 +37,6 @@ def check_size(rows: int, columns: int) -> None:
 def listed(names: Iterable[str]) -> str:
     """Names that a file gives, as a list that a line can hold."""
     names = tuple(names)
-    shown = [name if len(name) <= 40 and name.isprintable() else repr(name[:40]) for name in names[:24]]
+    shown = [printable(name, 40) for name in names[:24]]
     more = [f"{len(names) - len(shown)} more"] if len(names) > len(shown) else []
     return ", ".join(shown + more) or "none"

@@ -15,6 +15,7 @@ from typing import Any, BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.printable import printable
 from ..exr import MOST_NUMBERS, ExrError, load_openexr, silenced
 from .checks import UnusableError, check_size, listed
 
@@ -103,7 +104,7 @@ def _file(stream: BinaryIO, **options: bool) -> Iterator[Any]:
     except UnusableError:
         raise
     except _DAMAGED as error:
-        raise UnusableError(f"is not a readable EXR image: {' '.join(str(error).split())[:120]}") from None
+        raise UnusableError(f"is not a readable EXR image: {printable(error, 120)}") from None
 
 
 def _measured(stream: BinaryIO) -> tuple[dict[str, tuple[int, str]], _Window]:
@@ -153,7 +154,7 @@ def _chosen(labels: Sequence[str] | dict[str, Any], names: str, channels: int | 
         if layer and channels == len(inside) == 1:
             return [layer + inside[0]]
     what = f"no channel or layer {listed([names])}" if names else "no channels R, G, B or Y"
-    raise UnusableError(f'must be told its channels, by "channels": it has {what}, it has {listed(labels)}')
+    raise UnusableError(f'has {what}; it has {listed(labels)}: name those that are meant, by "channels"')
 
 
 def _placed(pixels: NDArray[np.float32], data: _Window, display: _Window) -> NDArray[np.float32]:
