@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import stat
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -129,5 +130,6 @@ def _version(folder: Path) -> Version:
     for path in folder.rglob("*"):
         with suppress(OSError):  # what goes meanwhile takes no room
             found = path.lstat()
-            size, time = size + found.st_size, max(time, found.st_mtime)
+            size += found.st_size if stat.S_ISREG(found.st_mode) else 0
+            time = max(time, found.st_mtime)
     return Version(folder, len(recorded_frames(folder)), size, time)

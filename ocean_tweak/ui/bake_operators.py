@@ -121,7 +121,11 @@ class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask first."""
-        what = self.version or "all bakes of this ocean that are not shown"
+        listing = bake_versions.known(context.active_object)
+        frames = {version.folder.name: version.frames for version in listing.versions} if listing else {}
+        what = f"{self.version}, frames: {frames.get(self.version, 0)}"
+        if not self.version:
+            what = translated("All bakes of this ocean that are not shown")
         return context.window_manager.invoke_confirm(
             self, event, title=translated("Delete from the disk?"), message=what, icon="WARNING"
         )

@@ -11,8 +11,9 @@ from ..scene import alarm
 
 _FONT = 0  # Blender's own
 _SIZE, _LINE, _MARGIN = 13.0, 18.0, 14.0  # pixels, at a scale of 1
+_BELOW_TOP = 75.0  # Blender's own text about the view stands above
 _LETTER = 0.55  # width of a letter over the size of the font
-_COLOUR, _SHADOW = (1.0, 0.35, 0.25, 1.0), (0.0, 0.0, 0.0, 0.8)
+_COLOUR, _SHADOW = (1.0, 0.5, 0.4, 1.0), (0.0, 0.0, 0.0, 0.8)
 
 # what Blender gave for the drawing, needed to take it back
 _handles: list[object] = []
@@ -39,11 +40,11 @@ def lines(width: float) -> list[str]:
 def _draw() -> None:
     area, region = bpy.context.area, bpy.context.region
     scale = bpy.context.preferences.system.ui_scale
-    # the toolbar and the sidebar lie over the view
-    beside = {"TOOLS": 0, "UI": 0}
-    beside |= {part.type: part.width for part in area.regions if part.type in beside}
-    free = region.width - sum(beside.values())
-    written = lines(free / scale)
+    # bars lie over the view
+    beside = {part.type: part for part in area.regions}
+    left, right = (beside[kind].width if kind in beside else 0 for kind in ("TOOLS", "UI"))
+    bars = sum(beside[kind].height for kind in ("HEADER", "TOOL_HEADER") if kind in beside)
+    written = lines((region.width - left - right) / scale)
     if not written:
         return
     import blf
@@ -52,7 +53,8 @@ def _draw() -> None:
     blf.color(_FONT, *_COLOUR)
     blf.enable(_FONT, blf.SHADOW)
     blf.shadow(_FONT, 3, *_SHADOW)
-    for index, line in enumerate(reversed(written)):
-        blf.position(_FONT, beside["TOOLS"] + _MARGIN * scale, (_MARGIN + index * _LINE) * scale, 0.0)
+    top = region.height - bars - _BELOW_TOP * scale
+    for index, line in enumerate(written):
+        blf.position(_FONT, left + _MARGIN * scale, top - index * _LINE * scale, 0.0)
         blf.draw(_FONT, line)
     blf.disable(_FONT, blf.SHADOW)

@@ -47,6 +47,27 @@ def test_frames_beyond_the_baked_ones_are_told_or_not(item, draw, empty_scene): 
     np.testing.assert_allclose(vertices(item), held, atol=1e-6)
 
 
+def test_what_is_wrong_stands_over_the_view_and_on_the_console(item, baked, extension, empty_scene, caplog):
+    written = extension("ui.error_overlay").lines
+    empty_scene.frame_set(11)
+    assert written(600.0) == []
+    baked.path(13).unlink()
+    for _ in range(2):  # the console hears it once
+        empty_scene.frame_set(13)
+    text = f"sea_disp.0013.exr is missing: bake it again or choose other files. Looked in {baked.directory}"
+    assert " ".join(written(2000.0)) == f"{item.name}: {text}"
+    assert max(map(len, written(300.0))) < 45
+    assert [record.message for record in caplog.records] == [f"{item.name}, frame 13: {text}"]
+    empty_scene.frame_set(12)
+    assert written(600.0) == []
+    item.ocean_tweak.source = "LIVE"
+    item.ocean_tweak.resolution = 33
+    (line,) = written(2000.0)
+    assert "resolution = 33: must be an even number" in line
+    item.ocean_tweak.resolution = 32
+    assert written(2000.0) == []
+
+
 def test_a_missing_file_is_told(item, baked, draw, empty_scene):  # noqa: F811
     baked.path(13).unlink()
     empty_scene.frame_set(11)

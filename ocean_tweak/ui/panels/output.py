@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Baking, and which of live and baked is shown."""
 
+import time
 from datetime import datetime
 
 import bpy
@@ -112,9 +113,10 @@ def _takes(to_come: Estimate, frames: int) -> str:
 
 def _version(layout: bpy.types.UILayout, version: bake_versions.Version, is_shown: bool) -> None:
     line = layout.row(align=True)
-    day = datetime.fromtimestamp(version.time).strftime("%Y-%m-%d %H:%M")
-    count = translated("1 frame") if version.frames == 1 else translated("{} frames").format(version.frames)
-    text = f"{version.folder.name}  {count}, {readable_bytes(version.bytes)}, {day}"
+    # as the artist's clock shows it
+    changed, now = (datetime.fromtimestamp(moment) for moment in (version.time, time.time()))
+    day = changed.strftime("%m-%d %H:%M" if changed.year == now.year else "%Y-%m-%d")
+    text = f"{version.folder.name.partition('-')[0]}  {readable_bytes(version.bytes)}, {day}"
     line.label(text=text, icon="CHECKMARK" if is_shown else "BLANK1", translate=False)
     if not is_shown:
         delete = line.operator(bake_operators.OCEAN_OT_delete_bake.bl_idname, text="", icon="TRASH")

@@ -109,7 +109,7 @@ def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
             f"; {more} more" if more > 0 else ""
         )
         message(layout, context, text, alert=True)
-        buttons = layout.row(align=True)
+        buttons = layout.column(align=True)
         buttons.operator(bake_operators.OCEAN_OT_bake.bl_idname, text="Bake Again", icon="RENDER_ANIMATION")
         buttons.operator(sequence_operators.OCEAN_OT_settings_from_bake.bl_idname, icon="LOOP_BACK")
 
@@ -203,7 +203,7 @@ def _baked_rows(scene: bpy.types.Scene, baked: dict[str, Any]) -> list[tuple[str
         ("Choppiness", f"{baked['choppiness']:.3g}"),
         ("Depth", length_text(scene, baked["water"]["depth"])),
         ("Seed", str(baked["seed"])),
-        ("Domain", f"{length_text(scene, baked['domain_size'])}, {baked['resolution']}²"),
+        ("Size", f"{length_text(scene, baked['domain_size'])}, {baked['resolution']}²"),
     ]
 
 
