@@ -19,7 +19,8 @@ from ..core.printable import printable
 from ..core.shot import Shot
 from ..export.files import LARGEST_JSON, read_bytes
 from ..export.pictures import with_pictures
-from ..export.usd import reading
+from ..export.usd import apart
+from ..export.usd.reading import SUFFIXES
 from .outcome import UsageError
 
 
@@ -66,8 +67,8 @@ def _file_sea_name(path: Path | None) -> str:
 def _file_shot(path: Path | None) -> Shot:
     if path is None:
         return Shot(OceanParameters())
-    if path.suffix in reading.SUFFIXES:
-        return reading.shot_of(path)
+    if path.suffix in SUFFIXES:
+        return apart.read_package(path)[1].shot
     try:
         text = _text_of(path)
     except UnicodeDecodeError as error:

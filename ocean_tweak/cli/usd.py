@@ -17,9 +17,9 @@ from ..core.shot import Shot
 from ..export.cache.estimate import readable_bytes
 from ..export.cache.job import read_job
 from ..export.cache.records import recorded_frames
+from ..export.usd.apart import problems_of
 from ..export.usd.export import Export
 from ..export.usd.package import Package, with_samples_between
-from ..export.usd.verify import verify as problems_of
 from .outcome import DONE, FAILED, UsageError
 from .progress import Progress
 from .seas import SceneOceans, chosen_seas

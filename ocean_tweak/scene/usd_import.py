@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from ..export.usd.reading import read_package
+from ..export.usd.apart import read_package
 from . import ocean_object
 from .settings import VIEWPORT_RESOLUTION
 from .shots import animate

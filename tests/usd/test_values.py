@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pxr import Kind, Sdf, Usd, UsdGeom, UsdShade
 
-from ocean_tweak.export.usd.reading import shot_of
+from ocean_tweak.export.usd.reading import read_package
 
 from .conftest import FORMS, SAMPLES, SIZE, expected, shot, turned, value, write
 
@@ -108,7 +108,7 @@ def test_layer_tree(exported, form):
         for other in layer.GetCompositionAssetDependencies():
             assert other.startswith("./")
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (1001.0, 1004.0)
-    assert shot_of(path) == shot()
+    assert read_package(path)[1].shot == shot()
     assert root.GetCustomDataByKey("ocean_tweak:form") == form
 
 

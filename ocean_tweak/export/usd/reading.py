@@ -8,7 +8,6 @@ from typing import Any
 
 from ...core import ParameterError
 from ...core.printable import printable
-from ...core.shot import Shot
 from .layers import MARK, UNREADABLE, named_errors
 from .library import UsdError, pxr
 from .package import Package
@@ -16,16 +15,11 @@ from .package import Package
 SUFFIXES = (".usd", ".usda", ".usdc")
 
 
-def shot_of(path: Path) -> Shot:
-    """The shot in a layer of ours, or in one that brings a single asset of ours.
+def read_package(path: Path) -> tuple[str, Package]:
+    """Of our layer, or one that brings a single asset of ours: the path of its prim and what was exported.
 
     Raises UsdError for a layer that cannot be read or holds no sea, or several.
     """
-    return read_package(path)[1].shot
-
-
-def read_package(path: Path) -> tuple[str, Package]:
-    """The path of the asset's prim and what was exported. Raises UsdError like `shot_of`."""
     modules = pxr()
     if not path.is_file():
         raise UsdError(f"{path}: there is no such file")
