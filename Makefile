@@ -36,7 +36,7 @@ guide:      ## follow docs/first-sea.md in a real Blender's window, and renew it
 	@$(PYTHON) -m tools.setup
 	@$(VENV) -m tools.guide
 
-mutate:     ## change each physical constant by 2 % and see which test notices (minutes; not part of `test`)
+mutate:     ## change constants, formulas and operators of the core and see which test notices (not part of `test`)
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.mutate
 

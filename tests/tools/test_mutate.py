@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a constant is found in a source and changed there."""
+"""What is changed in a source, and what is not."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from tools import mutate
-from tools.project import ToolError
+from tools import mutants, mutate
+from tools.project import ROOT, ToolError
 
 SOURCE = '''"""α, a module."""
 FIRST = 9.81  # m/s²
@@ -19,7 +22,7 @@ def function():
 
 
 def test_every_number_at_the_top_is_found() -> None:
-    found = mutate.constants(SOURCE)
+    found = mutants.constants(SOURCE)
     assert [(constant.name, constant.value) for constant in found] == [
         ("FIRST", 9.81),
         ("SECOND", -2.5),
@@ -36,17 +39,55 @@ def test_every_number_at_the_top_is_found() -> None:
     ],
 )
 def test_only_the_one_number_changes(index: int, before: str, after: str) -> None:
-    constant = mutate.constants(SOURCE)[index]
-    assert mutate.changed(SOURCE, constant) == SOURCE.replace(before, after)
+    constant = mutants.constants(SOURCE)[index]
+    assert mutants.changed(SOURCE, constant) == SOURCE.replace(before, after)
 
 
 def test_what_is_no_number_on_one_line_is_refused() -> None:
     with pytest.raises(ToolError, match="line 2"):
-        mutate.constants("\nA = (1.0,\n2.0)\n")
+        mutants.constants("\nA = (1.0,\n2.0)\n")
 
 
 def test_unknown_names_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:
-        mutate.main(["GRAVITIY"])
+        mutate.main(["--kinds", "constants", "--only", "GRAVITIY"])
     assert end.value.code == 2
     assert "GRAVITIY" in capsys.readouterr().err
+
+
+def test_formulas_are_those_of_the_document_and_return_more() -> None:
+    found = {mutant.name: mutant for mutant in mutants.of_formulas(ROOT)}
+    assert len(found) > 60
+    mutant = found["formula spectra.jonswap x 1.05"]
+    assert "test_spectra.py::test_jonswap_parameters" in mutant.tests
+    source = (ROOT / mutant.path).read_text(encoding="utf-8").splitlines()
+    added = [line for line in mutant.source.splitlines() if line not in source]
+    assert len(added) == 1
+    assert mutant.source.splitlines().index(added[0]) + 1 == mutant.source.splitlines().index("def jonswap(")
+    namespace: dict = {}
+    exec(mutants.LARGER_SOURCE, namespace)
+    array, pair = np.ones(3, np.float32), namespace["larger"](lambda: (2.0, np.arange(3)))()
+    namespace["larger"](lambda out: None)(array)
+    np.testing.assert_allclose(array, 1.05)
+    assert array.dtype == np.float32
+    assert pair[0] == pytest.approx(2.1)
+    assert pair[1].tolist() == [0, 1, 2]
+
+
+def test_operators_bounds_and_functions_are_taken_for_their_neighbours(tmp_path: Path) -> None:
+    folder = tmp_path / mutants.CORE
+    folder.mkdir(parents=True)
+    (folder / "one.py").write_text("def f(a, b):\n    return max(a - 2.0 * b, 0.0) if a < b else 'α' + a\n")
+    found = {mutant.source.splitlines()[1].strip() for mutant in mutants.of_structure(tmp_path, 100, 0)}
+    assert found == {
+        "return min(a - 2.0 * b, 0.0) if a < b else 'α' + a",
+        "return max(a + 2.0 * b, 0.0) if a < b else 'α' + a",
+        "return max(a - 2.0 / b, 0.0) if a < b else 'α' + a",
+        "return max(a - 2.0 * b, 0.0) if a <= b else 'α' + a",
+        "return max(a - 2.0 * b, 0.0) if a < b else 'α' - a",
+    }
+    assert len(list(mutants.of_structure(tmp_path, 2, 1))) == 2
+
+
+def test_what_is_named_is_there() -> None:
+    assert len(list(mutants.of_names(ROOT))) == len(mutants.NAMED)
