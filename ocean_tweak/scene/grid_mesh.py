@@ -96,6 +96,12 @@ def is_current(mesh: bpy.types.Mesh, grid: Grid) -> bool:
     return bool(mesh.get(_KEY) == grid.tag)
 
 
+def release(mesh: bpy.types.Mesh) -> None:
+    """Let a mesh be no grid of ours: an ocean that shares it gets another one."""
+    if _KEY in mesh:
+        del mesh[_KEY]
+
+
 def fill(mesh: bpy.types.Mesh, grid: Grid) -> None:
     """Make the mesh this grid; materials stay."""
     other_size = str(mesh.get(_KEY)).split()[1:] == grid.tag.split()[1:]

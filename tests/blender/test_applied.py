@@ -84,6 +84,22 @@ def test_the_original_that_convert_keeps_goes_on(live, make_parameters, expected
     assert (live.ocean_tweak.is_ocean, copy.ocean_tweak.is_ocean) == (True, False)
 
 
+@pytest.mark.parametrize("how", ["convert", "apply"])
+def test_a_linked_duplicate_goes_on(live, make_parameters, expected, empty_scene, how):
+    still = vertices(live)
+    assert bpy.ops.object.duplicate(linked=True) == {"FINISHED"}
+    copy = bpy.context.active_object
+    if how == "convert":  # Blender gives the converted mesh to all that share it
+        convert(copy)
+    else:
+        with bpy.context.temp_override(object=copy):
+            bpy.ops.object.modifier_apply(modifier=copy.modifiers[0].name, single_user=True)
+    for frame in (20, 10):
+        empty_scene.frame_set(frame)
+        np.testing.assert_allclose(vertices(copy), still, atol=1e-5)
+        np.testing.assert_allclose(vertices(live), expected(make_parameters(), frame), atol=1e-3)
+
+
 def test_a_finer_render_does_not_bring_the_sea_back(live, rendering, empty_scene):
     live.ocean_tweak.viewport_resolution = 16
     assert len(live.modifiers) > 1
