@@ -48,7 +48,7 @@ class Bake:
         try:
             shot = json.loads((self.folder / "bake.json").read_text(encoding="utf-8"))["shot"]
             self.domain_size = float(shot["domain_size"])
-            self.stretch = Fraction(shot["timing"].get("stretch", 1))
+            self.stretch = Fraction(str(shot["timing"].get("stretch", 1)))  # 0.7 is 7/10
         except (OSError, ValueError, KeyError, TypeError, AttributeError, ZeroDivisionError) as error:
             raise RenderError(f"{self.folder / 'bake.json'} cannot be read: {error!r}") from error
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Time Stretching moves everything alike: live, keyed, baked and floating, as Blender moves its own keys."""
 
+import json
 from fractions import Fraction
 
 import bpy
@@ -159,3 +160,26 @@ def test_a_shot_takes_the_stretch_along(stretched, live, core, make_parameters, 
     assert sea_of(item).timing.stretch == stretch
     scene.frame_set(6)
     np.testing.assert_allclose(vertices(item), expected(make_parameters(), 6 / stretch), atol=2e-3)
+
+
+def test_a_farm_renders_no_bake_of_another_stretch(
+    extension, core, make_parameters, bake, empty_scene, tmp_path
+):
+    render_baked = extension("scene.render_baked")
+    folder = tmp_path / "sea-1" / "v001-0123abcd"
+    folder.mkdir(parents=True)
+    bake(make_parameters(), 1, 2, directory=folder)
+    (folder / "bake.json").write_text(json.dumps({"shot": make_parameters().to_dict()}))
+    baked = render_baked.Bake(tmp_path, "sea-1/0123abcd")
+    baked.check([1, 2])
+    with pytest.raises(render_baked.RenderError, match=r"sea_disp\.0003\.exr is missing"):
+        baked.check([1, 3])
+    empty_scene.render.frame_map_new = 200
+    with pytest.raises(
+        render_baked.RenderError, match=r"Time Stretching, new / old, is 2 in .* and 1 in the"
+    ):
+        baked.check([1, 2])
+    slowed = make_parameters().replace(timing=core.Timing(stretch=Fraction(7, 10)))
+    (folder / "bake.json").write_text(json.dumps({"shot": slowed.to_dict()}))
+    empty_scene.render.frame_map_new = 70
+    render_baked.Bake(tmp_path, "sea-1/0123abcd").check([1, 2])
