@@ -11,6 +11,7 @@ from . import cli
 from .export import logs
 from .scene import asset_library, handlers
 from .scene.cache_place import cache_folder, own_uid
+from .scene.patch_objects import shot_maps
 from .scene.settings import all_oceans
 from .scene.shots import scene_frames, shot_of
 from .ui import (
@@ -77,7 +78,7 @@ def scene_oceans() -> dict[str, cli.Sea]:
             scene = item.users_scene[0]
             frames = scene_frames(scene)
             oceans[item.name] = cli.Sea(
-                shot_of(item, scene, frames), own_uid(item), frames, cache_folder(item)
+                shot_of(item, scene, frames), own_uid(item), frames, cache_folder(item), shot_maps(item)
             )
     return oceans
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from ..core.cascades.plan import Wish
 from ..core.errors import ParameterError
 from ..core.frames import Frame, parse_frames
-from ..export.cache.job import UID
-from ..export.exr import MAPS
+from ..export.cache.job import BAKED, UID
 from ..export.places import path_of
 
 _BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
@@ -52,11 +51,11 @@ def frames(text: str) -> tuple[Frame, ...]:
 
 
 def maps(text: str) -> tuple[str, ...]:
-    """disp,foam: keys of MAPS, each once."""
+    """disp,foam: some of BAKED, each once."""
     names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
-    unknown = [name for name in names if name not in MAPS]
+    unknown = [name for name in names if name not in BAKED]
     if unknown:
-        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(MAPS)}")
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(BAKED)}")
     return names
 
 

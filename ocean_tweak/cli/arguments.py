@@ -8,7 +8,8 @@ from typing import Any
 
 from .. import __version__
 from ..core.presets import built_in
-from ..export.exr import COMPRESSION_ERROR, MAPS
+from ..export.cache.job import BAKED
+from ..export.exr import COMPRESSION_ERROR
 from ..export.places import CACHE_VARIABLE
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS, written
@@ -102,7 +103,7 @@ def _add_files_arguments(parser: _Arguments) -> None:
     """What, beside the sea, decides which files a bake writes."""
     parser.add_argument(
         "--maps", type=argument_values.maps, metavar="LIST", default=("disp",),
-        help=f"what to write, of {','.join(MAPS)}; disp by default",
+        help=f"what to write, of {','.join(BAKED)}; disp by default",
     )  # fmt: skip
     parser.add_argument("--name", help="start of the file names; by default that of the sea")
     parser.add_argument(

@@ -30,12 +30,14 @@ class Sea(NamedTuple):
     uid : tells it from other seas of the same name; None for one that has none of its own
     frames : of the scene
     cache : where the file keeps its baked frames
+    maps : what the file needs of a bake, whatever else is asked for
     """
 
     shot: Shot
     uid: str | None = None
     frames: tuple[Frame, ...] = ()
     cache: Path | None = None
+    maps: tuple[str, ...] = ()
 
     def first_parameters(self) -> OceanParameters:
         """Those of the first frame that is animated, or of all."""

@@ -31,7 +31,9 @@ def _job(arguments: argparse.Namespace, name: str, sea: Sea) -> Job:
         sea.shot.check(frames)
     name = safe_name(arguments.name or name)
     uid = arguments.uid or sea.uid or uid_of(name)
-    return Job(name, uid, sea.shot, arguments.maps, arguments.compression, frames)
+    # no longer needed where --set made it a sea of one patch
+    needed = sea.maps if sea.shot.parameters.patches else ()
+    return Job(name, uid, sea.shot, (*arguments.maps, *needed), arguments.compression, frames)
 
 
 def cache_of(arguments: argparse.Namespace, sea: Sea) -> Path:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cascades.cascade import Cascade
-from .cascades.patch_seas import ADDING
+from .cascades.patch_seas import ADDING, PARTS, parts
 from .fields import FOAM, SurfaceFields
 from .frames import Frame
 from .grid_sea import GridSea
@@ -30,10 +30,10 @@ class FrameSink(Protocol):
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The fields that a frame must have."""
+        """The fields that a frame must have; with PARTS among them, of each part those that add up."""
 
     def write(self, frame: Frame, fields: SurfaceFields, *others: SurfaceFields) -> tuple[Path, ...]:
-        """Keep a frame's fields, those of the first patch and of the others; returns where."""
+        """Keep a frame's fields, those of the first patch, of the others and of the parts; returns where."""
 
 
 class BakedFrame(NamedTuple):
@@ -51,6 +51,8 @@ class ShotSurfaces:
         self.shot = shot
         self._parameters: OceanParameters | None = None
         self._seas: tuple[GridSea, ...] = ()
+        self._parameters_of_parts: OceanParameters | None = None
+        self._parts: tuple[GridSea, ...] = ()
 
     def seas(self, parameters: OceanParameters) -> tuple[GridSea, ...]:
         """The grids of the sea of a moment: the last ones where its parameters are the same.
@@ -64,9 +66,27 @@ class ShotSurfaces:
         return self._seas
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each grid in a frame; velocity is per second of the shot."""
+        """Fields of each grid in a frame, and of each part where PARTS is asked for.
+
+        Velocity is per second of the shot.
+        """
+        own = frozenset(outputs) - {PARTS}
+        made = self._made(frame, self.seas(self.shot.at(frame).parameters), own)
+        return (*made, *self.parts(frame)) if PARTS in outputs else made
+
+    def parts(self, frame: Frame) -> tuple[SurfaceFields, ...]:
+        """Fields of each part of the sea in a frame: ADDING."""
+        parameters = self.shot.at(frame).parameters
+        if self._parameters_of_parts != parameters:
+            self._parts = tuple(grid_sea(part.parameters, workers=1) for part in parts(parameters))
+            self._parameters_of_parts = parameters
+        return self._made(frame, self._parts, ADDING)
+
+    def _made(
+        self, frame: Frame, seas: tuple[GridSea, ...], outputs: frozenset[str]
+    ) -> tuple[SurfaceFields, ...]:
         moment: Moment = self.shot.at(frame)
-        made = tuple(sea.surface(moment.time, outputs) for sea in self.seas(moment.parameters))
+        made = tuple(sea.surface(moment.time, outputs) for sea in seas)
         for fields in made:
             if "velocity" in fields and moment.rate != 1.0:
                 fields.velocity[...] *= moment.rate
@@ -125,8 +145,8 @@ def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:
     """Raise for what cannot be baked, or not on this machine."""
     if parameters.is_cascade and parameters.is_masked:
         raise ValueError("masks: lie over the sea and not over its patches, which repeat; join the patches")
-    if parameters.is_cascade and not sink.outputs <= ADDING:
-        others = ", ".join(sorted(sink.outputs - ADDING))
+    if parameters.is_cascade and not sink.outputs <= {*ADDING, PARTS}:
+        others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS}))
         raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")
     need = memory_need(parameters, sink.outputs).peak(workers)
     check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cascades.patch_seas import joined_bands, parts
+from .cascades.patch_seas import ADDING, PARTS, joined_bands, parts
 from .fields import FOAM, OUTPUTS, memory_groups
 from .noise_synthesis.source import side
 from .parameters import OceanParameters
@@ -51,6 +51,8 @@ def memory_need(
 ) -> MemoryNeed:
     """Bytes that a sea needs for the outputs asked for; one of several patches has all of them at once."""
     outputs = frozenset(outputs)
+    if PARTS in outputs:
+        return _need_with_parts(parameters, outputs - {PARTS}, precision)
     if parameters.is_sum:
         return _need_of_parts(parameters, outputs, precision)
     n = parameters.resolution
@@ -80,6 +82,17 @@ def memory_need(
         building = max(building, 40 * n * n)
         surface += making + (3 if moving else 1) * (8 * n * n + MOST_CLASSES * half_plane * 2 * real)
     return MemoryNeed(state, building, surface)
+
+
+def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
+    """That of the sea and of each of its parts, which are kept beside it."""
+    needs = [memory_need(parameters, outputs, precision)]
+    needs += [memory_need(part.parameters, ADDING, precision) for part in parts(parameters)]
+    return MemoryNeed(
+        sum(need.state for need in needs),
+        max(need.building for need in needs),
+        sum(need.surface for need in needs),
+    )
 
 
 def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:

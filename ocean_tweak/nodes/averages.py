@@ -54,12 +54,16 @@ def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
 
 
 def patch_carried(build: Builder, patch: Socket) -> Socket:
-    """The mesh of one patch of a sea with what is averaged: how it moves, and its strain."""
+    """The mesh of one patch of a sea with what is averaged: how it moves, and its strain.
+
+    Slopes of means have as z what they lack of the slopes' squares.
+    """
     slope, strain = (
         output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in (SLOPE, STRAIN)
     )
-    x, y, _ = coordinates(build, slope)
-    squares = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    x, y, lost = coordinates(build, slope)
+    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    squares = build.math("ADD", held, lost)
     sloped = build.store(patch, SLOPES, combined(build, x, y, squares), "FLOAT_VECTOR")
     return build.store(sloped, OTHERS, strain, "FLOAT_VECTOR")
 

@@ -154,4 +154,4 @@ def _turned_strain(build: Builder, strain: Socket, axis: Socket) -> Socket:
     )
 
 
-CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 1, _build)
+CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 2, _build)

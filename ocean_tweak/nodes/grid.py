@@ -8,18 +8,23 @@ from __future__ import annotations
 
 import bpy
 
-from .building import Builder, Socket, output
+from .absence import ABSENCE
+from .building import Builder, Plug, Socket, output
 from .names import TEXTURE_COORDINATES
-from .versioned import GroupKind
+from .versioned import GroupKind, node_group
 
-#: the inputs besides the geometry: name, socket type, default, description
+#: the inputs besides the geometry
 INPUTS = (
-    ("Size", "NodeSocketFloat", 400.0, "Side of one patch in Blender units"),
-    ("Quads", "NodeSocketInt", 512, "Along each side of one patch"),
-    ("Samples", "NodeSocketInt", 512, "Along each side of the image that will move the grid"),
-    ("Repeats X", "NodeSocketInt", 1, "Patches side by side along x"),
-    ("Repeats Y", "NodeSocketInt", 1, "Patches side by side along y"),
-)
+    Plug("Size", "NodeSocketFloat", 400.0, "Side of one patch in Blender units"),
+    Plug("Quads", "NodeSocketInt", 512, "Along each side of one patch"),
+    Plug("Samples", "NodeSocketInt", 512, "Along each side of the image that will move the grid"),
+    Plug("Repeats X", "NodeSocketInt", 1, "Patches side by side along x"),
+    Plug("Repeats Y", "NodeSocketInt", 1, "Patches side by side along y"),
+    Plug(
+        "Live", "NodeSocketBool", False,
+        "Keep the mesh where the extension, which fills the images, is missing", hidden=True,
+    ),
+)  # fmt: skip
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
@@ -40,9 +45,9 @@ def _build(tree: bpy.types.NodeTree) -> None:
         data_type="FLOAT_VECTOR", domain="POINT",
     )  # fmt: skip
     coordinates = output(of_vertex, "Value")
-    build.finish(
-        _with_materials(build, build.store(smooth, TEXTURE_COORDINATES, coordinates, "FLOAT2", "CORNER"))
-    )
+    made = _with_materials(build, build.store(smooth, TEXTURE_COORDINATES, coordinates, "FLOAT2", "CORNER"))
+    absent = output(build.group(node_group(ABSENCE), {"Live": build.given("Live")}), "Is Absent")
+    build.finish(build.switch("GEOMETRY", absent, made, output(build.input, "Geometry")))
 
 
 def _vertices_along(build: Builder, quads: Socket, repeats: Socket) -> Socket:
@@ -74,4 +79,4 @@ def _with_materials(build: Builder, grid: Socket) -> Socket:
     return build.change("GeometryNodeSetMaterialIndex", alone, {"Material Index": 0})
 
 
-GRID = GroupKind("Ocean Tweak Grid", 2, _build)
+GRID = GroupKind("Ocean Tweak Grid", 3, _build)

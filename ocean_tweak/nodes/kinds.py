@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from . import (
+    absence,
     averaged,
     averages,
     camera_grid,
@@ -15,6 +16,7 @@ from . import (
     horizon,
     ocean,
     patch,
+    patch_points,
     sample,
     shown_frame,
     surface,
@@ -22,9 +24,11 @@ from . import (
 )
 
 ALL_KINDS = (
+    absence.ABSENCE,
     grid.GRID,
     shown_frame.SHOWN_FRAME,
     patch.PATCH,
+    patch_points.PATCH_POINTS,
     frame_warnings.WARNINGS,
     *(ocean.ocean_group(patches) for patches in range(1, ocean.MOST_PATCHES + 1)),
     surface.GRID_FACTS,

@@ -23,6 +23,8 @@ from typing import Any, NamedTuple
 
 import bpy
 
+from .absence import ABSENCE
+from .absence import INPUTS as ABSENCE_INPUTS
 from .building import Builder, Panel, Plug, Socket, output
 from .frame_warnings import WARNINGS
 from .grid import GRID
@@ -32,7 +34,7 @@ from .patch import EARLY_IMAGE_INPUTS, IMAGE_INPUTS, PATCH, SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
-_VERSION = 2
+_VERSION = 3
 _NAME = "Ocean Tweak"
 
 #: patches that a group can add
@@ -49,6 +51,7 @@ _SEA_INPUTS = (
         "Warn Out of Range", "NodeSocketBool", False,
         "Show a warning at frames that have no file. The nearest file is held either way",
     ),
+    *ABSENCE_INPUTS,
     Plug("Purpose", "NodeSocketString", "", "What the extension made this modifier for", hidden=True),
 )  # fmt: skip
 
@@ -61,7 +64,7 @@ _GRID_PANEL = Panel(
             False,
             "Put a grid in the place of the mesh; it keeps the materials",
         ),
-        *(plug for plug in GRID_INPUTS if plug[0] != "Samples"),
+        *(plug for plug in GRID_INPUTS if plug[0] not in ("Samples", "Live")),
     ),
 )
 
@@ -112,8 +115,13 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
     )
     build = Builder(tree, (*_SEA_INPUTS, _GRID_PANEL, *panels))
     geometry = build.given("Geometry")
-    base = build.switch("GEOMETRY", build.given("Make Grid"), geometry, _own_grid(build, geometry))
+    # a live sea that nobody moves is what the mesh was saved with
+    is_live = {name: build.given(name) for name, *_ in ABSENCE_INPUTS}
+    absent = output(build.group(node_group(ABSENCE), is_live), "Is Absent")
+    make_grid = build.logic("NIMPLY", build.given("Make Grid"), absent)
+    base = build.switch("GEOMETRY", make_grid, geometry, _own_grid(build, geometry))
     by_attributes = build.logic("NIMPLY", build.given("Use Attributes"), build.given("Make Grid"))
+    by_attributes = build.logic("OR", by_attributes, absent)
     captured = build.add("GeometryNodeCaptureAttribute", domain="POINT")
     build.tree.links.new(base, captured.inputs["Geometry"])
     coordinates = [_captured(build, captured, patch) for patch in range(1, patches + 1)]
@@ -125,7 +133,8 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
     known = build.switch("GEOMETRY", by_attributes, written, base)
     offset = build.add("GeometryNodeInputNamedAttribute", {"Name": DISPLACEMENT}, data_type="FLOAT_VECTOR")
     moved = build.change("GeometryNodeSetPosition", known, {"Offset": output(offset, "Attribute")})
-    result = build.switch("GEOMETRY", build.given("Move"), known, moved)
+    moves = build.logic("OR", build.given("Move"), absent)
+    result = build.switch("GEOMETRY", moves, known, moved)
     # nobody asks a group for its warnings unless something hangs on them
     build.finish(build.switch("GEOMETRY", surface.warns, result, result))
 

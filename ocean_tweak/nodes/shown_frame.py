@@ -64,6 +64,12 @@ def _frames_back(build: Builder, frame: Socket) -> Socket:
     return build.integer("MAXIMUM", output(found, "First Found"), 0)
 
 
+def frame_values(frames: Sequence[int], files_per_frame: float = 1.0) -> dict[str, object]:
+    """What FRAME_INPUTS are given for a sequence of ascending frames."""
+    values = (frames[0], frames[-1], baked_text(frames), files_per_frame)
+    return {plug.name: value for plug, value in zip(FRAME_INPUTS, values, strict=True)}
+
+
 def baked_text(frames: Sequence[int]) -> str:
     """What ascending frames are in the input Baked Frames."""
     present, last = set(frames), frames[-1]

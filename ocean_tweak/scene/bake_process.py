@@ -18,6 +18,7 @@ from ..core.shot import Shot
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
 from .maps import wanted_maps
+from .patch_objects import shot_maps
 from .preferences import preferences
 from .settings import settings_of
 
@@ -33,10 +34,11 @@ class BakeProcess(CommandProcess):
         """Start it. Raises OSError for what the disk refuses."""
         self.frames = tuple(frames)
         self.folder: Path | None = None
+        maps = (*wanted_maps(settings_of(item)), *shot_maps(item))
         arguments = [
             "bake", f"--frames={format_frames(frames)}", f"--out={cache_folder(item)}",
             f"--name={bake_name(item)}", f"--uid={own_uid(item)}",
-            f"--maps={','.join(wanted_maps(settings_of(item)))}",
+            f"--maps={','.join(maps)}",
         ]  # fmt: skip
         chosen = preferences()
         if chosen is not None and chosen.write_log:

@@ -10,7 +10,7 @@ from ..nodes.camera_grid import finest_spacing
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
-from . import patch_objects, water_material
+from . import patch_objects, patch_points, water_material
 from .patch_objects import camera_surface_of
 from .plan import plan_of
 from .settings import OceanObjectError, is_ocean, settings_of
@@ -64,7 +64,9 @@ def add_camera_surface(
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
     _make_room(ocean)
-    patch_objects.refresh(ocean, plan_of(settings_of(ocean), scene))
+    plan = plan_of(settings_of(ocean), scene)
+    points = patch_points.points_of(settings_of(ocean), plan, scene)
+    patch_objects.refresh(ocean, plan, points)
     return surface
 
 

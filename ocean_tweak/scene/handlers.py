@@ -10,6 +10,7 @@ from functools import wraps
 import bpy
 from bpy.app.handlers import persistent
 
+from ..nodes.absence import show_that_it_ends, show_that_it_runs
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
 from . import (
@@ -29,7 +30,7 @@ from . import (
 )
 from .animated import is_animated, shown_settings
 from .refinement import show
-from .refresh import check_files, refresh_and_tell, refresh_patches, refresh_render
+from .refresh import check_files, hold, refresh_and_tell, refresh_patches, refresh_render
 from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, was_ocean
 
 # scene settings that change an ocean and have no update callback of ours
@@ -185,6 +186,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     _forget_all()
     _subscribe()
     stored_values.mend_all()
+    show_that_it_runs()
     renew_groups(ALL_KINDS)
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
@@ -211,13 +213,26 @@ def take_paths_back(path: str, _unused: object = None) -> None:
 
 @persistent
 def mend_after_import(_imported: object = None) -> None:
-    """Oceans that were appended or linked are of a file that was not opened."""
+    """Oceans that were appended or linked are of a file that was not opened.
+
+    Their node groups do not know yet that the extension runs.
+    """
     stored_values.mend_all()
+    show_that_it_runs()
+
+
+@persistent
+def hold_before_save(_path: object = None, _unused: object = None) -> None:
+    """Let live oceans stand still as they are, rather than lie flat, where the extension is missing."""
+    for item in all_oceans():
+        if settings_of(item).source == "LIVE" and item.library is None and item.users_scene:
+            hold(item, item.users_scene[0])
 
 
 @persistent
 def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     """Undo restores settings, but neither the texels nor what was made anew since."""
+    show_that_it_runs()
     live_image.forget_all()
     source_images.forget_all()
     refresh_live_oceans()
@@ -252,6 +267,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("render_complete", end_render),
     ("render_cancel", end_render),
     ("load_post", refresh_after_load),
+    ("save_pre", hold_before_save),
     ("save_pre", make_paths_relative),
     ("save_post", take_paths_back),
     ("save_post_fail", take_paths_back),
@@ -265,6 +281,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
 def register() -> None:
     """Attach the handlers."""
     _attach()
+    _tell_live_oceans(show_that_it_runs)
     _subscribe()
 
 
@@ -292,11 +309,18 @@ def _detach() -> None:
 
 def unregister() -> None:
     """Detach the handlers and forget the seas."""
+    _tell_live_oceans(show_that_it_ends)
     bpy.msgbus.clear_by_owner(_OWNER)
     _detach()
     bake_process.stop_all()
     usd_process.stop_all()
     _forget_all()
+
+
+def _tell_live_oceans(tell: Callable[[], None]) -> None:
+    # while Blender starts, there is no file yet: the opened one is told later
+    if hasattr(bpy.data, "node_groups"):
+        tell()
 
 
 def _forget_all() -> None:

@@ -17,7 +17,7 @@ from ..nodes.grid import GRID
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import MAP_INPUTS, TEXTURE_COORDINATES
 from ..nodes.ocean import ocean_group
-from ..nodes.shown_frame import baked_text
+from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
 from .grid_mesh import Grid
 from .textures import assign, show
@@ -152,7 +152,8 @@ def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> 
     if "GRID" in made:
         grid = _grid_inputs(shown.render_grid)
         del grid["Make Grid"]
-        _set_group(made["GRID"], {**grid, "Samples": shown.render_grid.samples})
+        values = {"Samples": shown.render_grid.samples, "Live": shown.frames is None}
+        _set_group(made["GRID"], {**grid, **values})
     _set_texture(made["VIEW"], textures.view, shown.images, shown)
     _set_group(made["MAPS"], {**_sea_inputs(shown), "Move": False})
     if "RENDER" in made:
@@ -161,19 +162,24 @@ def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> 
     item.update_tag()
 
 
+def tell_held_frame(item: bpy.types.Object, textures: Textures, frame: int) -> None:
+    """Say of which frame the sea is that stands still where nobody is there to move it."""
+    for _, modifier in own_modifiers(item, textures):
+        if modifier.type == "NODES" and is_of_kind(modifier.node_group, OCEAN):
+            set_inputs(modifier, {"Held Frame": frame})
+
+
 def _sea_inputs(shown: Shown) -> dict[str, Any]:
     frames = shown.frames or (1,)
     return {
         "Use Attributes": shown.images is None,
+        "Live": shown.frames is None,
         "Scale": shown.scale,
         "Velocity Scale": shown.velocity_scale,
         "Warn Out of Range": shown.warn,
         "Domain Size": shown.grid.size,
         "Resolution": shown.grid.samples,
-        "First Frame": frames[0],
-        "Last Frame": frames[-1],
-        "Baked Frames": baked_text(frames),
-        "Files per Frame": shown.files_per_frame,
+        **frame_values(frames, shown.files_per_frame),
         **_image_inputs(shown.images),
         **_early_image_inputs(shown.early_images),
     }

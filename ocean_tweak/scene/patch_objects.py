@@ -2,7 +2,8 @@
 """Hidden meshes that show the patches of a sea of several, one each, to the surface around the camera.
 
 They are points alone, as the nodes want them: no renderer sees them. Each holds all samples of its patch in
-the patch's own axes and is turned as the patch is. They are live, whatever moves the ocean's own mesh.
+the patch's own axes and is turned as the patch is. They are live, or nodes read them from baked files where
+the bake that moves the ocean's own mesh has them.
 
 Of a sea under masks, a patch is as many meshes as it has masks. Their weights are on points over the domain.
 """
@@ -21,14 +22,16 @@ from ..core.fingerprint import fingerprint
 from ..core.masks.parameters import Mask
 from ..core.masks.weights import weights
 from ..core.plain_data import to_plain
+from ..export.points import POINTS
 from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY, WEIGHT
 from ..nodes.versioned import is_of_kind
-from . import evaluation
+from . import evaluation, patch_points
 from .grid_mesh import Grid
+from .patch_points import Points
 from .plan import Plan
-from .settings import OceanObjectError, is_ocean
+from .settings import OceanObjectError, is_ocean, settings_of
 
 _NUMBER, _MASKS = "ocean_tweak_patch", "ocean_tweak_masks"
 #: cells of the weights along each side of the domain
@@ -42,14 +45,21 @@ def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
     return next((child for child in ocean.children if _modifier_of(child) is not None), None)
 
 
+def shot_maps(ocean: bpy.types.Object) -> tuple[str, ...]:
+    """What a bake must hold, besides images, so that all that the file has of the ocean moves."""
+    is_shown = camera_surface_of(ocean) is not None and len(settings_of(ocean).patches) > 0
+    return (POINTS,) if is_shown else ()
+
+
 def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
     """The meshes of an ocean's patches by their number, from 1."""
     return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
 
 
-def refresh(ocean: bpy.types.Object, plan: Plan, coarse: bool = False) -> None:
+def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None, coarse: bool = False) -> None:
     """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
 
+    points : baked ones that they read
     coarse : a parameter is dragged: they wait until all samples are wanted
 
     Raises MemoryError for a patch too large, OceanObjectError for masks that part the sea too often.
@@ -58,22 +68,28 @@ def refresh(ocean: bpy.types.Object, plan: Plan, coarse: bool = False) -> None:
     if coarse or ocean.library is not None:
         return
     surface = camera_surface_of(ocean)
-    if surface is None or not plan.parameters.patches:
+    parameters = plan.parameters if points is None else points.parameters
+    made, weighted = {}, None
+    if surface is None or not parameters.patches:
         remove(ocean)
-        made = {}
-        points = None
     else:
-        of_sea = parts(plan.parameters)
+        of_sea = parts(parameters)
         if len(of_sea) > len(PATCH_INPUTS):
             raise OceanObjectError(
                 f"Masks part this sea's patches into {len(of_sea)}, and a camera surface shows "
                 f"{len(PATCH_INPUTS)}: take masks or patches away, or the camera surface"
             )
-        made = dict(_refreshed(ocean, plan, of_sea))
-        points = _weights(ocean, plan, of_sea)
+        made = dict(_refreshed(ocean, plan, points, of_sea))
+        weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
-        set_inputs(_modifier_of(surface), {**inputs, "Weights": points})
+        set_inputs(_modifier_of(surface), {**inputs, "Weights": weighted})
+
+
+def are_baked(ocean: bpy.types.Object) -> bool:
+    """Whether files move the meshes of an ocean's patches, without anybody's help."""
+    items = patches_of(ocean).values()
+    return bool(items) and all(patch_points.modifier_of(item) is not None for item in items)
 
 
 def remove(ocean: bpy.types.Object) -> None:
@@ -93,7 +109,7 @@ def _modifier_of(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
 
 
 def _refreshed(
-    ocean: bpy.types.Object, plan: Plan, of_sea: Sequence[Part]
+    ocean: bpy.types.Object, plan: Plan, points: Points | None, of_sea: Sequence[Part]
 ) -> Iterator[tuple[int, bpy.types.Object]]:
     """The patches by their number; those that are one too many go."""
     present = patches_of(ocean)
@@ -105,24 +121,28 @@ def _refreshed(
             item.rotation_euler.z = part.rotation
         if item.data.users > 1:  # of a duplicate
             item.data = item.data.copy()
-        if item.data.library is None:
+        if points is not None:
+            patch_points.read_points(item, number, part, points)
+        elif item.data.library is None:
+            patch_points.read_none(item)
             _write(item.data, part.parameters, plan)
         yield number, item
 
 
-def _weights(ocean: bpy.types.Object, plan: Plan, of_sea: Sequence[Part]) -> bpy.types.Object | None:
+def _weights(
+    ocean: bpy.types.Object, size: float, scale: float, of_sea: Sequence[Part]
+) -> bpy.types.Object | None:
     """Points over the domain with the weights of the parts that have masks; None where none has."""
     present = next((child for child in ocean.children if _MASKS in child), None)
     masked = {WEIGHT.format(number): part.masks for number, part in enumerate(of_sea, 1) if part.masks}
     if not masked:
         _remove(iter((present,) if present is not None else ()))
         return None
-    size = plan.parameters.domain_size
     values = {name: [to_plain(mask, brief=True) for mask in masks] for name, masks in masked.items()}
-    content = fingerprint({"size": size, "scale": plan.scale, **values})
+    content = fingerprint({"size": size, "scale": scale, **values})
     item = present or _new(ocean, "Weights", _MASKS, "")
     if item[_MASKS] != content and item.data.library is None:
-        _write_weights(item, masked, size, Grid(size * plan.scale, _WEIGHTS, _WEIGHTS))
+        _write_weights(item, masked, size, Grid(size * scale, _WEIGHTS, _WEIGHTS))
         item[_MASKS] = content
     return item
 

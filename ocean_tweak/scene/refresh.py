@@ -22,6 +22,7 @@ from . import (
     modifiers,
     ownership,
     patch_objects,
+    patch_points,
     vertex_attributes,
 )
 from .grid_mesh import Grid
@@ -89,7 +90,7 @@ def refresh(
             set_changed(scene.render, use_lock_interface=True)
         else:
             _refresh_baked(item, settings, plan, scene)
-        patch_objects.refresh(item, plan, coarse)
+        patch_objects.refresh(item, plan, patch_points.points_of(settings, plan, scene), coarse)
         check_files(item, scene)
         bake_state.check(item, scene, shown)
         if text is not None:
@@ -105,15 +106,15 @@ def refresh_patches(
 ) -> None:
     """Show the present frame on the meshes of the patches, where an ocean has such; all else stays.
 
-    They are live even where files move the ocean's own mesh. What is wrong is kept in `error`.
+    They are live where files without points move the ocean's own mesh. What is wrong is kept in `error`.
 
     shown : the settings as animation makes them, where it does
     """
     with _turn:
-        if not patch_objects.patches_of(item):
+        if not patch_objects.patches_of(item) or patch_objects.are_baked(item):
             return
         try:
-            patch_objects.refresh(item, plan_of(shown or settings_of(item), scene))
+            patch_objects.refresh(item, plan_of(shown or settings_of(item), scene), None)
         except EXPECTED_ERRORS as error:
             tell(item, error)
 
@@ -136,6 +137,26 @@ def refresh_render(
                 _write_render(settings, plan)
         except EXPECTED_ERRORS as error:
             tell(item, error)
+
+
+def hold(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Put the sea that a live ocean shows on its mesh, which a file keeps: images are saved without texels.
+
+    It is what a Blender without the extension shows.
+    """
+    with _turn:
+        settings = settings_of(item)
+        textures = Textures(settings.texture, settings.render_texture)
+        modifiers.tell_held_frame(item, textures, scene.frame_current)
+        try:
+            plan = plan_of(settings, scene)
+            if settings.method == "NODES" and vertex_attributes.can_hold(item.data, plan.viewport):
+                return
+            fields, _ = _viewport_fields(plan, coarse=False, patient=False)
+        except EXPECTED_ERRORS:  # the panel tells
+            return
+        if grid_mesh.is_current(item.data, plan.viewport) and not item.data.is_editmode:
+            vertex_attributes.write(item.data, _on_vertices(fields, plan))
 
 
 def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -285,11 +306,13 @@ def _in_scene_time(fields: Fields, plan: Plan) -> Fields:
 
 
 def _on_vertices(fields: Fields, plan: Plan) -> Fields:
-    """The attributes of a mesh with a vertex a sample, by their names."""
+    """The attributes of the viewport's mesh, by their names; between samples they are bilinear."""
     result = {}
     for output, field in fields.items():
         name, is_length = ATTRIBUTES[output]
         scaled = field * np.float32(plan.scale) if is_length and plan.metres != 1 else field
+        if plan.viewport.quads != plan.viewport.samples:
+            scaled = resampled(scaled, plan.viewport.quads)
         result[name] = tiled(scaled, plan.viewport.repeats)
     return result
 

@@ -9,9 +9,20 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...core.frames import Frame, frame_label
-from ..exr import MAPS
 from ..files import PART, is_link
-from .job import ENTRY, JOB_FILE, LOCKS, RECORDS, CacheError, is_bake, log_file, record_path, refuse_links
+from ..points import POINTS
+from .job import (
+    BAKED,
+    ENTRY,
+    JOB_FILE,
+    LOCKS,
+    RECORDS,
+    CacheError,
+    is_bake,
+    log_file,
+    record_path,
+    refuse_links,
+)
 from .locks import claims
 from .records import FileEntry, read_record, recorded_frames
 
@@ -75,8 +86,9 @@ def remove_rest(folder: Path) -> tuple[str, ...]:
 
 def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
     """Why a file that a record lists is not deleted."""
-    if entry.map not in MAPS or not entry.name.endswith(f"_{entry.map}.{frame_label(frame)}.exr"):
-        return "is not named as a frame's image is"
+    ending = "ply" if entry.map == POINTS else "exr"
+    if entry.map not in BAKED or not entry.name.endswith(f"_{entry.map}.{frame_label(frame)}.{ending}"):
+        return "is not named as a frame's file is"
     path = home / entry.name
     if is_link(path) or path.resolve().parent != home:
         return "is a link, or lies outside the folder"
@@ -106,8 +118,8 @@ def _remove_rest(home: Path) -> None:
 
 
 def foreign_images(folder: Path) -> list[str]:
-    """Images in a bake's folder that no record lists."""
-    return [name for name in _foreign(folder) if name.endswith(".exr")]
+    """Images and points in a bake's folder that no record lists."""
+    return [name for name in _foreign(folder) if name.endswith((".exr", ".ply"))]
 
 
 def _foreign(home: Path) -> Iterator[str]:

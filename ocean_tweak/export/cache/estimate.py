@@ -54,11 +54,13 @@ def estimate(folder: Path, job: Job, frames: Sequence[Frame]) -> Estimate:
         return Estimate(0, 0, 0.0, free)
     trial = _with_few_samples(job.shot.parameters)
     scale = (job.shot.parameters.resolution / trial.resolution) ** 2
-    small = replace(job, shot=Shot(trial, job.shot.animation))
+    small = replace(job, shot=Shot(trial, job.shot.animation), maps=job.images)
     with tempfile.TemporaryDirectory() as aside:
         sizes, seconds = _trial_frame(Path(aside), small, frames)
-    size = sum(_room(length * scale) for length in sizes) + _RECORD
-    return Estimate(len(frames), size * len(frames), seconds * scale * len(frames), free)
+        point_sizes, point_seconds = _points_of_a_frame(Path(aside), job, frames[0])
+    size = sum(_room(length * scale) for length in sizes) + sum(map(_room, point_sizes)) + _RECORD
+    seconds = seconds * scale + point_seconds
+    return Estimate(len(frames), size * len(frames), seconds * len(frames), free)
 
 
 def _with_few_samples(parameters: OceanParameters) -> OceanParameters:
@@ -78,15 +80,25 @@ def _trial_frame(folder: Path, job: Job, frames: Sequence[Frame]) -> tuple[list[
     """Bytes of a frame's files, and seconds to make them after the frame before."""
     surfaces = ShotSurfaces(job.shot)
     started = time.perf_counter()
-    sequences = job.sequences(folder, frames[0])
     made = surfaces.frames(frames[0], job.outputs)
     if len(frames) > 1:  # what is made once does not count where there are many
         started = time.perf_counter()
         made = surfaces.frames(frames[1], job.outputs)
+    paths = job.write(folder, frames[0], made)
+    return [path.stat().st_size for path in paths], time.perf_counter() - started
+
+
+def _points_of_a_frame(folder: Path, job: Job, frame: Frame) -> tuple[list[int], float]:
+    """The same for points: their samples are those of the patches, however few the sea has."""
+    sequences = job.points(folder, frame)
+    if not sequences:
+        return [], 0.0
+    surfaces = ShotSurfaces(job.shot)
+    surfaces.parts(frame)  # what is made once does not count
+    started = time.perf_counter()
+    made = surfaces.parts(frame)
     paths = [
-        path
-        for sequence, fields in zip(sequences, made, strict=True)
-        for path in sequence.write(frames[0], fields)
+        path for sequence, own in zip(sequences, made, strict=True) for path in sequence.write(frame, own)
     ]
     return [path.stat().st_size for path in paths], time.perf_counter() - started
 

@@ -21,8 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from ...core.cascades.patch_seas import ADDING
+from ...core.cascades.patch_seas import ADDING, PARTS, parts
 from ...core.errors import ParameterError
+from ...core.fields import SurfaceFields
 from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.parameters import OceanParameters
@@ -30,9 +31,12 @@ from ...core.printable import shown
 from ...core.shot import Shot
 from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
+from ..points import POINTS, PointSequence
 
 JOB_FILE = "bake.json"
 RECORDS, LOCKS = "records", "locks"
+#: what can be baked: images, and points
+BAKED = (*MAPS, POINTS)
 #: locked while versions are told apart, or claims are looked at
 ENTRY = "entry"
 FORMAT = 1
@@ -54,7 +58,7 @@ class Job:
 
     name : of the sea, and of its files
     uid : tells seas of the same name apart, letters and digits
-    maps : keys of `export.exr.MAPS`; in whatever order they are given, the job is the same
+    maps : some of BAKED; in whatever order they are given, the job is the same
     compression : a key of COMPRESSION_ERROR
     frames : those that are asked for
 
@@ -69,7 +73,7 @@ class Job:
     frames: tuple[Frame, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "maps", tuple(name for name in MAPS if name in self.maps))
+        object.__setattr__(self, "maps", tuple(name for name in BAKED if name in self.maps))
         if self.name != safe_name(self.name):
             raise ParameterError("name", self.name, "holds what file names cannot hold")
         if not UID.fullmatch(self.uid):
@@ -101,17 +105,30 @@ class Job:
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The fields that its maps are made of."""
-        return frozenset().union(*(MAPS[name].outputs for name in self.maps))
+        """The fields that its maps are made of; of points, PARTS."""
+        own = frozenset({PARTS}) if POINTS in self.maps else frozenset()
+        return own.union(*(MAPS[name].outputs for name in self.images))
+
+    @property
+    def images(self) -> tuple[str, ...]:
+        """Those of its maps that are images."""
+        return tuple(name for name in self.maps if name in MAPS)
 
     def sequences(self, folder: Path, frame: Frame) -> tuple[ExrSequence, ...]:
         """The sinks for a frame, one a patch, whose headers tell this frame's parameters."""
         parameters = self.shot.at(frame).parameters
         patches: Iterable[int | None] = range(len(parameters.patches)) if parameters.is_cascade else (None,)
         return tuple(
-            ExrSequence(folder, self.name, parameters, self.compression, self.maps, patch)
+            ExrSequence(folder, self.name, parameters, self.compression, self.images, patch)
             for patch in patches
         )
+
+    def points(self, folder: Path, frame: Frame) -> tuple[PointSequence, ...]:
+        """The sinks for a frame's points, one a part; none where they are not among the maps."""
+        if POINTS not in self.maps:
+            return ()
+        of_sea = parts(self.shot.at(frame).parameters)
+        return tuple(PointSequence(folder, self.name, number, part) for number, part in enumerate(of_sea, 1))
 
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
         """The sink for a frame of a sea of one patch. Raises CacheError for another."""
@@ -120,9 +137,19 @@ class Job:
         return self.sequences(folder, frame)[0]
 
     def files(self, folder: Path, frame: Frame) -> list[tuple[str, str]]:
-        """Map and file name of each of a frame's images."""
+        """Map and file name of each of a frame's files."""
         sequences = self.sequences(folder, frame)
-        return [(name, sequence.path(frame, name).name) for sequence in sequences for name in self.maps]
+        images = [(name, sequence.path(frame, name).name) for sequence in sequences for name in self.images]
+        points = [path.name for sequence in self.points(folder, frame) for path in sequence.paths(frame)]
+        return [*images, *((POINTS, name) for name in points)]
+
+    def write(self, folder: Path, frame: Frame, fields: Iterable[SurfaceFields]) -> tuple[Path, ...]:
+        """Write a frame's files, those that `files` names, in its order. Returns their paths.
+
+        fields : what `core.bake.ShotSurfaces` makes for `outputs`
+        """
+        sinks = (*self.sequences(folder, frame), *self.points(folder, frame))
+        return tuple(path for sink, own in zip(sinks, fields, strict=True) for path in sink.write(frame, own))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in `bake.json`."""
@@ -154,7 +181,7 @@ class Job:
         name, uid, maps = data.get("name"), data.get("uid"), data.get("maps")
         if not (isinstance(name, str) and isinstance(uid, str)):
             raise ValueError(f"has the name {shown(name)} and uid {shown(uid)}")
-        if not (isinstance(maps, list) and maps and all(isinstance(m, str) and m in MAPS for m in maps)):
+        if not (isinstance(maps, list) and maps and all(isinstance(m, str) and m in BAKED for m in maps)):
             raise ValueError(f"has the maps {shown(maps)}")
         compression, frames = data.get("compression"), data.get("frames")
         if not (isinstance(compression, str) and compression in COMPRESSION_ERROR):
@@ -171,8 +198,9 @@ class Job:
 
 
 def maps_for(parameters: OceanParameters) -> tuple[str, ...]:
-    """The maps that a sea can be baked to: of several patches those that add up."""
-    return tuple(name for name in MAPS if not parameters.is_cascade or MAPS[name].outputs <= ADDING)
+    """The maps that a sea can be baked to: of several patches those that add up, and their points."""
+    images = tuple(name for name in MAPS if not parameters.is_cascade or MAPS[name].outputs <= ADDING)
+    return (*images, POINTS) if parameters.patches else images
 
 
 def _check_maps(maps: tuple[str, ...], parameters: OceanParameters) -> None:
@@ -182,6 +210,8 @@ def _check_maps(maps: tuple[str, ...], parameters: OceanParameters) -> None:
             "masks lie over the sea and not over its patches, which repeat: say of how many samples the one "
             "grid shall be on which the patches are joined, such as 1024",
         )  # fmt: skip
+    if POINTS in maps and not parameters.patches:
+        raise ParameterError("maps", POINTS, "are of a sea of several patches, and this one has none")
     for name in maps:
         if name not in maps_for(parameters):
             raise ParameterError(

@@ -111,20 +111,18 @@ class CacheSink:
         return self.job.outputs
 
     def write(self, frame: Frame, *fields: SurfaceFields) -> tuple[Path, ...]:
-        """Write the frame from the fields of each patch, all or nothing. Returns its images' paths."""
+        """Write the frame from the fields of each patch, and of each part where points are wanted.
+
+        All or nothing. Returns the files' paths.
+        """
         record = record_path(self.folder, frame)
         # an old record must not vouch for new files
         record.unlink(missing_ok=True)
-        sequences = self.job.sequences(self.folder, frame)
-        paths = tuple(
-            path
-            for sequence, of_patch in zip(sequences, fields, strict=True)
-            for path in sequence.write(frame, of_patch)
-        )
+        paths = self.job.write(self.folder, frame, fields)
         sync_folder(self.folder)
         entries = tuple(
             FileEntry(name, path.name, path.stat().st_size, file_hash(path))
-            for name, path in zip(self.job.maps * len(sequences), paths, strict=True)
+            for (name, _), path in zip(self.job.files(self.folder, frame), paths, strict=True)
         )
         made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries, self._asked)
         write_text(record, json.dumps(made.to_dict(), indent=1) + "\n")

@@ -18,6 +18,7 @@ from ...core.printable import printable
 from ...core.propagation import propagate
 from ...core.shot import Moment
 from ..exr import MAPS, ExrError, ExrSequence, read_image
+from ..points import PointsError
 from .job import Job
 from .records import Finding, State, inspect_all
 
@@ -40,8 +41,10 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
             for sequence, sea in zip(job.sequences(folder, frame), grids, strict=True):
                 problem = _problem(job, sequence, frame, sea)
                 if problem:
-                    finding = Finding(frame, State.DAMAGED, problem)
                     break
+            problem = problem or _points_problem(job, folder, frame)
+            if problem:
+                finding = Finding(frame, State.DAMAGED, problem)
         yield finding
 
 
@@ -61,7 +64,7 @@ def wave_height(sea: GridSea, moment: Moment) -> float:
 def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: GridSea) -> str:
     moment = job.shot.at(frame)
     samples = sequence.resolution
-    for name in job.maps:
+    for name in sequence.maps:
         path = sequence.path(frame, name)
         try:
             image, metadata = read_image(path, (samples, samples))
@@ -84,6 +87,15 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: GridSea) -> str
             problem = _wrong_height(image, expected, bounds)
             if problem:
                 return f"{path.name} {problem}"
+    return ""
+
+
+def _points_problem(job: Job, folder: Path, frame: Frame) -> str:
+    try:
+        for sequence in job.points(folder, frame):
+            sequence.check(frame)
+    except PointsError as error:
+        return str(error)
     return ""
 
 

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The parts of a sea of several patches as points: PLY files, which Blender's nodes read by themselves.
+
+NAME_p1_points.####.ply has all samples of the first part, x fastest, in the part's own axes, in metres and
+seconds: where the water is (x, y, z), velocity, slope and strain. Where these are many, a window reads
+NAME_p1_small_points.####.ply, in which a sample is the mean over a cell of its own; `slope_variance` tells
+what the means lack of the squares of the slopes. Binary, little-endian, float.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.cascades.patch_seas import Part
+from ..core.fields import SurfaceFields
+from ..core.frames import Frame, frame_label
+from .exr import ExrError
+from .files import whole_file
+
+#: the map's name in jobs and files
+POINTS = "points"
+#: samples along each side that a window reads, at most
+MOST_IN_WINDOW = 256
+
+COLUMNS = (
+    "x", "y", "z", "velocity_x", "velocity_y", "velocity_z",
+    "slope_x", "slope_y", "strain_xx", "strain_yy", "strain_xy",
+)  # fmt: skip
+#: of means
+VARIANCE = "slope_variance"
+
+_FORMAT = "binary_little_endian 1.0"
+_LONGEST_HEADER = 4096
+
+Array = NDArray[np.floating]
+
+
+class PointsError(ExrError):
+    """As of an image: points that cannot be written or read, with their path and the reason."""
+
+
+@dataclass(frozen=True)
+class PointSequence:
+    """A sink for the frames of one part of a sea.
+
+    number : of the part, from 1
+    part : what it is
+    """
+
+    directory: Path
+    name: str
+    number: int
+    part: Part
+
+    @property
+    def samples(self) -> int:
+        """Along each side."""
+        return self.part.parameters.resolution
+
+    @property
+    def samples_by_kind(self) -> dict[bool, int]:
+        """Along each side, in the files of all samples and, where there are such, in those of means."""
+        few = {True: MOST_IN_WINDOW} if self.samples > MOST_IN_WINDOW else {}
+        return {False: self.samples, **few}
+
+    def path(self, frame: Frame, small: bool = False) -> Path:
+        """Where a frame's points go."""
+        label = f"{points_prefix(self.name, self.number, small)}{frame_label(frame)}.ply"
+        return self.directory / label
+
+    def paths(self, frame: Frame) -> tuple[Path, ...]:
+        """Where all files of a frame go."""
+        return tuple(self.path(frame, small) for small in self.samples_by_kind)
+
+    def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
+        """Write a frame, of fields that hold ADDING. Returns the files' paths.
+
+        Raises PointsError for a value that is not finite and OSError for what the disk refuses.
+        """
+        size = self.part.parameters.domain_size
+        columns = np.concatenate(
+            [fields.displacement, fields.velocity, fields.slope, fields.strain], axis=-1, dtype=np.float64
+        )
+        about = {"part": self.number, "domain_size": size, "samples": self.samples,
+                 "rotation": self.part.rotation, "time": fields.time}  # fmt: skip
+        for small, samples in self.samples_by_kind.items():
+            values = _means(columns, samples) if small else columns
+            values = _placed(values, size, self.samples)
+            _write(self.path(frame, small), values.astype("<f4"), small, about)
+        return self.paths(frame)
+
+    def check(self, frame: Frame) -> None:
+        """Read a frame back. Raises PointsError for what is not as it was written."""
+        for small, samples in self.samples_by_kind.items():
+            path = self.path(frame, small)
+            values = read_points(path)
+            if len(next(iter(values.values()))) != samples**2:
+                raise PointsError(f"{path}: has not {samples}² points")
+            if not all(np.all(np.isfinite(column)) for column in values.values()):
+                raise PointsError(f"{path}: holds values that are not finite")
+
+
+def points_prefix(name: str, number: int, small: bool = False) -> str:
+    """What the names of a part's files begin with, up to the frame; numbers are from 1."""
+    return f"{name}_p{number}_{'small_' if small else ''}{POINTS}."
+
+
+def read_points(path: Path) -> dict[str, NDArray[np.float32]]:
+    """The columns of a file written here, by name, each (samples²,).
+
+    Raises PointsError for a file that is damaged or not one of ours.
+    """
+    try:
+        with path.open("rb") as file:
+            names, count = _header(file.read(_LONGEST_HEADER))
+            file.seek(0)
+            content = file.read()
+    except (OSError, ValueError) as error:
+        raise PointsError(f"{path}: not readable points of Ocean Tweak ({error})") from None
+    start = content.index(b"end_header\n") + len(b"end_header\n")
+    if len(content) - start != 4 * count * len(names):
+        raise PointsError(f"{path}: is not as long as its header says")
+    values = np.frombuffer(content, "<f4", offset=start).reshape(count, len(names))
+    return {name: values[:, column] for column, name in enumerate(names)}
+
+
+def _header(text: bytes) -> tuple[list[str], int]:
+    """Names of the columns and number of points. Raises ValueError."""
+    head, end, _ = text.partition(b"end_header\n")
+    lines = head.decode("ascii").splitlines()
+    if not end or lines[:2] != ["ply", f"format {_FORMAT}"]:
+        raise ValueError("its header is another one")
+    (count,) = [line.rpartition(" ")[2] for line in lines if line.startswith("element vertex ")]
+    names = [line.rpartition(" ")[2] for line in lines if line.startswith("property float ")]
+    if names not in (list(_columns(False)), list(_columns(True))):
+        raise ValueError("its columns are others")
+    return names, int(count)
+
+
+def _columns(small: bool) -> tuple[str, ...]:
+    return (*COLUMNS, VARIANCE) if small else COLUMNS
+
+
+def _write(path: Path, values: NDArray[np.float32], small: bool, about: Mapping[str, object]) -> None:
+    if not np.all(np.isfinite(values)):
+        raise PointsError(f"{path}: the points hold values that are not finite")
+    head = [
+        "ply", f"format {_FORMAT}", f"comment Ocean Tweak {json.dumps(about)}",
+        f"element vertex {values.shape[0] * values.shape[1]}",
+        *(f"property float {name}" for name in _columns(small)), "end_header",
+    ]  # fmt: skip
+    with whole_file(path) as beside, beside.open("wb") as file:
+        file.write(("\n".join(head) + "\n").encode("ascii"))
+        file.write(np.ascontiguousarray(values).data)
+
+
+def _placed(values: Array, size: float, samples: int) -> Array:
+    """The columns with places in the place of displacements: of cells' middles where they are means.
+
+    samples : of the part, along each side; the first one lies in the corner
+    """
+    along = (np.arange(len(values)) + 0.5) * (size / len(values)) - 0.5 * size / samples
+    placed = values.copy()
+    placed[..., 0] += along
+    placed[..., 1] += along[:, np.newaxis]
+    return placed
+
+
+def _means(columns: Array, samples: int) -> Array:
+    """Of the samples in each cell, with what they lack of the squares of the slopes as one column more."""
+    slope = slice(COLUMNS.index("slope_x"), COLUMNS.index("slope_y") + 1)
+    squares = (columns[..., slope] ** 2).sum(axis=-1, keepdims=True)
+    means = np.concatenate([columns, squares], axis=-1)
+    for axis in (0, 1):
+        means = _means_along(axis, means, samples)
+    means[..., -1] = np.maximum(means[..., -1] - (means[..., slope] ** 2).sum(axis=-1), 0.0)
+    return means
+
+
+def _means_along(axis: int, values: Array, samples: int) -> Array:
+    """Sample i covers i to i + 1; cells of another length share what they cut."""
+    count = values.shape[axis]
+    sums = np.concatenate([np.zeros_like(np.take(values, [0], axis)), np.cumsum(values, axis)], axis)
+    ends = np.arange(samples + 1) * (count / samples)
+    before = np.minimum(ends.astype(np.intp), count - 1)
+    share = (ends - before).reshape((-1, 1, 1) if axis == 0 else (-1, 1))
+    first, second = np.take(sums, before, axis), np.take(sums, before + 1, axis)
+    return np.diff(first + share * (second - first), axis=axis) * (samples / count)

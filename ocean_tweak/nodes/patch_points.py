@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geometry nodes that read the baked points of one patch, as `export.points` writes them.
+
+They make what a live patch is: vertices x fastest whose last ones of a row and of a column are the first ones
+of the next period, with displacement, velocity, slope and strain. A window reads the files of fewer samples.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from .building import Builder, Plug, Socket, output
+from .fields import alone, combined, named_attribute, sample_index, whole_number
+from .names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY
+from .patch import SCALE_INPUTS
+from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
+from .versioned import GroupKind, node_group
+
+INPUTS = (
+    Plug("Files", "NodeSocketString", "", "Baked points of all samples, up to the number of the frame"),
+    Plug("Viewport Files", "NodeSocketString", "", "What a window reads in their place"),
+    *FRAME_INPUTS,
+    Plug("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch, in metres"),
+    Plug("Resolution", "NodeSocketInt", 512, "All samples along each side"),
+    *SCALE_INPUTS,
+)
+#: attribute of the result → the files' numbers
+_NUMBERS = {
+    VELOCITY: ("velocity_x", "velocity_y", "velocity_z"),
+    SLOPE: ("slope_x", "slope_y", "slope_variance"),
+    STRAIN: ("strain_xx", "strain_yy", "strain_xy"),
+}
+
+
+def _build(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, INPUTS)
+    points = _read(build)
+    count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
+    along = whole_number(build, alone(build, "SQRT", count, "ShaderNodeMath"), "ROUND")
+    columns = build.integer("ADD", along, 1)
+    vertices = build.integer("MULTIPLY", columns, columns)
+    line = output(build.add("GeometryNodeMeshLine", {"Count": vertices}), "Mesh")
+    index = output(build.add("GeometryNodeInputIndex"), "Index")
+    column, row = (build.integer(operation, index, columns) for operation in ("MODULO", "DIVIDE_FLOOR"))
+    wrapped = [
+        build.integer("MODULO", number, build.integer("MAXIMUM", along, 1)) for number in (column, row)
+    ]
+    source = build.integer("ADD", build.integer("MULTIPLY", wrapped[1], along), wrapped[0])
+
+    def told(value: Socket) -> Socket:
+        return sample_index(build, points, value, source, "FLOAT_VECTOR")
+
+    place = told(output(build.add("GeometryNodeInputPosition"), "Position"))
+    moved = build.vector("SUBTRACT", place, _at_rest(build, *wrapped, along))
+    scaled = build.scaled(moved, build.given("Scale"))
+    grid = build.store(line, DISPLACEMENT, scaled, "FLOAT_VECTOR")
+    for name, numbers in _NUMBERS.items():
+        value = told(combined(build, *(_number(build, number) for number in numbers)))
+        if name == VELOCITY:
+            value = build.scaled(value, build.given("Velocity Scale"))
+        grid = build.store(grid, name, value, "FLOAT_VECTOR")
+    rest = build.scaled(_at_rest(build, column, row, along), build.given("Scale"))
+    displacement = output(named_attribute(build, DISPLACEMENT, "FLOAT_VECTOR"), "Attribute")
+    position = build.vector("ADD", rest, displacement)
+    build.finish(build.change("GeometryNodeSetPosition", grid, {"Position": position}))
+
+
+def _read(build: Builder) -> Socket:
+    """The points of the frame that is shown."""
+    frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
+    is_window = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
+    files = build.switch("STRING", is_window, build.given("Files"), build.given("Viewport Files"))
+    path = build.add("FunctionNodeFormatString", {"Format": "{files}{frame:04}.ply"})
+    for kind, name, value in (("STRING", "files", files), ("INT", "frame", output(frame, "Frame"))):
+        path.format_items.new(kind, name)
+        build.tree.links.new(value, path.inputs[name])
+    return output(build.add("GeometryNodeImportPLY", {"Path": output(path, "String")}), "Mesh")
+
+
+def _number(build: Builder, name: str) -> Socket:
+    return output(named_attribute(build, name, "FLOAT"), "Attribute")
+
+
+def _at_rest(build: Builder, column: Socket, row: Socket, along: Socket) -> Socket:
+    """Where the water of a sample is at rest, m: that of a mean of several in the middle of its cell."""
+    size = build.given("Domain Size")
+    spacing = build.math("DIVIDE", size, along)
+    own = build.math("DIVIDE", size, build.given("Resolution"))
+    first = build.math("MULTIPLY", build.math("SUBTRACT", spacing, own), 0.5)
+    x, y = (build.math("ADD", build.math("MULTIPLY", number, spacing), first) for number in (column, row))
+    return combined(build, x, y)
+
+
+PATCH_POINTS = GroupKind("Ocean Tweak Patch Points", 1, _build)

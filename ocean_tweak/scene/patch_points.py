@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Baked points of patches: what moves them for the surface around the camera, without the extension too."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from pathlib import Path
+
+import bpy
+
+from ..core import OceanParameters
+from ..core.cascades.patch_seas import Part
+from ..export.cache.job import JOB_FILE, CacheError, read_job
+from ..export.points import MOST_IN_WINDOW, POINTS, points_prefix
+from ..nodes.modifier_inputs import set_inputs
+from ..nodes.patch_points import PATCH_POINTS
+from ..nodes.shown_frame import frame_values
+from ..nodes.versioned import is_of_kind, node_group
+from .image_sequence import baked_frames
+from .plan import Plan, velocity_scale
+from .settings import OceanSettings
+
+_NAME = "Ocean Tweak Points"
+#: folder, and name of the sea, of a displacement image
+_IMAGE = re.compile(r"(?P<folder>.*[\\/])?(?P<name>[^\\/]+)_disp\.[^.\\/]*\.exr")
+
+
+@dataclass(frozen=True)
+class Points:
+    """The points of a bake that an ocean reads.
+
+    folder : as the path of its displacement image has it, so that it moves along with the .blend file
+    name : that the files begin with
+    parameters : of the sea that was baked
+    frames : those that have files, ascending
+    files_per_frame : of the scene
+    scale : Blender units in a metre
+    velocity_scale : Blender units per second in a metre per second
+    """
+
+    folder: str
+    name: str
+    parameters: OceanParameters
+    frames: tuple[int, ...]
+    files_per_frame: float
+    scale: float
+    velocity_scale: float
+
+
+def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Points | None:
+    """The baked points that an ocean with these settings reads; None where it is live or they are missing."""
+    found = _place(settings)
+    if found is None:
+        return None
+    folder, name, here = found
+    parameters = _baked_parameters(here)
+    if parameters is None:
+        return None
+    return Points(
+        folder, name, parameters, baked_frames(settings),
+        files_per_frame=float(Fraction(settings.sequence_stretch or 1)),
+        scale=plan.scale,
+        velocity_scale=velocity_scale(settings, plan, scene),
+    )  # fmt: skip
+
+
+def read_points(item: bpy.types.Object, number: int, part: Part, points: Points) -> None:
+    """Let a patch's mesh read its points; what it held itself goes."""
+    if len(item.data.vertices):
+        item.data.clear_geometry()
+        item.data.update_tag()
+    modifier = modifier_of(item) or item.modifiers.new(_NAME, "NODES")
+    if modifier.node_group != node_group(PATCH_POINTS):
+        modifier.node_group = node_group(PATCH_POINTS)
+    samples = part.parameters.resolution
+    small = samples > MOST_IN_WINDOW
+    set_inputs(
+        modifier,
+        {
+            "Files": points.folder + points_prefix(points.name, number),
+            "Viewport Files": points.folder + points_prefix(points.name, number, small),
+            **frame_values(points.frames, points.files_per_frame),
+            "Domain Size": part.parameters.domain_size,
+            "Resolution": samples,
+            "Scale": points.scale,
+            "Velocity Scale": points.velocity_scale,
+        },
+    )
+    item.update_tag()
+
+
+def read_none(item: bpy.types.Object) -> None:
+    """Let a patch's mesh hold the patch itself."""
+    modifier = modifier_of(item)
+    if modifier is not None:
+        item.modifiers.remove(modifier)
+
+
+def modifier_of(item: bpy.types.Object) -> bpy.types.NodesModifier | None:
+    """What lets a patch's mesh read points; None where it is live."""
+    nodes = (modifier for modifier in item.modifiers if modifier.type == "NODES")
+    return next((modifier for modifier in nodes if is_of_kind(modifier.node_group, PATCH_POINTS)), None)
+
+
+def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
+    """The folder as it is stored, the files' name, and the folder where it is now."""
+    image = settings.sequence_maps.disp or settings.early_maps.disp
+    if settings.source != "SEQUENCE" or image is None:
+        return None
+    match = _IMAGE.fullmatch(image.filepath)
+    if match is None:
+        return None
+    here = Path(bpy.path.abspath(image.filepath, library=image.library)).parent
+    return match["folder"] or "", match["name"], here
+
+
+def _baked_parameters(folder: Path) -> OceanParameters | None:
+    """The sea that a bake with points has; None for another bake, or none."""
+    try:
+        written = (folder / JOB_FILE).stat()
+    except OSError:
+        return None
+    return _read_parameters(folder, (written.st_mtime_ns, written.st_size))
+
+
+@lru_cache(maxsize=16)
+def _read_parameters(folder: Path, _written: object) -> OceanParameters | None:
+    try:
+        job = read_job(folder)
+    except CacheError:
+        return None
+    return job.shot.parameters if POINTS in job.maps else None

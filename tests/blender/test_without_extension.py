@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A file that is opened in a Blender without the extension: what is baked moves, the rest says so."""
+
+import bpy
+import numpy as np
+import pytest
+
+from . import camera_views
+from .camera_views import numbers
+from .conftest import evaluated_mesh
+from .other_blender import look
+
+camera = camera_views.camera
+
+
+@pytest.fixture
+def saved(empty_scene, tmp_path, monkeypatch):
+    """A file that has been saved, with three frames."""
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    empty_scene.frame_start, empty_scene.frame_end = 1, 3
+    (tmp_path / "project").mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "shot.blend"))
+    return bpy.context.scene
+
+
+@pytest.fixture
+def patched(core, make_parameters):
+    """Two patches; the second has more samples than a window reads."""
+    layer = core.WaveLayer(wind_speed=8.0, fetch=20e3, wind_direction=0.4)
+    patches = (
+        core.Patch(domain_size=150.0, shortest_wavelength=12.0, resolution=64),
+        core.Patch(
+            domain_size=20.0, longest_wavelength=12.0, shortest_wavelength=3.0, rotation=0.6, resolution=512
+        ),
+    )
+    return make_parameters(layers=(layer,), patches=patches, joined=32)
+
+
+@pytest.fixture
+def horizon(extension, ocean_object, patched, camera, saved):
+    """An ocean of patches with a surface around the camera that ends a few metres away."""
+    camera.location = (71.3, 52.9, 2.0)
+    ocean = ocean_object.add(saved, patched)
+    bpy.context.view_layer.objects.active = ocean
+    surface = extension("scene.camera_surface").add_camera_surface(ocean, saved, budget=5000)
+    inputs = {"Finest Spacing": 0.1, "To Horizon": False, "Reach": 6.0, "Fade": False}
+    extension("nodes.modifier_inputs").set_inputs(surface.modifiers[0], inputs)
+    bpy.context.view_layer.update()
+    return ocean, surface
+
+
+def positions(item):
+    return numbers(evaluated_mesh(item), "position", 3)
+
+
+def test_a_baked_horizon_moves(horizon, saved, tmp_path):
+    """The render reads all samples, the window means of those: both at the camera and further away."""
+    ocean, surface = horizon
+    live = {}
+    for frame in (3, 1):
+        saved.frame_set(frame)
+        live[frame] = positions(surface)
+    assert np.abs(live[3] - live[1]).max() > 0.05
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    assert all(not len(patch.data.vertices) for patch in ocean.children if "Patch" in patch.name)
+    bpy.ops.wm.save_mainfile()
+    seen, said = look(bpy.data.filepath, [surface.name], [1, 3], tmp_path)
+    assert "ERROR" not in said
+    for frame in (1, 3):
+        # points are kept to a float, 150 m from the corner of the patch
+        np.testing.assert_allclose(seen[f"{surface.name} render {frame}"], live[frame], atol=1e-4)
+        # no wave is shorter than 38 means, of which half a sample is 2 cm
+        np.testing.assert_allclose(seen[f"{surface.name} viewport {frame}"], live[frame], atol=1e-3)
+        assert not len(seen[f"{surface.name} warnings {frame}"])
+
+
+def test_a_baked_horizon_that_is_live_again(horizon, saved, ocean_object):
+    ocean, surface = horizon
+    saved.frame_set(2)
+    live = positions(surface)
+    bpy.ops.ocean.bake()
+    ocean_object.use_live(ocean, saved)
+    np.testing.assert_array_equal(positions(surface), live)
+
+
+def test_points_that_are_missing_are_told(horizon, saved, tmp_path):
+    _, surface = horizon
+    bpy.ops.ocean.bake()
+    for path in tmp_path.rglob("*_p1_points.0003.ply"):
+        path.unlink()
+    bpy.ops.wm.save_mainfile()
+    _, said = look(bpy.data.filepath, [surface.name], [3], tmp_path)
+    assert "Ocean_p1_points.0003" in said
+
+
+@pytest.mark.parametrize("own_render", [False, True])
+@pytest.mark.parametrize("method", ["NODES", "DISPLACE"])
+def test_a_live_sea_holds_and_says_so(
+    ocean_object, make_parameters, evaluated, saved, tmp_path, method, own_render
+):
+    samples = 16 if own_render else 32
+    ocean = ocean_object.add(saved, make_parameters(), method=method, viewport_resolution=samples)
+    saved.frame_set(2)
+    live = evaluated(ocean).reshape(-1, 3)
+    assert np.ptp(live[:, 2]) > 0.5
+    bpy.ops.wm.save_mainfile()
+    seen, said = look(bpy.data.filepath, [ocean.name], [2, 3], tmp_path)
+    assert said.count("Ocean Tweak: oceans that are computed live stand still") == 1
+    for frame in (2, 3):
+        for kind in ("viewport", "render"):
+            np.testing.assert_allclose(seen[f"{ocean.name} {kind} {frame}"], live, atol=1e-4)
+        first, *_ = seen[f"{ocean.name} warnings {frame}"]
+        assert first.startswith("The sea stands still as it was in frame 2 ")
+
+
+def warnings_of(item):
+    return [each.message for modifier in item.modifiers for each in getattr(modifier, "node_warnings", ())]
+
+
+@pytest.mark.parametrize("method", ["NODES", "DISPLACE"])
+def test_nothing_is_said_where_the_extension_runs(
+    extension, ocean_object, make_parameters, saved, method, capfd
+):
+    """Opened anew, played back, rendered between frames, animated, undone, appended."""
+    ocean = ocean_object.add(saved, make_parameters(), method=method, viewport_resolution=16)
+    layer = ocean.ocean_tweak.layers[0]
+    for frame in (1, 3):
+        layer.wind_speed = 6.0 + frame
+        layer.keyframe_insert("wind_speed", frame=frame)
+    path = bpy.data.filepath
+    bpy.ops.wm.save_mainfile()
+
+    def check(scene):
+        for frame in (2, 3):
+            scene.frame_set(frame)
+            assert not warnings_of(bpy.context.evaluated_depsgraph_get() and scene.objects[ocean_name])
+        scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+        scene.render.resolution_x = scene.render.resolution_y = 8
+        scene.render.engine, scene.cycles.samples = "CYCLES", 1
+        scene.render.use_motion_blur = True
+        bpy.ops.render.render()
+        assert not warnings_of(scene.objects[ocean_name])
+
+    ocean_name = ocean.name
+    bpy.ops.wm.open_mainfile(filepath=path)
+    check(bpy.context.scene)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.append(directory=f"{path}/Object/", filename=ocean_name)
+    check(bpy.context.scene)
+    out, err = capfd.readouterr()
+    assert "stand still" not in out + err
+    handlers = extension("scene.handlers")
+    handlers.unregister()
+    bpy.context.scene.frame_set(3)
+    bpy.context.evaluated_depsgraph_get()
+    assert warnings_of(bpy.context.scene.objects[ocean_name])
+    handlers.register()
+    bpy.context.scene.frame_set(2)
+    assert not warnings_of(bpy.context.evaluated_depsgraph_get() and bpy.context.scene.objects[ocean_name])
