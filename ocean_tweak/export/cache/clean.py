@@ -86,9 +86,9 @@ def remove_rest(folder: Path) -> tuple[str, ...]:
 
 def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
     """Why a file that a record lists is not deleted."""
-    ending = "ply" if entry.map == POINTS else "exr"
+    ending, what = ("ply", "points are") if entry.map == POINTS else ("exr", "image is")
     if entry.map not in BAKED or not entry.name.endswith(f"_{entry.map}.{frame_label(frame)}.{ending}"):
-        return "is not named as a frame's file is"
+        return f"is not named as a frame's {what}"
     path = home / entry.name
     if is_link(path) or path.resolve().parent != home:
         return "is a link, or lies outside the folder"
