@@ -82,6 +82,7 @@ def main(blend, out, names, frames):
         for name in json.loads(names):
             kept[f"{name} render {frame}"] = meshes[name]
     np.savez(out, **kept)
+    bpy.utils.unregister_class(Probe)  # bpy 4.5 hangs at the end of a process that leaves one behind
 
 
 if __name__ == "__main__":
