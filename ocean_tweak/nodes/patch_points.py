@@ -16,9 +16,12 @@ from .patch import SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
+#: the inputs that hold paths
+FILES = ("Files", "Viewport Files")
+
 INPUTS = (
-    Plug("Files", "NodeSocketString", "", "Baked points of all samples, up to the number of the frame"),
-    Plug("Viewport Files", "NodeSocketString", "", "What a window reads in their place"),
+    Plug(FILES[0], "NodeSocketString", "", "Baked points of all samples, up to the number of the frame"),
+    Plug(FILES[1], "NodeSocketString", "", "What a window reads in their place"),
     *FRAME_INPUTS,
     Plug("Domain Size", "NodeSocketFloat", 400.0, "Side of the patch, in metres"),
     Plug("Resolution", "NodeSocketInt", 512, "All samples along each side"),
@@ -69,7 +72,7 @@ def _read(build: Builder) -> Socket:
     """The points of the frame that is shown."""
     frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
     is_window = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
-    files = build.switch("STRING", is_window, build.given("Files"), build.given("Viewport Files"))
+    files = build.switch("STRING", is_window, *(build.given(name) for name in FILES))
     path = build.add("FunctionNodeFormatString", {"Format": "{files}{frame:04}.ply"})
     for kind, name, value in (("STRING", "files", files), ("INT", "frame", output(frame, "Frame"))):
         path.format_items.new(kind, name)

@@ -16,7 +16,7 @@ from ..core.cascades.patch_seas import Part
 from ..export.cache.job import JOB_FILE, CacheError, read_job
 from ..export.points import MOST_IN_WINDOW, POINTS, points_prefix
 from ..nodes.modifier_inputs import set_inputs
-from ..nodes.patch_points import PATCH_POINTS
+from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
 from .image_sequence import baked_frames
@@ -80,8 +80,8 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
     set_inputs(
         modifier,
         {
-            "Files": points.folder + points_prefix(points.name, number),
-            "Viewport Files": points.folder + points_prefix(points.name, number, small),
+            FILES[0]: points.folder + points_prefix(points.name, number),
+            FILES[1]: points.folder + points_prefix(points.name, number, small),
             **frame_values(points.frames, points.files_per_frame),
             "Domain Size": part.parameters.domain_size,
             "Resolution": samples,

@@ -16,6 +16,9 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..export.places import is_foreign, path_of
+from ..nodes.modifier_inputs import get_input, set_input
+from ..nodes.patch_points import FILES, PATCH_POINTS
+from ..nodes.versioned import is_of_kind
 from .maps import MAPS
 from .settings import OceanObjectError, all_oceans, settings_of
 
@@ -48,8 +51,31 @@ def _of_images() -> Iterator[Kept]:
     yield from (Kept(image, "filepath_raw", follows=True) for image in images if image.library is None)
 
 
+class _Input:
+    """An input of a modifier, as a property."""
+
+    def __init__(self, modifier: bpy.types.NodesModifier, name: str) -> None:
+        self._modifier, self._name = modifier, name
+
+    @property
+    def value(self) -> str:
+        return str(get_input(self._modifier, self._name))
+
+    @value.setter
+    def value(self, value: str) -> None:
+        set_input(self._modifier, self._name, value)
+        self._modifier.id_data.update_tag()
+
+
+def _of_points() -> Iterator[Kept]:
+    for item in (item for item in bpy.data.objects if item.library is None):
+        for modifier in item.modifiers:
+            if modifier.type == "NODES" and is_of_kind(modifier.node_group, PATCH_POINTS):
+                yield from (Kept(_Input(modifier, name), "value", follows=False) for name in FILES)
+
+
 #: all that keeps paths
-_KEEPERS: tuple[Callable[[], Iterator[Kept]], ...] = (_of_settings, _of_images)
+_KEEPERS: tuple[Callable[[], Iterator[Kept]], ...] = (_of_settings, _of_images, _of_points)
 
 
 def images_of(item: bpy.types.Object) -> set[bpy.types.Image]:

@@ -18,7 +18,7 @@ def saved(empty_scene, tmp_path, monkeypatch):
     """A file that has been saved, with three frames."""
     monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
     empty_scene.frame_start, empty_scene.frame_end = 1, 3
-    (tmp_path / "project").mkdir()
+    (tmp_path / "project" / "again").mkdir(parents=True)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "shot.blend"))
     return bpy.context.scene
 
@@ -54,7 +54,7 @@ def positions(item):
 
 
 def test_a_baked_horizon_moves(horizon, saved, tmp_path):
-    """The render reads all samples, the window means of those: both at the camera and further away."""
+    """Its project saved elsewhere, then moved. The render reads all samples, the window means of those."""
     ocean, surface = horizon
     live = {}
     for frame in (3, 1):
@@ -63,8 +63,11 @@ def test_a_baked_horizon_moves(horizon, saved, tmp_path):
     assert np.abs(live[3] - live[1]).max() > 0.05
     assert bpy.ops.ocean.bake() == {"FINISHED"}
     assert all(not len(patch.data.vertices) for patch in ocean.children if "Patch" in patch.name)
-    bpy.ops.wm.save_mainfile()
-    seen, said = look(bpy.data.filepath, [surface.name], [1, 3], tmp_path)
+    (tmp_path / "elsewhere" / "deep").mkdir(parents=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "again" / "shot.blend"))
+    moved = tmp_path / "elsewhere" / "deep" / "project"
+    (tmp_path / "project").rename(moved)
+    seen, said = look(moved / "again" / "shot.blend", [surface.name], [1, 3], tmp_path)
     assert "ERROR" not in said
     for frame in (1, 3):
         # points are kept to a float, 150 m from the corner of the patch
@@ -109,8 +112,8 @@ def test_a_live_sea_holds_and_says_so(
     for frame in (2, 3):
         for kind in ("viewport", "render"):
             np.testing.assert_allclose(seen[f"{ocean.name} {kind} {frame}"], live, atol=1e-4)
-        first, *_ = seen[f"{ocean.name} warnings {frame}"]
-        assert first.startswith("The sea stands still as it was in frame 2 ")
+        told = seen[f"{ocean.name} warnings {frame}"]
+        assert any(text.startswith("The sea stands still as it was in frame 2 ") for text in told)
 
 
 def warnings_of(item):
