@@ -45,16 +45,15 @@ def _build(tree: bpy.types.NodeTree) -> None:
     line = output(build.add("GeometryNodeMeshLine", {"Count": vertices}), "Mesh")
     index = output(build.add("GeometryNodeInputIndex"), "Index")
     column, row = (build.integer(operation, index, columns) for operation in ("MODULO", "DIVIDE_FLOOR"))
-    wrapped = [
-        build.integer("MODULO", number, build.integer("MAXIMUM", along, 1)) for number in (column, row)
-    ]
-    source = build.integer("ADD", build.integer("MULTIPLY", wrapped[1], along), wrapped[0])
+    cells = build.integer("MAXIMUM", along, 1)
+    near_column, near_row = (build.integer("MODULO", number, cells) for number in (column, row))
+    source = build.integer("ADD", build.integer("MULTIPLY", near_row, along), near_column)
 
     def told(value: Socket) -> Socket:
         return sample_index(build, points, value, source, "FLOAT_VECTOR")
 
     place = told(output(build.add("GeometryNodeInputPosition"), "Position"))
-    moved = build.vector("SUBTRACT", place, _at_rest(build, *wrapped, along))
+    moved = build.vector("SUBTRACT", place, _at_rest(build, near_column, near_row, along))
     scaled = build.scaled(moved, build.given("Scale"))
     grid = build.store(line, DISPLACEMENT, scaled, "FLOAT_VECTOR")
     for name, numbers in _NUMBERS.items():

@@ -148,6 +148,7 @@ class Job:
 
         fields : what `core.bake.ShotSurfaces` makes for `outputs`
         """
+        sinks: tuple[ExrSequence | PointSequence, ...]
         sinks = (*self.sequences(folder, frame), *self.points(folder, frame))
         return tuple(path for sink, own in zip(sinks, fields, strict=True) for path in sink.write(frame, own))
 
