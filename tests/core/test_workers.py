@@ -74,6 +74,20 @@ def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
     assert peak < 1.4 * memory_need(parameters, outputs).surface
 
 
+def test_memory_while_a_state_is_made_is_told() -> None:
+    """Beyond what stays; its tables take as much at any resolution, and are there already."""
+    small, large = (OceanParameters(resolution=n, domain_size=900.0, seed=4711) for n in (64, 1024))
+    Ocean(small).prepare()
+    tracemalloc.start()
+    ocean = Ocean(large, workers=1)
+    ocean.prepare()
+    kept, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    told = memory_need(large).building - memory_need(small).building
+    assert 0.5 * told < peak - kept < told
+    assert 0.7 * memory_need(large).state < kept < 1.1 * memory_need(large).state
+
+
 def test_memory_with_trough_damping_is_told_too() -> None:
     parameters = OceanParameters(resolution=1024, trough_damping=0.5)
     ocean = Ocean(parameters, workers=1)
