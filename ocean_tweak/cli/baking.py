@@ -22,6 +22,7 @@ from ..core.bake import BakedFrame
 from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames
 from ..core.memory import check_memory, memory_need, physical_memory
+from ..core.printable import LONGEST, printable
 from ..export import logs
 from ..export.cache.estimate import Estimate, estimate, readable_bytes
 from ..export.cache.job import (
@@ -232,7 +233,7 @@ def _announce(
     found = ", ".join(f"{count} {state}" for state, count in reasons.items())
     seconds = needed.seconds / min(workers, _cores())
     progress.say(
-        f"{folder}\n  {len(frames)} frames of {','.join(job.maps)}"
+        f"{printable(folder, LONGEST)}\n  {len(frames)} frames of {','.join(job.maps)}"
         + (f": {found}" if left else ", all whole")
         + (
             f"; about {readable_bytes(needed.bytes)} and {duration(seconds)}, "

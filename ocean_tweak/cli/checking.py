@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..core.frames import Frame, format_frames
 from ..core.plain_data import to_plain
+from ..core.printable import printable
 from ..export.cache.clean import clean as clean_frames
 from ..export.cache.clean import foreign_images, remove_rest
 from ..export.cache.estimate import readable_bytes
@@ -93,7 +94,7 @@ def _verify_folder(arguments: argparse.Namespace, folder: Path) -> int:
 
 def _first(names: Sequence[str]) -> str:
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
-    return ", ".join(names[:_MOST_NAMES]) + more
+    return ", ".join(printable(name, 255) for name in names[:_MOST_NAMES]) + more
 
 
 def clean(arguments: argparse.Namespace) -> int:

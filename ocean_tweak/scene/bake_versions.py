@@ -16,6 +16,7 @@ from ..export.cache.estimate import Estimate, estimate
 from ..export.cache.job import Job, bakes_in
 from ..export.cache.locks import claimed
 from ..export.cache.records import recorded_frames
+from ..export.files import is_link
 from .cache_place import bake_name, cache_folder, own_uid
 from .image_sequence import folder_of
 from .maps import wanted_maps
@@ -59,7 +60,7 @@ def known(item: bpy.types.Object) -> Listing | None:
 def look(item: bpy.types.Object) -> None:
     """Look at the disk for what is there of an ocean's bakes. Raises OSError."""
     before = known(item)
-    versions = tuple(map(_version, bakes_in(_home(item))))
+    versions = tuple(map(_version, _own(item)))
     _listings[item.session_uid] = Listing(versions, None if before is None else before.to_come)
 
 
@@ -99,7 +100,7 @@ def delete(item: bpy.types.Object, names: Iterable[str] = ()) -> clean.Cleaned:
     there or is shown, CacheError, Held where somebody bakes it, OSError.
     """
     shown = shown_folders()
-    versions = {folder.name: folder for folder in bakes_in(_home(item))}
+    versions = {folder.name: folder for folder in _own(item)}
     wanted = list(names) or [name for name, folder in versions.items() if folder.resolve() not in shown]
     for name in wanted:
         if name not in versions:
@@ -123,6 +124,11 @@ def delete(item: bpy.types.Object, names: Iterable[str] = ()) -> clean.Cleaned:
 def _home(item: bpy.types.Object) -> Path:
     """The folder of all bakes of an ocean."""
     return cache_folder(item) / f"{bake_name(item)}-{own_uid(item)}"
+
+
+def _own(item: bpy.types.Object) -> list[Path]:
+    """The folders of an ocean's bakes; one that is a link leads to a bake of somebody else."""
+    return [folder for folder in bakes_in(_home(item)) if not is_link(folder)]
 
 
 def _version(folder: Path) -> Version:

@@ -70,6 +70,7 @@ def test_foreign_files_stay(copy: Path, capsys: pytest.CaptureFixture[str]) -> N
         ("{outside}", "no name of a file in the folder"),
         ("..", "no name of a file in the folder"),
         ("..\\precious_disp.0003.exr", "no name of a file in the folder"),
+        ("x\nopenjd_env: A=B", "no name of a file in the folder"),
         ("notes.txt", "is not named as a frame's image is"),
         ("bake.json", "is not named as a frame's image is"),
         ("sea_disp.0004.exr", "is not named as a frame's image is"),

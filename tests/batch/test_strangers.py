@@ -158,3 +158,12 @@ def test_a_pipe_is_nobodys_claim_and_no_parameters(copy: Path, capsys: pytest.Ca
     assert "x.lock cannot be read" in capsys.readouterr().err
     assert main(["info", "--params", str(copy / "locks" / "x.lock")]) == 2
     assert "is no file" in capsys.readouterr().err
+
+
+def test_names_of_files_add_no_lines(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A farm takes lines as orders, and a terminal some letters."""
+    (copy / "x\nopenjd_env: A=B\x1b[31m_disp.0099.exr").touch()
+    assert main(["verify", str(copy), "--openjd"]) == 0
+    out = capsys.readouterr().out
+    assert "no record lists x\\nopenjd_env: A=B\\x1b[31m_disp.0099.exr" in out
+    assert not [line for line in out.splitlines() if line.startswith("openjd_env")]

@@ -128,3 +128,17 @@ def test_a_version_that_is_being_baked_stays(versions, ocean, extension):
     ):
         bpy.ops.ocean.delete_bake("EXEC_DEFAULT", version=versions[0].name)
     assert size(versions[0]) > 1000
+
+
+def test_a_link_is_no_bake_of_the_oceans(versions, tmp_path, extension, ocean):
+    """It may lead to a bake of somebody else, which is not deleted by way of it."""
+    elsewhere = versions[0].rename(tmp_path / versions[0].name)
+    versions[0].symlink_to(elsewhere)
+    assert bpy.ops.ocean.look_at_bakes() == {"FINISHED"}
+    listed = extension("scene.bake_versions").known(ocean).versions
+    assert [version.folder for version in listed] == versions[1:]
+    with pytest.raises(RuntimeError, match="has no bake"):
+        bpy.ops.ocean.delete_bake(version=versions[0].name)
+    assert bpy.ops.ocean.delete_bake() == {"FINISHED"}
+    assert not versions[1].exists()
+    assert len(list(elsewhere.glob("*.exr"))) == 4

@@ -286,6 +286,6 @@ def _entry(data: Any) -> FileEntry:
     if isinstance(size, bool) or not isinstance(size, int) or size < 0:
         raise ValueError(f"{shown(size)} is no number of bytes")
     name = _text(data["name"])
-    if name in ("", ".", "..") or Path(name).name != name or "\\" in name:
+    if name in ("", ".", "..") or Path(name).name != name or "\\" in name or not name.isprintable():
         raise ValueError(f"{shown(name)} is no name of a file in the folder")
     return FileEntry(_text(data["map"]), name, size, _text(data["sha256"]))
