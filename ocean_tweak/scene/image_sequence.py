@@ -23,6 +23,8 @@ from .stored_paths import absolute, image_file, relative
 from .units import time_stretch
 
 _FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
+# Blender's frames, and so those of files, go as far to either side
+_FARTHEST = 1_048_574
 # what moves the mesh: a sequence has it at every frame
 _MOVING = "disp"
 
@@ -150,9 +152,12 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
 
 def baked_frames(settings: OceanSettings) -> tuple[int, ...]:
     """The frames of an ocean's sequence, ascending; those of an old file from its first to its last one."""
-    if settings.sequence_frames:
-        return _parsed(settings.sequence_frames)
-    return tuple(range(settings.sequence_first, settings.sequence_last + 1))
+    return _stored(settings.sequence_frames, settings.sequence_first, settings.sequence_last)
+
+
+def baked_stretch(settings: OceanSettings) -> Fraction:
+    """Frames of an ocean's sequence in a frame of its animation."""
+    return _stored_stretch(settings.sequence_stretch)
 
 
 def shown_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> int:
@@ -174,13 +179,25 @@ def unbaked_frames(settings: OceanSettings, scene: bpy.types.Scene, frames: Iter
 
 def _wanted_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> int:
     """The frame of the bake at a frame of the scene: the same one, unless Time Stretching changed since."""
-    return math.floor(frame * Fraction(settings.sequence_stretch or 1) / time_stretch(scene))
+    return math.floor(frame * baked_stretch(settings) / time_stretch(scene))
 
 
-# asked on every frame; a long list takes milliseconds
+# asked on every frame; a long list takes milliseconds. What a .blend file says may be anything
 @lru_cache(maxsize=16)
-def _parsed(text: str) -> tuple[int, ...]:
-    return tuple(frame for frame in parse_frames(text) if isinstance(frame, int))
+def _stored(text: str, first: int, last: int) -> tuple[int, ...]:
+    try:
+        frames = parse_frames(text) if text else range(max(first, -_FARTHEST), min(last, _FARTHEST) + 1)
+    except ParameterError:
+        frames = ()
+    return tuple(frame for frame in frames if isinstance(frame, int) and abs(frame) <= _FARTHEST) or (0,)
+
+
+@lru_cache(maxsize=16)
+def _stored_stretch(text: str) -> Fraction:
+    try:
+        return Timing(stretch=text or 1).stretch
+    except ParameterError:
+        return Fraction(1)
 
 
 def file_of(settings: OceanSettings, frame: int) -> Path | None:
@@ -256,6 +273,6 @@ def _frames_by_map(directory: Path) -> dict[tuple[str, str], set[int]]:
     frames: dict[tuple[str, str], set[int]] = {}
     for path in directory.iterdir():
         match = _FILE.fullmatch(path.name)
-        if match is not None:
+        if match is not None and abs(int(match["frame"])) <= _FARTHEST:
             frames.setdefault((match["name"], match["map"]), set()).add(int(match["frame"]))
     return frames

@@ -13,6 +13,7 @@ from ..core import OceanParameters
 from ..core.memory import physical_memory
 from .animated import clock_of
 from .grid_mesh import Grid
+from .image_sequence import baked_stretch
 from .maps import wanted_maps
 from .settings import OceanObjectError, OceanSettings
 from .units import frame_rate, frame_with_subframe, metres_per_unit, time_stretch
@@ -112,7 +113,7 @@ def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) 
     """
     if settings.source == "LIVE" or not settings.sequence_fps:
         return plan.scale
-    played = Fraction(settings.sequence_stretch or 1) / time_stretch(scene)
+    played = baked_stretch(settings) / time_stretch(scene)
     return float(played * frame_rate(scene) / Fraction(settings.sequence_fps) / plan.metres)
 
 

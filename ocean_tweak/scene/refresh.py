@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from fractions import Fraction
 
 import bpy
 import numpy as np
@@ -281,7 +280,7 @@ def _refresh_baked(
             velocity_scale=velocity_scale(settings, plan, scene),
             warn=settings.out_of_range == "WARN",
             early_images=early_images,
-            files_per_frame=float(Fraction(settings.sequence_stretch or 1)),
+            files_per_frame=float(image_sequence.baked_stretch(settings)),
         ),
     )
 

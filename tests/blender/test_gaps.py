@@ -118,3 +118,28 @@ def test_what_floats_on_a_bake_with_gaps_stays_on_it(baked, extension, empty_sce
 def height_of(item, scene, frame):
     scene.frame_set(frame)
     return item.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z
+
+
+def test_what_a_file_says_may_be_anything(baked, empty_scene):
+    """Strings that a stranger's file stores: nothing fails, and no list of all frames is made."""
+    settings = baked((1, 2), "NODES").ocean_tweak
+    for text, first, last in (
+        ("water", 0, 0),
+        ("1-2x0", 0, 0),
+        ("0-999999999x9", 0, 0),
+        ("", 5, 1),
+        ("1.5", 1, 2),
+    ):
+        settings.sequence_frames, settings.sequence_first, settings.sequence_last = text, first, last
+        settings.sequence_stretch = text
+        settings.repeats_x = 1
+        empty_scene.frame_set(1)
+        assert settings.error == ""
+        assert "0000.exr" in settings.missing_file
+
+
+def test_a_file_of_a_frame_that_no_scene_has_is_none(bake, make_parameters, extension):
+    sequence = bake(make_parameters(), 1, 2)
+    for number in ("9999999999", "-9999999999"):
+        sequence.path(1).with_name(f"sea_disp.{number}.exr").write_bytes(b"")
+    assert extension("scene.image_sequence").find_sequence(sequence.directory) == sequence
