@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import atexit
+import logging
+from collections.abc import Iterator, Mapping
 
 import bpy
 
@@ -12,8 +14,9 @@ from .export import logs
 from .scene import asset_library, handlers
 from .scene.cache_place import cache_folder, own_uid
 from .scene.patch_objects import shot_maps
-from .scene.settings import all_oceans
+from .scene.settings import OceanObjectError, all_oceans, shown_oceans
 from .scene.shots import scene_frames, shot_of
+from .scene.view_layers import is_in_view_layer
 from .ui import (
     asset_operators,
     bake_operators,
@@ -65,22 +68,53 @@ CLASSES = (
     *material_operators.CLASSES,
 )
 
+_log = logging.getLogger(__name__)
+
 _COMMAND = "ocean_tweak"
 # what Blender gave for the command line's command, needed to take it back
 _commands: list[object] = []
 
 
-def scene_oceans() -> dict[str, cli.Sea]:
-    """The oceans of the open file by object name. Raises ParameterError for what is no sea."""
-    oceans = {}
-    for item in all_oceans():
-        if item.users_scene:
-            scene = item.users_scene[0]
-            frames = scene_frames(scene)
-            oceans[item.name] = cli.Sea(
-                shot_of(item, scene, frames), own_uid(item), frames, cache_folder(item), shot_maps(item)
-            )
-    return oceans
+class _SceneOceans(Mapping[str, cli.Sea]):
+    """The oceans of the open file by object name; each sea is made when it is asked for.
+
+    That raises ParameterError for what is no sea.
+    """
+
+    def __init__(self) -> None:
+        shown = shown_oceans()
+        self._oceans: dict[str, tuple[bpy.types.Object, bpy.types.Scene]] = {}
+        for item in (item for item in all_oceans() if item in shown):
+            # one from another file may have the same name
+            name = item.name if item.name not in self._oceans else item.name_full
+            self._oceans[name] = item, shown[item]
+
+    def __getitem__(self, name: str) -> cli.Sea:
+        """The sea of an object, over the frames of its scene."""
+        item, scene = self._oceans[name]
+        frames = scene_frames(scene)
+        shot = shot_of(item, scene, frames)
+        if not is_in_view_layer(item, scene):
+            _log.warning("%s is in no view layer of %s that is rendered: no picture has it", name, scene.name)
+        try:
+            cache = cache_folder(item)
+        except OceanObjectError as error:
+            _log.warning("%s: %s", name, error)
+            cache = None
+        return cli.Sea(shot, own_uid(item), frames, cache, shot_maps(item))
+
+    def __iter__(self) -> Iterator[str]:
+        """The names."""
+        return iter(self._oceans)
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self._oceans)
+
+
+def scene_oceans() -> Mapping[str, cli.Sea]:
+    """The oceans of the open file by object name."""
+    return _SceneOceans()
 
 
 def run_command(argv: list[str]) -> int:

@@ -18,6 +18,7 @@ from pathlib import Path
 import bpy
 
 from .settings import OceanSettings, all_oceans, scene_of, settings_of
+from .view_layers import is_in_view_layer
 
 _log = logging.getLogger(__name__)
 
@@ -131,9 +132,4 @@ def _say(level: int, item: bpy.types.Object, subject: str, text: str) -> None:
 
 def _is_rendered(item: bpy.types.Object) -> bool:
     """Whether an ocean is in a picture of its scene, as far as its switches and collections say."""
-    scene = scene_of(item)
-    if item.hide_render:
-        return False
-    if item.name not in scene.collection.all_objects:
-        return True  # an instance shows it
-    return any(item.name in layer.objects for layer in scene.view_layers if layer.use)
+    return not item.hide_render and is_in_view_layer(item, scene_of(item))

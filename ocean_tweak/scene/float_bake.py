@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 import bpy
@@ -12,6 +13,7 @@ from . import float_keys, floating, handlers
 from .floating import FloatError, Ride
 from .floating_place import Water, place_on, water_at
 from .units import metres_per_unit, time_stretch
+from .view_layers import evaluated, taking_part
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,8 @@ class FloatBake:
         self.frames, self.done = frames, 0
         self._scene, self._frame = scene, (scene.frame_current, scene.frame_subframe)
         self._riders = [self._begin(item, ocean, ride) for item in chosen]
+        self._taking_part = ExitStack()
+        self._taking_part.enter_context(taking_part(scene, *{rider.ocean for rider in self._riders}))
 
     def _begin(self, item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride) -> _Rider:
         carrier = floating.carrier_of(item)
@@ -72,12 +76,13 @@ class FloatBake:
         frame = self.frames[self.done]
         with handlers.asleep():  # the waves in the viewport are not needed
             self._scene.frame_set(frame)
+            depsgraph = evaluated(self._scene)
         metres = float(metres_per_unit(self._scene))
         waters: dict[bpy.types.Object, Water] = {}
         for rider in self._riders:
             if rider.ocean not in waters:
-                waters[rider.ocean] = water_at(rider.ocean, self._scene, frame)
-            places = rider.carrier.matrix_world, rider.ocean.matrix_world
+                waters[rider.ocean] = water_at(rider.ocean, self._scene, depsgraph, frame)
+            places = rider.carrier.matrix_world, rider.ocean.evaluated_get(depsgraph).matrix_world
             rider.track.add(place_on(waters[rider.ocean], *places, rider.ride, metres))
         self.done += 1
 
@@ -100,5 +105,6 @@ class FloatBake:
         self._go_back()
 
     def _go_back(self) -> None:
+        self._taking_part.close()
         frame, subframe = self._frame
         self._scene.frame_set(frame, subframe=subframe)

@@ -59,14 +59,18 @@ class Water:
         return found.height, found.normal
 
 
-def water_at(ocean: bpy.types.Object, scene: bpy.types.Scene, frame: int) -> Water:
+def water_at(
+    ocean: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, frame: int
+) -> Water:
     """The sea of an ocean at the scene's present frame.
+
+    depsgraph : in which the ocean takes part
 
     Raises ParameterError, OceanObjectError or MemoryError for an ocean that has no surface there.
     """
     if not is_ocean(ocean):
         raise FloatError(f"{ocean.name} is no ocean any more: its modifier was applied or removed")
-    settings = shown_settings(ocean, scene.view_layers[0].depsgraph)
+    settings = shown_settings(ocean, depsgraph)
     plan = plan_of(settings, scene)
     if settings.source == "LIVE":
         displacement = _sea(plan.parameters).surface(plan.time).displacement

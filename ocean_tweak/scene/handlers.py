@@ -31,7 +31,15 @@ from . import (
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, hold, refresh_and_tell, refresh_patches, refresh_render
-from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, was_ocean
+from .settings import (
+    all_oceans,
+    is_ocean,
+    oceans_in,
+    once_oceans_in,
+    settings_of,
+    shown_oceans,
+    was_ocean,
+)
 
 # scene settings that change an ocean and have no update callback of ours
 _FOLLOWED = (
@@ -81,7 +89,7 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
 @_loud
 def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
-    for item in oceans_in(scene):
+    for item in _evaluated_oceans(scene, depsgraph):
         if not is_animated(item):
             continue
         if settings_of(item).source == "LIVE":
@@ -101,7 +109,7 @@ def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
     """
     if depsgraph is None or depsgraph.mode != "RENDER":
         return
-    for item in oceans_in(scene):
+    for item in _evaluated_oceans(scene, depsgraph):
         shown = shown_settings(item, depsgraph)
         if refinement.is_unfinished(item):
             refresh_and_tell(item, scene, statistics=False, shown=shown)
@@ -142,9 +150,9 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 @persistent
 def look_after_save(_path: object = None, _unused: object = None) -> None:
     """A file that was saved elsewhere may have left its bakes behind."""
-    for item in all_oceans():
-        if settings_of(item).source == "SEQUENCE" and item.users_scene:
-            bake_state.check(item, item.users_scene[0])
+    for item, scene in shown_oceans().items():
+        if settings_of(item).source == "SEQUENCE":
+            bake_state.check(item, scene)
 
 
 @persistent
@@ -238,21 +246,29 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     refresh_live_oceans()
 
 
+def _evaluated_oceans(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None
+) -> Iterator[bpy.types.Object]:
+    """The oceans of a scene whose animation this evaluation has: others are in other view layers."""
+    for item in oceans_in(scene):
+        if depsgraph is None or not is_animated(item) or item.evaluated_get(depsgraph).is_evaluated:
+            yield item
+
+
 def refresh_live_oceans() -> None:
     """Refresh every live ocean of the file in its own scene, and look at the files of the others."""
-    for item in list(all_oceans()):
-        if item.users_scene and settings_of(item).source == "LIVE":
-            show(item, item.users_scene[0])
-        elif item.users_scene:
-            check_files(item, item.users_scene[0])
-            bake_state.check(item, item.users_scene[0])
+    for item, scene in shown_oceans().items():
+        if settings_of(item).source == "LIVE":
+            show(item, scene)
+        else:
+            check_files(item, scene)
+            bake_state.check(item, scene)
 
 
 def refresh_all_oceans() -> None:
     """Refresh every ocean of the file in its own scene."""
-    for item in list(all_oceans()):
-        if item.users_scene:
-            show(item, item.users_scene[0])
+    for item, scene in shown_oceans().items():
+        show(item, scene)
 
 
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (

@@ -146,9 +146,10 @@ def show(bake: Bake, frames: list[int], alone: bool) -> None:
 
 def is_ocean(item: bpy.types.Object) -> bool:
     """Whether the extension is there and takes the object for an ocean."""
-    if not hasattr(item, "ocean_tweak") or not item.users_scene:
+    if not hasattr(item, "ocean_tweak"):
         return False
-    return bool(of_extension(item, "scene.settings").is_ocean(item))
+    settings = of_extension(item, "scene.settings")
+    return bool(settings.is_ocean(item)) and item in settings.shown_oceans()
 
 
 def of_extension(item: bpy.types.Object, name: str) -> ModuleType:
@@ -161,7 +162,7 @@ def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
     """Let the extension switch an ocean to the bake. Raises RenderError where it cannot."""
     ocean_object = of_extension(item, "scene.ocean_object")
     sequences = of_extension(item, "scene.image_sequence")
-    scene = item.users_scene[0]
+    scene = of_extension(item, "scene.settings").shown_oceans()[item]
     baked = bake.domain_size
     own = item.ocean_tweak.to_parameters(scene).domain_size
     if abs(own - baked) > 1e-6 * baked:

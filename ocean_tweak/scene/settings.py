@@ -254,6 +254,15 @@ def once_oceans_in(scene: bpy.types.Scene) -> Iterator[bpy.types.Object]:
             yield item
 
 
+def shown_oceans() -> dict[bpy.types.Object, bpy.types.Scene]:
+    """The oceans that a scene has, each with its scene: the context's where they are in that."""
+    found: dict[bpy.types.Object, bpy.types.Scene] = {}
+    for scene in (bpy.context.scene, *bpy.data.scenes):
+        for item in oceans_in(scene):
+            found.setdefault(item, scene)
+    return found
+
+
 def all_oceans() -> Iterator[bpy.types.Object]:
     """Every ocean of the file."""
     return (item for item in bpy.data.objects if is_ocean(item))

@@ -15,6 +15,7 @@ from ..core.shot import ANIMATED, OCEAN_TIME, Animation, Shot
 from . import handlers
 from .animated import clock_of, is_animated, set_keys, shown_settings
 from .settings import settings_of
+from .view_layers import evaluated, taking_part
 
 
 def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()) -> Shot:
@@ -29,7 +30,9 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
     # one more on either side: the velocity of an end is that of the motion through it
     first, last = math.floor(min(wanted)) - 1, math.ceil(max(wanted)) + 1
-    samples = [_sample(item, scene, depsgraph) for depsgraph in evaluations(scene, range(first, last + 1))]
+    samples = [
+        _sample(item, scene, depsgraph) for depsgraph in evaluations(scene, range(first, last + 1), item)
+    ]
     changing = {
         path: tuple(sample[path] for sample in samples)
         for path in samples[0]
@@ -54,14 +57,19 @@ def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
-def evaluations(scene: bpy.types.Scene, frames: Iterable[int]) -> Iterator[bpy.types.Depsgraph]:
-    """The scene at each frame, without the waves of any ocean; it ends at the frame where it was."""
+def evaluations(
+    scene: bpy.types.Scene, frames: Iterable[int], item: bpy.types.Object
+) -> Iterator[bpy.types.Depsgraph]:
+    """The scene at each frame, without the waves of any ocean; it ends at the frame where it was.
+
+    item : whose settings and place are evaluated, whatever hides it
+    """
     before = scene.frame_current, scene.frame_subframe
     try:
-        with handlers.asleep():
+        with handlers.asleep(), taking_part(scene, item):
             for frame in frames:
                 scene.frame_set(frame)
-                yield _depsgraph(scene)
+                yield evaluated(scene)
     finally:
         scene.frame_set(before[0], subframe=before[1])
 
@@ -69,12 +77,6 @@ def evaluations(scene: bpy.types.Scene, frames: Iterable[int]) -> Iterator[bpy.t
 def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:
     """The frames that the scene renders."""
     return tuple(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
-
-
-def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
-    depsgraph = scene.view_layers[0].depsgraph
-    depsgraph.update()
-    return depsgraph
 
 
 def _sample(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..core import Raster
 from .settings import OceanObjectError, settings_of
+from .view_layers import evaluated, taking_part
 
 Array = NDArray[np.float64]
 
@@ -20,7 +21,7 @@ def weights_seen(
 ) -> Raster:
     """(samples, samples) weights of the highest face over or under each place of the domain; 0 beside it.
 
-    mesh : as its modifiers leave it, wherever it stands
+    mesh : as its modifiers leave it, wherever it stands and whatever hides it
     group : name of its vertex group
 
     Raises OceanObjectError for a mesh or group that is not there, or not over the domain.
@@ -30,27 +31,22 @@ def weights_seen(
     if group not in mesh.vertex_groups:
         there = ", ".join(item.name for item in mesh.vertex_groups) or "none"
         raise OceanObjectError(f"{mesh.name} has no vertex group {group!r}: it has {there}")
-    evaluated = mesh.evaluated_get(_depsgraph(scene))
-    data = evaluated.to_mesh()
-    try:
-        weight = _weights(data, mesh.vertex_groups[group].index)
-        data.transform(ocean.matrix_world.inverted_safe() @ evaluated.matrix_world)
-        data.calc_loop_triangles()
-        corners, places = _arrays(data)
-    finally:
-        evaluated.to_mesh_clear()
+    with taking_part(scene, mesh, geometry=True):
+        made = mesh.evaluated_get(evaluated(scene))
+        data = made.to_mesh()
+        try:
+            weight = _weights(data, mesh.vertex_groups[group].index)
+            data.transform(ocean.matrix_world.inverted_safe() @ made.matrix_world)
+            data.calc_loop_triangles()
+            corners, places = _arrays(data)
+        finally:
+            made.to_mesh_clear()
     seen = _seen(corners, places, weight, settings_of(ocean).domain_size, samples)
     if not np.isfinite(seen).any():
         raise OceanObjectError(
             f"{mesh.name} is neither over nor under the patch of {ocean.name}: move it there"
         )
     return Raster(np.nan_to_num(seen, nan=0.0), f"{mesh.name} {group}")
-
-
-def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
-    depsgraph = scene.view_layers[0].depsgraph
-    depsgraph.update()
-    return depsgraph
 
 
 def _weights(mesh: bpy.types.Mesh, index: int) -> Array:

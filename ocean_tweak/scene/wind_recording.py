@@ -64,7 +64,7 @@ def record(
     names = {other.name for other in objects.all_objects} if objects is not None else None
     keys: list[WindKey] = []
     blows = False
-    for count, depsgraph in enumerate(evaluations(scene, frames), start=1):
+    for count, depsgraph in enumerate(evaluations(scene, frames, item), start=1):
         fields = [
             other for other in depsgraph.objects if is_wind(other) and (names is None or other.name in names)
         ]
