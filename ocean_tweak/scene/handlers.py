@@ -232,9 +232,9 @@ def mend_after_import(_imported: object = None) -> None:
 @persistent
 def hold_before_save(_path: object = None, _unused: object = None) -> None:
     """Let live oceans stand still as they are, rather than lie flat, where the extension is missing."""
-    for item in all_oceans():
-        if settings_of(item).source == "LIVE" and item.library is None and item.users_scene:
-            hold(item, item.users_scene[0])
+    for item, scene in shown_oceans().items():
+        if settings_of(item).source == "LIVE" and item.library is None:
+            hold(item, scene)
 
 
 @persistent
