@@ -16,7 +16,7 @@ from ..core.cascades.statistics import CascadeStatistics
 from ..core.foam_field import foam_outlook
 from ..core.hero_waves.outlook import HeroWaveOutlook, hero_wave_outlooks
 from ..core.memory import memory_need
-from ..core.statistics import SeaState
+from ..core.statistics import SeaState, Statistics
 from ..core.wave_particles.outlook import wind_wave_outlook
 from ..export.files import write_text
 from .outcome import DONE, UsageError
@@ -85,10 +85,7 @@ def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) ->
         _state_row("spectrum", statistics.spectrum),
         f"{_state_row(f'resolved by {grid}', statistics.resolved)}  {share}",
         _state_row(f"seed {parameters.seed}", statistics.seed),
-        f"  peak wavelength {statistics.peak_wavelength:.4g} m, "
-        f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m; "
-        f"steepness {statistics.spectrum.steepness:.3f}; "
-        f"sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
+        f"  {_peak(parameters, statistics)}sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
     lines += _patch_rows(found)
     if parameters.joined:
@@ -169,10 +166,24 @@ def _hero_row(wave: HeroWaveOutlook) -> str:
     )
 
 
+def _peak(parameters: OceanParameters, statistics: Statistics) -> str:
+    """What a line says of the waves at the peak; "" of a flat sea, which has none."""
+    if not math.isfinite(statistics.peak_wavelength):
+        return ""
+    return (
+        f"peak wavelength {statistics.peak_wavelength:.4g} m, "
+        f"{statistics.wavelengths_per_domain:.3g} in the domain of {parameters.domain_size:g} m; "
+        f"steepness {statistics.spectrum.steepness:.3f}; "
+    )
+
+
 def _state_row(title: str, state: SeaState) -> str:
     slope = math.sqrt(state.mean_square_slope)
     direction, spread = math.degrees(state.mean_direction), math.degrees(state.directional_spread)
+    row = f"  {title:<18}{state.significant_wave_height:>8.2f} m"
+    if not math.isfinite(state.peak_period):  # a flat sea has no more
+        return f"{row}{'-':>10}{'-':>10}{slope:>8.3f}{'-':>9}{'-':>8}"
     return (
-        f"  {title:<18}{state.significant_wave_height:>8.2f} m{state.peak_period:>8.2f} s"
-        f"{state.zero_crossing_period:>8.2f} s{slope:>8.3f}{direction:>8.0f}°{spread:>7.0f}°"
+        f"{row}{state.peak_period:>8.2f} s{state.zero_crossing_period:>8.2f} s{slope:>8.3f}"
+        f"{direction:>8.0f}°{spread:>7.0f}°"
     )

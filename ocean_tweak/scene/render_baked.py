@@ -38,7 +38,7 @@ class Bake:
 
     def __init__(self, cache: Path, text: str) -> None:
         home, _, hash8 = text.rpartition("/")
-        self.name = home.rpartition("-")[0]
+        self.name, _, self.uid = home.rpartition("-")
         folders = sorted((cache / home).glob(f"v*-{hash8}"))
         if not folders:
             raise RenderError(
@@ -174,7 +174,22 @@ def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
         ocean_object.use_sequence(item, scene, sequence)
     except ValueError as error:
         raise RenderError(f"{item.name}: {error}") from error
+    if of_extension(item, "scene.cache_place").own_uid(item) == bake.uid:  # baked from this very ocean
+        check_settings(item, bake, frames)
     print(f"{item.name} reads {bake.folder}", flush=True)
+
+
+def check_settings(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
+    """Raise RenderError where an ocean was changed after its bake: the picture would be of another sea."""
+    scene = item.users_scene[0]
+    for frame in sorted({frames[0], frames[len(frames) // 2], frames[-1]}):
+        scene.frame_set(frame)
+        if item.ocean_tweak.bake_differs:
+            path, baked, own = json.loads(item.ocean_tweak.bake_differs)[0]
+            raise RenderError(
+                f"{item.name} was changed after its bake {bake.folder}: {path} is {own} and was {baked} in "
+                f"frame {frame}. Bake it again and write the job anew, or press Settings From Bake"
+            )
 
 
 def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:

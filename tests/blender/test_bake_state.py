@@ -128,3 +128,15 @@ def test_a_live_ocean_has_no_bake(baked):
     bpy.ops.ocean.use_live()
     assert baked.ocean_tweak.bake_differs == baked.ocean_tweak.baked_sea == ""
     assert not bpy.ops.ocean.settings_from_bake.poll()
+
+
+def test_the_farm_renders_no_ocean_that_was_changed_after_its_bake(baked, extension, empty_scene):
+    script = extension("scene.render_baked")
+    folder = extension("scene.cache_place").shown_bake(baked)
+    of_job = script.Bake(folder.parent.parent, f"{folder.parent.name}/{folder.name.partition('-')[2]}")
+    script.use_sequence(baked, of_job, [1, 2, 3])
+    key(baked, "layers[0].wind_speed", {1: 11.0, 2: 11.0, 3: 20.0})
+    with pytest.raises(script.RenderError, match=r"wind_speed is 20.0 and was 11.0 in frame 3"):
+        script.use_sequence(baked, of_job, [1, 2, 3])
+    baked.ocean_tweak.uid = "of a file that has another sea, whose bake was given"
+    script.use_sequence(baked, of_job, [1, 2, 3])

@@ -117,6 +117,10 @@ def test_info_says_what_the_sea_will_be(capsys: pytest.CaptureFixture[str]) -> N
     assert "7.58 s" in text
     assert main(["info", "--set", "domain_size=100", "--set", "resolution=32"]) == 0
     assert "warning: The domain of 100 m holds only 1.1" in capsys.readouterr().out
+    assert main(["info", "--set", "layers.0.wind_speed=0"]) == 0
+    calm = capsys.readouterr().out
+    assert "sea state 0, calm (glassy)" in calm
+    assert "nan" not in calm
 
 
 @pytest.mark.parametrize(

@@ -188,6 +188,14 @@ def test_verify_finds_clips_of_another_sea_and_damaged_ones(tmp_path, quiet):
     assert any("sea.1003.usdc is damaged" in text for text in found)
 
 
+@pytest.mark.parametrize("form", ["points", "clips", "displacement"])
+def test_a_calm_does_not_move_and_is_well(params, tmp_path, form):
+    top = tmp_path / "calm.usd"
+    arguments = ["--params", params, "--set", "layers.0.wind_speed=0", "--frames", "1001-1002"]
+    assert main(["usd", *arguments, "--form", form, "--out", str(top)]) == 0
+    assert problems(top) == []
+
+
 def test_verify_finds_a_sea_that_stands_still(tmp_path):
     """Defaults in the layer that anchors the clips win over them: every validator is content with that."""
     top = tmp_path / "sea.usd"

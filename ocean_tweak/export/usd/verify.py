@@ -196,6 +196,7 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
     surfaces = ShotSurfaces(package.at(edition.resolution))
     outputs = frozenset().union(*(attribute.outputs for attribute in edition.attributes))
     shown: list[NDArray[np.floating]] = []
+    made: list[NDArray[np.floating]] = []
     for frame in frames:
         fields = surfaces.frame(frame, outputs)
         for path, patch in edition.meshes():
@@ -211,8 +212,13 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
             yield from _outside(opened, frame, mesh, points)
             if mesh == SURFACE:
                 shown.append(points)
-    if len(shown) > 1 and all(np.array_equal(points, shown[0]) for points in shown[1:]):
+                made.append(fields.displacement.copy())
+    if _stands_still(shown) and not _stands_still(made):  # a calm does not move either
         yield Problem(None, f"nothing moves: the points are the same at frames {format_frames(frames)}")
+
+
+def _stands_still(fields: Sequence[NDArray[np.floating]]) -> bool:
+    return len(fields) > 1 and all(np.array_equal(field, fields[0]) for field in fields[1:])
 
 
 def _value(opened: _Opened, name: str, mesh: str, frame: Frame) -> NDArray[np.floating] | None:
