@@ -41,7 +41,7 @@ from ..export.cache.records import CacheSink, Finding, give_up_writing, remove_l
 from ..export.exr import ExrError
 from ..export.files import writable_folder
 from .checking import known_frames, wanted_frames
-from .outcome import DONE, FAILED, UsageError, message_of, remedy_of
+from .outcome import DONE, FAILED, UsageError, message_of, remedy_of, shell_word
 from .progress import Progress, duration
 from .seas import Sea
 from .stopping import end_now, stop_requested
@@ -217,7 +217,7 @@ def _telling_how_to_go_on(folder: Path) -> Iterator[None]:
 def _go_on(folder: Path) -> str:
     if not (folder / JOB_FILE).exists():
         return "the folder is gone: bake it again"
-    return f"whole frames stay; go on with: resume {shlex.quote(str(folder))}"
+    return f"whole frames stay; go on with: resume {shell_word(folder)}"
 
 
 def _announce(

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import errno
+import shlex
+from pathlib import Path
 
 from ..core.printable import LONGEST, printable
 
@@ -36,6 +38,12 @@ def message_of(error: BaseException) -> str:
     if isinstance(error, MemoryError) and not str(error):
         return "there is not enough memory: lower the resolution"
     return printable(" ".join(str(error).split()), LONGEST)
+
+
+def shell_word(path: Path) -> str:
+    """A path as a shell's command takes it: never as an option."""
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)
 
 
 def remedy_of(error: BaseException) -> str:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import logging
 import os
-import shlex
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -20,7 +19,7 @@ from ..export.cache.records import recorded_frames
 from ..export.usd.apart import problems_of
 from ..export.usd.export import Export
 from ..export.usd.package import Package, with_samples_between
-from .outcome import DONE, FAILED, UsageError
+from .outcome import DONE, FAILED, UsageError, shell_word
 from .progress import Progress
 from .seas import SceneOceans, chosen_seas
 from .stopping import stop_requested
@@ -72,7 +71,7 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
     progress.say(
         f"{arguments.out}\n  {len(package.frames)} frames, {format_frames(package.frames)}, as "
         f"{package.form}, {readable_bytes(size)}; check it with: usd-verify "
-        f"{shlex.quote(str(arguments.out))}",
+        f"{shell_word(arguments.out)}",
         path=str(arguments.out), frames=format_frames(package.frames), form=package.form, bytes=size,
     )  # fmt: skip
     return DONE

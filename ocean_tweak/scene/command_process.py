@@ -106,11 +106,10 @@ class CommandProcess:
     def _read_progress(self, stream: IO[str]) -> None:
         with stream:
             for line in stream:
-                try:
+                with contextlib.suppress(ValueError):  # what a library had to say
                     said = json.loads(line)
-                except ValueError:
-                    continue
-                self.take(said)
+                    if isinstance(said, dict):
+                        self.take(said)
 
     def _read_errors(self, stream: IO[str]) -> None:
         with stream:

@@ -83,8 +83,9 @@ def apply_state(item: bpy.types.Object, state: State, action: bpy.types.Action |
         item.animation_data.action = None
         if not state.has_animation:
             item.animation_data_clear()
-    for name, value in state.values.items():
-        setattr(item, name, value)
+    for name in _VALUES:
+        if name in state.values:  # whatever else the file holds there
+            setattr(item, name, state.values[name])
     for constraint in item.constraints:
         constraint.enabled = constraint.name in state.enabled
 

@@ -18,6 +18,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..core.errors import ParameterError
 from ..core.raster import Raster
 from ..scene.settings import scene_of
 from ..scene.units import metres_per_unit, shortest_decimal
@@ -79,14 +80,30 @@ def write(
 def read(
     group: bpy.types.PropertyGroup, kind: type, metres: Fraction, without: tuple[str, ...] = ()
 ) -> dict[str, Any]:
-    """Values of a group by field name, in SI units and not yet validated."""
-    result: dict[str, Any] = json.loads(group.exact) if group.exact else {}
+    """Values of a group by field name, in SI units and not yet validated.
+
+    Raises ParameterError where what the file stores beside the properties is damaged.
+    """
+    result = _exact_values(group)
     for field in _plain_fields(kind, without):
         value = getattr(group, field.name)
         if field.metadata["kind"] is float:
             value = _exact_float(field, value, result.get(field.name), metres)
         result[field.name] = value
     return result
+
+
+def _exact_values(group: bpy.types.PropertyGroup) -> dict[str, Any]:
+    """What the properties cannot hold, by field name."""
+    try:
+        values = json.loads(group.exact) if group.exact else {}
+    except (ValueError, RecursionError):
+        values = None
+    if not isinstance(values, dict):
+        raise ParameterError(
+            "exact", group.exact, "is damaged in this file: take a preset or other parameters"
+        )
+    return values
 
 
 def _is_text(field: _Field) -> bool:

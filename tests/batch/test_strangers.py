@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shlex
 import subprocess
 from collections.abc import Callable
 from fractions import Fraction
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.cli import Sea, main
+from ocean_tweak.cli.outcome import shell_word
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.cache.job import CacheError, read_job, sealed
@@ -167,3 +169,11 @@ def test_names_of_files_add_no_lines(copy: Path, capsys: pytest.CaptureFixture[s
     out = capsys.readouterr().out
     assert "no record lists x\\nopenjd_env: A=B\\x1b[31m_disp.0099.exr" in out
     assert not [line for line in out.splitlines() if line.startswith("openjd_env")]
+
+
+def test_what_is_told_can_be_typed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder with a minus at its front is one in the command that goes on, too."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["bake", "--set", "resolution=16", "--frames=1", "--workers=1", "--out=-c d"]) == 0
+    (folder,) = Path("-c d").glob("*/v*")
+    assert main(["verify", *shlex.split(shell_word(folder))]) == 0

@@ -150,3 +150,13 @@ def test_what_a_file_holds_beyond_its_ranges_is_replaced_when_it_is_opened(
     bpy.ops.wm.save_as_mainfile(filepath=file)
     bpy.ops.wm.open_mainfile(filepath=file)
     assert "not allowed" not in caplog.text
+
+
+@pytest.mark.parametrize("text", ["{", "[]", "[" * 100_000, "1"])
+def test_damaged_numbers_of_a_file_are_told(ocean, empty_scene, text):
+    layer = ocean.ocean_tweak.layers[0]
+    layer.exact = text
+    with pytest.raises(ValueError, match=r"exact = .* is damaged in this file"):
+        ocean.ocean_tweak.to_parameters(empty_scene)
+    empty_scene.frame_set(empty_scene.frame_current + 1)
+    assert "is damaged in this file" in ocean.ocean_tweak.error

@@ -150,7 +150,9 @@ def test_a_layer_that_fails_half_way_leaves_nothing(tmp_path):
         ({"tiles": (0, 3)}, "tiles"),
         ({"variants": (32, 32)}, "must differ"),
         ({"variants": (7,)}, "resolution = 7"),
+        ({"variants": tuple(range(16, 50, 2))}, "must be at most 16"),
         ({"attributes": ("heat",)}, "attributes = 'heat'"),
+        ({"attributes": ("foam", "foam")}, "must differ"),
         ({"proxy": -1}, "proxy"),
     ],
 )

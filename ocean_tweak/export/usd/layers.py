@@ -39,7 +39,7 @@ def whole_layer(
         # OpenUSD chooses the format by the ending
         draft = beside.with_name(beside.name + path.suffix)
         try:
-            with named_errors(path):
+            with named_errors(path, (pxr().Tf.ErrorException,)):
                 yield from _filled(draft, path, text)
             draft.replace(beside)
         finally:
@@ -72,13 +72,16 @@ def _format(path: Path, text: bool) -> dict[str, str]:
 
 
 @contextlib.contextmanager
-def named_errors(path: Path) -> Iterator[None]:
-    """Turns what OpenUSD says of a layer into UsdError with the file's name, in a line."""
+def named_errors(path: Path, kinds: tuple[type[Exception], ...] = UNREADABLE) -> Iterator[None]:
+    """Turns what OpenUSD says of a layer into UsdError with the file's name, in a line.
+
+    kinds : of errors; by default all that reading may give
+    """
     try:
         yield
     except UsdError:
         raise
-    except UNREADABLE as error:
+    except kinds as error:
         raise UsdError(f"{path}: {reason(error)}") from error
 
 
@@ -94,7 +97,7 @@ def reason(error: Exception) -> str:
 
 def save(layer: Any, path: Path) -> None:
     """Save a layer; what it held in memory is in the file afterwards. Raises UsdError."""
-    with named_errors(path):
+    with named_errors(path, (pxr().Tf.ErrorException,)):
         saved = layer.Save()
     if not saved:
         raise UsdError(f"{path}: OpenUSD could not save it")

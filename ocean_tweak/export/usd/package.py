@@ -24,8 +24,8 @@ FORMS = ("points", "clips", "displacement")
 UP_AXES = ("Z", "Y")
 #: names of the layers beside the asset's own
 LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest")
-#: limits of tiles along a side, and of metres in a unit
-MOST_TILES, UNITS = 64, (1e-6, 1e6)
+#: limits of resolutions to choose from, of tiles along a side, and of metres in a unit
+MOST_VARIANTS, MOST_TILES, UNITS = 16, 64, (1e-6, 1e6)
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ class Package:
             raise ParameterError("tiles", self.tiles, f"must be from 1 to {MOST_TILES} along each side")
         if self.proxy < 0:
             raise ParameterError("proxy", self.proxy, "must be 0 or more")
-        if len(set(self.variants)) < len(self.variants):
-            raise ParameterError("variants", self.variants, "must differ from each other")
+        _check_list("attributes", self.attributes, len(ATTRIBUTES))
+        _check_list("variants", self.variants, MOST_VARIANTS)
         if not self.frames:
             raise ParameterError("frames", "", "must hold at least one frame")
         _check_name(self.name)
@@ -195,6 +195,13 @@ def _listed(text: str) -> tuple[str, ...]:
 def _check_choice(field: str, value: object, known: tuple[str, ...]) -> None:
     if value not in known:
         raise ParameterError(field, value, f"must be one of {', '.join(known)}")
+
+
+def _check_list(field: str, values: tuple[object, ...], most: int) -> None:
+    if len(values) > most:
+        raise ParameterError(field, values, f"must be at most {most}")
+    if len(set(values)) < len(values):
+        raise ParameterError(field, values, "must differ from each other")
 
 
 def _check_name(name: str) -> None:
