@@ -123,7 +123,7 @@ def check(item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings |
     try:
         found = differences(shot, frame, shown or settings, scene)
     except ParameterError:
-        return  # the panel tells that the settings are no sea at all
+        found = []  # the panel tells that the settings are no sea at all
     set_changed(settings, bake_differs=json.dumps(found) if found else "")
 
 

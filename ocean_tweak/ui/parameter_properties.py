@@ -216,6 +216,15 @@ def _within(field: _Field, value: float) -> float:
     return min(max(value, field.metadata["minimum"]), field.metadata["maximum"])
 
 
+def beyond(group: Any, kind: type, metres: Fraction) -> Iterator[tuple[str, float]]:
+    """Names of a group's lengths that a curve took beyond their range, and what they count as in metres."""
+    for field in _plain_fields(kind, ()):
+        if _is_length(field) and math.isfinite(value := getattr(group, field.name)):
+            length = float(shortest_decimal(value) * metres)
+            if not math.isclose(length, _within(field, length), rel_tol=1e-6):
+                yield field.name, _within(field, length)
+
+
 def _limited(field: _Field, update: _Update) -> _Update:
     """An update before which a length that was set beyond its range becomes the range's end."""
 

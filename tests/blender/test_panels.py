@@ -338,6 +338,18 @@ def test_errors_and_warnings_can_be_read_in_a_narrow_sidebar(draw, item, make_pa
     assert max(map(len, drawn)) < 45
 
 
+def test_a_length_that_a_curve_took_beyond_its_range_is_told(draw, item, empty_scene):
+    wind = item.ocean_tweak.layers[0]
+    for frame, speed in ((1, 90.0), (11, 110.0)):
+        with item.ocean_tweak.quiet():
+            wind.wind_speed = speed
+        wind.keyframe_insert("wind_speed", frame=frame)
+    empty_scene.frame_set(1)
+    assert "counts as" not in " ".join(draw(item))
+    empty_scene.frame_set(11)
+    assert "wind speed is out of its range and counts as 100 m/s" in " ".join(draw(item))
+
+
 def test_frames_without_a_file_are_told(draw, item, bake, ocean_object, make_parameters, empty_scene):
     ocean_object.use_sequence(item, empty_scene, bake(make_parameters(), 11, 12))
     empty_scene.frame_set(11)

@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core import sea_scales
+from ...core import WaveLayer, sea_scales
 from ...core.wind_profile import wind_at_10_m
 from ...scene import alarm, refinement
 from ...scene.conversion import ocean_modifier
@@ -18,6 +18,7 @@ from ...scene.units import metres_per_unit
 from .. import (
     bake_operators,
     operators,
+    parameter_properties,
     preset_operators,
     scene_operators,
     sea_operators,
@@ -259,6 +260,12 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
         )
     if settings.out_of_range == "WARN" and unbaked_frames(settings, scene, (frame,)):
         warnings.append(f"Frame {frame} has no file: frame {shown_frame(settings, scene, frame)} is held")
+    metres = metres_per_unit(scene)
+    for index, layer in enumerate(settings.layers):
+        for name, length in parameter_properties.beyond(layer, WaveLayer, metres):
+            shown = (speed_text if name == "wind_speed" else length_text)(scene, length)
+            where = f"Layer {index + 1}: " if index else ""
+            warnings.append(f"{where}{name.replace('_', ' ')} is out of its range and counts as {shown}")
     if settings.bake_is_elsewhere:
         warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
     return warnings
