@@ -18,7 +18,7 @@ from ..export.cache.job import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.apart import problems_of
 from ..export.usd.export import Export
-from ..export.usd.package import Package, with_samples_between
+from ..export.usd.package import Package, asset_name, with_samples_between
 from .outcome import DONE, FAILED, UsageError, shell_word
 from .progress import Progress
 from .seas import SceneOceans, chosen_seas
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
     """Write a sea as USD layers."""
     shot, frames = _shot_and_frames(arguments, scene_oceans)
     package = Package(
-        arguments.name or arguments.out.stem,
+        arguments.name or asset_name(arguments.out),
         shot,
         with_samples_between(frames, arguments.subframes),
         form=arguments.form,

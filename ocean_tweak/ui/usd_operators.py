@@ -106,7 +106,8 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Note the file in the ocean, and export."""
         file = Path(self.filepath)
-        file = file if file.suffix else file.with_suffix(_EXTENSION)
+        if file.suffix not in SUFFIXES:  # what stands behind a dot may be a version
+            file = file.with_name(file.name + _EXTENSION)
         settings_of(context.active_object).usd.file = str(file)
         try:
             return bpy.ops.ocean.export_usd("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")

@@ -92,6 +92,11 @@ def test_the_file_browser_exports_what_was_chosen(ocean, tmp_path):
     assert bpy.ops.ocean.export_usd_as(filepath=str(tmp_path / "chosen" / "sea")) == {"FINISHED"}
     assert ocean.ocean_tweak.usd.file == "//chosen/sea.usd"
     assert (tmp_path / "chosen" / "sea.usd").is_file()
+    for chosen in ("water.v001", "fog.v001.usda"):
+        assert bpy.ops.ocean.export_usd_as(filepath=str(tmp_path / chosen / chosen)) == {"FINISHED"}
+        assert bpy.ops.ocean.verify_usd() == {"FINISHED"}
+    assert (tmp_path / "water.v001" / "water.v001.usd").is_file()
+    assert (tmp_path / "fog.v001.usda" / "fog.v001.usda").is_file()
 
 
 @needs_usd

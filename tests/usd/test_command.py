@@ -44,6 +44,28 @@ def test_one_command(params, tmp_path, capsys, form):
     assert Usd.Stage.Open(str(top)).GetDefaultPrim().GetName() == "wave"
 
 
+@pytest.mark.parametrize("form", ["points", "clips", "displacement"])
+@pytest.mark.parametrize(
+    ("file", "prim", "clip"),
+    [
+        ("sea.v001.usd", "sea_v001", "sea.v001.1001.usdc"),
+        ("2.sea@(fx)[1].v2.usda", "__sea_fx_1__v2", "2.sea_fx_1_.v2.1001.usdc"),
+    ],
+)
+def test_names_with_a_version(params, tmp_path, capsys, form, file, prim, clip):
+    top = tmp_path / "asset" / file
+    command = ["usd", "--params", params, "--frames", "1001-1003", "--form", form, "--out", str(top)]
+    for _ in range(2):  # what is there is known as one's own
+        assert main(command) == 0
+    assert problems(top) == []
+    stage = Usd.Stage.Open(str(top))
+    assert stage.GetDefaultPrim().GetName() == prim
+    assert Sdf.Path.IsValidIdentifier(prim)
+    if form == "clips":
+        assert (top.parent / "clips" / clip).is_file()
+    assert not [path for path in top.parent.rglob("*") if path.name.startswith(".")]
+
+
 def test_clips_in_any_order_then_the_top(params, tmp_path, capsys):
     top = tmp_path / "asset" / "sea.usd"
     command = ["usd", "--params", params, "--frames", "1001-1004", "--form", "clips", "--out", str(top)]

@@ -24,7 +24,7 @@ from .layers import refuse_foreign, remove_leftovers, whole_layer, write_header
 from .library import UsdError, pxr
 from .material import write_material
 from .mesh import ROOT, SURFACE, Edition, write_topology
-from .package import Package, edition_folder
+from .package import LAYER_NAMES, Package, edition_folder
 from .points import points_sink
 
 TOPOLOGY, MANIFEST, PAYLOAD, MATERIAL = "topology.usd", "manifest.usda", "payload.usd", "mtl.usd"
@@ -56,6 +56,8 @@ class Export:
         pxr()
         if self.top.suffix not in (".usd", ".usda", ".usdc"):
             raise ParameterError("out", str(self.top), "must end in .usd, .usda or .usdc")
+        if self.top.stem in LAYER_NAMES:
+            raise ParameterError("out", str(self.top), "has the name of a layer beside it: choose another")
 
     @property
     def editions(self) -> tuple[tuple[Path, Edition], ...]:

@@ -26,6 +26,7 @@ UP_AXES = ("Z", "Y")
 LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest")
 #: limits of resolutions to choose from, of tiles along a side, and of metres in a unit
 MOST_VARIANTS, MOST_TILES, UNITS = 16, 64, (1e-6, 1e6)
+_NAME = re.compile(r"[\w\- ]+(\.[\w\- ]+)*")
 
 
 @dataclass(frozen=True)
@@ -178,6 +179,11 @@ def with_samples_between(frames: Iterable[Frame], samples: int) -> tuple[Frame, 
     return tuple(sorted(as_frame(frame) for frame in {*frames, *between}))
 
 
+def asset_name(file: Path) -> str:
+    """An asset's name, of its file's: sea.v001 for sea.v001.usd. What names cannot hold becomes _."""
+    return ".".join(re.sub(r"[^\w\- ]+", "_", part) or "_" for part in file.stem.split("."))
+
+
 def clip_name(name: str, frame: Frame) -> str:
     """A clip's path beside its geo.usd."""
     return f"clips/{name}.{frame_label(frame)}.usdc"
@@ -209,5 +215,7 @@ def _check_name(name: str) -> None:
         raise ParameterError(
             "name", name, f"is the name of a layer beside it; {', '.join(LAYER_NAMES)} are taken"
         )
-    if not re.fullmatch(r"[\w\- ]+", name):
-        raise ParameterError("name", name, "must be made of letters, digits, spaces, - and _")
+    if not _NAME.fullmatch(name):
+        raise ParameterError(
+            "name", name, "must be made of letters, digits, spaces, - and _, with single dots between them"
+        )
