@@ -93,10 +93,9 @@ def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: Image
 
 
 def end(item: bpy.types.Object) -> None:
-    """Let an object whose modifier was applied or removed be the still mesh that it is, in a scene or not.
+    """Let an object whose modifier was applied or removed be a mesh like any other.
 
-    Nothing of ours stays on it but what the mesh has: the surface around the camera and the patches that
-    showed the moving sea go, so that the mesh itself is seen.
+    The surface around the camera and the patches that showed the moving sea go, so that the mesh is seen.
     """
     settings = settings_of(item)
     has_surface = camera_surface_of(item) is not None
