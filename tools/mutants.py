@@ -11,7 +11,7 @@ import ast
 import random
 import re
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from .project import ToolError
@@ -126,7 +126,7 @@ def of_formulas(root: Path) -> Iterator[Mutant]:
                 tests.setdefault(function, []).extend(test for test in cells[3] if "/" not in test)
     for function, named in tests.items():
         found = _definition(root, function)
-        if found is not None:
+        if found is not None and _gives_numbers(found[1]):
             path, node, source = found
             lines = source.splitlines(keepends=True)
             module = ".".join(LARGER.with_suffix("").parts)
@@ -134,6 +134,13 @@ def of_formulas(root: Path) -> Iterator[Mutant]:
                 node.lineno - 1, f'{" " * node.col_offset}@__import__("{module}", fromlist=["*"]).larger\n'
             )
             yield Mutant(f"formula {function} x 1.05", path, "".join(lines), tuple(dict.fromkeys(named)))
+
+
+def _gives_numbers(function: ast.FunctionDef) -> bool:
+    """Whether it returns something, or fills an array that it is given."""
+    if function.returns is None or ast.unparse(function.returns) != "None":
+        return True
+    return any("Array" in ast.unparse(a.annotation) for a in function.args.args if a.annotation is not None)
 
 
 def _definition(root: Path, name: str) -> tuple[Path, ast.FunctionDef, str] | None:
@@ -170,7 +177,15 @@ def of_structure(root: Path, count: int, seed: int) -> Iterator[Mutant]:
     """A random sample of operators, bounds and functions of the core that are taken for their neighbours."""
     files = sorted(path for path in (root / CORE).rglob("*.py") if path != root / CONSTANTS)
     found = [mutant for path in files for mutant in _changes(path.relative_to(root), path.read_text("utf-8"))]
-    yield from random.Random(seed).sample(found, min(count, len(found)))
+    for mutant in random.Random(seed).sample(found, min(count, len(found))):
+        yield replace(mutant, tests=_tests_of(root, mutant.path))
+
+
+def _tests_of(root: Path, path: Path) -> tuple[str, ...]:
+    """The test files that import a module of the core by its name."""
+    imports = re.compile(rf"import [^\n]*\b{path.stem}\b|core(\.\w+)*\.{path.stem} import")
+    files = sorted((root / "tests" / "core").glob("test_*.py"))
+    return tuple(file.name for file in files if imports.search(file.read_text(encoding="utf-8")))
 
 
 def _changes(path: Path, source: str) -> Iterator[Mutant]:
@@ -234,7 +249,9 @@ def of_names(root: Path) -> Iterator[Mutant]:
         source = (root / CORE / file).read_text(encoding="utf-8")
         if source.count(before) != 1:
             raise ToolError(f"{CORE / file} does not hold {before!r} once: mend NAMED in tools/mutants.py")
-        yield Mutant(f"named {file}: {before} -> {after}", CORE / file, source.replace(before, after))
+        mutated = source.replace(before, after)
+        tests = _tests_of(root, CORE / file)
+        yield Mutant(f"named {file}: {before} -> {after}", CORE / file, mutated, tests)
 
 
 def chosen(root: Path, kinds: Collection[str], sample: int, seed: int) -> list[Mutant]:

@@ -26,7 +26,10 @@ from .project import ROOT, ToolError
 from .run_tests import ONE_THREAD
 
 TESTS = Path("tests/core")
-COPIED = ("ocean_tweak", "tests/core", "tests/reference", "pyproject.toml")
+COPIED = (
+    "ocean_tweak", "tests/core", "tests/reference", "pyproject.toml", "examples/horizon.json",
+    "docs/cascades.md",
+)  # fmt: skip
 KINDS = ("constants", "formulas", "named", "structure")
 AT_ONCE = 2
 
