@@ -24,7 +24,7 @@ test-core:  ## the tests of the core alone
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m pytest -q tests/core
 
-test-long:  ## the tests of bakes, ten times as many kills, shared folders, 300 keyed shots, and 20,000 damaged files of each kind
+test-long:  ## the tests of bakes, ten times as many kills, shared folders, 500 random seas, 300 keyed shots, and 20,000 damaged files of each kind
 	@$(PYTHON) -m tools.setup python-5.2
 	@OCEAN_TWEAK_LONG_TESTS=1 $(VENV) -m pytest -q tests/batch tests/blender/test_keyed_shots.py
 
