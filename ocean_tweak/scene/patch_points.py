@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from ..nodes.modifier_inputs import set_inputs
 from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
-from .image_sequence import baked_frames
+from .image_sequence import baked_frames, baked_stretch
 from .plan import Plan, velocity_scale
 from .settings import OceanSettings
 
@@ -61,7 +60,7 @@ def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Po
         return None
     return Points(
         folder, name, parameters, baked_frames(settings),
-        files_per_frame=float(Fraction(settings.sequence_stretch or 1)),
+        files_per_frame=float(baked_stretch(settings)),
         scale=plan.scale,
         velocity_scale=velocity_scale(settings, plan, scene),
     )  # fmt: skip
