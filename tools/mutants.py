@@ -39,6 +39,8 @@ def scaled(value):
     if dataclasses.is_dataclass(value):
         numbers = {f.name: scaled(getattr(value, f.name)) for f in dataclasses.fields(value) if f.init}
         return dataclasses.replace(value, **numbers)
+    if isinstance(getattr(value, "_fields", None), dict):  # SurfaceFields
+        value._fields = scaled(value._fields)
     return value
 
 def larger(function):
@@ -140,7 +142,8 @@ def _gives_numbers(function: ast.FunctionDef) -> bool:
     """Whether it returns something, or fills an array that it is given."""
     if function.returns is None or ast.unparse(function.returns) != "None":
         return True
-    return any("Array" in ast.unparse(a.annotation) for a in function.args.args if a.annotation is not None)
+    annotations = [ast.unparse(a.annotation) for a in function.args.args if a.annotation is not None]
+    return any(re.fullmatch(r"\w*Array(\[.*\])?", annotation) for annotation in annotations)
 
 
 def _definition(root: Path, name: str) -> tuple[Path, ast.FunctionDef, str] | None:
