@@ -13,6 +13,7 @@ from . import cli
 from .export import logs
 from .scene import asset_library, handlers
 from .scene.cache_place import cache_folder, own_uid
+from .scene.needs import needs_of
 from .scene.patch_objects import shot_maps
 from .scene.settings import OceanObjectError, all_oceans, shown_oceans
 from .scene.shots import scene_frames, shot_of
@@ -101,7 +102,8 @@ class _SceneOceans(Mapping[str, cli.Sea]):
         except OceanObjectError as error:
             _log.warning("%s: %s", name, error)
             cache = None
-        return cli.Sea(shot, own_uid(item), frames, cache, shot_maps(item))
+        needs = tuple(need.text for need in needs_of(item))
+        return cli.Sea(shot, own_uid(item), frames, cache, shot_maps(item), needs)
 
     def __iter__(self) -> Iterator[str]:
         """The names."""

@@ -46,9 +46,16 @@ def job(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
         files = FORMS[arguments.form](writable_folder(arguments.out), shot)
     except ValueError as error:
         raise UsageError(str(error)) from None
+    needs = [need for sea in seas.values() for need in sea.needs] if render is not None else []
+    lines = [f"  {path}" for path in files]
+    if needs:
+        lines.append(
+            "Blender on the machines that render needs the Ocean Tweak extension, or nothing of this:"
+        )
+        lines += [f"  {need}" for need in needs]
     Progress(name, arguments.json).say(
-        f"frames {format_frames(frames)}\n" + "\n".join(f"  {path}" for path in files),
-        frames=format_frames(frames), form=arguments.form, files=[str(path) for path in files],
+        "\n".join((f"frames {format_frames(frames)}", *lines)),
+        frames=format_frames(frames), form=arguments.form, files=[str(path) for path in files], needs=needs,
     )  # fmt: skip
     return DONE
 

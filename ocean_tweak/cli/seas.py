@@ -31,6 +31,7 @@ class Sea(NamedTuple):
     frames : of the scene
     cache : where the file keeps its baked frames
     maps : what the file needs of a bake, whatever else is asked for
+    needs : what of it stands still in a Blender without the extension, a line each
     """
 
     shot: Shot
@@ -38,6 +39,7 @@ class Sea(NamedTuple):
     frames: tuple[Frame, ...] = ()
     cache: Path | None = None
     maps: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
 
     def first_parameters(self) -> OceanParameters:
         """Those of the first frame that is animated, or of all."""

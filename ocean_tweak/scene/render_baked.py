@@ -22,12 +22,28 @@ from types import ModuleType
 import bpy
 
 _FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel)\.[^.]*\.exr")
+#: inputs of the ocean's modifiers that are on where the extension computes the sea
+_LIVE = ("Live", "Use Attributes")
+#: those of a patch's that hold where its points begin
+_POINTS = ("Files", "Viewport Files")
 _RANGE = re.compile(r"(-?\d{1,10})(?:-(-?\d{1,10})(?:[x:](\d{1,10}))?)?")
 _MOST_FRAMES = 1_000_000
 
 
+#: exit code where the file needs the extension and this Blender has not got it
+_WITHOUT_EXTENSION = 3
+
+
 class RenderError(RuntimeError):
     """What keeps the shot from being rendered, and what to do."""
+
+    code = 1
+
+
+class NeedsExtension(RenderError):
+    """What only the extension could move."""
+
+    code = _WITHOUT_EXTENSION
 
 
 class Bake:
@@ -70,12 +86,14 @@ class Bake:
 
 
 def main() -> None:
-    """Do as the arguments after "--" say; what is wrong is said in a line, with exit code 1."""
+    """Do as the arguments after "--" say; what is wrong is said in a line, with exit code 1, or 3 where this
+    Blender lacks the extension."""
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
     ranges = frame_ranges(arguments.frames)
     try:
         bakes = [Bake(arguments.cache, text) for text in arguments.bake]
         frames = [frame for part in ranges for frame in part]
+        check_extension()
         for bake in bakes:
             bake.check(frames)
             show(bake, frames, alone=len(bakes) == 1)
@@ -84,7 +102,8 @@ def main() -> None:
         message = " ".join(str(error).split())
         if arguments.openjd:
             print(f"openjd_fail: {message}", flush=True)
-        sys.exit(f"render_baked: {message}")
+        print(f"render_baked: {message}", file=sys.stderr)
+        sys.exit(getattr(error, "code", 1))
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
@@ -141,7 +160,35 @@ def show(bake: Bake, frames: list[int], alone: bool) -> None:
     for image in images:
         image.filepath = str(bake.folder / file_name(image))
         image.reload()
-    show_frames(images, frames)
+    show_frames(bake, images, frames)
+
+
+def check_extension() -> None:
+    """Raise NeedsExtension where the file has what only the extension moves, and it is not here."""
+    if hasattr(bpy.types.Object, "ocean_tweak"):
+        return
+    scene = bpy.context.scene
+    still = sorted(item.name for item in scene.objects if is_live(item))
+    if still:
+        raise NeedsExtension(
+            f"this Blender has no Ocean Tweak extension, which alone moves {', '.join(still)} of "
+            f"{bpy.data.filepath}: enable it on this machine, or bake the ocean, let it read the bake and "
+            "save the file"
+        )
+
+
+def is_live(item: bpy.types.Object) -> bool:
+    """Whether an object waits for the extension, as its modifiers or, of a patch, their absence tell."""
+    groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
+    if "ocean_tweak_patch" in item:
+        return not any(group is not None and _POINTS[0] in group_inputs(group) for group in groups)
+    for modifier in item.modifiers:
+        group = modifier.node_group if modifier.type == "NODES" else None
+        if group is not None and str(group.get("ocean_tweak_group", "")).startswith("Ocean Tweak "):
+            sockets = group_inputs(group)
+            if any(modifier_input(modifier, sockets[name]) for name in _LIVE if name in sockets):
+                return True
+    return False
 
 
 def is_ocean(item: bpy.types.Object) -> bool:
@@ -192,8 +239,28 @@ def check_settings(item: bpy.types.Object, bake: Bake, frames: list[int]) -> Non
             )
 
 
-def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:
-    """Let the modifiers that read images of a bake know its frames, which may be others than before.
+def show_points(modifier: bpy.types.NodesModifier, bake: Bake, frames: list[int]) -> bool:
+    """Let a modifier that reads points of such a bake read this one's. Returns whether it does.
+
+    Raises RenderError where the bake has none.
+    """
+    sockets = group_inputs(modifier.node_group)
+    for name in (name for name in _POINTS if name in sockets):
+        begin = re.split(r"[\\/]", str(modifier_input(modifier, sockets[name])))[-1]
+        if not begin.startswith(f"{bake.name}_p"):
+            return False
+        path = bake.folder / f"{begin}{frames[0]:04d}.ply"
+        if not path.is_file():
+            raise RenderError(
+                f"{path} is missing: {modifier.id_data.name} reads points of patches; write the job anew "
+                "from the .blend file, so that they are baked"
+            )
+        modifier_input(modifier, sockets[name], str(bake.folder / begin))
+    return _POINTS[0] in sockets
+
+
+def show_frames(bake: Bake, images: list[bpy.types.Image], frames: list[int]) -> None:
+    """Let the modifiers that read a bake know its frames, which may be others than before.
 
     Raises RenderError for frames before 0, or from 0 on, where they have no images of such.
     """
@@ -217,7 +284,8 @@ def show_frames(images: list[bpy.types.Image], frames: list[int]) -> None:
             continue
         sockets = group_inputs(modifier.node_group)
         given = [modifier_input(modifier, identifier) for identifier in sockets.values()]
-        if any(value in images for value in given if isinstance(value, bpy.types.Image)):
+        reads = any(value in images for value in given if isinstance(value, bpy.types.Image))
+        if reads or show_points(modifier, bake, frames):
             for name in values.keys() & sockets.keys():
                 modifier_input(modifier, sockets[name], values[name])
             modifier.id_data.update_tag()

@@ -13,6 +13,7 @@ from ..export.cache.locks import Held
 from ..scene import bake_process, bake_versions, cache_place, ocean_object
 from ..scene.bake_process import BakeProcess
 from ..scene.image_sequence import find_sequence
+from ..scene.needs import needs_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from .active_ocean import OfActiveOcean, refuse
@@ -75,6 +76,9 @@ class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
             {"INFO"},
             translated("{count} frames in {folder}").format(count=len(bake.frames), folder=bake.folder),
         )
+        for need in needs_of(item):
+            text = translated("Needs Ocean Tweak where it is rendered: {need}")
+            self.report({"WARNING"}, text.format(need=need.text))
         return {"FINISHED"}
 
 

@@ -27,15 +27,27 @@ def look(blend, names, frames, out):
         return {key: kept[key] for key in kept}, said.stdout + said.stderr
 
 
-def run_script(script, *arguments):
-    """Run a script in a Blender like this one that has not the extension."""
-    program = [sys.executable, str(script)]
+def run_script(script, *arguments, blend=None):
+    """Run a script in a Blender like this one that has not the extension, in a file where one is given."""
+    given = [] if blend is None else [str(blend)]
+    program = [sys.executable, "-c", OPEN_AND_RUN, str(script), *given, "--"]
     if bpy.app.binary_path:
         program = [
-            bpy.app.binary_path, "--background", "--factory-startup", "--python-exit-code", "1",
+            bpy.app.binary_path, "--background", "--factory-startup", *given, "--python-exit-code", "1",
             "--python", str(script), "--",
         ]  # fmt: skip
     return subprocess.run([*program, *arguments], capture_output=True, text=True, timeout=300)
+
+
+#: as a Blender would
+OPEN_AND_RUN = """
+import runpy, sys
+import bpy
+script, *given = sys.argv[1 : sys.argv.index("--")]
+for blend in given:
+    bpy.ops.wm.open_mainfile(filepath=blend)
+runpy.run_path(script, run_name="__main__")
+"""
 
 
 meshes = {}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A file that is opened in a Blender without the extension: what is baked moves, the rest says so."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ import pytest
 from . import camera_views
 from .camera_views import numbers
 from .conftest import evaluated_mesh
-from .other_blender import look
+from .other_blender import look, run_script
+from .test_panels import Layout
 
 camera = camera_views.camera
 
@@ -160,3 +163,90 @@ def test_nothing_is_said_where_the_extension_runs(
     handlers.register()
     bpy.context.scene.frame_set(2)
     assert not warnings_of(bpy.context.evaluated_depsgraph_get() and bpy.context.scene.objects[ocean_name])
+
+
+def boat_on(ocean, extension):
+    boat = bpy.data.objects.new("Boat", None)
+    bpy.context.scene.collection.objects.link(boat)
+    extension("scene.floating").float_on(boat, ocean, bpy.context.scene)
+
+
+def test_what_needs_the_extension_is_named(horizon, extension, tmp_path, capsys):
+    """By one list, for the command line and the panel; a bake with points leaves nothing of it."""
+    ocean, surface = horizon
+    boat_on(ocean, extension)
+    needs_of = extension("scene.needs").needs_of
+    assert {need.name for need in needs_of(ocean)} == {ocean.name, surface.name, "Boat"}
+    wanted = {need.name: need.text for need in needs_of(ocean)}
+    assert (
+        wanted["Boat"] == "Boat floats on Ocean, which is computed live: bake Ocean, or its floating to keys"
+    )
+
+    def job():
+        capsys.readouterr()
+        arguments = ["job", "--blend", bpy.data.filepath, "--out", str(tmp_path / "job"), "--frames", "1-3"]
+        assert extension("registration").run_command(arguments) == 0
+        return capsys.readouterr().out
+
+    said = job()
+    assert all(text in said for text in wanted.values())
+    assert "disp,points" in (tmp_path / "job" / "template.json").read_text()
+    panel = extension("ui.panels.output").OCEAN_PT_bake
+    drawn = []
+    context = SimpleNamespace(
+        active_object=ocean, scene=bpy.context.scene, region=SimpleNamespace(width=1000),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+    )  # fmt: skip
+    panel.draw(SimpleNamespace(layout=Layout(drawn)), context)
+    assert "Renders Need Ocean Tweak" in drawn
+
+    bpy.ops.ocean.bake()
+    assert needs_of(ocean) == ()
+    assert "computed live" not in job()
+    for path in tmp_path.rglob("bake.json"):
+        path.unlink()
+    extension("scene.ocean_object").refresh(ocean, bpy.context.scene)
+    (left,) = needs_of(ocean)
+    assert left.name == surface.name
+    assert "no points" in left.reason
+
+
+def render(extension, blend, tmp_path, *arguments):
+    script = extension("scene.render_baked").__file__
+    return run_script(script, "--pictures", str(tmp_path / "pictures"), *arguments, blend=blend)
+
+
+@pytest.mark.usefixtures("horizon")
+def test_the_farm_s_render_reads_points_where_the_bake_is_now(extension, saved, tmp_path):
+    saved.render.engine, saved.cycles.samples = "CYCLES", 1
+    saved.render.resolution_x = saved.render.resolution_y = 8
+    bpy.ops.ocean.bake()
+    bpy.ops.wm.save_mainfile()
+    (tmp_path / "project" / "cache").rename(tmp_path / "farm")
+    (folder,) = (path.parent for path in tmp_path.glob("farm/*/*/bake.json"))
+    bake = f"{folder.parent.name}/{folder.name.rpartition('-')[2]}"
+    arguments = ["--cache", str(tmp_path / "farm"), "--bake", bake, "--frames", "3"]
+    said = render(extension, bpy.data.filepath, tmp_path, *arguments)
+    assert said.returncode == 0, said.stdout + said.stderr
+    # opened at frame 1, the file still looked where the bake was
+    assert "points.0003" not in said.stdout + said.stderr
+    assert (tmp_path / "pictures" / "shot_0003.png").is_file()
+    (folder / "Ocean_p2_points.0003.ply").unlink()
+    said = render(extension, bpy.data.filepath, tmp_path, *arguments)
+    assert said.returncode == 1
+    assert "Ocean_p2_points.0003.ply is missing" in said.stderr
+
+
+def test_the_farm_s_render_of_a_live_sea_ends_with_3(horizon, extension, tmp_path):
+    ocean, _ = horizon
+    folder = tmp_path / "Ocean-12345678" / "v001-01234567"
+    folder.mkdir(parents=True)
+    (folder / "bake.json").write_text('{"shot": {"domain_size": 150.0, "timing": {}}}')
+    (folder / "Ocean_disp.0001.exr").touch()
+    bpy.ops.wm.save_mainfile()
+    arguments = ["--cache", str(tmp_path), "--bake", "Ocean-12345678/01234567", "--frames", "1"]
+    said = render(extension, bpy.data.filepath, tmp_path, *arguments)
+    assert said.returncode == 3, said.stdout + said.stderr
+    (line,) = (line for line in said.stderr.splitlines() if line.startswith("render_baked: "))
+    assert "no Ocean Tweak extension" in line
+    assert f"moves {ocean.name}, " in line

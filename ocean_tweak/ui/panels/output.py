@@ -12,10 +12,14 @@ from ...export.cache.estimate import Estimate, readable_bytes
 from ...scene import alarm, bake_process, bake_versions, stored_paths
 from ...scene.image_sequence import baked_frames
 from ...scene.maps import MAPS
+from ...scene.needs import needs_of
 from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
 from .. import bake_operators, sequence_operators
 from .drawing import OceanPanel, active_settings, message, progress_bar, row, split
+
+#: lines of what needs the extension
+_MOST_NEEDS = 4
 
 
 class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
@@ -43,6 +47,7 @@ class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
             _sequence(layout, context)
         choose = "Choose Another" if settings.sequence_maps.disp else "Use Baked Sequence"
         layout.operator(sequence_operators.OCEAN_OT_use_sequence.bl_idname, text=choose, icon="FILE_FOLDER")
+        _needs(layout, context)
         _disk(layout, context)
 
 
@@ -71,6 +76,19 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.prop(settings, "out_of_range")
     if settings.error:
         layout.operator(sequence_operators.OCEAN_OT_use_live.bl_idname, icon="PLAY")
+
+
+def _needs(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what a render needs the extension for."""
+    needs = needs_of(context.active_object)
+    if not needs:
+        return
+    column = layout.column(align=True)
+    column.label(text="Renders Need Ocean Tweak")
+    for need in needs[:_MOST_NEEDS]:
+        message(column, context, need.text)
+    if len(needs) > _MOST_NEEDS:
+        column.label(text=translated("And {} more").format(len(needs) - _MOST_NEEDS))
 
 
 def _folder_name(settings: OceanSettings) -> str:
