@@ -39,14 +39,21 @@ def run_script(script, *arguments, blend=None):
     return subprocess.run([*program, *arguments], capture_output=True, text=True, timeout=300)
 
 
-#: as a Blender would
+#: as a Blender would; bpy 4.5 may hang at the end of a process that has rendered
 OPEN_AND_RUN = """
-import runpy, sys
+import os, runpy, sys
 import bpy
 script, *given = sys.argv[1 : sys.argv.index("--")]
 for blend in given:
     bpy.ops.wm.open_mainfile(filepath=blend)
-runpy.run_path(script, run_name="__main__")
+code = 0
+try:
+    runpy.run_path(script, run_name="__main__")
+except SystemExit as end:
+    code = end.code
+sys.stdout.flush()
+sys.stderr.flush()
+os._exit(code)
 """
 
 
