@@ -80,12 +80,12 @@ def test_a_baked_horizon_moves(horizon, saved, tmp_path):
         assert not len(seen[f"{surface.name} warnings {frame}"])
 
 
-def test_a_baked_horizon_that_is_live_again(horizon, saved, ocean_object):
-    ocean, surface = horizon
+def test_a_baked_horizon_that_is_live_again(horizon, saved):
+    _, surface = horizon
     saved.frame_set(2)
     live = positions(surface)
     bpy.ops.ocean.bake()
-    ocean_object.use_live(ocean, saved)
+    bpy.ops.ocean.use_live()
     np.testing.assert_array_equal(positions(surface), live)
 
 
