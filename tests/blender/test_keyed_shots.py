@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random keyed shots: each frame is the core's of that frame's numbers, or its refusal is said."""
+"""Random keyed shots: none of what can be keyed is refused, and each frame is the core's of its numbers."""
 
 import os
 import random
@@ -19,7 +19,7 @@ LAST = 25  # frame
 RANGES = {"wind_speed": (0.0, 100.0), "fetch": (0.0, 20e6), "swell": (0.0, 4.0), "gain": (0.0, 100.0)}
 DIRECTIONS = (-7.0, 7.0)
 CHOPPINESS = (0.0, 4.0)
-TIMES = (-500.0, 500.0)  # s
+TIMES = (-50.0, 50.0)  # s
 LENGTHS = ("wind_speed", "fetch")
 
 
@@ -66,7 +66,7 @@ def some_keys(chance, layers, metres):
         wanted.append((f"layers[{index}].wind_direction", DIRECTIONS))
     keys = {}
     for path, (low, high) in chance.sample(wanted, chance.randint(1, min(5, len(wanted)))):
-        above = 1.5 * high if path.endswith(LENGTHS) and chance.random() < 0.1 else high
+        above = 1.5 * high if path.endswith(LENGTHS) and chance.random() < 0.25 else high
         unit = metres if path.endswith(LENGTHS) else 1.0
         first, last = (np.float32(some_number(chance, low, above) / unit) for _ in range(2))
         keys[path] = (float(first), float(last), unit, low, high)
@@ -83,7 +83,7 @@ def at(frame, keys):
 
 
 def expected_positions(core, parameters, values, frame, metres):
-    """(N, N, 3) Blender units, and the largest number among them, straight from the core."""
+    """(N, N, 3) Blender units, straight from the core."""
     data = parameters.to_dict()
     for path, value in values.items():
         if path.startswith("layers["):
@@ -100,7 +100,7 @@ def expected_positions(core, parameters, values, frame, metres):
 
 
 @pytest.mark.parametrize("part", range(15 if LONG else 1))
-def test_each_frame_is_the_cores_or_its_refusal_is_said(ocean_object, core, empty_scene, caplog, part):
+def test_each_frame_is_the_cores(ocean_object, core, empty_scene, part):
     for number in range(20 * part, 20 * (part + 1)):
         chance = random.Random(number)
         metres = chance.choice((1.0, 1.0, 0.01, 1000.0))
@@ -114,19 +114,18 @@ def test_each_frame_is_the_cores_or_its_refusal_is_said(ocean_object, core, empt
         settings.use_foam = settings.use_normals = settings.use_velocity = False
         keys = some_keys(chance, len(layers), metres)
         settings.use_ocean_time = "ocean_time" in keys
-        for path, (first, last, *_) in keys.items():
-            key(item, path, {1: first, LAST: last})
+        with settings.quiet():
+            for path, (first, last, *_) in keys.items():
+                key(item, path, {1: first, LAST: last})
         for frame in (1, chance.randint(2, LAST - 1), LAST + chance.randint(0, 6)):
-            caplog.clear()
             empty_scene.frame_set(frame)
-            if settings.error:
-                assert settings.error in caplog.text, (number, frame)
-                continue
+            assert not settings.error, (number, frame)
             wanted = expected_positions(core, parameters, at(frame, keys), frame, metres)
             mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
             shown = np.empty(3 * len(mesh.vertices), np.float32)
             mesh.vertices.foreach_get("co", shown)
             shown = shown.reshape(SAMPLES + 1, SAMPLES + 1, 3)[:-1, :-1]
-            scale = max(np.abs(wanted).max(), np.ptp(wanted[..., 2]))
-            np.testing.assert_allclose(shown, wanted, atol=3e-6 * scale + 1e-6, err_msg=f"{number} {frame}")
+            # Blender's curves and places are float32, and a time of 50 s is good to 4 µs
+            atol = 1e-4 * np.ptp(wanted[..., 2]) + 3e-7 * parameters.domain_size / metres
+            np.testing.assert_allclose(shown, wanted, rtol=0.0, atol=atol, err_msg=f"{number} {frame}")
         bpy.data.meshes.remove(item.data)
