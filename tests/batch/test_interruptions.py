@@ -18,6 +18,7 @@ from ocean_tweak.cli import main
 from ocean_tweak.export.cache import records as cache_records
 from tests.batch.bakery import (
     ROOT,
+    SOON,
     Watch,
     baking,
     children,
@@ -47,7 +48,7 @@ def sea(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def undisturbed(sea: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     cache = tmp_path_factory.mktemp("undisturbed")
-    assert run(*bake(sea, cache)).returncode == 0
+    assert run(*bake(sea, cache), timeout=KILLS * SOON).returncode == 0
     return contents(only_folder(cache))
 
 
@@ -80,7 +81,7 @@ def test_killed_at_any_moment(sea: Path, undisturbed: dict[str, str], tmp_path: 
             end(process)
         folder = only_folder(tmp_path)
         assert 0 < len(records(folder)) < FRAMES
-        answer = run(*bake(sea, tmp_path, workers=2))
+        answer = run(*bake(sea, tmp_path, workers=2), timeout=KILLS * SOON)
     assert answer.returncode == 0, answer.stderr
     assert contents(folder) == undisturbed
     assert leftovers(folder) == []
