@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import shlex
 import sys
 from collections import Counter
@@ -21,10 +20,11 @@ from .. import __version__
 from ..core.bake import BakedFrame
 from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames
-from ..core.memory import check_memory, memory_need, physical_memory
+from ..core.machine import usable_cores
+from ..core.memory import check_memory
 from ..core.printable import LONGEST, printable
 from ..export import logs
-from ..export.cache.estimate import Estimate, estimate, readable_bytes
+from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory, readable_bytes
 from ..export.cache.job import (
     JOB_FILE,
     CacheError,
@@ -111,7 +111,7 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
     if arguments.log:
         logs.to_file(log_file(folder))
         _LOG.info(
-            "Ocean Tweak %s, %s, %d cores: %s", __version__, made_with(), _cores(), shlex.join(sys.argv)
+            "Ocean Tweak %s, %s, %d cores: %s", __version__, made_with(), usable_cores(), shlex.join(sys.argv)
         )
     progress = Progress(job.name, arguments.json, arguments.openjd)
     with (
@@ -123,8 +123,8 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
         left = list(unfinished(folder, job, frames, stop.is_set))
         todo = tuple(finding.frame for finding in left)
         workers = _worker_count(arguments.workers, job, todo)
-        needed = estimate(folder, job, todo)
-        _announce(progress, folder, job, frames, left, needed, workers)
+        needed = estimate(folder, job, todo, workers)
+        _announce(progress, folder, job, frames, left, needed)
         needed.check(folder)
         if arguments.estimate:
             return DONE
@@ -161,7 +161,7 @@ def _make_frames(
 ) -> None:
     remove_leftovers(folder, job, frames)
     try:
-        with closing(_frames(folder, job, frames, workers, stopped)) as making:
+        with closing(_frames(folder, job, frames, workers, stopped, progress.tell)) as making:
             for baked in making:
                 progress.frame(baked)
     finally:
@@ -169,12 +169,17 @@ def _make_frames(
 
 
 def _frames(
-    folder: Path, job: Job, frames: tuple[Frame, ...], workers: int, stopped: Callable[[], bool]
+    folder: Path,
+    job: Job,
+    frames: tuple[Frame, ...],
+    workers: int,
+    stopped: Callable[[], bool],
+    tell: Callable[[Frame, str], None],
 ) -> Generator[BakedFrame, None, None]:
     if workers > 1:
-        yield from make_in_processes(folder, job, frames, workers, stopped)
+        yield from make_in_processes(folder, job, frames, workers, stopped, tell)
         return
-    with closing(make_frames(job.shot, frames, CacheSink(folder, job))) as making:
+    with closing(make_frames(job.shot, frames, CacheSink(folder, job, tell), tell=tell)) as making:
         while not stopped():  # what is under way is finished
             baked = next(making, None)
             if baked is None:
@@ -184,24 +189,14 @@ def _frames(
 
 def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:
     """Processes: as many as were asked for, or as cores and memory allow. Raises MemoryError."""
-    most = max(len(frames), 1)
-    need = memory_need(job.shot.parameters, job.outputs).peak()
-    if wanted is not None:
-        workers = min(wanted, most)
-        check_memory(
-            workers * need, f"Baking {job.shot.parameters.resolution}² samples with {workers} workers"
-        )
-        return workers
-    memory = physical_memory()
-    fitting = most if memory is None else max(1, memory // need)
-    return min(_cores(), fitting, most)
-
-
-def _cores() -> int:
-    """Those that this process may use: a farm gives it a part of a machine."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    most, need = max(len(frames), 1), process_memory(job)
+    workers = fitting_workers(job, most) if wanted is None else min(wanted, most)
+    check_memory(
+        workers * need,
+        f"Baking {job.shot.parameters.resolution}² samples with {workers} worker{'s' if workers > 1 else ''}",
+    )
+    _LOG.info("processes: %d, each with about %s of memory", workers, readable_bytes(need))
+    return workers
 
 
 @contextmanager
@@ -227,20 +222,18 @@ def _announce(
     frames: Sequence[Frame],
     left: Sequence[Finding],
     needed: Estimate,
-    workers: int,
 ) -> None:
     reasons = Counter(finding.state.value for finding in left)
     found = ", ".join(f"{count} {state}" for state, count in reasons.items())
-    seconds = needed.seconds / min(workers, _cores())
     progress.say(
         f"{printable(folder, LONGEST)}\n  {len(frames)} frames of {','.join(job.maps)}"
         + (f": {found}" if left else ", all whole")
         + (
-            f"; about {readable_bytes(needed.bytes)} and {duration(seconds)}, "
+            f"; about {readable_bytes(needed.bytes)} and {duration(needed.seconds)}, "
             f"{readable_bytes(needed.free)} are free"
             if left
             else ""
         ),
         folder=str(folder), frames=len(frames), left=len(left), bytes=needed.bytes,
-        seconds=round(seconds, 1), free=needed.free, **reasons,
+        seconds=round(needed.seconds, 1), free=needed.free, **reasons,
     )  # fmt: skip

@@ -8,10 +8,11 @@ import logging
 import shutil
 import sys
 import time
+from collections.abc import Callable
 from typing import Any, TextIO
 
 from ..core.bake import BakedFrame
-from ..core.frames import format_frames
+from ..core.frames import Frame, format_frames
 from ..core.plain_data import to_plain
 from ..core.printable import LONGEST, printable
 from ..export.logs import PRINTED
@@ -19,6 +20,28 @@ from ..export.logs import PRINTED
 _LOG = logging.getLogger(__name__)
 
 _BAR = 30
+
+
+#: s without a word, after which it is told what is being done for a frame
+_SILENCE = 5.0
+
+
+class Seldom:
+    """Passes on what is being done for a frame when nothing has been said for a while."""
+
+    def __init__(self, tell: Callable[[Frame, str], None]) -> None:
+        self._tell = tell
+        self.was_heard()
+
+    def was_heard(self) -> None:
+        """Something else has been said."""
+        self._last = time.monotonic()
+
+    def __call__(self, frame: Frame, doing: str) -> None:
+        """Say what is being done, unless something was said just now."""
+        if time.monotonic() - self._last >= _SILENCE:
+            self.was_heard()
+            self._tell(frame, doing)
 
 
 class Progress:
@@ -41,6 +64,9 @@ class Progress:
         self._done = 0
         self._started = time.monotonic()
         self._drawn = 0
+        self._doing = ""
+        #: what is being done for a frame is said to it
+        self.tell = Seldom(self._say_doing)
 
     @property
     def is_complete(self) -> bool:
@@ -62,6 +88,7 @@ class Progress:
 
     def begin(self, total: int) -> None:
         """Frames are made from now on."""
+        self.tell.was_heard()
         self._total, self._done, self._started = total, 0, time.monotonic()
         if total == 0:
             self.share("nothing is left to do")
@@ -69,6 +96,8 @@ class Progress:
     def frame(self, baked: BakedFrame) -> None:
         """A frame has been made."""
         self._done += 1
+        self._doing = ""
+        self.tell.was_heard()
         seconds = round(baked.seconds, 4)
         label = format_frames((baked.frame,))
         text = (
@@ -84,6 +113,16 @@ class Progress:
             frame=to_plain(baked.frame), paths=[str(path) for path in baked.paths], seconds=seconds,
         )  # fmt: skip
         self.share(f"frame {label}")
+
+    def _say_doing(self, frame: Frame, doing: str) -> None:
+        """Of a frame that takes long."""
+        label = format_frames((frame,))
+        self._doing = f"frame {label} {doing}"
+        if self._is_terminal:
+            self._draw_bar()
+        else:
+            self.say(f"frame {label} {doing}", frame=to_plain(frame), doing=doing)
+        self.share(self._doing)
 
     def share(self, status: str) -> None:
         """What part is done, for a farm."""
@@ -110,11 +149,12 @@ class Progress:
     def _draw_bar(self) -> None:
         filled = _BAR * self._done // self._total
         passed = time.monotonic() - self._started
-        left = passed / self._done * (self._total - self._done)
+        left = duration(passed / self._done * (self._total - self._done)) if self._done else "?"
         bar = "#" * filled + "." * (_BAR - filled)
         # a line that is longer than the terminal would not be drawn over by the next
         columns = shutil.get_terminal_size().columns - 1
-        line = f"{self._done}/{self._total} [{bar}] {duration(left)} left  {self.name}"[:columns]
+        line = f"{self._done}/{self._total} [{bar}] {left} left  {self.name}"
+        line = f"{line}  {self._doing}".rstrip()[:columns]
         self.stream.write(f"\r{line:<{self._drawn}}")
         self.stream.flush()
         self._drawn = len(line)

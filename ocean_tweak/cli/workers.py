@@ -32,6 +32,7 @@ from ..export.cache.records import CacheSink, give_up_writing
 from ..export.exr import ExrError
 from ..export.python_process import environment, module_command
 from .outcome import DONE, FAILED, message_of
+from .progress import Seldom
 from .stopping import WORKERS_PATIENCE, end_now
 
 _LOG = logging.getLogger(__name__)
@@ -42,12 +43,18 @@ _LOOK = 0.2  # s
 
 
 def make_in_processes(
-    folder: Path, job: Job, frames: Sequence[Frame], workers: int, stopped: Callable[[], bool]
+    folder: Path,
+    job: Job,
+    frames: Sequence[Frame],
+    workers: int,
+    stopped: Callable[[], bool],
+    tell: Callable[[Frame, str], None] = lambda frame, doing: None,
 ) -> Iterator[BakedFrame]:
     """Make frames, each process a stretch of them; yields them as they are made.
 
     job : must be that of the folder
     stopped : asked again and again; True lets every process end after its frame
+    tell : is told what is being done for a frame that takes long
 
     Raises what ended a process, as OSError or CacheError, or CacheError when one dies again and again.
     """
@@ -66,7 +73,7 @@ def make_in_processes(
             except queue.Empty:
                 continue
             if line is not None:
-                baked = process.made(line)
+                baked = process.made(line, tell)
                 if baked is not None:
                     yield baked
                 continue
@@ -131,13 +138,16 @@ class _Process:
             self._process.stdin.write(json.dumps(order) + "\n")
             self._process.stdin.flush()
 
-    def made(self, line: dict[str, Any]) -> BakedFrame | None:
-        """Take a line: a frame, or None where it is what ended the process."""
+    def made(self, line: dict[str, Any], tell: Callable[[Frame, str], None]) -> BakedFrame | None:
+        """Take a line: a frame, or None where it is what ended the process or what it is doing."""
         if "failed" in line:
             code, path = line["errno"], line["path"]
             self._problem = OSError(code, os.strerror(code), path) if code else CacheError(line["failed"])
             return None
         (frame,) = parse_frames(line["frame"])
+        if "doing" in line:
+            tell(frame, line["doing"])
+            return None
         self.left.remove(frame)
         self._deaths = 0
         return BakedFrame(frame, tuple(map(Path, line["paths"])), line["seconds"])
@@ -240,7 +250,9 @@ def _give_up(ended: threading.Event, folder: Path) -> None:
 
 
 def _make(folder: Path, job: Job, frames: Sequence[Frame], ended: threading.Event) -> None:
-    with contextlib.closing(make_frames(job.shot, frames, CacheSink(folder, job))) as making:
+    tell = Seldom(lambda frame, doing: _say({"frame": format_frames((frame,)), "doing": doing}))
+    sink = CacheSink(folder, job, tell)
+    with contextlib.closing(make_frames(job.shot, frames, sink, tell=tell)) as making:
         for frame, paths, seconds in making:
             _say(
                 {
@@ -249,6 +261,7 @@ def _make(folder: Path, job: Job, frames: Sequence[Frame], ended: threading.Even
                     "seconds": seconds,
                 }
             )
+            tell.was_heard()
             if ended.is_set():
                 return
 

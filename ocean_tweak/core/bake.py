@@ -6,7 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -37,7 +37,10 @@ class FrameSink(Protocol):
 
 
 class BakedFrame(NamedTuple):
-    """A frame that has been kept."""
+    """A frame that has been kept.
+
+    seconds : that it took, with its foam
+    """
 
     frame: Frame
     paths: tuple[Path, ...]
@@ -64,6 +67,11 @@ class ShotSurfaces:
             self._seas = cascade or (grid_sea(parameters, workers=1),)
             self._parameters = parameters
         return self._seas
+
+    def prepare(self, frame: Frame) -> None:
+        """Make the waves of a frame, which its surfaces share."""
+        for sea in self.seas(self.shot.at(frame).parameters):
+            sea.prepare()
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
         """Fields of each grid in a frame, and of each part where PARTS is asked for.
@@ -100,12 +108,20 @@ class ShotSurfaces:
         return fields
 
 
-def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1) -> Iterator[BakedFrame]:
+def bake(
+    shot: Shot,
+    frames: Iterable[Frame],
+    sink: FrameSink,
+    workers: int = 1,
+    tell: Callable[[Frame, str], None] = lambda frame, doing: None,
+) -> Iterator[BakedFrame]:
     """Make and keep each frame, several at once; yields each in order when it is kept.
 
     A worker makes a whole frame on one thread: while one encodes, another computes. Only foam, which has a
     memory, is made here, in the order of the frames. What a frame holds does not depend on the number of
     workers. When the caller stops, frames under way are finished and no more begun.
+
+    tell : is told again and again what is being done for a frame
 
     Raises MemoryError before the first frame where the machine is too small, and ValueError for fields of
     several patches that are not sums of theirs.
@@ -114,8 +130,8 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
     with_memory = ShotSurfaces(shot)
     own = threading.local()
 
-    def make(frame: Frame, foam: NDArray[np.floating] | None) -> BakedFrame:
-        started = time.perf_counter()
+    def make(frame: Frame, started: float, foam: NDArray[np.floating] | None) -> BakedFrame:
+        started += time.perf_counter()
         if not hasattr(own, "surfaces"):
             own.surfaces = ShotSurfaces(shot)
         fields, *others = own.surfaces.frames(frame, sink.outputs - {FOAM})
@@ -127,11 +143,12 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
     with ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
+                begun = time.perf_counter()
                 if not under_way:  # made once, before the workers ask for it
-                    for sea in with_memory.seas(shot.at(frame).parameters):
-                        sea.prepare()
-                foam = with_memory.frame(frame, {FOAM}).foam if FOAM in sink.outputs else None
-                under_way.append(pool.submit(make, frame, foam))
+                    with_memory.prepare(frame)
+                foam = _foam(with_memory, frame, tell) if FOAM in sink.outputs else None
+                # the wait for a worker is no work
+                under_way.append(pool.submit(make, frame, begun - time.perf_counter(), foam))
                 if len(under_way) > workers:
                     yield under_way.popleft().result()
             while under_way:
@@ -139,6 +156,14 @@ def bake(shot: Shot, frames: Iterable[Frame], sink: FrameSink, workers: int = 1)
         finally:
             for future in under_way:
                 future.cancel()
+
+
+def _foam(surfaces: ShotSurfaces, frame: Frame, tell: Callable[[Frame, str], None]) -> NDArray[np.floating]:
+    for sea in surfaces.seas(surfaces.shot.at(frame).parameters):
+        sea.foam.history.tell = lambda done, count: tell(
+            frame, f"looked back for foam at {done} of {count} moments"
+        )
+    return surfaces.frame(frame, {FOAM}).foam
 
 
 def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:

@@ -102,6 +102,8 @@ class FoamHistory:
         self._squeeze_at = squeeze_at
         self._births: Array | None = None
         self._last = 0
+        #: is told of each moment that was looked at, and of how many
+        self.tell: Callable[[int, int], None] = lambda done, count: None
 
     def foam(self, time: float | Fraction) -> RealArray:
         """(N, N) float32 F in 0…1 at a time."""
@@ -123,9 +125,11 @@ class FoamHistory:
             self._births = None
             self._last = first - 1
         # births of lattice times that are forgotten by now fade below the faintest: they may stay
-        for step in range(max(first, self._last + 1), index + 1):
+        first = max(first, self._last + 1)
+        for step in range(first, index + 1):
             born = self._born(step)
             self._births = born if self._births is None else np.maximum(self._births, born, out=self._births)
+            self.tell(step - first + 1, index + 1 - first)
         self._last = index
         assert self._births is not None
         return self._births

@@ -80,11 +80,11 @@ class FoamField:
         """`model` and `cusp_at`, the squeeze at a time, are those of the samples on which foam is made."""
         self.model = model
         self._resolution = resolution
-        self._history = FoamHistory(self.model, cusp_at)
+        self.history = FoamHistory(self.model, cusp_at)
 
     def at(self, time: float | Fraction) -> RealArray:
         """(N, N) float32, 0…1."""
-        return resampled(self._history.foam(time), self._resolution)
+        return resampled(self.history.foam(time), self._resolution)
 
 
 def resampled(field: RealArray, resolution: int) -> RealArray:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -12,6 +10,7 @@ import numpy as np
 
 from .cascades.patch_seas import ADDING, PARTS, joined_bands, parts
 from .fields import FOAM, OUTPUTS, memory_groups
+from .machine import usable_memory
 from .noise_synthesis.source import side
 from .parameters import OceanParameters
 from .synthesis import term
@@ -24,8 +23,8 @@ _TEMPORARY_ARRAYS = 5
 #: complex arrays of half a picture's plane that live while it is filtered
 _PICTURE_ARRAYS = 3
 
-#: bytes of the tables from which it is made, whatever the resolution
-_TABLES = 48 * 2**20
+#: bytes of the tables from which a state is made, whatever the resolution
+TABLES = 48 * 2**20
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ def memory_need(
     state = half_plane * (3 * 2 * real + 2 * real + 8 + phasors)
     moved_apart = [layer for layer in parameters.active_pictures if layer.animation != "DISPERSION"]
     state += half_plane * (3 * 2 * real + 8) * len(moved_apart)
-    building = half_plane * 8 * _TEMPORARY_ARRAYS + _TABLES
+    building = half_plane * 8 * _TEMPORARY_ARRAYS + TABLES
     building += max(
         (16 * _PICTURE_ARRAYS * side(layer) ** 2 for layer in parameters.active_pictures), default=0
     )
@@ -124,30 +123,10 @@ def _columns(group: Iterable[str], gradient: bool) -> int:
 
 
 def check_memory(need: int, what: str) -> None:
-    """Raise MemoryError, with a remedy, where the machine has fewer bytes than needed."""
-    available = physical_memory()
+    """Raise MemoryError, with a remedy, where the machine, or the container, has fewer bytes than needed."""
+    available = usable_memory()
     if available is not None and need > available:
         raise MemoryError(
             f"{what} needs {need / 2**30:.1f} GB of memory and this machine has {available / 2**30:.1f} GB: "
             "lower the resolution or the number of workers"
         )
-
-
-def physical_memory() -> int | None:
-    """The machine's memory in bytes; None where the system does not tell."""
-    if sys.platform == "win32":
-        return _windows_memory()
-    try:
-        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (ValueError, OSError):
-        return None
-
-
-def _windows_memory() -> int | None:
-    import ctypes
-
-    kilobytes = ctypes.c_ulonglong()
-    kernel = ctypes.WinDLL("kernel32")  # type: ignore[attr-defined]
-    if not kernel.GetPhysicallyInstalledSystemMemory(ctypes.byref(kilobytes)):
-        return None
-    return kilobytes.value * 1024

@@ -156,10 +156,16 @@ class ExrSequence:
 
     def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Write the frame's maps, in object space. Returns the files' paths."""
-        return tuple(self._write_map(frame, fields, name) for name in self.maps)
+        return tuple(self.write_map(frame, fields, name) for name in self.maps)
 
-    def _write_map(self, frame: Frame, fields: SurfaceFields, name: str) -> Path:
+    def write_map(self, frame: Frame, fields: SurfaceFields, name: str) -> Path:
+        """Write one of the frame's maps. Returns its path."""
         path = self.path(frame, name)
+        _write(path, self.encoded(frame, fields, name))
+        return path
+
+    def encoded(self, frame: Frame, fields: SurfaceFields, name: str) -> bytes:
+        """The bytes of one of a frame's maps. Raises ExrError for a value that is not finite."""
         metadata = {
             "format": FORMAT_VERSION,
             "map": name,
@@ -173,8 +179,8 @@ class ExrSequence:
         if self.patch is not None:
             count = len(self.parameters.patches)
             metadata["patch"] = {"number": self.patch + 1, "of": count, "rotation": self._patch.rotation}
-        write_image(path, MAPS[name].image(fields), metadata, self.parameters.timing.fps, self.compression)
-        return path
+        path, fps = self.path(frame, name), self.parameters.timing.fps
+        return _encoded(path, MAPS[name].image(fields), metadata, fps, self.compression)
 
 
 def write_image(
@@ -188,6 +194,12 @@ def write_image(
 
     Raises ExrError for a value that is not finite and OSError for what the disk refuses.
     """
+    _write(path, _encoded(path, image, metadata, fps, compression))
+
+
+def _encoded(
+    path: Path, image: NDArray[np.floating], metadata: dict[str, Any], fps: Fraction, compression: str
+) -> bytes:
     openexr = load_openexr()
     if not np.all(np.isfinite(image)):
         raise ExrError(f"{path}: the image holds values that are not finite")
@@ -206,9 +218,13 @@ def write_image(
         openexr.File(header, channels).write(encoded)
     except RuntimeError as error:
         raise ExrError(f"{path}: {error}") from error
+    return encoded.getvalue()
+
+
+def _write(path: Path, encoded: bytes) -> None:
     # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
     with whole_file(path) as beside:
-        beside.write_bytes(encoded.getvalue())
+        beside.write_bytes(encoded)
 
 
 def read_image(

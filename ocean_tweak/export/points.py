@@ -10,7 +10,7 @@ what the means lack of the squares of the slopes. Binary, little-endian, float.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from ..core.cascades.patch_seas import Part
 from ..core.fields import SurfaceFields
 from ..core.frames import Frame, frame_label
 from .exr import ExrError
-from .files import whole_file
+from .files import open_file, whole_file
 
 #: the map's name in jobs and files
 POINTS = "points"
@@ -83,17 +83,27 @@ class PointSequence:
 
         Raises PointsError for a value that is not finite and OSError for what the disk refuses.
         """
-        size = self.part.parameters.domain_size
+        about = {"part": self.number, "domain_size": self.part.parameters.domain_size,
+                 "samples": self.samples, "rotation": self.part.rotation, "time": fields.time}  # fmt: skip
+        for small, values in self.values(fields):
+            _write(self.path(frame, small), values, small, about)
+        return self.paths(frame)
+
+    @property
+    def bytes(self) -> int:
+        """Of all files of a frame, at most."""
+        kinds = self.samples_by_kind.items()
+        return sum(4 * samples**2 * len(_columns(small)) + _LONGEST_HEADER for small, samples in kinds)
+
+    def values(self, fields: SurfaceFields) -> Iterator[tuple[bool, NDArray[np.float32]]]:
+        """What each file holds, (samples, samples, columns), and whether it is the one of means."""
         columns = np.concatenate(
             [fields.displacement, fields.velocity, fields.slope, fields.strain], axis=-1, dtype=np.float64
         )
-        about = {"part": self.number, "domain_size": size, "samples": self.samples,
-                 "rotation": self.part.rotation, "time": fields.time}  # fmt: skip
         for small, samples in self.samples_by_kind.items():
             values = _means(columns, samples) if small else columns
-            values = _placed(values, size, self.samples)
-            _write(self.path(frame, small), values.astype("<f4"), small, about)
-        return self.paths(frame)
+            placed = _placed(values, self.part.parameters.domain_size, self.samples)
+            yield small, placed.astype("<f4")
 
     def check(self, frame: Frame) -> None:
         """Read a frame back. Raises PointsError for what is not as it was written."""
@@ -117,7 +127,7 @@ def read_points(path: Path) -> dict[str, NDArray[np.float32]]:
     Raises PointsError for a file that is damaged or not one of ours.
     """
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             names, count = _header(file.read(_LONGEST_HEADER))
             file.seek(0)
             content = file.read()

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import bpy
 
 from ..export.cache import clean
-from ..export.cache.estimate import Estimate, estimate
+from ..export.cache.estimate import Estimate, estimate, fitting_workers
 from ..export.cache.job import Job, bakes_in
 from ..export.cache.locks import claimed
 from ..export.cache.records import recorded_frames
@@ -75,7 +75,7 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     place = cache_folder(item)
     while not place.is_dir() and place != place.parent:
         place = place.parent
-    to_come = estimate(place, job, frames)
+    to_come = estimate(place, job, frames, fitting_workers(job, len(frames)))
     look(item)
     _listings[item.session_uid] = _listings[item.session_uid]._replace(to_come=to_come)
 

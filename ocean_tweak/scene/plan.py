@@ -10,7 +10,7 @@ from fractions import Fraction
 import bpy
 
 from ..core import OceanParameters
-from ..core.memory import physical_memory
+from ..core.machine import usable_memory
 from .animated import clock_of
 from .grid_mesh import Grid
 from .image_sequence import baked_stretch
@@ -118,7 +118,7 @@ def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) 
 
 
 def _check(grid: Grid) -> None:
-    memory, need = physical_memory(), grid.vertices * _VERTEX_BYTES
+    memory, need = usable_memory(), grid.vertices * _VERTEX_BYTES
     if memory is not None and need > memory:
         raise OceanObjectError(
             f"{grid.repeats[0]} x {grid.repeats[1]} repeats of {grid.quads}² quads need "

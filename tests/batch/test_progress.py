@@ -6,17 +6,21 @@ from __future__ import annotations
 import errno
 import json
 import logging
+import math
 import os
 import re
 import subprocess
+import time
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from ocean_tweak.cli import main
+from ocean_tweak.cli import main, progress
 from ocean_tweak.cli.progress import Progress
 from ocean_tweak.core.bake import BakedFrame
+from ocean_tweak.core.foam import FoamModel
 from ocean_tweak.export import logs
 from tests.batch.bakery import ROOT, SOON, command, each_json_line, images, only_folder, run, write_sea
 
@@ -66,6 +70,37 @@ def test_a_bar_on_a_terminal(sea: Path, tmp_path: Path, workers: int) -> None:
     assert "frame 1 (" not in said
 
 
+def test_what_takes_long_is_told_meanwhile(
+    sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A frame's foam looks back, which counts as the frame's time, and its maps are written one by one."""
+    monkeypatch.setattr(progress, "_SILENCE", 0.0)
+    monkeypatch.setattr(FoamModel, "birth", slow_birth)
+    command = bake(
+        sea, tmp_path / "c", "--maps", "disp,foam", "--workers", "1", "--set", "foam.half_life=0.1"
+    )
+    assert main([*command, "--json", "--only", "1-2"]) == 0
+    said = [line for line in each_json_line(capsys.readouterr().out) if "frame" in line]
+    first = [line["doing"] for line in said if line["frame"] == 1 and "doing" in line]
+    count = math.floor(9 * 0.1 * 8) + 1  # moments of an eighth of a second until 2⁻⁹ is left
+    assert first[:count] == [f"looked back for foam at {n + 1} of {count} moments" for n in range(count)]
+    assert first[count:] == ["wrote 1 of 2 files", "wrote 2 of 2 files"]
+    (seconds,) = (line["seconds"] for line in said if line["frame"] == 1 and "seconds" in line)
+    assert seconds > 0.05 * count
+
+
+def slow_birth(self: FoamModel, squeeze: np.ndarray, time_: Fraction, birth=FoamModel.birth) -> np.ndarray:
+    time.sleep(0.05)
+    return birth(self, squeeze, time_)
+
+
+def test_a_frame_that_is_quick_needs_no_words(
+    sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(bake(sea, tmp_path / "c", "--maps", "disp,foam", "--workers", "1", "--json")) == 0
+    assert not [line for line in each_json_line(capsys.readouterr().out) if "doing" in line]
+
+
 def test_a_log_beside_a_bake(sea: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Each line that was printed, and what ended the second bake; nothing of it twice on the console."""
     for more in ("--workers", "1"), ("--workers", "2", "--only", "3", "--maps", "vel"), ("--only", "9"):
@@ -75,7 +110,7 @@ def test_a_log_beside_a_bake(sea: Path, tmp_path: Path, capsys: pytest.CaptureFi
     assert said.err.count("\n") == 1
     first, second = sorted((tmp_path / "c").glob("*/v*.log"))
     lines = first.read_text().splitlines()
-    assert [re.findall(r"INFO sea: (frame \d)", line) for line in lines[2:]] == [
+    assert [re.findall(r"INFO sea: (frame \d)", line) for line in lines[3:]] == [
         [f"frame {n}"] for n in range(1, 6)
     ]
     assert all(re.match(rf"\d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d \S+ {os.getpid()} ", line) for line in lines)

@@ -72,7 +72,7 @@ def test_sixty_four_patches_in_a_row_are_exact(add, make_parameters, empty_scene
 
 def test_a_grid_too_large_for_the_machine_is_refused(add, make_parameters, extension, monkeypatch):
     item = add(make_parameters(), "NODES", "LIVE", (1, 1))
-    monkeypatch.setattr(extension("scene.plan"), "physical_memory", lambda: 2**23)
+    monkeypatch.setattr(extension("scene.plan"), "usable_memory", lambda: 2**23)
     item.ocean_tweak.repeats_x = 64
     assert "64 x 1 repeats of 32² quads need" in item.ocean_tweak.error
     item.ocean_tweak.repeats_x = 2

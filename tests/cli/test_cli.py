@@ -71,7 +71,7 @@ def test_memory_is_told_and_guarded(
     assert main(["info", "--json"]) == 0
     need = json.loads(capsys.readouterr().out)["ocean"]["memory"]
     assert need["surface"] > 12 * 512**2
-    monkeypatch.setattr(memory, "physical_memory", lambda: need["state"])
+    monkeypatch.setattr(memory, "usable_memory", lambda: need["state"])
     assert main(["bake", "--frames", "1", "--out", str(tmp_path / "out")]) == 1
     assert "lower the resolution" in capsys.readouterr().err
     assert not image_names(tmp_path / "out")

@@ -101,11 +101,11 @@ def test_memory_with_trough_damping_is_told_too() -> None:
 
 
 def test_a_sea_too_large_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memory, "physical_memory", lambda: 2**20)
+    monkeypatch.setattr(memory, "usable_memory", lambda: 2**20)
     with pytest.raises(MemoryError, match=r"A sea of 514² samples needs 0\.1 GB .* lower the resolution"):
         Ocean(OceanParameters(resolution=514)).surface(0.0)
     monkeypatch.undo()
-    assert memory.physical_memory() > 2**28
+    assert memory.usable_memory() > 2**28
 
 
 def test_changing_the_wind_draws_no_new_numbers(monkeypatch: pytest.MonkeyPatch) -> None:

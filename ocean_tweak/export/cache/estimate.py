@@ -1,34 +1,66 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a bake will take, told before it begins."""
+"""What a bake will take, told before it begins: bytes on the disk, seconds, and memory of each process."""
 
 from __future__ import annotations
 
+import hashlib
+import math
+import os
+import secrets
 import shutil
-import tempfile
 import time
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 from ...core import OceanParameters
 from ...core.bake import ShotSurfaces
+from ...core.cascades.patch_seas import PARTS, parts
+from ...core.fields import FOAM, SurfaceFields
+from ...core.foam import LATTICE_RATE
+from ...core.foam_field import foam_outlook
 from ...core.frames import Frame
-from ...core.shot import Shot
+from ...core.machine import usable_cores, usable_memory
+from ...core.memory import TABLES, memory_need
+from ...core.shot import OCEAN_TIME, Shot
 from .job import CacheError, Job
 
 #: the trial frame's samples along each side: few enough to take a moment. Images of more are smoother and
 #: pack better, never worse
 _TRIAL = 128
+#: those of the trials whose time is taken, of which the larger is twice the smaller: what does not grow with
+#: the samples is told from what does; for seas of at least so many samples
+_TIMED = {0: 256, 2048: 512}
+_TIMED_WITH_POINTS = 1024
+#: s; half-life of the foam in those trials, which looks back at few moments
+_SHORT_FOAM = 0.02
+#: how much longer a sample takes each time that the side is doubled beyond the trial's: caches are small
+_LARGER_IS_SLOWER = 1.1
 #: bytes in which disks give room; a frame's record takes two of them with its name and its folder's
 _BLOCK = 4096
 _RECORD = 2 * _BLOCK
+#: bytes of a process: Python with its packages, and tables of which others take the place when they are done
+_PROCESS, _LEAST = 67 * 2**20, 88 * 2**20
+#: bytes a sample while a map is written, and of one that is put together first
+_WRITING, _PUT_TOGETHER = 20, 29
+#: bytes a sample of a part while its points are written
+_POINTS = 480
+#: bytes a sample of foam: births and what is worked with, as far as that meets the peak of the rest
+_FOAM = 24
+
+# of the work alone, whoever else uses the machine; too coarse on Windows
+_clock = time.perf_counter if os.name == "nt" else time.process_time
 
 
 @dataclass(frozen=True)
 class Estimate:
     """Of a number of frames.
 
-    bytes, seconds : for all of them, one after the other
+    bytes : for all of them
+    seconds : from the start to the last, with all that is made before the first
     free : bytes that the disk has
     """
 
@@ -47,60 +79,178 @@ class Estimate:
             )
 
 
-def estimate(folder: Path, job: Job, frames: Sequence[Frame]) -> Estimate:
-    """What the frames will take, from two of them with few samples, made and written aside."""
+def estimate(folder: Path, job: Job, frames: Sequence[Frame], workers: int = 1) -> Estimate:
+    """What the frames will take with a number of processes, from trials with few samples.
+
+    Nothing is written. Seconds are those of a machine that does nothing else.
+    """
     free = shutil.disk_usage(folder).free
     if not frames:
         return Estimate(0, 0, 0.0, free)
-    trial = _with_few_samples(job.shot.parameters)
-    scale = (job.shot.parameters.resolution / trial.resolution) ** 2
-    small = replace(job, shot=Shot(trial, job.shot.animation), maps=job.images)
-    with tempfile.TemporaryDirectory() as aside:
-        sizes, seconds = _trial_frame(Path(aside), small, frames)
-        point_sizes, point_seconds = _points_of_a_frame(Path(aside), job, frames[0])
-    size = sum(_room(length * scale) for length in sizes) + sum(map(_room, point_sizes)) + _RECORD
-    seconds = seconds * scale + point_seconds
-    return Estimate(len(frames), size * len(frames), seconds * len(frames), free)
+    size = _frame_bytes(folder, job, frames[0]) + _RECORD
+    return Estimate(len(frames), size * len(frames), _seconds(folder, job, frames, workers), free)
 
 
-def _with_few_samples(parameters: OceanParameters) -> OceanParameters:
-    samples = min(parameters.resolution, _TRIAL)
+def fitting_workers(job: Job, frames: int) -> int:
+    """Processes that share so many frames: one a core, as far as memory allows."""
+    memory = usable_memory()
+    fitting = frames if memory is None else memory // process_memory(job)
+    return max(1, min(usable_cores(), fitting, frames))
+
+
+def process_memory(job: Job) -> int:
+    """Bytes that a process takes which makes and writes frames of a job."""
+    parameters = job.shot.parameters
+    need = memory_need(parameters, job.outputs - {FOAM})
+    sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
+    samples = max([*sides, parameters.resolution]) ** 2
+    together = {"foam", "slope"} & set(job.maps)
+    writing = (_PUT_TOGETHER if together else _WRITING) * samples
+    if PARTS in job.outputs:
+        writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
+    making = need.surface + writing
+    if FOAM in job.outputs:  # made for the next frame meanwhile
+        own = parameters.foam.resolution or parameters.resolution
+        coarse = memory_need(parameters.at_resolution(own), {"cusp"})
+        making += coarse.surface + _FOAM * own**2 + 4 * samples
+        making += coarse.state if own != parameters.resolution else 0
+    return max(_LEAST, _PROCESS + need.state + max(need.building - TABLES, making))
+
+
+def _frame_bytes(folder: Path, job: Job, frame: Frame) -> int:
+    """Of a frame's files on the disk."""
+    trial = _at(job, _TRIAL)
+    scale = (job.shot.parameters.resolution / trial.shot.parameters.resolution) ** 2
+    fields = ShotSurfaces(trial.shot).frames(frame, trial.outputs - {PARTS})
+    images = sum(_room(len(data) * scale) for data in _images(folder, trial, frame, fields))
+    return images + sum(_room(points.bytes) for points in job.points(folder, frame))
+
+
+class _Costs(NamedTuple):
+    """Seconds of a processor.
+
+    sea : to make the sea
+    moment : to look at a moment, for foam
+    frame : to make and encode a frame, without its foam
+    """
+
+    sea: float
+    moment: float
+    frame: float
+
+
+def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> float:
+    costs, parameters = _costs(folder, job, frames[0]), job.shot.parameters
+    most = foam_outlook(parameters).memory if FOAM in job.outputs else 0
+    moments_a_frame = LATTICE_RATE / float(parameters.timing.fps)
+    changes = _changes(job.shot)
+    gaps = Counter(float(later - earlier) for earlier, later in pairwise(frames))
+    # before each frame of a process but its first
+    following = sum(
+        count * (most if changes else min(most, gap * moments_a_frame)) for gap, count in gaps.items()
+    ) / max(1, len(frames) - 1)
+    alone = math.ceil(len(frames) / workers)
+    foam = costs.moment if FOAM in job.outputs else 0.0
+    first, later = foam * (most + 1), foam * (following + 1)
+    seas = costs.sea * (alone if changes else 1)
+    # foam is made beside the frame before
+    path = seas + first + costs.frame + (alone - 1) * max(later, costs.frame)
+    work = seas + first + (alone - 1) * later + alone * costs.frame
+    return max(path, workers * work / usable_cores())
+
+
+def _costs(folder: Path, job: Job, frame: Frame) -> _Costs:
+    resolution = job.shot.parameters.resolution
+    larger = max(side for least, side in _TIMED.items() if resolution >= least)
+    if PARTS in job.outputs:  # of parts with few samples no means are made, which take longest
+        larger = _TIMED_WITH_POINTS
+    if resolution <= larger:
+        return _timed(folder, _at(job, resolution, is_timed=True), frame)
+    trials = [_at(job, side, is_timed=True) for side in (larger // 2, larger)]
+    found = [_timed(folder, trial, frame) for trial in trials]
+    few, many = ((resolution / trial.shot.parameters.resolution) ** 2 for trial in trials)
+    slower = _LARGER_IS_SLOWER ** math.log2(math.sqrt(many))
+    # t = a + b/share, with shares of the samples wanted
+    grown = [(b - a) / (1.0 / many - 1.0 / few) for a, b in zip(*found, strict=True)]
+    fixed = [max(0.0, b - part / many) for b, part in zip(found[1], grown, strict=True)]
+    return _Costs(*(a + slower * max(0.0, part) for a, part in zip(fixed, grown, strict=True)))
+
+
+def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
+    surfaces, parameters = ShotSurfaces(job.shot), job.shot.at(frame).parameters
+    with_foam, moment = FOAM in job.outputs, 0.0
+
+    def sea() -> None:
+        for grid in surfaces.seas(parameters):
+            grid.prepare()
+            if with_foam:
+                grid.foam.model  # noqa: B018
+        if PARTS in job.outputs:
+            surfaces.parts(frame)
+
+    def made() -> None:
+        fields = surfaces.frames(frame, job.outputs - {FOAM})
+        if with_foam:
+            foam = fields[0].cusp
+            fields = (fields[0].including(FOAM, foam), *fields[1:])
+        _encode(folder, job, frame, fields)
+
+    making = _time(sea)
+    if with_foam:
+        looks = foam_outlook(parameters).memory + 1
+        surfaces.frames(frame, {"cusp"})  # with its arrays there is less to do
+        moment = _time(lambda: surfaces.frames(frame, {FOAM})) / looks
+    if PARTS not in job.outputs:
+        made()
+    return _Costs(making, moment, _time(made))
+
+
+def _encode(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields]) -> None:
+    """All that is done with a frame's fields but for the disk."""
+    for data in _images(folder, job, frame, fields):
+        hashlib.sha256(data).digest()
+    of_parts = fields[len(job.sequences(folder, frame)) :]
+    for points, of_part in zip(job.points(folder, frame), of_parts, strict=True):
+        for _, values in points.values(of_part):
+            hashlib.sha256(values.data).digest()
+
+
+def _time(work: Callable[[], object]) -> float:
+    started = _clock()
+    work()
+    return _clock() - started
+
+
+def _images(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[bytes]:
+    for sequence, of_patch in zip(job.sequences(folder, frame), fields, strict=False):
+        for name in job.images:
+            yield sequence.encoded(frame, of_patch, name)
+
+
+def _changes(shot: Shot) -> bool:
+    """Whether each frame is of another sea."""
+    paths = dict(shot.animation.samples) if shot.animation is not None else {}
+    return bool(set(paths) - {OCEAN_TIME})
+
+
+def _at(job: Job, most: int, is_timed: bool = False) -> Job:
+    """The job with at most so many samples along a side."""
+    parameters = job.shot.parameters
+    samples = min(parameters.resolution, most)
     foam = parameters.foam
     if foam.resolution:  # in proportion, so that its time is too
         of_foam = max(16, 2 * round(foam.resolution * samples / parameters.resolution / 2))
         foam = replace(foam, resolution=of_foam)
-    return parameters.at_resolution(samples).replace(foam=foam)
+    few: OceanParameters = parameters.at_resolution(samples).replace(foam=foam)
+    if is_timed:
+        # foam that looks back less, and random numbers that nobody has made yet
+        short = replace(foam, half_life=min(foam.half_life, _SHORT_FOAM))
+        few = few.replace(foam=short, seed=secrets.randbelow(2**31))
+    return replace(job, shot=Shot(few, job.shot.animation))
 
 
 def _room(size: float) -> int:
     return -int(-size // _BLOCK) * _BLOCK
-
-
-def _trial_frame(folder: Path, job: Job, frames: Sequence[Frame]) -> tuple[list[int], float]:
-    """Bytes of a frame's files, and seconds to make them after the frame before."""
-    surfaces = ShotSurfaces(job.shot)
-    started = time.perf_counter()
-    made = surfaces.frames(frames[0], job.outputs)
-    if len(frames) > 1:  # what is made once does not count where there are many
-        started = time.perf_counter()
-        made = surfaces.frames(frames[1], job.outputs)
-    paths = job.write(folder, frames[0], made)
-    return [path.stat().st_size for path in paths], time.perf_counter() - started
-
-
-def _points_of_a_frame(folder: Path, job: Job, frame: Frame) -> tuple[list[int], float]:
-    """The same for points: their samples are those of the patches, however few the sea has."""
-    sequences = job.points(folder, frame)
-    if not sequences:
-        return [], 0.0
-    surfaces = ShotSurfaces(job.shot)
-    surfaces.parts(frame)  # what is made once does not count
-    started = time.perf_counter()
-    made = surfaces.parts(frame)
-    paths = [
-        path for sequence, own in zip(sequences, made, strict=True) for path in sequence.write(frame, own)
-    ]
-    return [path.stat().st_size for path in paths], time.perf_counter() - started
 
 
 def readable_bytes(size: float) -> str:

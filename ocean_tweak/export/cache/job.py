@@ -12,7 +12,7 @@ import json
 import platform
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, combinations
@@ -143,14 +143,17 @@ class Job:
         points = [path.name for sequence in self.points(folder, frame) for path in sequence.paths(frame)]
         return [*images, *((POINTS, name) for name in points)]
 
-    def write(self, folder: Path, frame: Frame, fields: Iterable[SurfaceFields]) -> tuple[Path, ...]:
-        """Write a frame's files, those that `files` names, in its order. Returns their paths.
+    def write(self, folder: Path, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[Path]:
+        """Write a frame's files, those that `files` names, in its order. Yields each path when it is whole.
 
         fields : what `core.bake.ShotSurfaces` makes for `outputs`
         """
-        sinks: tuple[ExrSequence | PointSequence, ...]
-        sinks = (*self.sequences(folder, frame), *self.points(folder, frame))
-        return tuple(path for sink, own in zip(sinks, fields, strict=True) for path in sink.write(frame, own))
+        sequences = self.sequences(folder, frame)
+        for sequence, own in zip(sequences, fields, strict=False):
+            for name in self.images:
+                yield sequence.write_map(frame, own, name)
+        for points, own in zip(self.points(folder, frame), fields[len(sequences) :], strict=True):
+            yield from points.write(frame, own)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in `bake.json`."""

@@ -97,11 +97,17 @@ class Finding(NamedTuple):
 
 
 class CacheSink:
-    """A sink that writes a frame's maps into a job's folder, and its record last."""
+    """A sink that writes a frame's maps into a job's folder, and its record last.
 
-    def __init__(self, folder: Path, job: Job) -> None:
+    tell : is told how many of a frame's files are written
+    """
+
+    def __init__(
+        self, folder: Path, job: Job, tell: Callable[[Frame, str], None] = lambda frame, doing: None
+    ) -> None:
         self.folder = folder
         self.job = job
+        self.tell = tell
         asked = format_frames(job.frames)
         self._asked = asked if len(asked) <= _LONGEST_RANGE else ""
 
@@ -118,7 +124,11 @@ class CacheSink:
         record = record_path(self.folder, frame)
         # an old record must not vouch for new files
         record.unlink(missing_ok=True)
-        paths = self.job.write(self.folder, frame, fields)
+        paths: list[Path] = []
+        count = len(self.job.files(self.folder, frame))
+        for path in self.job.write(self.folder, frame, fields):
+            paths.append(path)
+            self.tell(frame, f"wrote {len(paths)} of {count} files")
         sync_folder(self.folder)
         entries = tuple(
             FileEntry(name, path.name, path.stat().st_size, file_hash(path))
@@ -127,7 +137,7 @@ class CacheSink:
         made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries, self._asked)
         write_text(record, json.dumps(made.to_dict(), indent=1) + "\n")
         sync_folder(record.parent)
-        return paths
+        return tuple(paths)
 
 
 def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
