@@ -161,11 +161,19 @@ class ExrSequence:
     def write_map(self, frame: Frame, fields: SurfaceFields, name: str) -> Path:
         """Write one of the frame's maps. Returns its path."""
         path = self.path(frame, name)
-        _write(path, self.encoded(frame, fields, name))
+        write_image(path, *self._content(frame, fields, name), self.parameters.timing.fps, self.compression)
         return path
 
     def encoded(self, frame: Frame, fields: SurfaceFields, name: str) -> bytes:
         """The bytes of one of a frame's maps. Raises ExrError for a value that is not finite."""
+        image, metadata = self._content(frame, fields, name)
+        path, fps = self.path(frame, name), self.parameters.timing.fps
+        return _encoded(path, image, metadata, fps, self.compression)
+
+    def _content(
+        self, frame: Frame, fields: SurfaceFields, name: str
+    ) -> tuple[NDArray[np.floating], dict[str, Any]]:
+        """A map's image and what its header tells."""
         metadata = {
             "format": FORMAT_VERSION,
             "map": name,
@@ -179,8 +187,7 @@ class ExrSequence:
         if self.patch is not None:
             count = len(self.parameters.patches)
             metadata["patch"] = {"number": self.patch + 1, "of": count, "rotation": self._patch.rotation}
-        path, fps = self.path(frame, name), self.parameters.timing.fps
-        return _encoded(path, MAPS[name].image(fields), metadata, fps, self.compression)
+        return MAPS[name].image(fields), metadata
 
 
 def write_image(
@@ -194,7 +201,10 @@ def write_image(
 
     Raises ExrError for a value that is not finite and OSError for what the disk refuses.
     """
-    _write(path, _encoded(path, image, metadata, fps, compression))
+    encoded = _encoded(path, image, metadata, fps, compression)
+    # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
+    with whole_file(path) as beside:
+        beside.write_bytes(encoded)
 
 
 def _encoded(
@@ -219,12 +229,6 @@ def _encoded(
     except RuntimeError as error:
         raise ExrError(f"{path}: {error}") from error
     return encoded.getvalue()
-
-
-def _write(path: Path, encoded: bytes) -> None:
-    # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
-    with whole_file(path) as beside:
-        beside.write_bytes(encoded)
 
 
 def read_image(
