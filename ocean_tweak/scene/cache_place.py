@@ -91,9 +91,10 @@ def is_left_behind(item: bpy.types.Object) -> bool:
         return False
 
 
-def find_moved(item: bpy.types.Object) -> None:
-    """Let an ocean read its bake from its cache, where it is not where the file says: an absolute path of an
-    older file, or of another machine."""
+def find_moved(item: bpy.types.Object) -> bool:
+    """Let an ocean read its bake from its cache, where it is not where the file says: by an absolute path of
+    an older file, or on another machine. Returns whether anything was found."""
+    found = False
     for image in stored_paths.images_of(item):
         file = stored_paths.image_file(image)
         if image.source != "SEQUENCE" or file.parent.is_dir():
@@ -107,6 +108,8 @@ def find_moved(item: bpy.types.Object) -> None:
                 "%s: %s is not there; its frames are read from %s", item.name, file.parent, there.parent
             )
             image.filepath = stored_paths.relative(there)
+            found = True
+    return found
 
 
 def take_along(item: bpy.types.Object) -> ImageSequence:

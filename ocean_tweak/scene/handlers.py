@@ -32,7 +32,6 @@ from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import check_files, hold, refresh_and_tell, refresh_patches, refresh_render
 from .settings import (
-    all_oceans,
     is_ocean,
     oceans_in,
     once_oceans_in,
@@ -198,8 +197,9 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     renew_groups(ALL_KINDS)
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
-    for item in all_oceans():
-        cache_place.find_moved(item)
+    for item, scene in shown_oceans().items():
+        if cache_place.find_moved(item):
+            refresh_and_tell(item, scene)
     refresh_live_oceans()
 
 

@@ -104,7 +104,7 @@ def is_moved(item: bpy.types.Object, textures: Textures) -> bool:
 def remove_own(item: bpy.types.Object, textures: Textures) -> None:
     """Take the modifiers of ours away; those of a library stay."""
     own = own_modifiers(item, textures)
-    for name in [modifier.name for _, modifier in own if not _is_of_library(modifier)]:
+    for name in [modifier.name for _, modifier in own if not is_of_library(modifier)]:
         item.modifiers.remove(item.modifiers[name])
 
 
@@ -247,10 +247,10 @@ def _only_modifiers(
     """
     own = own_modifiers(item, textures)
     place = min((list(item.modifiers).index(modifier) for _, modifier in own), default=0)
-    for modifier in [modifier for _, modifier in own if _is_of_library(modifier)]:
+    for modifier in [modifier for _, modifier in own if is_of_library(modifier)]:
         assign(modifier, show_viewport=False, show_render=False)
         place += 1
-    own = [(purpose, modifier) for purpose, modifier in own if not _is_of_library(modifier)]
+    own = [(purpose, modifier) for purpose, modifier in own if not is_of_library(modifier)]
     # one that others stood in for before the object was made local comes last
     own.sort(key=lambda each: not (each[1].show_viewport or each[1].show_render))
     names: dict[str, str] = {}
@@ -272,7 +272,7 @@ def _only_modifiers(
     return made
 
 
-def _is_of_library(modifier: bpy.types.Modifier) -> bool:
+def is_of_library(modifier: bpy.types.Modifier) -> bool:
     """Whether it came to a library override from its library."""
     return modifier.id_data.override_library is not None and modifier.is_override_data
 

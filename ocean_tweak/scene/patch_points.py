@@ -19,8 +19,11 @@ from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
 from .image_sequence import baked_frames, baked_stretch
+from .modifiers import is_of_library
 from .plan import Plan, velocity_scale
 from .settings import OceanSettings
+from .stored_paths import image_file, relative
+from .textures import assign
 
 _NAME = "Ocean Tweak Points"
 #: folder, and name of the sea, of a displacement image
@@ -71,7 +74,10 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
     if len(item.data.vertices):
         item.data.clear_geometry()
         item.data.update_tag()
-    modifier = modifier_of(item) or item.modifiers.new(_NAME, "NODES")
+    modifier = modifier_of(item)
+    if modifier is None or is_of_library(modifier):
+        read_none(item)
+        modifier = item.modifiers.new(_NAME, "NODES")
     if modifier.node_group != node_group(PATCH_POINTS):
         modifier.node_group = node_group(PATCH_POINTS)
     samples = part.parameters.resolution
@@ -94,14 +100,18 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
 def read_none(item: bpy.types.Object) -> None:
     """Let a patch's mesh hold the patch itself."""
     modifier = modifier_of(item)
-    if modifier is not None:
+    if modifier is not None and is_of_library(modifier):
+        assign(modifier, show_viewport=False, show_render=False)
+    elif modifier is not None:
         item.modifiers.remove(modifier)
 
 
 def modifier_of(item: bpy.types.Object) -> bpy.types.NodesModifier | None:
-    """What lets a patch's mesh read points; None where it is live."""
+    """What lets a patch's mesh read points; None where it is live. That of a library may be switched off."""
     nodes = (modifier for modifier in item.modifiers if modifier.type == "NODES")
-    return next((modifier for modifier in nodes if is_of_kind(modifier.node_group, PATCH_POINTS)), None)
+    found = [modifier for modifier in nodes if is_of_kind(modifier.node_group, PATCH_POINTS)]
+    own = [modifier for modifier in found if not is_of_library(modifier)]
+    return next(iter(own or [modifier for modifier in found if modifier.show_render]), None)
 
 
 def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
@@ -109,11 +119,10 @@ def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
     image = settings.sequence_maps.disp or settings.early_maps.disp
     if settings.source != "SEQUENCE" or image is None:
         return None
-    match = _IMAGE.fullmatch(image.filepath)
+    match = _IMAGE.fullmatch(relative(image.filepath, ""))
     if match is None:
         return None
-    here = Path(bpy.path.abspath(image.filepath, library=image.library)).parent
-    return match["folder"] or "", match["name"], here
+    return match["folder"] or "", match["name"], image_file(image).parent
 
 
 def _baked_parameters(folder: Path) -> OceanParameters | None:

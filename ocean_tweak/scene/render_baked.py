@@ -60,7 +60,7 @@ class Bake:
             raise RenderError(
                 f"{cache / home} holds no bake v...-{hash8}: bake the sea, or write the job anew"
             )
-        self.folder = folders[0].resolve()
+        self.folder = folders[0].absolute()
         try:
             shot = json.loads((self.folder / "bake.json").read_text(encoding="utf-8"))["shot"]
             self.domain_size = float(shot["domain_size"])
@@ -334,7 +334,7 @@ def render(ranges: list[range], pictures: Path, openjd: bool) -> None:
     scene = bpy.context.scene
     if scene.render.is_movie_format:
         raise RenderError(f"{scene.name} renders a movie: choose pictures, a farm makes each frame by itself")
-    path = pictures.resolve() / f"{Path(bpy.data.filepath).stem}_####"
+    path = pictures.absolute() / f"{Path(bpy.data.filepath).stem}_####"
     scene.render.filepath = str(path)
     total, done = sum(map(len, ranges)), 0
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from .conftest import vertices
+from .other_blender import look
 from .surfaces import ALL_MAPS
 from .test_missing_frames import METHODS, warnings
-from .without_extension import heights_without_extension
 
 #: the frames of a bake, and a frame that it lacks with the one that is held there
 BAKES = {
@@ -65,12 +65,12 @@ def test_a_blender_without_the_extension_shows_them(baked, make_parameters, expe
     file = tmp_path / "shot.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(file))
     frames = sorted(set().union(*wanted.values()))
-    heights = heights_without_extension(tmp_path, [file], frames)[str(file)]
+    seen, _ = look(file, list(wanted), frames, tmp_path)
     for name, shown in wanted.items():
         for frame, baked_frame in shown.items():
             sea = expected(make_parameters(), baked_frame)[..., 2]
-            seen = heights[name][frame]
-            np.testing.assert_allclose(seen, sea.ravel(), atol=2e-3, err_msg=f"{name}, frame {frame}")
+            heights = seen[f"{name} viewport {frame}"][:, 2]
+            np.testing.assert_allclose(heights, sea.ravel(), atol=2e-3, err_msg=f"{name}, frame {frame}")
 
 
 def test_frames_that_are_baked_later_are_used(ocean, expected, make_parameters, empty_scene):

@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 import pytest
 
-from .without_extension import heights_without_extension
+from .camera_views import numbers
+from .conftest import evaluated_mesh
+from .other_blender import look
 
 TOLERANCE = 2e-3  # m; images keep 2⁻¹⁶ of their values
 METHODS = ("NODES", "DISPLACE")
@@ -78,11 +80,10 @@ def test_baked_overrides_keep_their_bakes(asset, shot, expected, evaluated, make
     open_again(shot)
     assert {item.ocean_tweak.source for item in overrides().values()} == {"SEQUENCE"}
     check(expected, evaluated, make_parameters())
-    heights = heights_without_extension(tmp_path, [shot], (3,))[str(shot)]
-    assert set(heights) == set(overrides())
-    for name, seen in heights.items():
-        wanted = expected(make_parameters(), 3)[..., 2].ravel()
-        np.testing.assert_allclose(seen[3], wanted, atol=TOLERANCE, err_msg=name)
+    names, wanted = list(overrides()), expected(make_parameters(), 3)[..., 2].ravel()
+    seen, _ = look(shot, names, [3], tmp_path)
+    for name in (f"{name} {kind} 3" for name in names for kind in ("viewport", "render")):
+        np.testing.assert_allclose(seen[name][:, 2], wanted, atol=TOLERANCE, err_msg=name)
 
 
 def test_an_override_that_is_live_again_or_local_moves(shot, expected, evaluated, make_parameters):
@@ -155,3 +156,52 @@ def test_a_linked_bake_is_shown_with_its_library_wherever_both_go(
         assert item.library is not None
         assert item.ocean_tweak.missing_file == ""
         np.testing.assert_allclose(evaluated(item), expected(make_parameters(), 2), atol=TOLERANCE)
+
+
+def test_a_horizon_that_both_files_bake_reads_the_shots_points(
+    empty_scene, ocean_object, core, make_parameters, extension, evaluated, tmp_path, monkeypatch
+):
+    """The shot looks at another sea than its asset does."""
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    cut = 20.0
+    patches = (
+        core.Patch(domain_size=150.0, shortest_wavelength=cut, resolution=32),
+        core.Patch(domain_size=40.0, longest_wavelength=cut, shortest_wavelength=5.0, resolution=32),
+    )
+    water = bpy.data.collections.new("Water")
+    empty_scene.collection.children.link(water)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = (71.3, 52.9, 2.0)
+    water.objects.link(camera)
+    empty_scene.camera, empty_scene.frame_end = camera, 2
+    item = ocean_object.add(empty_scene, make_parameters(patches=patches, joined=32), collection=water)
+    bpy.context.view_layer.objects.active = item
+    surface = extension("scene.camera_surface").add_camera_surface(item, empty_scene, budget=2000)
+    inputs = {"Finest Spacing": 0.2, "To Horizon": False, "Reach": 6.0, "Fade": False}
+    extension("nodes.modifier_inputs").set_inputs(surface.modifiers[0], inputs)
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    asset, shot = tmp_path / "asset.blend", tmp_path / "shots" / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(asset))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    shot.parent.mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+    scene = bpy.context.scene
+    scene.frame_end = 2
+    override_all(asset)
+    (name,) = (name for name, each in overrides().items() if each.parent and "Patch" not in name)
+    item, scene.camera = overrides()["Ocean"], bpy.data.objects["Camera"]
+    item.ocean_tweak.source, item.ocean_tweak.seed = "LIVE", 8
+    scene.frame_set(2)
+    live = positions(overrides()[name])
+    bpy.context.view_layer.objects.active = item
+    assert bpy.ops.ocean.bake() == {"FINISHED"}
+    open_again(shot)
+    bpy.context.scene.frame_set(2)
+    np.testing.assert_allclose(positions(overrides()[name]), live, atol=TOLERANCE)
+    seen, _ = look(shot, [name], [2], tmp_path)
+    for kind in ("viewport", "render"):
+        np.testing.assert_allclose(seen[f"{name} {kind} 2"], live, atol=TOLERANCE)
+
+
+def positions(item):
+    return numbers(evaluated_mesh(item), "position", 3)

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import pytest
 
-from .without_extension import heights_without_extension
+from .other_blender import look
 
 TOLERANCE = 2e-3  # m; images keep 2⁻¹⁶ of their values
 
@@ -52,11 +52,10 @@ def test_a_moved_copied_or_linked_project_shows_its_bake(
     desk.rename(moved)
     link.symlink_to(copy, target_is_directory=True)
     heights = expected(make_parameters(), 2)[..., 2].ravel()
-    shown = heights_without_extension(tmp_path, [place / "shot.blend" for place in (copy, moved, link)], (2,))
-    assert len(shown) == 3
-    for place, seen in shown.items():
-        for name in ("Nodes", "Displace"):
-            np.testing.assert_allclose(seen[name][2], heights, atol=TOLERANCE, err_msg=f"{place} {name}")
+    for place in (moved, link):
+        seen, _ = look(place / "shot.blend", ["Nodes", "Displace"], [2], tmp_path)
+        for name in ("Nodes viewport 2", "Nodes render 2", "Displace viewport 2", "Displace render 2"):
+            np.testing.assert_allclose(seen[name][:, 2], heights, atol=TOLERANCE, err_msg=f"{place} {name}")
 
 
 @pytest.mark.parametrize(
@@ -194,6 +193,16 @@ def test_what_could_not_be_saved_has_its_paths_back(item, tmp_path):
     assert item.ocean_tweak.cache_folder == "//water"
 
 
+def moved_elsewhere(desk):
+    bpy.ops.wm.read_homefile(use_empty=True)
+    farm = desk.parent / "far" / "away"
+    farm.parent.mkdir()
+    desk.rename(farm)
+    bpy.ops.wm.open_mainfile(filepath=str(farm / "shot.blend"))
+    bpy.context.scene.frame_set(2)
+    return bpy.data.objects["Nodes"]
+
+
 def test_a_bake_that_came_along_is_found_in_the_cache(
     item, extension, desk, expected, evaluated, make_parameters
 ):
@@ -202,10 +211,16 @@ def test_a_bake_that_came_along_is_found_in_the_cache(
     with extension("scene.handlers").asleep():
         bpy.ops.wm.save_mainfile()
     assert Path(item.ocean_tweak.sequence_maps.disp.filepath).is_absolute()
-    bpy.ops.wm.read_homefile(use_empty=True)
-    farm = desk.rename(desk.parent / "farm")
-    bpy.ops.wm.open_mainfile(filepath=str(farm / "shot.blend"))
-    bpy.context.scene.frame_set(2)
-    np.testing.assert_allclose(
-        evaluated(bpy.data.objects["Nodes"]), expected(make_parameters(), 2), atol=TOLERANCE
-    )
+    shown = evaluated(moved_elsewhere(desk))
+    np.testing.assert_allclose(shown, expected(make_parameters(), 2), atol=TOLERANCE)
+
+
+def test_a_bake_in_the_environments_cache_is_found_from_elsewhere(
+    desk, ocean_object, expected, evaluated, make_parameters, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("OCEAN_TWEAK_CACHE", str(tmp_path / "water"))
+    add_and_bake(ocean_object, make_parameters())
+    bpy.ops.wm.save_mainfile()
+    assert list((tmp_path / "water").glob("*/v*/bake.json"))
+    shown = evaluated(moved_elsewhere(desk))
+    np.testing.assert_allclose(shown, expected(make_parameters(), 2), atol=TOLERANCE)
