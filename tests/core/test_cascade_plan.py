@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ocean_tweak.core import Cascade, Ocean, OceanParameters, ParameterError, Patch, WaveLayer
-from ocean_tweak.core.cascades.plan import Wish, planned
+from ocean_tweak.core.cascades.plan import SPARE, Wish, odd_side, planned
 from ocean_tweak.core.memory import memory_need
 
 QUICK = settings(
@@ -146,3 +146,20 @@ def test_a_plan_replaces_earlier_patches_and_keeps_the_sea() -> None:
     result = planned(sea, Wish(0.5, 1000.0))
     assert dataclasses.replace(result, patches=()).layers == sea.layers
     assert result.seed == 4
+
+
+@pytest.mark.parametrize(("low", "high"), [(10.0, 400.0), (390.0, 400.0), (400.0, 400.0)])
+def test_sides_are_rather_large_and_in_no_small_ratio(low: float, high: float) -> None:
+    """At least nine tenths of what is allowed; and p/q up to q = 8 is further from it than from most."""
+    patches = (Patch(1000.0), Patch(330.0))
+    side = odd_side(low, high, patches)
+    assert side is not None
+    assert max(low / SPARE, 0.89 * high) <= side <= high
+
+    def oddness(length: float) -> float:
+        ratios = [patch.domain_size / length for patch in patches]
+        return min(abs(ratio * q - round(ratio * q)) for ratio in ratios for q in range(1, 9))
+
+    among = [oddness(length) for length in np.linspace(max(low, 0.9 * high), high, 200)]
+    assert oddness(side) >= 0.8 * max(among)
+    assert odd_side(high, 0.99 * high, patches) is None

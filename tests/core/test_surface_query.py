@@ -8,7 +8,7 @@ import pytest
 from scipy import optimize
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
-from ocean_tweak.core.surface_query import Values, newton
+from ocean_tweak.core.surface_query import Values, inside_quad, newton
 
 SEA = OceanParameters(resolution=128, domain_size=200.0, seed=3)
 GENERATOR = np.random.default_rng(5)
@@ -133,3 +133,18 @@ def test_crests_that_are_nearly_folded_are_met(steepness: float) -> None:
         np.testing.assert_allclose(moved, places, atol=1e-5 * spacing)
         # where the surface is steep a small step above is a large one at rest
         np.testing.assert_allclose(found_x, expected, atol=2e-5 * spacing / (1.0 - steepness))
+
+
+def test_places_inside_bilinear_quads() -> None:
+    """Quads, hardly one a parallelogram, whose place (u, v) between the corners is the origin."""
+    generator = np.random.default_rng(11)
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])[:, np.newaxis]
+    corners = square + generator.uniform(-0.2, 0.2, (4, 500, 2))
+    u, v = generator.uniform(-0.3, 1.3, (2, 500))
+    weights = np.array([(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v])
+    corners -= np.einsum("cp,cpx->px", weights, corners)
+    found_u, found_v, hit = inside_quad(corners)
+    inside = (u > 0.0) & (u < 1.0) & (v > 0.0) & (v < 1.0)
+    np.testing.assert_array_equal(hit, inside)
+    np.testing.assert_allclose(found_u[inside], u[inside], atol=1e-9)
+    np.testing.assert_allclose(found_v[inside], v[inside], atol=1e-9)
