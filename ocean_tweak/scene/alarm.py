@@ -25,6 +25,9 @@ _log = logging.getLogger(__name__)
 #: of a background render that met a frame which cannot be shown
 EXIT_CODE = 3
 
+#: begins the subjects of settings that are refused
+_SETTINGS = "settings: "
+
 
 @dataclass
 class _Shot:
@@ -45,12 +48,15 @@ class _Shot:
 _shot = _Shot()
 
 
-def failed(item: bpy.types.Object, text: str) -> None:
-    """The present frame of an ocean cannot be shown; a render in the background ends."""
-    _shot.troubled.add(item.session_uid)
+def refused(item: bpy.types.Object, text: str) -> None:
+    """The settings of an ocean are no sea that can be shown; a render in the background ends."""
     # while a number is dragged, the console hears of its parameter once
-    _say(logging.ERROR, item, text.partition(" = ")[0], text)
-    fail_render(item)
+    _failed(item, _SETTINGS + text.partition(" = ")[0], text)
+
+
+def missed(item: bpy.types.Object, text: str) -> None:
+    """A file is not there that the present frame should show; a render in the background ends."""
+    _failed(item, text, text)
 
 
 def warned(item: bpy.types.Object, subject: str, text: str) -> None:
@@ -62,9 +68,19 @@ def warned(item: bpy.types.Object, subject: str, text: str) -> None:
 
 
 def is_well(item: bpy.types.Object) -> None:
-    """What was wrong is mended: if it comes back, it is said again."""
+    """The settings are a sea: if they are none again, it is said again."""
     if not _shot.is_rendered:
-        _shot.said -= {entry for entry in _shot.said if entry[0] == item.session_uid}
+        _shot.said -= {
+            (uid, subject)
+            for uid, subject in _shot.said
+            if uid == item.session_uid and subject.startswith(_SETTINGS)
+        }
+
+
+def _failed(item: bpy.types.Object, subject: str, text: str) -> None:
+    _shot.troubled.add(item.session_uid)
+    _say(logging.ERROR, item, subject, text)
+    fail_render(item)
 
 
 def fail_render(item: bpy.types.Object | None = None) -> None:

@@ -163,13 +163,13 @@ def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     settings, file = settings_of(item), None
     if settings.source == "SEQUENCE":
         if settings.sequence_maps.disp is None:
-            alarm.failed(item, _NO_SEQUENCE)
+            alarm.missed(item, _NO_SEQUENCE)
         present, frames = scene.frame_current, image_sequence.baked_frames(settings)
         frame = image_sequence.shown_frame(settings, scene, present)
         file = image_sequence.missing_file(settings, frame)
         if file is not None:
             set_changed(settings, missing_file=str(file))
-            alarm.failed(item, alarm.missing_text(settings))
+            alarm.missed(item, alarm.missing_text(settings))
         elif settings.out_of_range == "WARN" and image_sequence.unbaked_frames(settings, scene, (present,)):
             folder = image_sequence.folder_of(settings)
             alarm.warned(
@@ -206,7 +206,7 @@ def tell(item: bpy.types.Object, error: BaseException) -> None:
     """Keep what is wrong for the panel, and let the console hear it."""
     text = str(error) or "Not enough memory for this resolution"
     set_changed(settings_of(item), error=text, statistics="")
-    alarm.failed(item, text)
+    alarm.refused(item, text)
 
 
 def _refresh_live(

@@ -54,6 +54,7 @@ def test_what_is_wrong_stands_over_the_view_and_on_the_console(item, baked, exte
     baked.path(13).unlink()
     for _ in range(2):  # the console hears it once
         empty_scene.frame_set(13)
+        item.ocean_tweak.repeats_x = 3 - item.ocean_tweak.repeats_x  # shown anew
     text = f"sea_disp.0013.exr is missing: bake it again or choose other files. Looked in {baked.directory}"
     assert " ".join(written(2000.0)) == f"{item.name}: {text}"
     assert max(map(len, written(300.0))) < 45
