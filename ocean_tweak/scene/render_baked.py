@@ -24,7 +24,9 @@ import bpy
 _FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel)\.[^.]*\.exr")
 #: inputs of the ocean's modifiers that are on where the extension computes the sea
 _LIVE = ("Live", "Use Attributes")
-#: those of a patch's that hold where its points begin
+#: custom property of the mesh of a patch
+_PATCH = "ocean_tweak_patch"
+#: inputs of its modifier that hold where its points begin
 _POINTS = ("Files", "Viewport Files")
 _RANGE = re.compile(r"(-?\d{1,10})(?:-(-?\d{1,10})(?:[x:](\d{1,10}))?)?")
 _MOST_FRAMES = 1_000_000
@@ -168,7 +170,9 @@ def check_extension() -> None:
     if hasattr(bpy.types.Object, "ocean_tweak"):
         return
     scene = bpy.context.scene
-    still = sorted(item.name for item in scene.objects if is_live(item))
+    live = (item for item in scene.objects if is_live(item))
+    # nobody knows the hidden meshes of patches
+    still = sorted({item.parent.name if _PATCH in item and item.parent else item.name for item in live})
     if still:
         raise NeedsExtension(
             f"this Blender has no Ocean Tweak extension, which alone moves {', '.join(still)} of "
@@ -180,7 +184,7 @@ def check_extension() -> None:
 def is_live(item: bpy.types.Object) -> bool:
     """Whether an object waits for the extension, as its modifiers or, of a patch, their absence tell."""
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
-    if "ocean_tweak_patch" in item:
+    if _PATCH in item:
         return not any(group is not None and _POINTS[0] in group_inputs(group) for group in groups)
     for modifier in item.modifiers:
         group = modifier.node_group if modifier.type == "NODES" else None

@@ -125,7 +125,7 @@ def warnings_of(item):
 
 @pytest.mark.parametrize("method", ["NODES", "DISPLACE"])
 def test_nothing_is_said_where_the_extension_runs(
-    extension, ocean_object, make_parameters, saved, method, capfd
+    extension, ocean_object, make_parameters, saved, window, method, capfd
 ):
     """Opened anew, played back, rendered between frames, animated, undone, appended."""
     ocean = ocean_object.add(saved, make_parameters(), method=method, viewport_resolution=16)
@@ -148,6 +148,12 @@ def test_nothing_is_said_where_the_extension_runs(
         assert not warnings_of(scene.objects[ocean_name])
 
     ocean_name = ocean.name
+    with window.override():
+        bpy.ops.ed.undo_push(message="as it is")
+        ocean.ocean_tweak.choppiness = 0.3
+        bpy.ops.ed.undo_push(message="less sharp")
+        assert bpy.ops.ed.undo() == {"FINISHED"}
+    check(bpy.context.scene)
     bpy.ops.wm.open_mainfile(filepath=path)
     check(bpy.context.scene)
     bpy.ops.wm.read_homefile(use_empty=True)
@@ -249,4 +255,4 @@ def test_the_farm_s_render_of_a_live_sea_ends_with_3(horizon, extension, tmp_pat
     assert said.returncode == 3, said.stdout + said.stderr
     (line,) = (line for line in said.stderr.splitlines() if line.startswith("render_baked: "))
     assert "no Ocean Tweak extension" in line
-    assert f"moves {ocean.name}, " in line
+    assert f"moves {ocean.name} of " in line
