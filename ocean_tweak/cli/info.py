@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import logging
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,17 +16,26 @@ from ..core.cascades.patch import NO_LONGEST
 from ..core.cascades.statistics import CascadeStatistics
 from ..core.foam_field import foam_outlook
 from ..core.hero_waves.outlook import HeroWaveOutlook, hero_wave_outlooks
-from ..core.memory import memory_need
+from ..core.memory import check_memory, memory_need
 from ..core.statistics import SeaState, Statistics
 from ..core.wave_particles.outlook import wind_wave_outlook
+from ..export.cache.estimate import readable_bytes, seconds_of_statistics, statistics_memory
 from ..export.files import write_text
 from .outcome import DONE, UsageError
+from .progress import duration
 from .seas import Sea
+
+_LOG = logging.getLogger(__name__)
+
+#: samples times layers above which it is told what they take
+_LARGE = 8 * 2048**2
 
 
 def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     """Print what each sea will be; an animated one at its first frame."""
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
+    for name, of_sea in parameters.items():
+        _foretell(name, of_sea)
     results = {name: Cascade(of_sea).statistics() for name, of_sea in parameters.items()}
     if arguments.save is not None:
         _save(arguments.save, seas)
@@ -45,6 +55,20 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     for name, statistics in results.items():
         print("\n".join(_report(name, parameters[name], statistics)))
     return DONE
+
+
+def _foretell(name: str, parameters: OceanParameters) -> None:
+    """Say what the numbers of a large sea take, before they are made. Raises MemoryError for too much."""
+    need, layers = statistics_memory(parameters), len(parameters.active_layers)
+    what = f"{name}: {parameters.resolution}² samples and {layers} layer{'s' if layers != 1 else ''}"
+    check_memory(need, what)
+    if parameters.resolution**2 * max(1, layers) < _LARGE:
+        return
+    seconds = seconds_of_statistics(parameters)
+    _LOG.warning(
+        "%s take about %s and %s of memory; with fewer samples, such as --set resolution=1024, the numbers "
+        "are there sooner and nearly the same", what, duration(seconds), readable_bytes(need),
+    )  # fmt: skip
 
 
 def _save(path: Path, seas: Mapping[str, Sea]) -> None:

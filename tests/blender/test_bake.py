@@ -4,8 +4,10 @@
 import json
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import bpy
@@ -237,3 +239,57 @@ def test_nothing_of_a_strangers_folder_or_file_is_obeyed(ocean, tmp_path, monkey
     assert not list(tmp_path.glob("**/elsewhere*"))
     assert not (folder / "RUN").exists()
     assert not list(temporary.iterdir())
+
+
+#: a Blender whose bake is under way, which prints the number of the bake's process and never ends
+BAKING = """
+import bpy, sys, time
+sys.path.insert(0, sys.argv[1])
+import ocean_tweak.registration as registration
+registration.register()
+from ocean_tweak.core.parameters import OceanParameters
+from ocean_tweak.scene import bake_process, ocean_object, shots
+scene = bpy.context.scene
+bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
+item = ocean_object.add(scene, OceanParameters(resolution=64, domain_size=300.0))
+frames = tuple(range(1, 5001))
+bake = bake_process.start(item, shots.shot_of(item, scene, frames), frames)
+print("pid", bake._process.pid, flush=True)
+time.sleep(600)
+"""
+
+
+@pytest.mark.skipif("OCEAN_TWEAK_ZIP" in os.environ, reason="a Blender is no module of Python there")
+def test_a_bake_ends_by_itself_when_its_blender_is_killed(package, tmp_path):
+    """With whole frames and without its lock, so that Bake goes on with it at once."""
+    root = Path(__file__).parents[2]
+    blender = subprocess.Popen(
+        [sys.executable, "-c", BAKING, str(root), str(tmp_path / "shot.blend")],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        number = next(int(line.split()[1]) for line in blender.stdout if line.startswith("pid "))
+        wait_for(lambda: len(list(tmp_path.glob("cache/*/v*/records/[0-9]*.json"))) > 2)
+    finally:
+        blender.kill()
+        blender.communicate()
+    wait_for(lambda: not Path(f"/proc/{number}").exists() or is_zombie(number))
+    (folder,) = bakes(tmp_path)
+    wait_for(lambda: not list(folder.glob(".*")))
+    assert not list(folder.glob("locks/*.lock"))
+    made = {record.stem for record in folder.glob("records/[0-9]*.json")}
+    assert 2 < len(made) < 5000
+    for image in folder.glob("*_disp.*.exr"):
+        assert image.suffixes[0][1:] in made
+
+
+def is_zombie(process):
+    return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+def wait_for(condition):
+    until = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.05)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocean_tweak.cli import Sea, main
+from ocean_tweak.cli import Sea, info, main
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, memory
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.exr import read_image
@@ -75,6 +76,38 @@ def test_memory_is_told_and_guarded(
     assert main(["bake", "--frames", "1", "--out", str(tmp_path / "out")]) == 1
     assert "lower the resolution" in capsys.readouterr().err
     assert not image_names(tmp_path / "out")
+
+
+def test_info_says_before_what_a_large_sea_takes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And does not begin one that would be killed for its memory."""
+    sea = {"resolution": 8192, "layers": [{"id": number, "wind_speed": 5 + number} for number in range(20)]}
+    (tmp_path / "sea.json").write_text(json.dumps(sea))
+    begun = []
+    monkeypatch.setattr(info, "seconds_of_statistics", lambda parameters: 3723.0)
+    monkeypatch.setattr(info.Cascade, "statistics", lambda self: begun.append(self) or 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        main(["info", "--params", str(tmp_path / "sea.json")])
+    told = re.fullmatch(
+        r"ocean_tweak: sea: 8192² samples and 20 layers take about 1:02:03 and (\d\.\d+) GB of memory; .*\n",
+        capsys.readouterr().err,
+    )
+    assert told
+    assert (
+        5.0 < float(told[1]) < 8.0
+    )  # two planes of random numbers for each of four layers, 2 GB, and the waves
+    monkeypatch.setattr(memory, "usable_memory", lambda: 4 * 2**30)
+    assert main(["info", "--params", str(tmp_path / "sea.json")]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert re.match(
+        r"ocean_tweak: sea: 8192² samples and 20 layers needs \d\.\d GB of memory and", printed.err
+    )
+    assert len(begun) == 1
+    monkeypatch.undo()
+    assert main(["info", "--set", "resolution=64"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_the_range_never_moves_time(params: Path, tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core import OceanParameters
+from ...core import Cascade, OceanParameters
 from ...core.bake import ShotSurfaces
 from ...core.cascades.patch_seas import PARTS, parts
 from ...core.fields import FOAM, SurfaceFields
@@ -50,6 +50,9 @@ _WRITING, _PUT_TOGETHER = 20, 29
 _POINTS = 480
 #: bytes a sample of foam: births and what is worked with, as far as that meets the peak of the rest
 _FOAM = 24
+
+#: bytes a sample while the waves are made and measured
+_STATISTICS = 40
 
 # of the work alone, whoever else uses the machine; too coarse on Windows
 _clock = time.perf_counter if os.name == "nt" else time.process_time
@@ -89,6 +92,12 @@ def estimate(folder: Path, job: Job, frames: Sequence[Frame], workers: int = 1) 
         return Estimate(0, 0, 0.0, free)
     size = _frame_bytes(folder, job, frames[0]) + _RECORD
     return Estimate(len(frames), size * len(frames), _seconds(folder, job, frames, workers), free)
+
+
+def statistics_memory(parameters: OceanParameters) -> int:
+    """Bytes that a process takes which makes the statistics of a sea."""
+    sides = [patch.resolution for patch in parameters.patches] or [parameters.resolution]
+    return max(_LEAST, _PROCESS + memory_need(parameters).state + _STATISTICS * max(sides) ** 2)
 
 
 def fitting_workers(job: Job, frames: int) -> int:
@@ -164,16 +173,37 @@ def _costs(folder: Path, job: Job, frame: Frame) -> _Costs:
     larger = max(side for least, side in _TIMED.items() if resolution >= least)
     if PARTS in job.outputs:  # of parts with few samples no means are made, which take longest
         larger = _TIMED_WITH_POINTS
+    return _Costs(
+        *by_trials(resolution, larger, lambda side: _timed(folder, _at(job, side, is_timed=True), frame))
+    )
+
+
+def seconds_of_statistics(parameters: OceanParameters) -> float:
+    """What the statistics of a sea take, from trials of others like it."""
+
+    def timed(side: int) -> list[float]:
+        few = parameters.at_resolution(min(parameters.resolution, side)).replace(seed=_new_seed())
+        return [cpu_seconds(lambda: Cascade(few).statistics())]
+
+    Cascade(parameters.at_resolution(16)).statistics()  # what is made once
+    return by_trials(parameters.resolution, 256, timed)[0]
+
+
+def by_trials(resolution: int, larger: int, timed: Callable[[int], Sequence[float]]) -> list[float]:
+    """Seconds at a resolution, from those with `larger` samples along a side and with half as many.
+
+    timed : gives the seconds of some works with so many samples along a side
+    """
     if resolution <= larger:
-        return _timed(folder, _at(job, resolution, is_timed=True), frame)
-    trials = [_at(job, side, is_timed=True) for side in (larger // 2, larger)]
-    found = [_timed(folder, trial, frame) for trial in trials]
-    few, many = ((resolution / trial.shot.parameters.resolution) ** 2 for trial in trials)
-    slower = _LARGER_IS_SLOWER ** math.log2(math.sqrt(many))
-    # t = a + b/share, with shares of the samples wanted
-    grown = [(b - a) / (1.0 / many - 1.0 / few) for a, b in zip(*found, strict=True)]
-    fixed = [max(0.0, b - part / many) for b, part in zip(found[1], grown, strict=True)]
-    return _Costs(*(a + slower * max(0.0, part) for a, part in zip(fixed, grown, strict=True)))
+        return list(timed(resolution))
+    few, many = larger / 2 / resolution, larger / resolution
+    slower = _LARGER_IS_SLOWER ** math.log2(1.0 / many)
+    times = []
+    for of_few, of_many in zip(timed(larger // 2), timed(larger), strict=True):
+        growing = (of_many - of_few) / (many**2 - few**2)
+        fixed = of_many - growing * many**2
+        times.append(max(0.0, fixed) + slower * max(0.0, growing))
+    return times
 
 
 def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
@@ -195,14 +225,14 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
             fields = (fields[0].including(FOAM, foam), *fields[1:])
         _encode(folder, job, frame, fields)
 
-    making = _time(sea)
+    making = cpu_seconds(sea)
     if with_foam:
         looks = foam_outlook(parameters).memory + 1
         surfaces.frames(frame, {"cusp"})  # with its arrays there is less to do
-        moment = _time(lambda: surfaces.frames(frame, {FOAM})) / looks
+        moment = cpu_seconds(lambda: surfaces.frames(frame, {FOAM})) / looks
     if PARTS not in job.outputs:
         made()
-    return _Costs(making, moment, _time(made))
+    return _Costs(making, moment, cpu_seconds(made))
 
 
 def _encode(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields]) -> None:
@@ -215,7 +245,8 @@ def _encode(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields
             hashlib.sha256(values.data).digest()
 
 
-def _time(work: Callable[[], object]) -> float:
+def cpu_seconds(work: Callable[[], object]) -> float:
+    """What some work takes of a processor; where the system tells only coarsely, until it is done."""
     started = _clock()
     work()
     return _clock() - started
@@ -245,8 +276,12 @@ def _at(job: Job, most: int, is_timed: bool = False) -> Job:
     if is_timed:
         # foam that looks back less, and random numbers that nobody has made yet
         short = replace(foam, half_life=min(foam.half_life, _SHORT_FOAM))
-        few = few.replace(foam=short, seed=secrets.randbelow(2**31))
+        few = few.replace(foam=short, seed=_new_seed())
     return replace(job, shot=Shot(few, job.shot.animation))
+
+
+def _new_seed() -> int:
+    return secrets.randbelow(2**31)
 
 
 def _room(size: float) -> int:
