@@ -220,12 +220,13 @@ def take_paths_back(path: str, _unused: object = None) -> None:
 
 
 @persistent
-def mend_after_import(_imported: object = None) -> None:
+def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
     """Oceans that were appended or linked are of a file that was not opened.
 
     Their node groups do not know yet that the extension runs.
     """
     stored_values.mend_all()
+    stored_paths.follow_import(imported)
     show_that_it_runs()
 
 

@@ -28,7 +28,8 @@ _BESIDE = "//"
 class Kept(NamedTuple):
     """A path that the file keeps, as a property.
 
-    follows : whether Blender itself makes it relative to the new place when the file is saved elsewhere
+    follows : whether Blender itself makes it relative to the new place when the file is saved elsewhere, or
+        what has it is appended to another file
     """
 
     owner: Any
@@ -56,6 +57,7 @@ class _Input:
 
     def __init__(self, modifier: bpy.types.NodesModifier, name: str) -> None:
         self._modifier, self._name = modifier, name
+        self.id_data = modifier.id_data
 
     @property
     def value(self) -> str:
@@ -64,7 +66,7 @@ class _Input:
     @value.setter
     def value(self, value: str) -> None:
         set_input(self._modifier, self._name, value)
-        self._modifier.id_data.update_tag()
+        self.id_data.update_tag()
 
 
 def _of_points() -> Iterator[Kept]:
@@ -137,6 +139,19 @@ def make_relative(path: str) -> list[tuple[Kept, str]]:
             setattr(kept.owner, kept.name, wanted)
             changed.append((kept, before))
     return changed
+
+
+def follow_import(imported: bpy.types.BlendImportContext) -> None:
+    """Let the paths of what was appended lead where they led in the file that it is from."""
+    folders = {
+        item.id: _folder(item.source_library)
+        for item in imported.import_items
+        if item.id is not None and item.id.library is None and item.source_library is not None
+    }
+    for kept in [kept for keeper in _KEEPERS for kept in keeper()]:
+        path = getattr(kept.owner, kept.name)
+        if not kept.follows and path.startswith(_BESIDE) and kept.owner.id_data in folders:
+            setattr(kept.owner, kept.name, relative(_join(folders[kept.owner.id_data], _tidy(path))))
 
 
 def is_saved_beside(path: str) -> bool:

@@ -193,6 +193,21 @@ def test_what_could_not_be_saved_has_its_paths_back(item, tmp_path):
     assert item.ocean_tweak.cache_folder == "//water"
 
 
+@pytest.mark.parametrize("is_saved", [True, False])
+def test_appended_paths_lead_where_they_led(item, desk, tmp_path, is_saved):
+    bpy.ops.wm.save_mainfile()
+    before, name = kept_paths(item), item.name
+    bpy.ops.wm.read_homefile(use_empty=True)
+    if is_saved:
+        (tmp_path / "deep" / "er").mkdir(parents=True)
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "deep" / "er" / "shot.blend"))
+    with bpy.data.libraries.load(str(desk / "shot.blend")) as (_, wanted):
+        wanted.objects = [name]
+    (appended,) = wanted.objects
+    assert kept_paths(appended) == before
+    assert appended.ocean_tweak.cache_folder == ("//../../desk/water" if is_saved else str(desk / "water"))
+
+
 def moved_elsewhere(desk):
     bpy.ops.wm.read_homefile(use_empty=True)
     farm = desk.parent / "far" / "away"
