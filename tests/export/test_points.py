@@ -75,8 +75,8 @@ def test_the_small_ones_are_means_over_cells(sea, made):
         start = 1.5 * cell
         for sample in range(LARGE):
             weights[cell, sample] = max(0.0, min(start + 1.5, sample + 1) - max(start, sample)) / 1.5
-    means = np.einsum("im,jn,mnc->ijc", weights, weights, slope)
-    squares = np.einsum("im,jn,mn->ij", weights, weights, (slope**2).sum(axis=-1))
+    means = np.stack([weights @ slope[..., axis] @ weights.T for axis in (0, 1)], axis=-1)
+    squares = weights @ (slope**2).sum(axis=-1) @ weights.T
     path = made / "sea_p1_small_points.0001.ply"
     np.testing.assert_allclose(columns(path, "slope_x", "slope_y"), means, atol=1e-6)
     lacking = squares - (means**2).sum(axis=-1)
