@@ -281,6 +281,7 @@ def show_frames(bake: Bake, images: list[bpy.types.Image], frames: list[int]) ->
         "First Frame": first,
         "Last Frame": last,
         "Baked Frames": "".join("1" if frame in baked else "0" for frame in range(last, first - 1, -1)),
+        "Files per Frame": float(bake.stretch),
     }
     modifiers = [modifier for item in bpy.data.objects for modifier in item.modifiers]
     for modifier in modifiers:

@@ -132,12 +132,12 @@ def test_source_and_method_can_be_switched(add, bake, ocean_object, make_paramet
 def test_a_bad_value_is_shown_and_playback_goes_on(add, make_parameters, expected, evaluated, empty_scene):
     good = make_parameters(seed=2)
     item, other = add(make_parameters()), add(good)
-    item.ocean_tweak.water.depth = 0.0
-    assert item.ocean_tweak.error == "water.depth = 0.0: must be from 0.1 to 11000 m"
+    item.ocean_tweak.resolution = 33
+    assert item.ocean_tweak.error == "resolution = 33: must be an even number from 16 to 8192"
     assert item.ocean_tweak.statistics == ""
     empty_scene.frame_set(5)
     np.testing.assert_allclose(evaluated(other), expected(good, 5), atol=TOLERANCE)
-    item.ocean_tweak.water.depth = 200.0
+    item.ocean_tweak.resolution = 32
     assert item.ocean_tweak.error == ""
     np.testing.assert_allclose(evaluated(item), expected(make_parameters(), 5), atol=TOLERANCE)
 

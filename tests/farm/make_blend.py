@@ -31,6 +31,7 @@ def main():
             attribute = light(item.data).new("ShaderNodeAttribute")
             attribute.attribute_name = "displacement"
             shine(item.data, attribute.outputs["Vector"])
+            bpy.context.scene.render.frame_map_new = 200
         look_at(bpy.context.scene, parameters.domain_size)
     else:
         bpy.ops.wm.read_homefile(use_empty=True)

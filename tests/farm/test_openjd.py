@@ -143,10 +143,12 @@ def test_the_job_bakes_verifies_and_renders(openjd: Run, shot: Shot, bundle: Pat
 def test_frames_with_a_step_and_before_0_are_rendered(
     openjd: Run, make_shot: Callable[[str], Shot], wheel: Path
 ) -> None:
-    """By the file's own modifiers, without the extension; they knew other frames of another bake."""
+    """By the file's own modifiers, without the extension; they knew other frames of another bake, which was
+    made before the scene's time was stretched."""
     stepped = make_shot("baked")
     job = stepped.write(
-        "job", "--frames=-2-40x14", "--chunk", "3", "--render-chunk", "3", "--set", "choppiness=0",
+        "job", "--frames=-2-40x14", "--chunk", "3", "--render-chunk", "3",
+        "--set", "choppiness=0", "--set", "timing.stretch=2",
         "--blend", stepped.folder / "shot.blend", "--blender", wheel,
     )  # fmt: skip
     frames = {-2: "-002", 12: "0012", 26: "0026", 40: "0040"}
