@@ -17,10 +17,10 @@ from tests.batch.bakery import ROOT, SOON
 LONG = os.environ.get("OCEAN_TWEAK_LONG_TESTS") == "1"
 #: damages of each kind, now and in the long run
 COUNTS = {
-    "json": (100, 20_000), "records": (100, 20_000), "exr": (100, 20_000), "usd": (30, 20_000),
+    "json": (100, 20_000), "records": (100, 20_000), "exr": (100, 20_000), "usd": (50, 20_000),
     "png": (100, 20_000), "tiff": (100, 20_000), "npy": (100, 20_000), "bake": (50, 3_000),
 }  # fmt: skip
-#: that one process tries: USD keeps something of each layer
+#: that one process tries
 AT_ONCE = 500
 
 
