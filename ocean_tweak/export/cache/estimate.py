@@ -34,11 +34,13 @@ _TRIAL = 128
 #: those of the trials whose time is taken, of which the larger is twice the smaller: what does not grow with
 #: the samples is told from what does; for seas of at least so many samples
 _TIMED = {0: 256, 2048: 512}
-_TIMED_WITH_POINTS = 1024
+_TIMED_PATCHES = 1024
 #: s; half-life of the foam in those trials, which looks back at few moments
 _SHORT_FOAM = 0.02
 #: how much longer a sample takes each time that the side is doubled beyond the trial's: caches are small
 _LARGER_IS_SLOWER = 1.1
+#: s until one of several processes begins
+_START = 0.4
 #: bytes in which disks give room; a frame's record takes two of them with its name and its folder's
 _BLOCK = 4096
 _RECORD = 2 * _BLOCK
@@ -118,6 +120,8 @@ def process_memory(job: Job) -> int:
     if PARTS in job.outputs:
         writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
     making = need.surface + writing
+    if parameters.is_cascade and PARTS not in job.outputs:  # the trial's, which other threads do not get
+        making += need.surface
     if FOAM in job.outputs:  # made for the next frame meanwhile
         own = parameters.foam.resolution or parameters.resolution
         coarse = memory_need(parameters.at_resolution(own), {"cusp"})
@@ -165,14 +169,15 @@ def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> f
     # foam is made beside the frame before
     path = seas + first + costs.frame + (alone - 1) * max(later, costs.frame)
     work = seas + first + (alone - 1) * later + alone * costs.frame
-    return max(path, workers * work / usable_cores())
+    begin = _START if workers > 1 else 0.0
+    return begin + max(path, workers * work / usable_cores())
 
 
 def _costs(folder: Path, job: Job, frame: Frame) -> _Costs:
     resolution = job.shot.parameters.resolution
     larger = max(side for least, side in _TIMED.items() if resolution >= least)
-    if PARTS in job.outputs:  # of parts with few samples no means are made, which take longest
-        larger = _TIMED_WITH_POINTS
+    if job.shot.parameters.patches:  # what is made of them does not follow from few samples
+        larger = _TIMED_PATCHES
     return _Costs(
         *by_trials(resolution, larger, lambda side: _timed(folder, _at(job, side, is_timed=True), frame))
     )
@@ -230,7 +235,7 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
         looks = foam_outlook(parameters).memory + 1
         surfaces.frames(frame, {"cusp"})  # with its arrays there is less to do
         moment = cpu_seconds(lambda: surfaces.frames(frame, {FOAM})) / looks
-    if PARTS not in job.outputs:
+    if not parameters.patches:
         made()
     return _Costs(making, moment, cpu_seconds(made))
 
@@ -274,13 +279,14 @@ def _at(job: Job, most: int, is_timed: bool = False) -> Job:
         foam = replace(foam, resolution=of_foam)
     few: OceanParameters = parameters.at_resolution(samples).replace(foam=foam)
     if is_timed:
-        # foam that looks back less, and random numbers that nobody has made yet
-        short = replace(foam, half_life=min(foam.half_life, _SHORT_FOAM))
-        few = few.replace(foam=short, seed=_new_seed())
+        few = few.replace(foam=replace(foam, half_life=min(foam.half_life, _SHORT_FOAM)))
+        if samples < parameters.resolution:  # else the bake itself goes on with these waves
+            few = few.replace(seed=_new_seed())
     return replace(job, shot=Shot(few, job.shot.animation))
 
 
 def _new_seed() -> int:
+    """Of waves that nobody has made yet."""
     return secrets.randbelow(2**31)
 
 
