@@ -33,7 +33,8 @@ INSTALLED = ("tests/extension",)
 #: of the suite for Blender, what depends on the Blender that it runs in
 OF_EVERY_BLENDER = (
     "alembic", "animation", "assets", "every_operator", "foreign_colours", "life_of_an_ocean", "node_trees",
-    "old_groups", "registration", "rendering", "shot_files", "source_images", "usd_import", "velocity_blur",
+    "old_groups", "overrides", "registration", "rendering", "shot_files", "source_images", "stored_paths",
+    "usd_import", "velocity_blur", "view_layers", "without_extension",
 )  # fmt: skip
 #: of the core's, what depends on NumPy's version
 OF_EVERY_NUMPY = ("energy", "fields", "foam", "surface", "surface_detail", "surface_query")

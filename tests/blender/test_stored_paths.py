@@ -86,14 +86,18 @@ def process(extension):
 
 @pytest.mark.skipif(os.name == "nt", reason="there it is a path like others")
 @pytest.mark.parametrize("typed", ["D:\\water", "d:/water", "\\\\server\\share\\water"])
-def test_drives_and_servers_of_windows_are_refused_in_words(desk, ocean_object, make_parameters, typed):
+def test_drives_and_servers_of_windows_are_refused_in_words(
+    desk, ocean_object, make_parameters, process, typed
+):
     item = ocean_object.add(bpy.context.scene, make_parameters())
     bpy.context.view_layer.objects.active = item
     item.ocean_tweak.cache_folder = item.ocean_tweak.usd.file = typed
     assert item.ocean_tweak.cache_folder == typed
-    for operator in (bpy.ops.ocean.bake, bpy.ops.ocean.export_usd):
-        with pytest.raises(RuntimeError, match=r"is a path of Windows.*choose it anew"):
-            operator()
+    said = r"is a path of Windows.*choose it anew"
+    with pytest.raises(RuntimeError, match=said):
+        bpy.ops.ocean.bake()
+    with pytest.raises(ValueError, match=said):
+        process.usd_file(item)
     assert [path.name for path in desk.iterdir()] == ["shot.blend"]
 
 
