@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tracemalloc
 from typing import Any
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, WaveLayer, WindFieldLayer
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.memory import memory_need
-from ocean_tweak.core.wave_particles.bounds import most_particles
+from ocean_tweak.core.wave_particles.bounds import bytes_of, most_particles
 from ocean_tweak.core.wave_particles.convolution import deposit
 from ocean_tweak.core.wave_particles.wind_waves import WindWaves
 from tests.core.stamping import stamp
@@ -244,6 +245,14 @@ def test_bounds_hold_and_are_refused_beyond() -> None:
     with pytest.raises(ParameterError, match="waves looked at"):
         sea(rows=100, columns=100, calm=0.1, life=20.0, particles=1, split_angle=0.0,
             keys=keyed((0.0, [[[20.0, 0.0]]]), (1.0, [[[0.0, 0.0]]])))  # fmt: skip
+
+
+def test_memory_of_origins() -> None:
+    """A place and a part of a period are three numbers of 8 bytes, a wind two; one is there without keys."""
+    plain = WindFieldLayer(columns=10, rows=10, origins=2)
+    assert bytes_of((plain,), 9.81)[0] == 200 * (3 * 8 + 2 * 8)
+    assert bytes_of((plain, plain), 9.81)[0] == 400 * (3 * 8 + 2 * 8)
+    assert bytes_of((dataclasses.replace(plain, muted=True),), 9.81) == (0, 0)
 
 
 def test_memory_is_told_before() -> None:

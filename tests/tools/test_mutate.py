@@ -91,3 +91,5 @@ def test_operators_bounds_and_functions_are_taken_for_their_neighbours(tmp_path:
 
 def test_what_is_named_is_there() -> None:
     assert len(list(mutants.of_names(ROOT))) == len(mutants.NAMED)
+    formulas = {mutant.name for mutant in mutants.of_formulas(ROOT)}
+    assert {name for name in mutate.EQUIVALENT if name.startswith("formula ")} <= formulas
