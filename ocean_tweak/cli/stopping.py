@@ -41,12 +41,13 @@ def stop_requested(give_up: Callable[[], object] | None = None) -> Iterator[thre
 
     def stop(number: int, _frame: FrameType | None) -> None:
         event.set()
-        signal.signal(number, before[number] or signal.SIG_DFL)
+        if give_up is None:
+            signal.signal(number, before[number] or signal.SIG_DFL)
 
     with _watched(event, give_up) if give_up else contextlib.nullcontext():
         try:
             for number in _SIGNALS:
-                signal.signal(number, stop if give_up is None else lambda _number, _frame: None)
+                signal.signal(number, stop)
             yield event
         finally:
             for number, handler in before.items():
@@ -58,8 +59,9 @@ def _watched(event: threading.Event, give_up: Callable[[], object]) -> Iterator[
     """Signals are seen by a thread: the main one does not come to them while it is in a long operation."""
 
     def watch() -> None:
+        asked = False
         while True:
-            ours.settimeout(PATIENCE if event.is_set() else None)
+            ours.settimeout(PATIENCE if asked else None)
             try:
                 (number,) = ours.recv(1)
             except TimeoutError:
@@ -67,8 +69,9 @@ def _watched(event: threading.Event, give_up: Callable[[], object]) -> Iterator[
             if number == _OVER:
                 return
             if number in _SIGNALS:
-                if event.is_set():
+                if asked:
                     give_up()
+                asked = True
                 event.set()
 
     ours, theirs = socket.socketpair()

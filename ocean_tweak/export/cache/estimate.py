@@ -120,8 +120,6 @@ def process_memory(job: Job) -> int:
     if PARTS in job.outputs:
         writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
     making = need.surface + writing
-    if parameters.is_cascade and PARTS not in job.outputs:  # the trial's, which other threads do not get
-        making += need.surface
     if FOAM in job.outputs:  # made for the next frame meanwhile
         own = parameters.foam.resolution or parameters.resolution
         coarse = memory_need(parameters.at_resolution(own), {"cusp"})
