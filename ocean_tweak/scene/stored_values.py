@@ -13,6 +13,9 @@ from .settings import all_oceans, settings_of
 
 _log = logging.getLogger(__name__)
 
+#: JSON that is made anew from the settings and from the bake when a file is opened, whatever the file holds
+_DERIVED = ("statistics", "baked_sea", "bake_differs")
+
 
 def mend_all() -> None:
     """Bring the settings of all oceans into what their properties allow; the console hears which."""
@@ -20,6 +23,8 @@ def mend_all() -> None:
         settings = settings_of(item)
         with settings.quiet():
             mended = list(mend(settings))
+            for name in _DERIVED:
+                settings.property_unset(name)
         if mended:
             _log.warning(
                 "%s: values of the file that are not allowed were replaced, numbers by the nearest, choices "

@@ -160,3 +160,21 @@ def test_damaged_numbers_of_a_file_are_told(ocean, empty_scene, text):
         ocean.ocean_tweak.to_parameters(empty_scene)
     empty_scene.frame_set(empty_scene.frame_current + 1)
     assert "is damaged in this file" in ocean.ocean_tweak.error
+
+
+def test_derived_texts_of_a_file_are_made_anew(ocean, empty_scene, tmp_path):
+    wanted = ocean.ocean_tweak.statistics
+    for text in ("[1", "{}", "7"):
+        item = bpy.data.objects[ocean_name(bpy.data)]
+        for name in ("statistics", "baked_sea", "bake_differs"):
+            setattr(item.ocean_tweak, name, text)
+        path = str(tmp_path / "stranger.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.open_mainfile(filepath=path)
+        item = bpy.data.objects[ocean_name(bpy.data)]
+        assert item.ocean_tweak.statistics == wanted
+        assert item.ocean_tweak.bake_differs == item.ocean_tweak.baked_sea == ""
+
+
+def ocean_name(data):
+    return next(item.name for item in data.objects if item.ocean_tweak.is_ocean)
