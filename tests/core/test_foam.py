@@ -13,7 +13,7 @@ import pytest
 from ocean_tweak.core import Cascade, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer, grid_sea
 from ocean_tweak.core.foam import FoamHistory, FoamModel, strength_levels
 from ocean_tweak.core.foam_field import foam_outlook, resampled
-from ocean_tweak.core.foam_threshold import foam_wind, strains, whitecap_coverage
+from ocean_tweak.core.foam_threshold import foam_wind, strain_covariances, strains, whitecap_coverage
 
 SEA = OceanParameters(
     resolution=64, domain_size=200.0, seed=2, layers=(WaveLayer(wind_speed=15.0, wind_direction=0.7),)
@@ -227,6 +227,21 @@ def test_strains_are_those_of_the_fields() -> None:
         assert np.std(fields) == pytest.approx(np.std(numbers), rel=0.03)
     level = np.quantile(expected.squeeze, 0.99)
     assert np.mean(np.array(squeezes) > level) == pytest.approx(0.01, rel=0.2)
+
+
+def test_covariances_of_strains_are_those_of_the_fields() -> None:
+    """Waves that run one way each, with the amplitudes of the spectrum: no seed differs from the mean."""
+    layer = WaveLayer(spreading="COSINE_SQUARED", swell=0.0, wind_direction=0.7)
+    sea = OceanParameters(
+        resolution=32, domain_size=200.0, amplitudes="FIXED", choppiness=0.8, layers=(layer,)
+    )
+    ocean = Ocean(sea, "double")
+    before, now, after = (
+        ocean.surface(3.0 + s, {"strain"}).strain.reshape(-1, 3) for s in (-1e-3, 0.0, 1e-3)
+    )
+    of_gradient, of_rates = strain_covariances(ocean.initial_state, 0.8, (0.0, 0.0))
+    for fields, expected in ((now, of_gradient), ((after - before) / 2e-3, of_rates)):
+        np.testing.assert_allclose(fields.T @ fields / len(fields), expected, rtol=1e-4, atol=1e-9)
 
 
 def test_resampling_is_bilinear_and_periodic() -> None:
