@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A node group that tells a live ocean whether the extension, which alone moves it, runs here.
 
-While it runs, the group holds an image that no file keeps. In a file that is opened without the extension, or
-linked into another, the image is gone: the modifier warns, and Blender's console has a line, once a session.
+While it runs, the group holds an image that no file keeps. In a file that is opened without the extension the
+image is gone: the modifier warns, and Blender's console has a line, once a session. A linked group cannot
+hold such an image; where it runs, the extension tells the modifier that its sea is not live.
 Nodes cannot print, but a file that cannot be opened is told there with its name, which may be a sentence.
 """
 
@@ -17,8 +18,8 @@ from .versioned import GroupKind, is_of_kind
 _BEACON = ".Ocean Tweak Runs"
 _NODE = "Beacon"
 _LINE = (
-    "Ocean Tweak: oceans that are computed live stand still, as the extension does not run here or they are "
-    "linked; enable it, or bake them"
+    "Ocean Tweak: oceans that are computed live stand still, as the extension does not run here; enable it, "
+    "or bake them"
 )
 
 INPUTS = (
@@ -36,8 +37,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     message = joined_text(
         build,
         "The sea stands still as it was in frame", build.given("Held Frame"),
-        "as it is computed live and the Ocean Tweak extension does not run here, or the ocean is linked: "
-        "enable the extension, or bake the ocean",
+        "as it is computed live and the Ocean Tweak extension does not run here: enable the extension, or "
+        "bake the ocean",
     )  # fmt: skip
     warning = build.add("GeometryNodeWarning", {"Show": absent, "Message": message}, warning_type="WARNING")
     line = output(build.add("GeometryNodeImportCSV", {"Path": _LINE}), "Point Cloud")
@@ -70,7 +71,7 @@ def show_that_it_ends() -> None:
 
 
 def _beacon_nodes() -> list[bpy.types.Node]:
-    # what is linked stays dark: Blender drops changes to it, so that it does not move
+    # Blender drops changes to what is linked
     groups = (group for group in bpy.data.node_groups if group.library is None and is_of_kind(group, ABSENCE))
     return [group.nodes[_NODE] for group in groups if _NODE in group.nodes]
 

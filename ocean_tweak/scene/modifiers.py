@@ -220,6 +220,10 @@ def _set_group(modifier: bpy.types.NodesModifier, values: dict[str, Any]) -> Non
         modifier.node_group = node_group(kind)
         if kind is OCEAN:
             set_inputs(modifier, {"Purpose": purpose})
+    if modifier.node_group.library is not None and values.get("Live"):
+        # a linked group cannot be told that the extension runs; this is not saved, so that the sea moves as
+        # long as somebody is there to say so
+        values = {**values, "Live": False}
     set_inputs(modifier, values)
 
 
