@@ -84,8 +84,9 @@ def test_run_without_real_blender_says_so_last(one_good_test, monkeypatch, capsy
     assert "1 passed" in told.partition("== summary")[2]
 
 
-def test_extension_that_does_not_build_fails_the_run(one_good_test, monkeypatch, capsys):
+def test_extension_that_does_not_build_fails_the_run(one_good_test, monkeypatch, capsys, tmp_path):
     broken = real_blender.RealBlender(("false",), "Blender 5.2")
+    monkeypatch.setattr(build, "BUILD", tmp_path)  # the zip of the run that this test is part of stays
     monkeypatch.setattr(real_blender, "find", lambda: broken)
     monkeypatch.setattr(build.wheels, "download", lambda: None)
     assert run_tests.main([]) == 1
