@@ -12,6 +12,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -33,12 +34,12 @@ from .job import CacheError, Job
 _TRIAL = 128
 #: those of the trials whose time is taken, of which the larger is twice the smaller: what does not grow with
 #: the samples is told from what does; for seas of at least so many samples
-_TIMED = {0: 256, 2048: 512}
+_TIMED = {0: 256, 1024: 512}
 _TIMED_PATCHES = 1024
-#: s; half-life of the foam in those trials, which looks back at few moments
-_SHORT_FOAM = 0.02
+#: s; half-life of the foam in those trials, which looks back at some thirty moments
+_SHORT_FOAM = 0.4
 #: how much longer a sample takes each time that the side is doubled beyond the trial's: caches are small
-_LARGER_IS_SLOWER = 1.1
+_LARGER_IS_SLOWER = 1.05
 #: s until one of several processes begins
 _START = 0.4
 #: bytes in which disks give room; a frame's record takes two of them with its name and its folder's
@@ -231,11 +232,11 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
     making = cpu_seconds(sea)
     if with_foam:
         looks = foam_outlook(parameters).memory + 1
-        surfaces.frames(frame, {"cusp"})  # with its arrays there is less to do
-        moment = cpu_seconds(lambda: surfaces.frames(frame, {FOAM})) / looks
+        seas = (surfaces, ShotSurfaces(job.shot))
+        moment = min(cpu_seconds(partial(of.frames, frame, {FOAM})) for of in seas) / looks
     if not parameters.patches:
         made()
-    return _Costs(making, moment, cpu_seconds(made))
+    return _Costs(making, moment, min(cpu_seconds(made), cpu_seconds(made)))
 
 
 def _encode(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields]) -> None:
