@@ -55,7 +55,7 @@ def test_a_container_that_sees_its_group_as_the_whole(tree) -> None:
 
 def test_the_least_of_nested_groups(tree) -> None:
     """A job of a farm's service: the service has less than its job was promised."""
-    tree(**group(2, "/farm/job"), sys__fs__cgroup__farm__job__memoryDOTmax=str(8 * GB))
+    tree(**group(2, "/render/job"), sys__fs__cgroup__render__job__memoryDOTmax=str(8 * GB))
     tree(
         sys__fs__cgroup__farm__memoryDOTmax=str(6 * GB), sys__fs__cgroup__farm__job__cpuDOTmax="50000 100000"
     )
