@@ -57,7 +57,8 @@ def test_the_least_of_nested_groups(tree) -> None:
     """A job of a farm's service: the service has less than its job was promised."""
     tree(**group(2, "/render/job"), sys__fs__cgroup__render__job__memoryDOTmax=str(8 * GB))
     tree(
-        sys__fs__cgroup__farm__memoryDOTmax=str(6 * GB), sys__fs__cgroup__farm__job__cpuDOTmax="50000 100000"
+        sys__fs__cgroup__render__memoryDOTmax=str(6 * GB),
+        sys__fs__cgroup__render__job__cpuDOTmax="50000 100000",
     )
     assert (machine.usable_memory(), machine.usable_cores()) == (6 * GB, 1)
 
