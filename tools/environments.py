@@ -78,7 +78,8 @@ def make_pytest_for_blender() -> None:
 
 
 def _uv(*arguments: str, log: str) -> None:
-    command = [str(program("uv", "uv")), "--quiet", *arguments]
+    # as pip does: studios have certificates of their own
+    command = [str(program("uv", "uv")), "--quiet", "--system-certs", *arguments]
     run_logged(command, _log(log), {**os.environ, "PATH": search_path()})
 
 
