@@ -13,7 +13,7 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, Timing, WaveLayer
 from ocean_tweak.core.bake import ShotSurfaces
 from ocean_tweak.core.fingerprint import frame_fingerprint, shot_fingerprint
-from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.shot import ANIMATED, Animation, Shot
 
 SEA = OceanParameters(
     resolution=32, domain_size=120.0, layers=(WaveLayer(wind_speed=9.0), WaveLayer(wind_speed=4.0)),
@@ -173,3 +173,9 @@ def test_a_stretched_shot_is_slower_and_says_so_only_where_it_is() -> None:
     assert Shot.from_json(stretched.to_json()) == stretched
     # the hash of a shot without one is what it was before there were such
     assert "stretch" not in Shot(SEA).to_dict()["timing"]
+
+
+def test_what_can_change_during_a_shot_is_what_the_documentation_says():
+    """docs/batch.md: of a layer these five, of the sea choppiness and its time."""
+    of_layers = ("wind_speed", "wind_direction", "fetch", "swell", "gain")
+    assert (*(f"layers.*.{name}" for name in of_layers), "choppiness", "ocean_time") == ANIMATED

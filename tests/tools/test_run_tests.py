@@ -50,6 +50,13 @@ def test_what_is_queued_again_is_there(everything):
         assert {run_tests.suite_of(file) for file in once - set(queued)} == set(run_tests.ONCE)
 
 
+def test_no_process_is_given_files_of_two_places():
+    here, there = run_tests.Place("here", ()), run_tests.Place("there", ())
+    files = [(place, f"tests/a/test_{n}.py") for place in (here, there) for n in range(13)]
+    taken = list(iter(run_tests.Queue(files, slots=1).take, None))
+    assert [(place, file) for place, batch in taken for file in batch] == files
+
+
 def test_queue_gives_each_file_once_in_batches_of_a_suite_that_shrink():
     here, there = run_tests.Place("here", ()), run_tests.Place("there", ())
     files = [(here, f"tests/a/test_{n}.py") for n in range(40)] + [
