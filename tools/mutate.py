@@ -57,12 +57,15 @@ EQUIVALENT = {
     "formula wave_particles.wind_waves.WindWaves.shares x 1.05": "no numbers: they are made by the block",
 }
 
+#: said of a change with which the core cannot even be imported: no test had to notice it
+BROKEN = "cannot be imported"
+
 FAILED_TEST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Which test failed first with a change; None if all passed."""
+    """Which test failed first with a change; None if all passed, BROKEN if none could run."""
 
     mutant: Mutant
     noticed_by: str | None
@@ -105,11 +108,14 @@ def _try_all(asked: Sequence[Mutant]) -> int:
         for verdict in pool.map(_judge, asked):
             print(verdict, flush=True)
             verdicts.append(verdict)
-    missed = [v.mutant.name for v in verdicts if v.noticed_by is None and v.mutant.name not in EQUIVALENT]
-    print(f"{len(verdicts) - len(missed)} of {len(verdicts)} changes noticed, or equivalent")
+    tried = [verdict for verdict in verdicts if verdict.noticed_by != BROKEN]
+    missed = [v.mutant.name for v in tried if v.noticed_by is None and v.mutant.name not in EQUIVALENT]
+    print(f"{len(tried) - len(missed)} of {len(tried)} changes noticed, or equivalent")
+    if len(tried) < len(verdicts):
+        print(f"{len(verdicts) - len(tried)} more {BROKEN}, which says nothing of the tests")
     for name in missed:
         print(f"no test noticed: {name}")
-    too_many = len(missed) > ALLOWED_SHARE * len(verdicts)
+    too_many = len(missed) > ALLOWED_SHARE * len(tried)
     return 1 if too_many or not all(name.startswith("structure ") for name in missed) else 0
 
 
@@ -119,7 +125,7 @@ def _judge(mutant: Mutant) -> Verdict:
 
 
 def first_failure(mutant: Mutant | None) -> str | None:
-    """Return the core's first failing test with this change, None if all pass.
+    """Return the core's first failing test with this change, BROKEN if none can run, None if all pass.
 
     Raises `ToolError` if the tests could not be run.
     """
@@ -163,8 +169,8 @@ def _first_failure_of(tests: Sequence[str], copy: Path) -> str | None:
     if answer.returncode == 0:
         return None
     found = FAILED_TEST.search(answer.stdout)
-    if answer.returncode in (2, 3) and found:  # a module that cannot be imported any more
-        return found[1]
+    if answer.returncode in (2, 3, 4) and "ERROR" in answer.stdout:  # while the tests were collected
+        return BROKEN
     if answer.returncode != 1 or not found:
         raise ToolError(f"the tests could not be run:\n{answer.stdout[-2000:]}")
     return found[1]

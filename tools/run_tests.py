@@ -30,11 +30,16 @@ ONCE = ("tests/farm", "tests/batch")
 IN_EVERY_WHEEL = ("tests/blender", "tests/core", "tests/usd", "tests/cli", "tests/export", "tests/tools")
 INSTALLED = ("tests/extension",)
 
-#: of the suite for Blender, what depends on the Blender that it runs in
-OF_EVERY_BLENDER = (
+#: of the suite for Blender, what depends on its version
+OF_EVERY_VERSION = (
     "alembic", "animation", "assets", "every_operator", "foreign_colours", "life_of_an_ocean", "node_trees",
     "old_groups", "overrides", "registration", "rendering", "shot_files", "source_images", "stored_paths",
     "usd_import", "velocity_blur", "view_layers", "without_extension",
+)  # fmt: skip
+#: and what depends on whether the extension is installed, beside a Blender that is no module
+OF_THE_ZIP = (
+    "alembic", "assets", "every_operator", "life_of_an_ocean", "node_trees", "registration", "rendering",
+    "shot_files", "source_images", "without_extension",
 )  # fmt: skip
 #: of the core's, what depends on NumPy's version
 OF_EVERY_NUMPY = ("energy", "fields", "foam", "surface", "surface_detail", "surface_query")
@@ -144,7 +149,7 @@ def of_wheels(everything: bool) -> list[tuple[Place, str]]:
     once = [(newest, file) for suite in (*IN_EVERY_WHEEL, *ONCE) for file in files_of(suite)]
     if everything:
         return [*once, *((oldest, file) for suite in IN_EVERY_WHEEL for file in files_of(suite))]
-    again = [*chosen("tests/blender", OF_EVERY_BLENDER), *chosen("tests/core", OF_EVERY_NUMPY)]
+    again = [*chosen("tests/blender", OF_EVERY_VERSION), *chosen("tests/core", OF_EVERY_NUMPY)]
     return [*once, *((oldest, file) for file in again)]
 
 
@@ -174,7 +179,7 @@ def install_and_queue(queue: Queue, everything: bool) -> tuple[str, bool]:
         return text, real_blender.required()
     except ToolError as error:
         return f"the extension was not tested: {error}", True
-    of_blender = files_of("tests/blender") if everything else chosen("tests/blender", OF_EVERY_BLENDER)
+    of_blender = files_of("tests/blender") if everything else chosen("tests/blender", OF_THE_ZIP)
     own = [file for suite in INSTALLED for file in files_of(suite)]
     queue.add([(place, file) for file in (*of_blender, *own)])
     return f"real Blender: {blender}", False

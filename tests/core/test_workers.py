@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, memory, random
+from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer, memory, random
 from ocean_tweak.core.fields import OUTPUTS, memory_groups
 from ocean_tweak.core.memory import memory_need
 
@@ -88,10 +88,24 @@ def test_memory_while_a_state_is_made_is_told() -> None:
     assert 0.7 * memory_need(large).state < kept < 1.1 * memory_need(large).state
 
 
+def test_memory_while_a_picture_is_filtered_is_told() -> None:
+    """Of a picture of many more samples than the sea, beside which all else is small."""
+    plain = OceanParameters(resolution=32, seed=4712)
+    fine = plain.replace(pictures=(PictureLayer(noise_resolution=1024),))
+    Ocean(plain.replace(pictures=(PictureLayer(noise_resolution=32),))).prepare()
+    tracemalloc.start()
+    ocean = Ocean(fine, workers=1)
+    ocean.prepare()
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    told = memory_need(fine).building - memory_need(plain).building
+    assert 0.6 * told < peak < told
+
+
 def test_memory_with_trough_damping_is_told_too() -> None:
     parameters = OceanParameters(resolution=1024, trough_damping=0.5)
     ocean = Ocean(parameters, workers=1)
-    ocean.surface(0.0, ())  # the state and the damping's filter
+    Ocean(parameters, workers=1).surface(0.0)  # the state, which both share
     tracemalloc.start()
     ocean.surface(1.0)
     _, peak = tracemalloc.get_traced_memory()

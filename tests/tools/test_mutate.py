@@ -93,3 +93,12 @@ def test_what_is_named_is_there() -> None:
     assert len(list(mutants.of_names(ROOT))) == len(mutants.NAMED)
     formulas = {mutant.name for mutant in mutants.of_formulas(ROOT)}
     assert {name for name in mutate.EQUIVALENT if name.startswith("formula ")} <= formulas
+
+
+def test_what_cannot_be_imported_says_nothing_of_the_tests(tmp_path: Path) -> None:
+    folder = tmp_path / mutate.TESTS
+    folder.mkdir(parents=True)
+    (folder / "test_one.py").write_text("import nothing_of_this_name\ndef test_a(): assert False\n")
+    (folder / "test_two.py").write_text("def test_a(): assert False\n")
+    assert mutate._first_failure_of(["test_one.py"], tmp_path) == mutate.BROKEN
+    assert mutate._first_failure_of(["test_two.py"], tmp_path) == "tests/core/test_two.py::test_a"
