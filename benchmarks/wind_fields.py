@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ocean_tweak.core import Ocean, OceanParameters, WindFieldLayer, WindKey
-from ocean_tweak.core.wave_particles.wind import sampled_wind
-from ocean_tweak.core.wave_particles.wind_waves import WindWaves
+from ocean_tweak.core.waves.wind_field.wind import sampled_wind
+from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 
 from .field_sets import SIX, TIME, FieldSet, arrays, surface_maker
 from .measure import interleaved

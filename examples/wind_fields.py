@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
-from ocean_tweak.core.wave_particles.presets import WIND_FIELDS, wind_field
-from ocean_tweak.core.wave_particles.wind import winds_at
+from ocean_tweak.core.waves.wind_field.presets import WIND_FIELDS, wind_field
+from ocean_tweak.core.waves.wind_field.wind import winds_at
 
 from .from_above import GALLERY, save_side_by_side, shaded
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ocean_tweak.core import OceanParameters, Timing, Water, WaveLayer, WindFieldLayer, WindKey
-from ocean_tweak.core.wave_particles.wind import sampled_wind
+from ocean_tweak.core.waves.wind_field.wind import sampled_wind
 
 JSON = Path(__file__).parent / "wind-front.json"
 

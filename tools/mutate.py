@@ -52,9 +52,9 @@ EQUIVALENT = {
     "formula spreading.squared_sech x 1.05": "D is divided by its integral, which this makes too",
     "formula random.hash_wave_vectors x 1.05": "whole numbers, which are left as they are",
     "formula synthesis.term x 1.05": "whole numbers, which are left as they are",
-    "formula noise_synthesis.animation.dominant_band x 1.05": "truth values, which are left as they are",
-    "formula wave_particles.life.divisions x 1.05": "whole numbers, which are left as they are",
-    "formula wave_particles.wind_waves.WindWaves.shares x 1.05": "no numbers: they are made by the block",
+    "formula waves.image.animation.dominant_band x 1.05": "truth values, which are left as they are",
+    "formula waves.wind_field.life.divisions x 1.05": "whole numbers, which are left as they are",
+    "formula waves.wind_field.wind_waves.WindWaves.shares x 1.05": "no numbers: they are made by the block",
 }
 
 #: said of a change with which the core cannot even be imported: no test had to notice it

@@ -20,7 +20,7 @@ PACKAGE = "ocean_tweak"
 PUBLIC = {
     "core.cascades.cascade.Cascade.height_at": "the surface above a place, for scripts (README)",
     "core.grid_sea.GridSea.height_at": "the same of a sea on one grid",
-    "core.noise_synthesis.filters.unit_gain": "the gain with which Mastin's pictures were made (make papers)",
+    "core.waves.image.filters.unit_gain": "the gain with which Mastin's pictures were made (make papers)",
     "core.sea_scales.beaufort_wind": "the scales both ways, for scripts",
     "core.sea_scales.douglas_degree": "the scales both ways, for scripts",
     "core.sea_scales.douglas_heights": "the scales both ways, for scripts",
@@ -30,7 +30,7 @@ PUBLIC = {
     "core.wave_number_spectra.phillips": "Chen's closed forms; a test ties them to the spectrum of a layer",
     "core.wave_number_spectra.pierson_moskowitz": "Chen's closed forms, as above",
     "core.wave_number_spectra.tessendorf_constant": "mends Tessendorf's amplitudes (make papers)",
-    "core.wave_particles.wind.sampled_wind": "a wind given as a function (docs/wind-fields.md)",
+    "core.waves.wind_field.wind.sampled_wind": "a wind given as a function (docs/wind-fields.md)",
     "registration.register": "the extension's door, __init__.py at the top, calls it",
 }
 

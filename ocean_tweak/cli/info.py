@@ -15,10 +15,10 @@ from ..core import Cascade, OceanParameters, sea_scales
 from ..core.cascades.patch import NO_LONGEST
 from ..core.cascades.statistics import CascadeStatistics
 from ..core.foam_field import foam_outlook
-from ..core.hero_waves.outlook import HeroWaveOutlook, hero_wave_outlooks
 from ..core.memory import check_memory, memory_need
 from ..core.statistics import SeaState, Statistics
-from ..core.wave_particles.outlook import wind_wave_outlook
+from ..core.waves.hero.outlook import HeroWaveOutlook, hero_wave_outlooks
+from ..core.waves.wind_field.outlook import wind_wave_outlook
 from ..export.cache.estimate import readable_bytes, seconds_of_statistics, statistics_memory
 from ..export.files import write_text
 from .outcome import DONE, UsageError

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from . import dispersion
 from .grid import WaveVectorGrid
 from .layer_scales import LayerScales, layer_scales, scaled_spectrum
-from .parameters import Water, WaveLayer
 from .radial_table import RadialTable
 from .spreading import WIND_MODELS, Shape, Spreading, directional_spreading, spreading_shape, wrap_angle
+from .water import Water
+from .waves.spectral import WaveLayer
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .parameters import Water
+from .water import Water
 
 Array = NDArray[np.float64]
 

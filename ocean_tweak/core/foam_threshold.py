@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from . import constants, random
 from .initial_state import InitialState
-from .noise_synthesis.state import wanted_variance
 from .parameters import OceanParameters
+from .waves.image.state import wanted_variance
 from .wind_profile import wind_at_10_m
 
 Array = NDArray[np.float64]

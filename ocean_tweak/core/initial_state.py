@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from . import dispersion, random
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
-from .hero_waves.group import add_hero_wave
-from .noise_synthesis.state import PictureWaves, picture_waves
 from .parameters import OceanParameters, WaveLayer
+from .waves.hero.group import add_hero_wave
+from .waves.image.state import PictureWaves, picture_waves
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

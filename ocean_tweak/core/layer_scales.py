@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import constants, spectra
-from .parameters import Water, WaveLayer
+from .water import Water
+from .waves.spectral import WaveLayer
 from .wind_profile import wind_at_10_m
 
 Array = NDArray[np.float64]

@@ -11,11 +11,11 @@ import numpy as np
 from .cascades.patch_seas import ADDING, PARTS, joined_bands, parts
 from .fields import FOAM, OUTPUTS, memory_groups
 from .machine import usable_memory
-from .noise_synthesis.source import side
 from .parameters import OceanParameters
 from .synthesis import term
-from .wave_particles.bounds import bytes_of
-from .wave_particles.shape import MOST_CLASSES
+from .waves.image.source import side
+from .waves.wind_field.bounds import bytes_of
+from .waves.wind_field.shape import MOST_CLASSES
 
 #: float64 arrays of half the plane that live while the initial state is made, beyond what stays
 _TEMPORARY_ARRAYS = 5

@@ -24,7 +24,7 @@ from .statistics import Statistics, sea_statistics
 from .surface_query import Field
 from .synthesis import Rows, Synthesis
 from .trough_damping import trough_damping
-from .wave_particles.wind_waves import WindWaves
+from .waves.wind_field.wind_waves import WindWaves
 
 RealArray = NDArray[np.floating]
 

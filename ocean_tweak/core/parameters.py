@@ -13,19 +13,19 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeVar
 
-from . import constants
 from .cascades.patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
 from .errors import ParameterError
-from .hero_waves.group import check_hero_waves, is_held
-from .hero_waves.parameters import HeroWave
 from .masks.parameters import Mask
-from .noise_synthesis.parameters import PictureLayer, check_loop
 from .plain_data import from_plain, parse_json, to_plain
 from .raster import check_numbers, numbers_in
 from .validation import Validated, choice, integer, nested, number, rational, switch
-from .wave_layer import WaveLayer
-from .wave_particles.bounds import check_bounds
-from .wave_particles.parameters import WindFieldLayer, WindKey
+from .water import Water
+from .waves.hero.group import check_hero_waves, is_held
+from .waves.hero.parameters import HeroWave
+from .waves.image.parameters import PictureLayer, check_loop
+from .waves.spectral import WaveLayer
+from .waves.wind_field.bounds import check_bounds
+from .waves.wind_field.parameters import WindFieldLayer, WindKey
 
 __all__ = [
     "Foam",
@@ -46,31 +46,6 @@ __all__ = [
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
 AMPLITUDES = ("GAUSSIAN", "FIXED")
 ORBITS = ("DEEP", "FINITE_DEPTH")
-
-
-@dataclass(frozen=True)
-class Water(Validated):
-    """The body of water: the same for every wave layer."""
-
-    depth: float = number(
-        200.0, 0.1, 11e3, "m", "Depth of the water. Long waves lose height where it is shallow",
-        "from a puddle to the deepest trench",
-    )  # fmt: skip
-    gravity: float = number(
-        constants.GRAVITY,
-        0.1,
-        100.0,
-        "m/s²",
-        "Gravitational acceleration",
-        "from a small moon to a gas giant",
-    )
-    density: float = number(
-        constants.WATER_DENSITY, 100.0, 20e3, "kg/m³", "Density of the liquid", "liquids up to mercury"
-    )
-    surface_tension: float = number(
-        constants.SURFACE_TENSION, 0.0, 1.0, "N/m", "Surface tension, felt by waves of a few centimetres",
-        "liquids up to mercury",
-    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from . import dispersion
 from .grid import WaveVectorGrid
 from .initial_state import InitialState
-from .noise_synthesis.animation import angular_frequency, runs_along
-from .noise_synthesis.filters import peak_frequency
-from .noise_synthesis.parameters import PictureLayer
-from .noise_synthesis.state import filtered, wanted_variance
 from .parameters import OceanParameters
+from .waves.image.animation import angular_frequency, runs_along
+from .waves.image.filters import peak_frequency
+from .waves.image.parameters import PictureLayer
+from .waves.image.state import filtered, wanted_variance
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

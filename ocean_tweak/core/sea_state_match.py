@@ -7,8 +7,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from . import constants, spectra
+from .errors import ParameterError
 from .layer_scales import layer_scales
-from .parameters import ParameterError, Water, WaveLayer
+from .water import Water
+from .waves.spectral import WaveLayer
 from .wind_profile import wind_at
 
 #: below this dimensionless fetch g F / U² nobody has measured JONSWAP's growth

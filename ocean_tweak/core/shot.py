@@ -21,7 +21,7 @@ from .frames import LARGEST_FRAME, Frame
 from .parameters import OceanParameters, parse_json
 from .plain_data import to_plain
 from .validation import changing_fields
-from .wave_layer import WaveLayer
+from .waves.spectral import WaveLayer
 
 #: seconds on the waves' own clock, where it does not simply follow the frames
 OCEAN_TIME = "ocean_time"

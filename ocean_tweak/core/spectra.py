@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import constants, dispersion
-from .parameters import Water
+from .water import Water
 
 Array = NDArray[np.float64]
 

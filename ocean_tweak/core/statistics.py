@@ -16,7 +16,6 @@ import numpy as np
 
 from . import dispersion
 from .initial_state import InitialState
-from .noise_synthesis.state import wanted_variance
 from .parameters import OceanParameters, PictureLayer
 from .picture_statistics import (
     longest_random_wave,
@@ -27,6 +26,7 @@ from .picture_statistics import (
 from .sea_spectrum import SeaSpectrum
 from .sea_state import SeaState, field_state, mode_state, modes_state, state_of_moments, together
 from .spreading import mean_cosine
+from .waves.image.state import wanted_variance
 
 __all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
 

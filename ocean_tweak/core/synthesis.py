@@ -30,7 +30,7 @@ from .initial_state import InitialState
 from .parameters import OceanParameters
 from .propagation import PropagatedState, propagate
 from .trough_damping import TroughDamping
-from .wave_particles.wind_waves import BlockShares, Shares, WindWaves
+from .waves.wind_field.wind_waves import BlockShares, Shares, WindWaves
 
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]

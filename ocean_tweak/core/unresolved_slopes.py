@@ -20,9 +20,10 @@ from . import constants, dispersion
 from .cascades.patch_seas import patch_parameters
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
-from .noise_synthesis.state import filtered
-from .parameters import OceanParameters, Water
+from .parameters import OceanParameters
 from .sea_spectrum import SeaSpectrum
+from .water import Water
+from .waves.image.state import filtered
 
 Array = NDArray[np.float64]
 

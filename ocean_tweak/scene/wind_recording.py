@@ -28,7 +28,7 @@ from ..core import Raster, WindKey
 from ..core.parameters import ParameterError
 from ..core.plain_data import from_plain, parse_json, to_plain
 from ..core.raster import check_numbers, numbers_in
-from ..core.wave_particles.parameters import MOST_KEYS
+from ..core.waves.wind_field.parameters import MOST_KEYS
 from .animated import clock_of, shown_settings
 from .settings import OceanObjectError
 from .shots import evaluations

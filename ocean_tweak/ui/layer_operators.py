@@ -8,8 +8,8 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..core import OceanParameters, ParameterError, PictureLayer, WaveLayer
-from ..core.hero_waves.presets import hero_wave
-from ..core.wave_particles.presets import WIND_FIELDS, wind_field
+from ..core.waves.hero.presets import hero_wave
+from ..core.waves.wind_field.presets import WIND_FIELDS, wind_field
 from ..scene.animated import move_keys
 from ..scene.settings import LAYER_KINDS, OceanObjectError, settings_of
 from .active_ocean import OfOwnList, nearest, refuse

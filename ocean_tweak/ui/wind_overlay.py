@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import ParameterError, WindFieldLayer
-from ..core.wave_particles.wind import bilinear
+from ..core.waves.wind_field.wind import bilinear
 from ..scene.animated import clock_of
 from ..scene.settings import is_ocean, settings_of
 from ..scene.units import metres_per_unit

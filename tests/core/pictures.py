@@ -10,10 +10,10 @@ import numpy as np
 from ocean_tweak.core import OceanParameters, Water
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.initial_state import InitialState
-from ocean_tweak.core.noise_synthesis.parameters import PictureLayer
-from ocean_tweak.core.noise_synthesis.state import picture_waves
 from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.synthesis import Synthesis, Z
+from ocean_tweak.core.waves.image.parameters import PictureLayer
+from ocean_tweak.core.waves.image.state import picture_waves
 
 DEEP = Water(depth=11e3)
 N, L = 128, 200.0

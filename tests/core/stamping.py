@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ocean_tweak.core.wave_particles.life import Particles
-from ocean_tweak.core.wave_particles.shape import RadiusClasses, bump
+from ocean_tweak.core.waves.wind_field.life import Particles
+from ocean_tweak.core.waves.wind_field.shape import RadiusClasses, bump
 
 Array = NDArray[np.float64]
 

@@ -17,12 +17,12 @@ from ocean_tweak.core.fields import FOAM, OUTPUTS
 from ocean_tweak.core.foam_field import foam_outlook
 from ocean_tweak.core.initial_state import initial_state
 from ocean_tweak.core.layer_scales import layer_scales
-from ocean_tweak.core.noise_synthesis.parameters import ANIMATIONS, FILTER_GAINS
 from ocean_tweak.core.sea_scales import beaufort_number
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.spectrum_curves import frequency_curves, polar_density
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
-from ocean_tweak.core.wave_layer import SPREADINGS
+from ocean_tweak.core.waves.image.parameters import ANIMATIONS, FILTER_GAINS
+from ocean_tweak.core.waves.spectral import SPREADINGS
 
 pytestmark = pytest.mark.filterwarnings("error")
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, Patch, Water, WaveLayer
 from ocean_tweak.core.fingerprint import frame_fingerprint
 from ocean_tweak.core.foam_field import foam_model
-from ocean_tweak.core.hero_waves.group import needed_samples
-from ocean_tweak.core.hero_waves.outlook import hero_wave_outlooks
 from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.waves.hero.group import needed_samples
+from ocean_tweak.core.waves.hero.outlook import hero_wave_outlooks
 
 SIZE, SAMPLES = 400.0, 256
 #: deviation of a Gaussian whose width at half its height is 1

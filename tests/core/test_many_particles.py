@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, WaveLayer, WindFieldLayer
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.memory import memory_need
-from ocean_tweak.core.wave_particles.bounds import bytes_of, most_particles
-from ocean_tweak.core.wave_particles.convolution import deposit
-from ocean_tweak.core.wave_particles.wind_waves import WindWaves
+from ocean_tweak.core.waves.wind_field.bounds import bytes_of, most_particles
+from ocean_tweak.core.waves.wind_field.convolution import deposit
+from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 from tests.core.stamping import stamp
 from tests.core.wind_seas import FLAT, LONE, OUTPUTS, G, keyed, particles, random_wind, sea
 

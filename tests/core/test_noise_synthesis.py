@@ -12,10 +12,10 @@ from scipy import integrate, special
 
 from ocean_tweak.core.errors import ParameterError
 from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.noise_synthesis import animation, filters, source
-from ocean_tweak.core.noise_synthesis.parameters import PictureLayer
-from ocean_tweak.core.noise_synthesis.state import filtered
 from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.waves.image import animation, filters, source
+from ocean_tweak.core.waves.image.parameters import PictureLayer
+from ocean_tweak.core.waves.image.state import filtered
 from tests.core.pictures import DEEP, L, N, drawing, elevation, spectrum, state
 
 # The source

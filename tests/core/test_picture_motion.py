@@ -11,9 +11,9 @@ import pytest
 
 from ocean_tweak.core.errors import ParameterError
 from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.noise_synthesis import animation
-from ocean_tweak.core.noise_synthesis.parameters import PictureLayer, check_loop
 from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.waves.image import animation
+from ocean_tweak.core.waves.image.parameters import PictureLayer, check_loop
 from tests.core.pictures import DEEP, L, N, drawing, elevation, single_wave, spectrum, state
 
 

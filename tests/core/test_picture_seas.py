@@ -11,10 +11,10 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
 from ocean_tweak.core.errors import ParameterError
 from ocean_tweak.core.fields import OUTPUTS
-from ocean_tweak.core.noise_synthesis.parameters import PictureLayer
 from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ocean_tweak.core.waves.image.parameters import PictureLayer
 from tests.core.pictures import L, drawing, single_wave
 
 FLAT = WaveLayer(muted=True)

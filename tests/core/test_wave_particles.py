@@ -11,10 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean, WindFieldLayer
-from ocean_tweak.core.wave_particles.emission import Emission
-from ocean_tweak.core.wave_particles.life import Particles, particles_of
-from ocean_tweak.core.wave_particles.origins import layer_origins
-from ocean_tweak.core.wave_particles.shape import RadiusClasses, bump, radius_classes
+from ocean_tweak.core.waves.wind_field.emission import Emission
+from ocean_tweak.core.waves.wind_field.life import Particles, particles_of
+from ocean_tweak.core.waves.wind_field.origins import layer_origins
+from ocean_tweak.core.waves.wind_field.shape import RadiusClasses, bump, radius_classes
 from tests.core.wind_seas import LENGTH, LONE, OUTPUTS, PERIOD, SPEED, G, particles, sea
 
 Array = NDArray[np.float64]

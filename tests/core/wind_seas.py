@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ocean_tweak.core import OceanParameters, Raster, WaveLayer, WindFieldLayer, WindKey
-from ocean_tweak.core.wave_particles.life import Particles
-from ocean_tweak.core.wave_particles.wind_waves import WindWaves
+from ocean_tweak.core.waves.wind_field.life import Particles
+from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 
 G = 9.81
 FLAT = (WaveLayer(muted=True),)

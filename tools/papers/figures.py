@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from ocean_tweak.core import OceanParameters, Water, dispersion, spectra
-from ocean_tweak.core.noise_synthesis import filters, source
 from ocean_tweak.core.sea_spectrum import SeaSpectrum
 from ocean_tweak.core.spreading import directional_spreading
-from ocean_tweak.core.wave_particles.wind import winds_at
+from ocean_tweak.core.waves.image import filters, source
+from ocean_tweak.core.waves.wind_field.wind import winds_at
 
 from . import chen, horvath, lantz, li_wang, mastin
 from .measures import elevation

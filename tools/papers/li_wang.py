@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, WindFieldLayer
-from ocean_tweak.core.wave_particles import presets
-from ocean_tweak.core.wave_particles.wind_waves import WindWaves
+from ocean_tweak.core.waves.wind_field import presets
+from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 
 from .measures import elevation, seam_steps
 from .pages import Table

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ocean_tweak.core import PictureLayer, Water
 from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.noise_synthesis import animation, filters, source
-from ocean_tweak.core.noise_synthesis.state import filtered
+from ocean_tweak.core.waves.image import animation, filters, source
+from ocean_tweak.core.waves.image.state import filtered
 
 from .pages import Table
 

@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core.hero_waves.outlook import hero_wave_outlooks
+from ...core.waves.hero.outlook import hero_wave_outlooks
 from ...scene import source_images
 from ...scene.settings import LAYER_KINDS
 from ...scene.units import metres_per_unit

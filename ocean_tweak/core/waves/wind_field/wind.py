@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..raster import Raster
+from ...raster import Raster
 from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]

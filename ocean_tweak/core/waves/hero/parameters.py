@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import ParameterError
-from ..validation import Validated, number, switch
+from ...errors import ParameterError
+from ...validation import Validated, number, switch
 
 #: wavelengths that a crest must be wide: a narrower hump is no wave, it runs apart in all directions
 NARROWEST = 0.5

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..grid import WaveVectorGrid
-from ..parameters import OceanParameters
+from ...grid import WaveVectorGrid
+from ...parameters import OceanParameters
 from .convolution import Points, along_x, deposit, kernel
 from .emission import Emission
 from .life import Particles, joined, particles_of

@@ -10,9 +10,9 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import constants, dispersion
-from ..grid import WaveVectorGrid
-from ..parameters import Water
+from ... import constants, dispersion
+from ...grid import WaveVectorGrid
+from ...water import Water
 from .filters import POWERS, peak_frequency, pierson_moskowitz
 from .parameters import PictureLayer
 

@@ -15,9 +15,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .. import constants, dispersion
-from ..grid import WaveVectorGrid
-from ..parameters import Water
+from ... import constants, dispersion
+from ...grid import WaveVectorGrid
+from ...water import Water
 from .parameters import PictureLayer
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..parameters import OceanParameters
+from ...parameters import OceanParameters
 from .bounds import most_particles
 from .relations import wavelength
 from .wind_waves import SHORTEST

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..errors import ParameterError
+from ...errors import ParameterError
 from .parameters import WindFieldLayer
 from .relations import period
 

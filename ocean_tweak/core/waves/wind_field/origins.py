@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import random
+from ... import random
 from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]

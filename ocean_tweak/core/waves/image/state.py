@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import random
-from ..grid import WaveVectorGrid
-from ..parameters import Water
+from ... import random
+from ...grid import WaveVectorGrid
+from ...water import Water
 from .animation import angular_frequency, runs_along
 from .filters import filter_power, total_energy
 from .parameters import PictureLayer

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..grid import WaveVectorGrid
-from ..splines import spline_weights
+from ...grid import WaveVectorGrid
+from ...splines import spline_weights
 from .shape import bump
 
 Array = NDArray[np.float64]

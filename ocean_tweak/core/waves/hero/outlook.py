@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from .. import constants, dispersion
-from ..parameters import OceanParameters
+from ... import constants, dispersion
+from ...parameters import OceanParameters
 from .group import wave_number
 from .parameters import HeroWave
 

@@ -9,8 +9,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import random
-from ..raster import Raster
+from ... import random
+from ...raster import Raster
 from .parameters import PictureLayer
 
 Array = NDArray[np.float64]

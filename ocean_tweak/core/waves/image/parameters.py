@@ -10,11 +10,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..layer_fields import direction, identity, muted, own_seed
-from ..masks.parameters import Mask
-from ..raster import Raster
-from ..validation import Validated, choice, integer, nested, number, raster
+from ...errors import ParameterError
+from ...layer_fields import direction, identity, muted, own_seed
+from ...masks.parameters import Mask
+from ...raster import Raster
+from ...validation import Validated, choice, integer, nested, number, raster
 
 FILTERS = ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE")
 FILTER_GAINS = ("PHYSICAL", "PAPER")

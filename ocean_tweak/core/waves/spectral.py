@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from . import constants
-from .errors import ParameterError
-from .layer_fields import direction, identity, muted, own_seed
-from .masks.parameters import Mask
-from .validation import Validated, choice, nested, number, switch
+from .. import constants
+from ..errors import ParameterError
+from ..layer_fields import direction, identity, muted, own_seed
+from ..masks.parameters import Mask
+from ..validation import Validated, choice, nested, number, switch
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")

@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..layer_fields import direction, identity, muted, own_seed
-from ..masks.parameters import Mask
-from ..raster import Raster
-from ..validation import Validated, choice, integer, nested, number, raster, switch
+from ...errors import ParameterError
+from ...layer_fields import direction, identity, muted, own_seed
+from ...masks.parameters import Mask
+from ...raster import Raster
+from ...validation import Validated, choice, integer, nested, number, raster, switch
 
 FRONTS = ("ARC", "PARALLEL")
 HEIGHTS = ("STEEPNESS", "WIND_SPEED")

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
-from ..grid import WaveVectorGrid
+from ...errors import ParameterError
+from ...grid import WaveVectorGrid
 from .parameters import HeroWave
 
 Array = NDArray[np.float64]
