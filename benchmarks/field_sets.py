@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.synthesis import term
 
 from .plan import sea
@@ -31,13 +31,13 @@ class FieldSet:
 THREE = FieldSet("3 fields", ("displacement",), 3)
 SIX = FieldSet("6 fields + eigenvalue", ("displacement", "min_eigenvalue"), 6)
 # elevation, Dx, Dy, their rates, two slopes and Jxx, Jxy, Jyy, each counted once
-_TERMS = {term(*need) for output in OUTPUTS.values() for need in output.needs}
-ALL = FieldSet("all outputs", tuple(sorted(OUTPUTS)), len(_TERMS))
+_TERMS = {term(*need) for output in OF_WAVES.values() for need in output.needs}
+ALL = FieldSet("all outputs", tuple(sorted(OF_WAVES)), len(_TERMS))
 
 
 def arrays(fields: FieldSet, resolution: int) -> dict[str, NDArray[np.float32]]:
     """Arrays for the outputs, each of its pages touched."""
-    return {name: np.full(OUTPUTS[name].shape(resolution), 1.0, np.float32) for name in fields.outputs}
+    return {name: np.full(OF_WAVES[name].shape(resolution), 1.0, np.float32) for name in fields.outputs}
 
 
 def surface_maker(fields: FieldSet, resolution: int, workers: int) -> Callable[[], object]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 
 from .plan import Plan, sea
 from .rows import Row
@@ -24,9 +24,9 @@ def rows(plan: Plan) -> Iterator[Row]:
     """Every channel of every output."""
     for resolution in plan.precision:
         single, double = (
-            Ocean(sea(resolution), precision).surface(TIME, OUTPUTS) for precision in ("single", "double")
+            Ocean(sea(resolution), precision).surface(TIME, OF_WAVES) for precision in ("single", "double")
         )
-        for name in OUTPUTS:
+        for name in OF_WAVES:
             for channel, ours, exact in _channels(getattr(single, name), getattr(double, name)):
                 yield Row(
                     GROUP, f"{name}{channel}, {resolution}²", relative_error(ours, exact), "rms",

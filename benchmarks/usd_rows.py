@@ -15,7 +15,7 @@ import numpy as np
 
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.fields import SurfaceFields
+from ocean_tweak.core.channels import SurfaceFields
 from ocean_tweak.core.frames import Frame
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.usd.attributes import mesh_values, outputs_of

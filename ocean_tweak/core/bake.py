@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cascades.cascade import Cascade
-from .cascades.patch_seas import ADDING, PARTS, parts
-from .fields import FOAM, SurfaceFields
+from .cascades.patch_seas import PARTS, parts
+from .channels import ADDING, CHANNELS, FOAM, SurfaceFields
 from .frames import Frame
 from .grid_sea import GridSea
 from .memory import check_memory, memory_need
@@ -95,9 +95,10 @@ class ShotSurfaces:
     ) -> tuple[SurfaceFields, ...]:
         moment: Moment = self.shot.at(frame)
         made = tuple(sea.surface(moment.time, outputs) for sea in seas)
-        for fields in made:
-            if "velocity" in fields and moment.rate != 1.0:
-                fields.velocity[...] *= moment.rate
+        for name in outputs if moment.rate != 1.0 else ():
+            if CHANNELS[name].is_rate:
+                for fields in made:
+                    fields[name][...] *= moment.rate
         return made
 
     def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:

@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs
+from .channels import CHANNELS, FOAM, SurfaceFields, checked_outputs
 from .foam import FoamModel
 from .foam_field import FoamField
 from .parameters import OceanParameters
@@ -133,7 +133,7 @@ class GridSea(ABC):
         fields: dict[str, RealArray] = {}
         for name in sorted(wanted):
             n = self.parameters.resolution
-            shape = (n, n) if name == FOAM else OUTPUTS[name].shape(n)
+            shape = CHANNELS[name].shape(n)
             array = out[name] if name in out else np.empty(shape, self.dtype)
             if array.shape != shape or array.dtype != self.dtype:
                 raise ValueError(

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cascades.patch_seas import ADDING, PARTS, joined_bands, parts
-from .fields import FOAM, OUTPUTS, memory_groups
+from .cascades.patch_seas import PARTS, joined_bands, parts
+from .channels import ADDING, CHANNELS, FOAM, memory_groups
 from .machine import usable_memory
 from .parameters import OceanParameters
 from .synthesis import term
@@ -67,7 +67,7 @@ def memory_need(
     )
     wanted = outputs - {FOAM}
     fields = _foam_bytes(parameters) if FOAM in outputs else 0
-    fields += sum(int(np.prod(OUTPUTS[name].shape(n))) * real for name in wanted)
+    fields += sum(int(np.prod(CHANNELS[name].shape(n))) * real for name in wanted)
     gradient = not parameters.active_wind_fields
     columns = max((_columns(group, gradient) for group in memory_groups(wanted)), default=0)
     if parameters.trough_damping > 0.0:
@@ -75,7 +75,7 @@ def memory_need(
     surface = fields + columns * half_plane * 2 * real
     if parameters.active_wind_fields:
         kept, making = bytes_of(parameters.wind_fields, parameters.water.gravity)
-        moving = any(derivative == "t" for name in wanted for _, derivative in OUTPUTS[name].needs)
+        moving = any(derivative == "t" for name in wanted for _, derivative in CHANNELS[name].needs)
         # of each radius two quarters of a plane stay; each weight takes a grid and half a plane a radius
         state += kept + MOST_CLASSES * half_plane * 2 * real
         building = max(building, 40 * n * n)
@@ -102,7 +102,7 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
     if not parameters.is_cascade:
         keys = max(
             (
-                len({key for name in group for key in OUTPUTS[name].needs})
+                len({key for name in group for key in CHANNELS[name].needs})
                 for group in memory_groups(outputs - {FOAM})
             ),
             default=0,
@@ -119,7 +119,7 @@ def _foam_bytes(parameters: OceanParameters) -> int:
 
 
 def _columns(group: Iterable[str], gradient: bool) -> int:
-    return len({term(*need, gradient=gradient).column for name in group for need in OUTPUTS[name].needs})
+    return len({term(*need, gradient=gradient).column for name in group for need in CHANNELS[name].needs})
 
 
 def check_memory(need: int, what: str) -> None:

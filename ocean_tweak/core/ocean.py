@@ -11,8 +11,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from .channels import CHANNELS, memory_groups
 from .exact_field import exact
-from .fields import OUTPUTS, memory_groups
 from .foam import FoamModel
 from .foam_field import foam_model
 from .grid_sea import PRECISIONS, GridSea
@@ -98,11 +98,11 @@ class Ocean(GridSea):
 
     def _fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
         for group in memory_groups(wanted):
-            needs = frozenset().union(*(OUTPUTS[name].needs for name in group))
+            needs = frozenset().union(*(CHANNELS[name].needs for name in group))
 
             def write(block: slice, rows: Rows, group: Sequence[str] = group) -> None:
                 for name in group:
-                    OUTPUTS[name].write(rows, fields[name][block])
+                    CHANNELS[name].write(rows, fields[name][block])
 
             self._synthesis.fill(time, needs, write, self._workspace)
 

@@ -11,16 +11,16 @@ import io
 import json
 import os
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.fields import SurfaceFields
+from ..core.channels import SurfaceFields, channels_of, image_of, unit_of
 from ..core.frames import Frame, frame_label
 from ..core.parameters import OceanParameters, Patch
 from ..core.plain_data import to_plain
@@ -79,39 +79,6 @@ def load_openexr() -> Any:
     return OpenEXR
 
 
-class Map(NamedTuple):
-    """What a file NAME_map.####.exr holds.
-
-    outputs : the fields that it is made of
-    unit : of its numbers
-    image : from those fields to (N, N, 3)
-    """
-
-    outputs: frozenset[str]
-    unit: str
-    image: Callable[[SurfaceFields], NDArray[np.floating]]
-
-
-def _foam_image(fields: SurfaceFields) -> NDArray[np.floating]:
-    """R foam, G cusp, B nothing."""
-    return np.stack((fields.foam, fields.cusp, np.zeros_like(fields.foam)), axis=-1)
-
-
-def _slope_image(fields: SurfaceFields) -> NDArray[np.floating]:
-    """R along x, G along y, B nothing."""
-    return np.concatenate((fields.slope, np.zeros_like(fields.slope[..., :1])), axis=-1)
-
-
-MAPS: dict[str, Map] = {
-    "disp": Map(frozenset({"displacement"}), "m", lambda fields: fields.displacement),
-    "foam": Map(frozenset({"foam", "cusp"}), "1", _foam_image),
-    "normal": Map(frozenset({"normal"}), "1", lambda fields: fields.normal),
-    "vel": Map(frozenset({"velocity"}), "m/s", lambda fields: fields.velocity),
-    "slope": Map(frozenset({"slope"}), "1", _slope_image),
-    "strain": Map(frozenset({"strain"}), "1", lambda fields: fields.strain),
-}
-
-
 @dataclass(frozen=True)
 class ExrSequence:
     """A sink for frames: NAME_map.####.exr in a folder, one file a map; of a patch, NAME_p1_map.####.exr.
@@ -119,7 +86,7 @@ class ExrSequence:
     parameters : what made the frames; stands in every header
     patch : the number of the patch, from 0, whose frames these are, in a sea of several
     compression : a key of COMPRESSION_ERROR
-    maps : keys of MAPS
+    maps : keys of `core.channels.MAPS`
     """
 
     directory: Path
@@ -132,7 +99,7 @@ class ExrSequence:
     @property
     def outputs(self) -> frozenset[str]:
         """The fields that a frame must have."""
-        return frozenset().union(*(MAPS[name].outputs for name in self.maps))
+        return channels_of(self.maps)
 
     def path(self, frame: Frame, map_name: str = "disp") -> Path:
         """Where a frame's map goes."""
@@ -177,7 +144,7 @@ class ExrSequence:
         metadata = {
             "format": FORMAT_VERSION,
             "map": name,
-            "unit": MAPS[name].unit,
+            "unit": unit_of(name),
             "frame": to_plain(frame),
             "time": fields.time,
             "domain_size": self.domain_size,
@@ -187,7 +154,7 @@ class ExrSequence:
         if self.patch is not None:
             count = len(self.parameters.patches)
             metadata["patch"] = {"number": self.patch + 1, "of": count, "rotation": self._patch.rotation}
-        return MAPS[name].image(fields), metadata
+        return image_of(name, fields), metadata
 
 
 def write_image(

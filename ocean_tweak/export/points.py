@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.cascades.patch_seas import Part
-from ..core.fields import SurfaceFields
+from ..core.channels import CHANNELS, SurfaceFields
 from ..core.frames import Frame, frame_label
 from .exr import ExrError
 from .files import open_file, whole_file
@@ -28,10 +28,9 @@ POINTS = "points"
 #: samples along each side that a window reads, at most
 MOST_IN_WINDOW = 256
 
-COLUMNS = (
-    "x", "y", "z", "velocity_x", "velocity_y", "velocity_z",
-    "slope_x", "slope_y", "strain_xx", "strain_yy", "strain_xy",
-)  # fmt: skip
+#: what a sample tells, in the order of its columns; the first three are where the water is instead
+CHANNELS_OF_POINTS = ("displacement", "velocity", "slope", "strain")
+COLUMNS = ("x", "y", "z", *(column for name in CHANNELS_OF_POINTS[1:] for column in CHANNELS[name].columns))
 #: of means
 VARIANCE = "slope_variance"
 
@@ -97,9 +96,7 @@ class PointSequence:
 
     def values(self, fields: SurfaceFields) -> Iterator[tuple[bool, NDArray[np.float32]]]:
         """What each file holds, (samples, samples, columns), and whether it is the one of means."""
-        columns = np.concatenate(
-            [fields.displacement, fields.velocity, fields.slope, fields.strain], axis=-1, dtype=np.float64
-        )
+        columns = np.concatenate([fields[name] for name in CHANNELS_OF_POINTS], axis=-1, dtype=np.float64)
         for small, samples in self.samples_by_kind.items():
             values = _means(columns, samples) if small else columns
             placed = _placed(values, self.part.parameters.domain_size, self.samples)

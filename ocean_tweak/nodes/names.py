@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+from ..core.channels import CHANNELS
+
 #: point attributes of the evaluated mesh: Blender units, Blender units per second of scene time, 0…1, and
-#: how far the surface is squeezed
-DISPLACEMENT, VELOCITY, FOAM, CUSP = "displacement", "velocity", "foam", "cusp"
+#: how far the surface is squeezed; NORMAL is the one that Blender takes for the mesh's free custom normals
+DISPLACEMENT, VELOCITY, FOAM, CUSP, NORMAL = (
+    CHANNELS[name].attribute for name in ("displacement", "velocity", "foam", "cusp", "normal")
+)
 
 #: point attribute of a surface around the camera: mean square slope of the waves that it leaves out
 SLOPE_VARIANCE = "slope_variance"
@@ -15,7 +19,7 @@ SHORTEST_WAVE = "shortest_wave"
 
 #: point attributes of the mesh of one patch of a sea of several, in its own axes, besides displacement and
 #: velocity: slope along x and y, and Dx by x, Dy by y and their shear
-SLOPE, STRAIN = "slope", "strain"
+SLOPE, STRAIN = CHANNELS["slope"].attribute, CHANNELS["strain"].attribute
 
 #: point attributes of an ocean's mesh by which patches 1, 2, … are multiplied; 1 where there is none
 WEIGHT = "ocean_tweak_weight_{}"
@@ -23,17 +27,5 @@ WEIGHT = "ocean_tweak_weight_{}"
 #: corner attribute: position / domain size + ½ / samples, going on over the repeats
 TEXTURE_COORDINATES = "st"
 
-#: point attribute that Blender takes for the mesh's free custom normals
-NORMAL = "custom_normal"
-
-#: Blender's type of each point attribute
-POINT_TYPES = {
-    DISPLACEMENT: "FLOAT_VECTOR",
-    VELOCITY: "FLOAT_VECTOR",
-    NORMAL: "FLOAT_VECTOR",
-    FOAM: "FLOAT",
-    CUSP: "FLOAT",
-}
-
-#: a map's name in files, and the input that takes its image
+#: the maps that Blender reads, by their names in files, and the input that takes the image of each
 MAP_INPUTS = {"disp": "Displacement", "foam": "Foam", "normal": "Normal", "vel": "Velocity"}

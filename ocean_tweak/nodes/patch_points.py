@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import bpy
 
+from ..core.channels import CHANNELS
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, named_attribute, sample_index, whole_number
-from .names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY
+from .names import DISPLACEMENT, SLOPE, SLOPE_VARIANCE, STRAIN, VELOCITY
 from .patch import SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
@@ -29,9 +30,9 @@ INPUTS = (
 )
 #: attribute of the result → the files' numbers
 _NUMBERS = {
-    VELOCITY: ("velocity_x", "velocity_y", "velocity_z"),
-    SLOPE: ("slope_x", "slope_y", "slope_variance"),
-    STRAIN: ("strain_xx", "strain_yy", "strain_xy"),
+    VELOCITY: CHANNELS["velocity"].columns,
+    SLOPE: (*CHANNELS["slope"].columns, SLOPE_VARIANCE),
+    STRAIN: CHANNELS["strain"].columns,
 }
 
 

@@ -17,7 +17,7 @@ from ..core.frames import Frame, format_frames
 from ..core.shot import Shot
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
-from .maps import wanted_maps
+from .maps import maps_of, wanted_channels
 from .patch_objects import shot_maps
 from .preferences import preferences
 from .settings import settings_of
@@ -34,7 +34,7 @@ class BakeProcess(CommandProcess):
         """Start it. Raises OSError for what the disk refuses."""
         self.frames = tuple(frames)
         self.folder: Path | None = None
-        maps = (*wanted_maps(settings_of(item)), *shot_maps(item))
+        maps = (*maps_of(wanted_channels(settings_of(item))), *shot_maps(item))
         arguments = [
             "bake", f"--frames={format_frames(frames)}", f"--out={cache_folder(item)}",
             f"--name={bake_name(item)}", f"--uid={own_uid(item)}",

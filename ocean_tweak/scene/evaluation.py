@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Cascade, OceanParameters, grid_sea
-from ..core.fields import FOAM, OUTPUTS
+from ..core.channels import CHANNELS, FOAM
 from ..nodes.camera_surface import PATCH_INPUTS
 from .instant_foam import instant_foam
 from .settings import all_oceans
@@ -93,8 +93,7 @@ class Sea:
         if name in self._spare:
             return self._spare.pop(name)
         side = self.ocean.parameters.resolution + 1
-        channels = OUTPUTS[name].channels if name in OUTPUTS else 0
-        return np.empty((side, side, channels) if channels else (side, side), np.float32)
+        return np.empty(CHANNELS[FOAM if name == _INSTANT else name].shape(side), np.float32)
 
     def _kept(self, time: Fraction) -> dict[str, RealArray]:
         """What there is of a time; the oldest ones go where there are enough."""

@@ -16,13 +16,13 @@ import bpy
 from ..core import ParameterError, Timing
 from ..core.frames import MOST_FRAMES, format_frames, frame_label, held_frame, parse_frames
 from ..export.exr import ExrError, read_header, read_size
+from ..nodes.names import MAP_INPUTS
 from .live_image import mark_as_data
-from .maps import MAPS
 from .settings import OceanObjectError, OceanSettings
 from .stored_paths import absolute, image_file, relative
 from .units import time_stretch
 
-_FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
+_FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAP_INPUTS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
 # Blender's frames, and so those of files, go as far to either side
 _FARTHEST = 1_048_574
 # what moves the mesh: a sequence has it at every frame
@@ -62,10 +62,10 @@ class ImageSequence:
             hint = f"; it holds {', '.join(names)}" if names else ""
             raise SequenceError(f"No files {self.name}_disp.####.exr in {absolute(self.directory)}{hint}")
         wanted = set(self.frames)
-        frames = {name: available[self.name, name] for name in MAPS if (self.name, name) in available}
+        frames = {name: available[self.name, name] for name in MAP_INPUTS if (self.name, name) in available}
         # a map that was baked for other frames only is none of this sequence
         maps = tuple(
-            name for name in MAPS if name == _MOVING or not frames.get(name, set()).isdisjoint(wanted)
+            name for name in MAP_INPUTS if name == _MOVING or not frames.get(name, set()).isdisjoint(wanted)
         )
         for name in maps:
             missing = sorted(wanted - frames[name])
@@ -215,7 +215,7 @@ def folder_of(settings: OceanSettings) -> Path | None:
 def missing_file(settings: OceanSettings, frame: int) -> Path | None:
     """The first file of a frame of an ocean's sequence that is not there; None where all are."""
     maps = settings.early_maps if frame < 0 else settings.sequence_maps
-    files = (_file_at(getattr(maps, name), frame) for name in MAPS)
+    files = (_file_at(getattr(maps, name), frame) for name in MAP_INPUTS)
     return next((file for file in files if file is not None and not file.is_file()), None)
 
 

@@ -9,11 +9,11 @@ import bpy
 
 from ..core import OceanParameters
 from ..core.frames import format_frames
+from ..nodes.names import MAP_INPUTS
 from . import grid_mesh, modifiers, patch_objects, vertex_attributes
 from .cache_place import new_uid
 from .camera_surface import camera_surface_of, remove_camera_surface
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
-from .maps import MAPS
 from .modifiers import Textures
 from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
 from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
@@ -110,7 +110,7 @@ def end(item: bpy.types.Object) -> None:
         modifiers.remove_own(item, Textures(settings.texture, settings.render_texture))
         settings.texture = settings.render_texture = None
         for maps in (settings.live_maps, settings.render_maps, settings.sequence_maps, settings.early_maps):
-            for name in MAPS:
+            for name in MAP_INPUTS:
                 setattr(maps, name, None)
     _log.warning(
         "%s: its modifier was applied or removed, so it is a mesh like any other from now on%s",
@@ -120,11 +120,11 @@ def end(item: bpy.types.Object) -> None:
 
 def _sequence_images(settings: OceanSettings) -> set[bpy.types.Image]:
     owners = (settings.sequence_maps, settings.early_maps)
-    return {getattr(maps, name) for maps in owners for name in MAPS} - {None}
+    return {getattr(maps, name) for maps in owners for name in MAP_INPUTS} - {None}
 
 
 def _set_sequence(settings: OceanSettings, sequence: ImageSequence, baked: LoadedSequence) -> None:
-    for name in MAPS:
+    for name in MAP_INPUTS:
         setattr(settings.sequence_maps, name, baked.images.get(name))
         setattr(settings.early_maps, name, baked.early_images.get(name))
     settings.sequence_samples = baked.samples

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import bpy
 
+from ..nodes.names import MAP_INPUTS
 from . import live_image
-from .maps import MAPS
 from .settings import all_oceans, settings_of
 from .textures import new_texture
 
@@ -17,7 +17,7 @@ def own_image(item: bpy.types.Object, owner: str, name: str, label: str, samples
     """The ocean's own image of a map; made where it has none, or only that of the ocean it was copied from.
 
     owner : the setting that holds the images, "live_maps" or "render_maps"
-    name : a key of MAPS
+    name : a key of MAP_INPUTS
     """
     images = getattr(settings_of(item), owner)
     present = getattr(images, name)
@@ -55,7 +55,7 @@ def has_other_users(image: bpy.types.Image | None) -> bool:
         return False
     holders = [settings_of(item) for item in all_oceans()]
     textures = {settings.texture for settings in holders if settings.texture is not None}
-    own = sum(getattr(settings.live_maps, name) == image for settings in holders for name in MAPS)
+    own = sum(getattr(settings.live_maps, name) == image for settings in holders for name in MAP_INPUTS)
     own += sum(texture.image == image for texture in textures)
     return bool(image.users > own + image.use_fake_user)
 

@@ -14,10 +14,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core import OceanParameters
-from ..core.cascades.patch_seas import ADDING, Part, parts
+from ..core.cascades.patch_seas import Part, parts
+from ..core.channels import ADDING, CHANNELS, Channel
 from ..core.fingerprint import fingerprint
 from ..core.masks.parameters import Mask
 from ..core.masks.weights import weights
@@ -25,19 +25,18 @@ from ..core.plain_data import to_plain
 from ..export.points import POINTS
 from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
 from ..nodes.modifier_inputs import set_inputs
-from ..nodes.names import DISPLACEMENT, SLOPE, STRAIN, VELOCITY, WEIGHT
+from ..nodes.names import DISPLACEMENT, WEIGHT
 from ..nodes.versioned import is_of_kind
-from . import evaluation, patch_points
+from . import evaluation, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
 from .plan import Plan
 from .settings import OceanObjectError, is_ocean, settings_of
+from .vertex_attributes import RealArray
 
 _NUMBER, _MASKS = "ocean_tweak_patch", "ocean_tweak_masks"
 #: cells of the weights along each side of the domain
 _WEIGHTS = 256
-#: Blender's type of each attribute
-_TYPES = {DISPLACEMENT: "FLOAT_VECTOR", VELOCITY: "FLOAT_VECTOR", SLOPE: "FLOAT2", STRAIN: "FLOAT_VECTOR"}
 
 
 def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
@@ -183,20 +182,19 @@ def _write(mesh: bpy.types.Mesh, patch: OceanParameters, plan: Plan) -> None:
         mesh.clear_geometry()
         mesh.vertices.add(grid.vertices)
     fields, _ = evaluation.sea_of(patch).fields(plan.time, ADDING, plan.is_whole)
-    displacement = (fields["displacement"] * np.float32(plan.scale)).reshape(-1, 3)
-    values = {
-        DISPLACEMENT: displacement,
-        VELOCITY: fields["velocity"] * np.float32(plan.scale * plan.rate),
-        SLOPE: fields["slope"],
-        STRAIN: fields["strain"],
-    }
+    values = {name: _in_units(CHANNELS[name], field, plan) for name, field in sorted(fields.items())}
     for name, value in values.items():
-        attribute = mesh.attributes.get(name) or mesh.attributes.new(name, _TYPES[name], "POINT")
-        attribute.data.foreach_set("vector", np.ascontiguousarray(value).reshape(-1))
-    places: NDArray[np.float32] = grid.positions()
-    places += displacement
+        vertex_attributes.put(mesh, CHANNELS[name], value)
+    places: RealArray = grid.positions()
+    places += values["displacement"].reshape(-1, 3)
     mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     mesh.update_tag()
+
+
+def _in_units(channel: Channel, field: RealArray, plan: Plan) -> RealArray:
+    """A field in Blender units, per second of the scene."""
+    factor = (plan.scale if channel.scales else 1.0) * (plan.rate if channel.is_rate else 1.0)
+    return field if factor == 1.0 else field * np.float32(factor)
 
 
 def _remove(items: Iterator[bpy.types.Object]) -> None:

@@ -14,7 +14,7 @@ from ..core.machine import usable_memory
 from .animated import clock_of
 from .grid_mesh import Grid
 from .image_sequence import baked_stretch
-from .maps import wanted_maps
+from .maps import maps_of, wanted_channels
 from .settings import OceanObjectError, OceanSettings
 from .units import frame_rate, frame_with_subframe, metres_per_unit, time_stretch
 
@@ -34,7 +34,7 @@ class Plan:
     parameters : of the render
     metres : in a Blender unit
     viewport, render : mesh and samples
-    maps : those that are asked for
+    channels : those that are asked for
     frame : of the scene, sub-frame included
     time : the ocean's, s
     rate : seconds of it in a second of the scene
@@ -44,10 +44,15 @@ class Plan:
     metres: Fraction
     viewport: Grid
     render: Grid
-    maps: tuple[str, ...]
+    channels: frozenset[str]
     frame: Fraction
     time: Fraction
     rate: float
+
+    @property
+    def maps(self) -> tuple[str, ...]:
+        """The images that are asked for."""
+        return maps_of(self.channels)
 
     @property
     def has_own_render(self) -> bool:
@@ -93,11 +98,11 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
         quads = min(most, view)
     fixed, repeats = settings.mesh_resolution, (settings.repeats_x, settings.repeats_y)
     viewport = Grid(size, fixed or quads, view, repeats)
-    clock, maps = clock_of(settings, scene, parameters.timing.start_frame), wanted_maps(settings)
+    clock, channels = clock_of(settings, scene, parameters.timing.start_frame), wanted_channels(settings)
     if clock.rate is None:  # without a velocity, renderers make motion blur from the frames between
-        maps = tuple(name for name in maps if name != "vel")
+        channels -= {"velocity"}
     plan = Plan(
-        parameters, metres, viewport, Grid(size, fixed or render, render, repeats), maps,
+        parameters, metres, viewport, Grid(size, fixed or render, render, repeats), channels,
         frame_with_subframe(scene), clock.time, 1.0 if clock.rate is None else clock.rate,
     )  # fmt: skip
     for grid in (plan.viewport, plan.render):

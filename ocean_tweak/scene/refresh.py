@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ..core import ParameterError
+from ..core.channels import CHANNELS, channels_of, image_of
 from ..core.frames import format_frames
 from . import (
     alarm,
@@ -26,11 +27,11 @@ from . import (
 )
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
-from .maps import ATTRIBUTES, MAPS, Fields, outputs_of
 from .modifiers import Images, Shown, Textures
 from .plan import Plan, plan_of, velocity_scale
 from .resampling import resampled, tiled
 from .settings import OceanObjectError, OceanSettings, set_changed, settings_of
+from .vertex_attributes import Fields
 
 #: what a user can cause: shown with the object; anything else is a bug and raises
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
@@ -288,9 +289,7 @@ def _refresh_baked(
 def _viewport_fields(plan: Plan, coarse: bool, patient: bool) -> tuple[Fields, bool]:
     """(samples+1, samples+1, …) by output, m; and whether they are all that they will be."""
     sea = evaluation.sea_of(plan.viewport_sea(coarse))
-    fields, complete = sea.fields(
-        plan.time, outputs_of(plan.maps), plan.is_whole, patient=patient and not coarse
-    )
+    fields, complete = sea.fields(plan.time, plan.channels, plan.is_whole, patient=patient and not coarse)
     samples = plan.viewport.samples
     if sea.ocean.parameters.resolution != samples:
         fields = {name: resampled(field, samples) for name, field in fields.items()}
@@ -298,18 +297,18 @@ def _viewport_fields(plan: Plan, coarse: bool, patient: bool) -> tuple[Fields, b
 
 
 def _in_scene_time(fields: Fields, plan: Plan) -> Fields:
-    """The fields with velocity per second of the scene."""
-    if "velocity" not in fields or plan.rate == 1.0:
+    """The fields with what is per second, per second of the scene."""
+    if plan.rate == 1.0:
         return fields
-    return {**fields, "velocity": fields["velocity"] * np.float32(plan.rate)}
+    rate = np.float32(plan.rate)
+    return {name: field * rate if CHANNELS[name].is_rate else field for name, field in fields.items()}
 
 
 def _on_vertices(fields: Fields, plan: Plan) -> Fields:
-    """The attributes of the viewport's mesh, by their names; between samples they are bilinear."""
+    """The channels on the viewport's mesh, in Blender units; between samples they are bilinear."""
     result = {}
-    for output, field in fields.items():
-        name, is_length = ATTRIBUTES[output]
-        scaled = field * np.float32(plan.scale) if is_length and plan.metres != 1 else field
+    for name, field in fields.items():
+        scaled = field * np.float32(plan.scale) if CHANNELS[name].scales and plan.metres != 1 else field
         if plan.viewport.quads != plan.viewport.samples:
             scaled = resampled(scaled, plan.viewport.quads)
         result[name] = tiled(scaled, plan.viewport.repeats)
@@ -324,7 +323,7 @@ def _write_render(settings: OceanSettings, plan: Plan) -> None:
     ]
     if not stale:
         return
-    made, _ = evaluation.sea_of(plan.parameters).fields(plan.time, outputs_of(tuple(stale)), plan.is_whole)
+    made, _ = evaluation.sea_of(plan.parameters).fields(plan.time, channels_of(stale), plan.is_whole)
     fields = _in_scene_time(made, plan)
     for name in stale:
         _write_image(images[name], fields, name, content)
@@ -332,7 +331,7 @@ def _write_render(settings: OceanSettings, plan: Plan) -> None:
 
 def _write_image(image: bpy.types.Image, fields: Fields, name: str, content: object = None) -> None:
     """Put a map into an image; `fields` have the far edges, which an image has not."""
-    texels = MAPS[name].image({output: field[:-1, :-1] for output, field in fields.items()})
+    texels = image_of(name, {channel: field[:-1, :-1] for channel, field in fields.items()})
     live_image.prepare(image, texels.shape[0])
     live_image.write(image, texels, content)
 

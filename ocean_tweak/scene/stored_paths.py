@@ -17,9 +17,9 @@ import bpy
 
 from ..export.places import is_foreign, path_of
 from ..nodes.modifier_inputs import get_input, set_input
+from ..nodes.names import MAP_INPUTS
 from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.versioned import is_of_kind
-from .maps import MAPS
 from .settings import OceanObjectError, all_oceans, settings_of
 
 _BESIDE = "//"
@@ -83,7 +83,9 @@ _KEEPERS: tuple[Callable[[], Iterator[Kept]], ...] = (_of_settings, _of_images, 
 def images_of(item: bpy.types.Object) -> set[bpy.types.Image]:
     """The images of files that an ocean reads: those of its bake, of its layers and of its masks."""
     settings = settings_of(item)
-    images = {getattr(maps, name) for maps in (settings.sequence_maps, settings.early_maps) for name in MAPS}
+    images = {
+        getattr(maps, name) for maps in (settings.sequence_maps, settings.early_maps) for name in MAP_INPUTS
+    }
     images |= {source.image for source in settings.source_images()}
     return {image for image in images if image is not None and image.filepath}
 

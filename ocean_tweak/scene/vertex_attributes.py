@@ -3,17 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..nodes.names import POINT_TYPES, VELOCITY
+from ..core.channels import CHANNELS, Channel
 from .grid_mesh import Grid
 
-# the name of the numbers in Blender's attribute types
-_VALUES = {"FLOAT_VECTOR": "vector", "FLOAT": "value"}
+RealArray = NDArray[np.float32]
+#: by channel, [y, x]
+Fields = Mapping[str, RealArray]
+
+# by a channel's components, Blender's type of an attribute and its name for the numbers
+_TYPES = {0: ("FLOAT", "value"), 2: ("FLOAT2", "vector"), 3: ("FLOAT_VECTOR", "vector")}
+# what an ocean's own mesh may have
+_OF_OCEANS = tuple(channel for channel in CHANNELS.values() if channel.switch is not None)
 
 
 def can_hold(mesh: bpy.types.Mesh, grid: Grid) -> bool:
@@ -23,38 +29,43 @@ def can_hold(mesh: bpy.types.Mesh, grid: Grid) -> bool:
     return fits and not mesh.is_editmode and mesh.library is None
 
 
-def write(mesh: bpy.types.Mesh, values: Mapping[str, NDArray[np.float32]]) -> None:
+def write(mesh: bpy.types.Mesh, values: Fields) -> None:
     """Put (rows+1, columns+1, …) fields on the vertices; the other attributes of a surface go.
 
-    values : by names in POINT_TYPES, in the units said there
+    values : by channel, in Blender units
     """
     remove(mesh, keep=values)
     for name, field in values.items():
-        data_type = POINT_TYPES[name]
-        attribute = mesh.attributes.get(name)
-        if attribute is not None and not _is_ours(attribute):
-            mesh.attributes.remove(attribute)
-            attribute = None
-        if attribute is None:
-            attribute = mesh.attributes.new(name, data_type, "POINT")
-        attribute.data.foreach_set(_VALUES[data_type], np.ascontiguousarray(field).reshape(-1))
+        put(mesh, CHANNELS[name], field)
     mesh.update_tag()
 
 
-def remove(mesh: bpy.types.Mesh, keep: Mapping[str, object] | None = None) -> None:
-    """Take a surface's attributes away where something else writes them."""
+def put(mesh: bpy.types.Mesh, channel: Channel, field: RealArray) -> None:
+    """Put a channel's numbers on the vertices, in whatever shape they are."""
+    kind, numbers = _TYPES[channel.components]
+    attribute = mesh.attributes.get(channel.attribute)
+    if attribute is not None and not _is_ours(attribute, channel):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = mesh.attributes.new(channel.attribute, kind, "POINT")
+    attribute.data.foreach_set(numbers, np.ascontiguousarray(field).reshape(-1))
+
+
+def remove(mesh: bpy.types.Mesh, keep: Container[str] = ()) -> None:
+    """Take a surface's attributes away where something else writes them, but those of some channels."""
     if mesh.library is not None or mesh.is_editmode:
         return
-    for name in POINT_TYPES:
-        attribute = mesh.attributes.get(name)
-        if attribute is not None and name not in (keep or {}) and _is_ours(attribute):
+    for channel in _OF_OCEANS:
+        attribute = mesh.attributes.get(channel.attribute)
+        if attribute is not None and channel.name not in keep and _is_ours(attribute, channel):
             mesh.attributes.remove(attribute)
 
 
 def make_still(mesh: bpy.types.Mesh) -> None:
     """Take away what would blur a mesh that moves no more: Cycles goes by the attribute alone."""
-    remove(mesh, keep=dict.fromkeys(name for name in POINT_TYPES if name != VELOCITY))
+    remove(mesh, keep=CHANNELS.keys() - {"velocity"})
 
 
-def _is_ours(attribute: bpy.types.Attribute) -> bool:
-    return (attribute.data_type, attribute.domain) == (POINT_TYPES[attribute.name], "POINT")
+def _is_ours(attribute: bpy.types.Attribute, channel: Channel) -> bool:
+    return (attribute.data_type, attribute.domain) == (_TYPES[channel.components][0], "POINT")

@@ -17,8 +17,8 @@ from bpy.props import (
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
+from ..nodes.names import MAP_INPUTS
 from ..scene.cache_place import DEFAULT_CACHE
-from ..scene.maps import MAPS
 from ..scene.settings import (
     LAYER_KINDS,
     METHODS,
@@ -78,7 +78,7 @@ class OCEAN_PG_timing(bpy.types.PropertyGroup):
 class OCEAN_PG_maps(bpy.types.PropertyGroup):
     """One image a map."""
 
-    __annotations__ = {name: PointerProperty(type=bpy.types.Image, **_HIDDEN) for name in MAPS}
+    __annotations__ = {name: PointerProperty(type=bpy.types.Image, **_HIDDEN) for name in MAP_INPUTS}
 
 
 _SWITCHES = {

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.initial_state import InitialState
 from ocean_tweak.core.synthesis import Rows, Synthesis
 
@@ -66,12 +66,12 @@ def fields(
 
 def surface_of(state: InitialState, time: float = 0.0, dtype: type = np.complex128) -> dict:
     """All fields of a state at a time by the transforms under test, with choppiness 1."""
-    fields = {name: np.empty(output.shape(state.grid.resolution)) for name, output in OUTPUTS.items()}
+    fields = {name: np.empty(output.shape(state.grid.resolution)) for name, output in OF_WAVES.items()}
 
     def write(block: slice, rows: Rows) -> None:
-        for name, output in OUTPUTS.items():
+        for name, output in OF_WAVES.items():
             output.write(rows, fields[name][block])
 
-    needs = {need for output in OUTPUTS.values() for need in output.needs}
+    needs = {need for output in OF_WAVES.values() for need in output.needs}
     Synthesis(state, OceanParameters(), dtype=dtype).fill(time, needs, write)
     return fields

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Cascade, Ocean, OceanParameters, Patch, PictureLayer, WaveLayer, spectra
+from ocean_tweak.core.channels import FOAM, OF_WAVES
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.fields import FOAM, OUTPUTS
 from ocean_tweak.core.foam_field import foam_outlook
 from ocean_tweak.core.initial_state import initial_state
 from ocean_tweak.core.layer_scales import layer_scales
@@ -26,7 +26,7 @@ from ocean_tweak.core.waves.spectral import SPREADINGS
 
 pytestmark = pytest.mark.filterwarnings("error")
 
-ALL = {*OUTPUTS, FOAM}
+ALL = {*OF_WAVES, FOAM}
 FROM_WIND = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS")
 SWELL = WaveLayer(definition="SEA_STATE", significant_wave_height=0.5, peak_period=3.0, id=7)
 SEA = OceanParameters(resolution=32, domain_size=60.0, layers=(SWELL,))

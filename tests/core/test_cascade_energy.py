@@ -11,9 +11,9 @@ from scipy import integrate
 
 from ocean_tweak.core import Cascade, Ocean, OceanParameters, Patch, Water, WaveLayer
 from ocean_tweak.core.cascades.patch_seas import patch_parameters
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.dispersion import angular_frequency
-from ocean_tweak.core.fields import OUTPUTS
 from tests.core.patched_seas import LAYER, SEA, THREE
 
 GENERATOR = np.random.default_rng(11)
@@ -122,10 +122,10 @@ def test_neighbouring_patches_have_random_numbers_of_their_own() -> None:
 
 def test_one_patch_is_the_sea_without_patches(windy: OceanParameters) -> None:
     alone = windy.replace(patches=(Patch(windy.domain_size, 0.0, resolution=windy.resolution),))
-    for name in OUTPUTS:
-        expected = getattr(Ocean(windy).surface(3.0, OUTPUTS), name)
-        np.testing.assert_array_equal(getattr(Ocean(alone).surface(3.0, OUTPUTS), name), expected)
-        np.testing.assert_array_equal(getattr(Cascade(windy).surfaces(3.0, OUTPUTS)[0], name), expected)
+    for name in OF_WAVES:
+        expected = getattr(Ocean(windy).surface(3.0, OF_WAVES), name)
+        np.testing.assert_array_equal(getattr(Ocean(alone).surface(3.0, OF_WAVES), name), expected)
+        np.testing.assert_array_equal(getattr(Cascade(windy).surfaces(3.0, OF_WAVES)[0], name), expected)
 
 
 def test_a_turned_patch_keeps_its_sea() -> None:

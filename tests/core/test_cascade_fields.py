@@ -11,7 +11,7 @@ import pytest
 
 from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, Patch
 from ocean_tweak.core.cascades.foam import foam_at
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.foam import FoamModel
 from ocean_tweak.core.foam_threshold import whitecap_coverage
 from tests.core.patched_seas import LAYER, SEA, THREE, small, summed
@@ -26,7 +26,7 @@ def test_every_field_of_the_sum_equals_the_sum_of_waves(rotation: float) -> None
     patches = (Patch(64.0, 0.0, 12.0, 1e6, 16), Patch(32.0, rotation, 4.5, 12.0, 16))
     sea = small(patches=patches, choppiness=0.8)
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0.0, 128.0, 4.0), np.arange(-64.0, 64.0, 4.0)))
-    fields = Cascade(sea, precision="double").fields_at(x, y, 2.5, OUTPUTS)
+    fields = Cascade(sea, precision="double").fields_at(x, y, 2.5, OF_WAVES)
     for name, expected in outputs_from(summed(sea, x, y, 2.5)).items():
         actual = getattr(fields, name)
         if name == "min_eigenvector":

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.initial_state import InitialState
 from ocean_tweak.core.sea_spectrum import SeaSpectrum
@@ -74,7 +74,7 @@ def outputs_from(sums: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def assert_fields_equal(fields, expected: dict[str, np.ndarray]) -> None:
-    assert set(expected) == set(OUTPUTS)
+    assert set(expected) == set(OF_WAVES)
     for name, value in expected.items():
         actual = getattr(fields, name)
         if name == "min_eigenvector":  # a direction, not an arrow
@@ -89,15 +89,15 @@ def assert_fields_equal(fields, expected: dict[str, np.ndarray]) -> None:
 @pytest.mark.parametrize("name", SEAS)
 @pytest.mark.parametrize("time", [0.0, 2.75, 40.0])
 def test_every_field_equals_the_direct_sum(name: str, time: float) -> None:
-    fields = Ocean(SEAS[name], precision="double").surface(time, OUTPUTS)
+    fields = Ocean(SEAS[name], precision="double").surface(time, OF_WAVES)
     assert_fields_equal(fields, expected_fields(SEAS[name], time))
 
 
 def test_single_precision_fields_are_near() -> None:
     parameters = SEAS["three layers in finite depth"]
-    single = Ocean(parameters).surface(2.75, OUTPUTS)
-    double = Ocean(parameters, precision="double").surface(2.75, OUTPUTS)
-    for name in set(OUTPUTS) - {"min_eigenvector"}:
+    single = Ocean(parameters).surface(2.75, OF_WAVES)
+    double = Ocean(parameters, precision="double").surface(2.75, OF_WAVES)
+    for name in set(OF_WAVES) - {"min_eigenvector"}:
         np.testing.assert_allclose(getattr(single, name), getattr(double, name), atol=2e-5, err_msg=name)
 
 
@@ -127,7 +127,7 @@ def test_trough_damping(strength: float) -> None:
             expected[c + d] = (
                 low[c + d] + w * (everything[c + d] - low[c + d]) + w_rate * (everything[c] - low[c])
             )
-    assert_fields_equal(ocean.surface(3.0, OUTPUTS), outputs_from(expected))
+    assert_fields_equal(ocean.surface(3.0, OF_WAVES), outputs_from(expected))
     assert np.min(w) < 1.0 - 0.3 * strength
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.errors import ParameterError
-from ocean_tweak.core.fields import OUTPUTS
 from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
@@ -33,7 +33,7 @@ def sea(*pictures: PictureLayer, **changes: object) -> OceanParameters:
 
 
 def test_a_sea_of_pictures_alone() -> None:
-    fields = Ocean(sea(PictureLayer(wind_speed=7.0))).surface(1.0, OUTPUTS)
+    fields = Ocean(sea(PictureLayer(wind_speed=7.0))).surface(1.0, OF_WAVES)
     assert 0.5 < 4 * fields.displacement[..., 2].std() < 2.0
     assert Ocean(sea()).surface(1.0).displacement.max() == 0.0
 

@@ -23,7 +23,7 @@ from ocean_tweak.core import (
     WaveLayer,
     grid_sea,
 )
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.propagation import propagate
 from tests.core.random_seas import SEAS, patched_seas
 
@@ -37,9 +37,9 @@ QUICK = settings(
 def test_any_sea_is_finite_and_keeps_its_energy(parameters: OceanParameters, time: float) -> None:
     ocean = Ocean(parameters)
     with np.errstate(over="raise", invalid="raise", divide="raise"):
-        fields = ocean.surface(time, OUTPUTS)
+        fields = ocean.surface(time, OF_WAVES)
         statistics = ocean.statistics()
-    for name in OUTPUTS:
+    for name in OF_WAVES:
         assert np.all(np.isfinite(getattr(fields, name))), name
     assert statistics.resolved.m0 <= statistics.spectrum.m0 * 1.05 + 1e-12
     if parameters.trough_damping == 0.0:
@@ -54,8 +54,8 @@ def test_any_sea_is_finite_and_keeps_its_energy(parameters: OceanParameters, tim
 def test_any_sum_is_finite(parameters: OceanParameters, time: float) -> None:
     sea = grid_sea(parameters.on_one_grid(parameters.resolution))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
-        fields = sea.surface(time, OUTPUTS)
-    for name in OUTPUTS:
+        fields = sea.surface(time, OF_WAVES)
+    for name in OF_WAVES:
         assert np.all(np.isfinite(getattr(fields, name))), name
 
 
@@ -124,6 +124,6 @@ def test_any_invalid_value_is_refused_by_name(cls: type, field: dataclasses.Fiel
 )
 def test_extreme_seas_are_finite_and_warned_about(changes: dict) -> None:
     ocean = Ocean(OceanParameters(resolution=32).replace(**changes))
-    fields = ocean.surface(100.0, OUTPUTS)
-    assert all(np.all(np.isfinite(getattr(fields, name))) for name in OUTPUTS)
+    fields = ocean.surface(100.0, OF_WAVES)
+    assert all(np.all(np.isfinite(getattr(fields, name))) for name in OF_WAVES)
     assert ocean.statistics().warnings

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer
-from ocean_tweak.core.fields import OUTPUTS
+from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.initial_state import InitialState
 from tests.core import direct_sum
@@ -84,9 +84,9 @@ def test_wind_direction_is_where_the_waves_go() -> None:
 
 
 def test_single_precision_stays_exact_after_hours(windy: OceanParameters) -> None:
-    single = Ocean(windy).surface(1e4, OUTPUTS)
-    double = Ocean(windy, precision="double").surface(1e4, OUTPUTS)
-    for name in OUTPUTS:
+    single = Ocean(windy).surface(1e4, OF_WAVES)
+    double = Ocean(windy, precision="double").surface(1e4, OF_WAVES)
+    for name in OF_WAVES:
         exact = getattr(double, name)
         error = getattr(single, name) - exact
         assert getattr(single, name).dtype == np.float32

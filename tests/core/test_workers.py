@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer, memory, random
-from ocean_tweak.core.fields import OUTPUTS, memory_groups
+from ocean_tweak.core.channels import OF_WAVES, memory_groups
 from ocean_tweak.core.memory import memory_need
 
 SEA = OceanParameters(resolution=258, domain_size=300.0, trough_damping=0.3)
@@ -18,16 +18,16 @@ SEA = OceanParameters(resolution=258, domain_size=300.0, trough_damping=0.3)
 
 @pytest.mark.parametrize("workers", [2, 3, 7])
 def test_workers_do_not_change_a_bit(workers: int) -> None:
-    alone = Ocean(SEA, workers=1).surface(3.0, OUTPUTS)
-    together = Ocean(SEA, workers=workers).surface(3.0, OUTPUTS)
-    for name in OUTPUTS:
+    alone = Ocean(SEA, workers=1).surface(3.0, OF_WAVES)
+    together = Ocean(SEA, workers=workers).surface(3.0, OF_WAVES)
+    for name in OF_WAVES:
         assert getattr(alone, name).tobytes() == getattr(together, name).tobytes(), name
 
 
 def test_outputs_do_not_change_each_other() -> None:
     ocean = Ocean(SEA)
-    everything = ocean.surface(3.0, OUTPUTS)
-    for name in OUTPUTS:
+    everything = ocean.surface(3.0, OF_WAVES)
+    for name in OF_WAVES:
         assert getattr(ocean.surface(3.0, {name}), name).tobytes() == getattr(everything, name).tobytes(), (
             name
         )
@@ -58,7 +58,7 @@ def test_arrays_of_the_caller_are_filled() -> None:
         Ocean(SEA, precision="half")
 
 
-@pytest.mark.parametrize("outputs", [{"displacement"}, {"displacement", "min_eigenvalue"}, set(OUTPUTS)])
+@pytest.mark.parametrize("outputs", [{"displacement"}, {"displacement", "min_eigenvalue"}, set(OF_WAVES)])
 def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
     """At most 24 bytes a sample, and never more than was told before."""
     parameters = OceanParameters(resolution=1024)
@@ -144,7 +144,7 @@ def test_changing_the_wind_draws_no_new_numbers(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_groups_hold_every_output_once() -> None:
-    groups = memory_groups(OUTPUTS)
-    assert sorted(name for group in groups for name in group) == sorted(OUTPUTS)
+    groups = memory_groups(OF_WAVES)
+    assert sorted(name for group in groups for name in group) == sorted(OF_WAVES)
     assert groups[1] == ["velocity"]
     assert memory_groups([]) == []

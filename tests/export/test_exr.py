@@ -11,8 +11,9 @@ import OpenEXR
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing
+from ocean_tweak.core.channels import MAPS
 from ocean_tweak.export import files
-from ocean_tweak.export.exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_image, write_image
+from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, write_image
 
 FPS = Fraction(24000, 1001)
 

@@ -25,6 +25,13 @@ def part(package: ModuleType, name: str) -> Any:
     return importlib.import_module(f"{package.__name__}.{name}")
 
 
+def channels(package: ModuleType) -> tuple[str, ...]:
+    """Return the names of all fields; their table was another one once."""
+    if Path(package.__path__[0], "core", "channels.py").exists():
+        return tuple(part(package, "core.channels").CHANNELS)
+    return tuple(part(package, "core.fields").KNOWN)
+
+
 def of_sea(package: ModuleType, data: dict[str, Any]) -> Iterator[Made]:
     """Yield all fields, heights and numbers of a sea given as JSON has it."""
     core = part(package, "core")
@@ -36,7 +43,7 @@ def of_sea(package: ModuleType, data: dict[str, Any]) -> Iterator[Made]:
 
 
 def _of_grid(package: ModuleType, parameters: Any) -> Iterator[Made]:
-    core, known = part(package, "core"), part(package, "core.fields").KNOWN
+    core, known = part(package, "core"), channels(package)
     for precision in ("single", "double"):
         sea = core.grid_sea(parameters, precision)
         for time in TIMES:
@@ -50,7 +57,7 @@ def _of_grid(package: ModuleType, parameters: Any) -> Iterator[Made]:
 
 
 def _of_patches(package: ModuleType, sea: Any) -> Iterator[Made]:
-    known = part(package, "core.fields").KNOWN
+    known = channels(package)
     for time in TIMES:
         fields = sea.fields_at(X, Y, time, known)
         yield from ((f"{name} at {time} s", getattr(fields, name)) for name in known)

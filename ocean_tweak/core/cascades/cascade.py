@@ -11,7 +11,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..fields import FOAM, OUTPUTS, SurfaceFields, checked_outputs
+from ..channels import CHANNELS, FOAM, SurfaceFields, checked_outputs
 from ..foam import FoamModel
 from ..foam_field import foam_model_of
 from ..foam_threshold import Strains, sampled_strains
@@ -41,7 +41,7 @@ from .strains import summed_strain_covariances
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-_SQUEEZE = OUTPUTS["cusp"].needs
+_SQUEEZE = CHANNELS["cusp"].needs
 
 #: bytes of squeezed surfaces of earlier moments that are kept for the next frame's foam
 _KEPT = 2**28
@@ -113,13 +113,13 @@ class Cascade:
         places_x, places_y = _places(x, y, time)
         shape, px, py = places_x.shape, places_x.ravel(), places_y.ravel()
         fields: dict[str, RealArray] = {}
-        needs = frozenset().union(*(OUTPUTS[name].needs for name in wanted - {FOAM}))
+        needs = frozenset().union(*(CHANNELS[name].needs for name in wanted - {FOAM}))
         sums = self._summed(px, py, self._components(time, needs))
         for name in wanted - {FOAM}:
-            channels = (OUTPUTS[name].channels,) if OUTPUTS[name].channels else ()
-            field: RealArray = np.empty((px.size, *channels), self._dtype)
-            OUTPUTS[name].write(sums, field)
-            fields[name] = field.reshape(*shape, *channels)
+            components = (CHANNELS[name].components,) if CHANNELS[name].components else ()
+            field: RealArray = np.empty((px.size, *components), self._dtype)
+            CHANNELS[name].write(sums, field)
+            fields[name] = field.reshape(*shape, *components)
         if FOAM in wanted:
             fields[FOAM] = foam_at(self.foam_model, self._squeeze_at, px, py, time).reshape(shape)
         return SurfaceFields(float(time), fields)
@@ -246,7 +246,7 @@ class Cascade:
     def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         sea = self._of_foam
         squeeze = np.empty(x.shape, np.float32)
-        OUTPUTS["cusp"].write(sea._summed(x, y, self._squeezed(time)), squeeze)
+        CHANNELS["cusp"].write(sea._summed(x, y, self._squeezed(time)), squeeze)
         return squeeze
 
     def _squeezed(self, time: Fraction) -> list[Components]:

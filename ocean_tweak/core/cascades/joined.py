@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fields import OUTPUTS, memory_groups
+from ..channels import CHANNELS, memory_groups
 from ..foam import FoamModel
 from ..foam_field import foam_model_of
 from ..foam_threshold import Strains, sampled_strains
@@ -104,13 +104,13 @@ class JoinedSea(GridSea):
 
     def _fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
         for group in memory_groups(wanted):
-            needs = frozenset().union(*(OUTPUTS[name].needs for name in group))
+            needs = frozenset().union(*(CHANNELS[name].needs for name in group))
             sums = Summed(
                 self._on_grid(ocean, part, time, needs)
                 for ocean, part in zip(self._oceans, self._parts, strict=True)
             )
             for name in group:
-                OUTPUTS[name].write(sums, fields[name])
+                CHANNELS[name].write(sums, fields[name])
 
     def _on_grid(
         self, ocean: Ocean, part: Part, time: float | Fraction, needs: frozenset[Key]

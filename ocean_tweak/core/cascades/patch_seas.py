@@ -26,9 +26,6 @@ _MOST_TURNED = 1e6
 _LAYERS = ("layers", "pictures", "wind_fields")
 
 
-#: outputs of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
-ADDING = frozenset({"displacement", "velocity", "slope", "strain"})
-
 #: among outputs: those of each part of the sea, which add up, behind the sea's own
 PARTS = "parts"
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from ...core import Cascade, OceanParameters
 from ...core.bake import ShotSurfaces
 from ...core.cascades.patch_seas import PARTS, parts
-from ...core.fields import FOAM, SurfaceFields
+from ...core.channels import FOAM, SurfaceFields
 from ...core.foam import LATTICE_RATE
 from ...core.foam_field import foam_outlook
 from ...core.frames import Frame

@@ -21,15 +21,15 @@ from typing import Any
 
 import numpy as np
 
-from ...core.cascades.patch_seas import ADDING, PARTS, parts
+from ...core.cascades.patch_seas import PARTS, parts
+from ...core.channels import ADDING, MAPS, SurfaceFields, channels_of
 from ...core.errors import ParameterError
-from ...core.fields import SurfaceFields
 from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.parameters import OceanParameters
 from ...core.printable import shown
 from ...core.shot import Shot
-from ..exr import COMPRESSION_ERROR, MAPS, ExrError, ExrSequence, read_header
+from ..exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
 from ..points import POINTS, PointSequence
 
@@ -107,7 +107,7 @@ class Job:
     def outputs(self) -> frozenset[str]:
         """The fields that its maps are made of; of points, PARTS."""
         own = frozenset({PARTS}) if POINTS in self.maps else frozenset()
-        return own.union(*(MAPS[name].outputs for name in self.images))
+        return own | channels_of(self.images)
 
     @property
     def images(self) -> tuple[str, ...]:
@@ -203,7 +203,7 @@ class Job:
 
 def maps_for(parameters: OceanParameters) -> tuple[str, ...]:
     """The maps that a sea can be baked to: of several patches those that add up, and their points."""
-    images = tuple(name for name in MAPS if not parameters.is_cascade or MAPS[name].outputs <= ADDING)
+    images = tuple(name for name in MAPS if not parameters.is_cascade or ADDING.issuperset(MAPS[name]))
     return (*images, POINTS) if parameters.patches else images
 
 

@@ -16,8 +16,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ...core.channels import SurfaceFields
 from ...core.errors import ParameterError
-from ...core.fields import SurfaceFields
 from ...core.fingerprint import frame_fingerprint
 from ...core.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
 from ...core.printable import shown

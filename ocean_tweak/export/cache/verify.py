@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from ...core import Ocean
 from ...core.bake import ShotSurfaces
+from ...core.channels import unit_of
 from ...core.frames import Frame
 from ...core.grid_sea import GridSea
 from ...core.plain_data import to_plain
 from ...core.printable import printable
 from ...core.propagation import propagate
 from ...core.shot import Moment
-from ..exr import MAPS, ExrError, ExrSequence, read_image
+from ..exr import ExrError, ExrSequence, read_image
 from ..points import PointsError
 from .job import Job
 from .records import Finding, State, inspect_all
@@ -75,7 +76,7 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: GridSea) -> str
             "map": name,
             "frame": to_plain(frame),
             "domain_size": sequence.domain_size,
-            "unit": MAPS[name].unit,
+            "unit": unit_of(name),
         }
         if told != wanted:
             return f"{path.name} says it is {printable(told, 200)}, not {wanted}"

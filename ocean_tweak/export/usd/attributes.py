@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What moves: the attributes of the mesh that change from frame to frame, from the core's fields.
 
-All is 32-bit: USD's own schemas say so of points, velocities, normals and displayColor. Foam and cusp may
-be halved: then they err by 2⁻¹² of a value at most, less than a step of an 8-bit picture.
+All is 32-bit: USD's own schemas say so of points, velocities, normals and displayColor. Others may be halved:
+then they err by 2⁻¹² of a value at most, less than a step of an 8-bit picture.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.fields import SurfaceFields
+from ...core.channels import CHANNELS, VECTOR, Channel, SurfaceFields
 from .grid import Patch
 
 RealArray = NDArray[np.floating]
@@ -45,20 +45,6 @@ def _points(patch: Patch, fields: SurfaceFields) -> RealArray:
     return patch.positions(fields.displacement)
 
 
-def _velocities(patch: Patch, fields: SurfaceFields) -> RealArray:
-    return patch.turned(patch.wrapped(fields.velocity), patch.scale)
-
-
-def _normals(patch: Patch, fields: SurfaceFields) -> RealArray:
-    return patch.turned(patch.wrapped(fields.normal))
-
-
-def _up(patch: Patch) -> RealArray:
-    up = np.zeros((patch.vertices, 3), np.float32)
-    up[:, 1 if patch.up_axis == "Y" else 2] = 1.0
-    return up
-
-
 def _colours(patch: Patch, fields: SurfaceFields) -> RealArray:
     return _mixed(patch.wrapped(fields.foam).reshape(-1, 1))
 
@@ -68,32 +54,46 @@ def _mixed(foam: RealArray) -> RealArray:
     return water + foam * (white - water)
 
 
-def _plain(name: str) -> Callable[[Patch, SurfaceFields], RealArray]:
-    return lambda patch, fields: patch.wrapped(getattr(fields, name)).reshape(-1)
+def _of_channel(channel: Channel) -> Attribute:
+    assert channel.usd is not None
 
+    def in_layer(patch: Patch, field: RealArray) -> RealArray:
+        if channel.turns == VECTOR:
+            return patch.turned(field, patch.scale if channel.scales else 1.0)
+        return field.reshape(patch.vertices, *field.shape[2:])
 
-def _nothing(patch: Patch) -> RealArray:
-    return np.zeros(patch.vertices, np.float32)
+    def values(patch: Patch, fields: SurfaceFields) -> RealArray:
+        return in_layer(patch, patch.wrapped(fields[channel.name]))
+
+    def rest(patch: Patch) -> RealArray:
+        flat = np.full(channel.shape(patch.quads + 1), channel.rest, np.float32)
+        return in_layer(patch, flat) + np.float32(0.0)  # no -0 where axes turn
+
+    name, type_name, halved = channel.usd
+    return Attribute(name, type_name, frozenset({channel.name}), values, rest, halved)
 
 
 POINTS = Attribute(
     "points", "Point3fArray", frozenset({"displacement"}), _points, lambda patch: patch.positions(None)
 )
+_COLOURS = Attribute(
+    "primvars:displayColor", "Color3fArray", frozenset({"foam"}), _colours,
+    lambda patch: _mixed(np.zeros((patch.vertices, 1), np.float32)),
+)  # fmt: skip
+
+#: in .blend files the attributes are flags by their order: others are to stand behind these
+_FIRST = ("velocity", "normal", "foam", "cusp")
+_OTHERS = tuple(name for name, channel in CHANNELS.items() if channel.usd and name not in _FIRST)
 
 #: what may be asked for beside points and extent → how it is made
 ATTRIBUTES: dict[str, Attribute] = {
-    "velocities": Attribute(
-        "velocities", "Vector3fArray", frozenset({"velocity"}), _velocities,
-        lambda patch: np.zeros((patch.vertices, 3), np.float32),
-    ),
-    "normals": Attribute("normals", "Normal3fArray", frozenset({"normal"}), _normals, _up),
-    "foam": Attribute("primvars:foam", "FloatArray", frozenset({"foam"}), _plain("foam"), _nothing, True),
-    "cusp": Attribute("primvars:cusp", "FloatArray", frozenset({"cusp"}), _plain("cusp"), _nothing, True),
-    "displayColor": Attribute(
-        "primvars:displayColor", "Color3fArray", frozenset({"foam"}), _colours,
-        lambda patch: _mixed(np.zeros((patch.vertices, 1), np.float32)),
-    ),
-}  # fmt: skip
+    attribute.name.removeprefix("primvars:"): attribute
+    for attribute in (
+        *(_of_channel(CHANNELS[name]) for name in _FIRST),
+        _COLOURS,
+        *(_of_channel(CHANNELS[name]) for name in _OTHERS),
+    )
+}
 
 EXTENT = ("extent", "Float3Array")
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...core.fields import SurfaceFields
+from ...core.channels import SurfaceFields
 from ...core.frames import Frame, format_frames, frame_label
 from ..files import sync_folder
 from .attributes import outputs_of

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.fields import SurfaceFields
+from ...core.channels import SurfaceFields
 from ...core.frames import Frame
 from .attributes import EXTENT, Attribute, chosen, mesh_values, to_vt, type_name
 from .grid import Patch, proxy_step

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ...core.fields import SurfaceFields
+from ...core.channels import SurfaceFields
 from ...core.frames import Frame
 from .attributes import outputs_of
 from .layers import save, whole_layer, write_header

@@ -9,9 +9,9 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core.frames import format_frames
 from ...export.cache.estimate import Estimate, readable_bytes
+from ...nodes.names import MAP_INPUTS
 from ...scene import alarm, bake_process, bake_versions, stored_paths
 from ...scene.image_sequence import baked_frames
-from ...scene.maps import MAPS
 from ...scene.needs import needs_of
 from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
@@ -68,7 +68,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row(column, "Files", stored_paths.image_file(image).name if image else "none chosen")
     if image:
         row(column, "Frames", format_frames(baked_frames(settings)))
-        row(column, "Maps", ", ".join(name for name in MAPS if getattr(settings.sequence_maps, name)))
+        row(column, "Maps", ", ".join(name for name in MAP_INPUTS if getattr(settings.sequence_maps, name)))
     if settings.missing_file:
         message(layout, context, alarm.missing_text(settings), alert=True)
     if settings.bake_is_elsewhere:
