@@ -25,7 +25,7 @@ from benchmarks.rows import Row, ratio_row
 from ocean_tweak import registration
 from ocean_tweak.scene import ocean_object
 from ocean_tweak.scene.grid_mesh import Grid, fill
-from ocean_tweak.scene.refresh import refresh_and_tell
+from ocean_tweak.scene.refresh import Wanted, refresh
 from ocean_tweak.scene.settings import METHODS
 
 #: of an ocean's settings, all of them on by default
@@ -154,7 +154,7 @@ def wind_changer(
         else:
             with settings.quiet():
                 settings.layers[0].wind_speed = next(winds)
-            refresh_and_tell(item, scene, coarse=coarse, statistics=False, patient=False)
+            refresh(item, scene, Wanted.SURFACE if coarse else Wanted.SURFACE | Wanted.SAMPLES)
         mesh_of(scene, item)
         if settings.error:
             raise RuntimeError(settings.error)
@@ -234,7 +234,7 @@ def live(samples: int, method: str, *switches: str) -> Contender:
     with item.ocean_tweak.quiet():
         for name in SWITCHES:
             setattr(item.ocean_tweak, name, name in switches)
-    refresh_and_tell(item, scene)
+    refresh(item, scene)
     made = len(mesh_of(scene, item).vertices)
     if made != (samples + 1) ** 2:
         raise RuntimeError(f"our ocean has {made} vertices and not {samples + 1}²")

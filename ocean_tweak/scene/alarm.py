@@ -12,12 +12,13 @@ import logging
 import os
 import signal
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import bpy
 
-from .settings import OceanSettings, all_oceans, scene_of, settings_of
+from .settings import OceanSettings, scene_of, settings_of
 from .view_layers import is_in_view_layer
 
 _log = logging.getLogger(__name__)
@@ -36,13 +37,13 @@ class _Shot:
     said : what the console has heard: each thing once a shot
     is_rendered : whether it is being rendered now
     has_failed : whether this render met a frame that cannot be shown
-    troubled : oceans that could not be shown at some time since the file was opened, by session uid
+    troubles : what keeps oceans from being shown, by their session uid
     """
 
     said: set[tuple[int, str]] = field(default_factory=set)
     is_rendered: bool = False
     has_failed: bool = False
-    troubled: set[int] = field(default_factory=set)
+    troubles: dict[int, str] = field(default_factory=dict)
 
 
 _shot = _Shot()
@@ -78,7 +79,7 @@ def is_well(item: bpy.types.Object) -> None:
 
 
 def _failed(item: bpy.types.Object, subject: str, text: str) -> None:
-    _shot.troubled.add(item.session_uid)
+    _trouble(item, text)
     _say(logging.ERROR, item, subject, text)
     fail_render(item)
 
@@ -111,18 +112,26 @@ def render_ends() -> None:
         os._exit(EXIT_CODE)
 
 
+def follow(item: bpy.types.Object) -> None:
+    """The settings and files of an ocean were looked at: what is in the way now is told in the 3D view."""
+    settings = settings_of(item)
+    text = settings.error or missing_text(settings)
+    if not text:
+        _shot.troubles.pop(item.session_uid, None)
+    elif item.session_uid in _shot.troubles:
+        _trouble(item, text)
+
+
+def keep_only(items: Iterable[bpy.types.Object]) -> None:
+    """Forget what is wrong with oceans that are gone."""
+    present = {item.session_uid for item in items}
+    for uid in _shot.troubles.keys() - present:
+        del _shot.troubles[uid]
+
+
 def troubles() -> list[str]:
     """What is wrong now with oceans of the file that cannot be shown, a line each, for the 3D view."""
-    if not _shot.troubled:  # asked for whenever a view is drawn
-        return []
-    found = {}
-    for item in all_oceans():
-        settings = settings_of(item)
-        text = settings.error or missing_text(settings)
-        if item.session_uid in _shot.troubled and text:
-            found[item.session_uid] = f"{item.name}: {text}"
-    _shot.troubled &= found.keys()
-    return list(found.values())
+    return list(_shot.troubles.values())
 
 
 def missing_text(settings: OceanSettings) -> str:
@@ -136,7 +145,11 @@ def missing_text(settings: OceanSettings) -> str:
 def forget_all() -> None:
     """Another file is opened."""
     _shot.said.clear()
-    _shot.troubled.clear()
+    _shot.troubles.clear()
+
+
+def _trouble(item: bpy.types.Object, text: str) -> None:
+    _shot.troubles[item.session_uid] = f"{item.name}: {text}"
 
 
 def _say(level: int, item: bpy.types.Object, subject: str, text: str) -> None:

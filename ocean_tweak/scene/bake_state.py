@@ -133,9 +133,8 @@ def moves(item: bpy.types.Object) -> bool:
     return shot is not None and (shot.animation is not None or is_animated(item))
 
 
-def warn(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+def warn(item: bpy.types.Object) -> None:
     """Let the console hear, once a shot, that the settings of a baked ocean are not those of its bake."""
-    check(item, scene)
     settings = settings_of(item)
     if settings.bake_differs:
         found = [Difference(*entry) for entry in json.loads(settings.bake_differs)]

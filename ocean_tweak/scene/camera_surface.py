@@ -10,9 +10,9 @@ from ..nodes.camera_grid import finest_spacing
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
-from . import patch_objects, patch_points, water_material
+from . import needs, patch_objects, water_material
 from .patch_objects import camera_surface_of
-from .plan import plan_of
+from .refresh import Wanted, refresh
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit
 
@@ -64,9 +64,7 @@ def add_camera_surface(
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
     _make_room(ocean)
-    plan = plan_of(settings_of(ocean), scene)
-    points = patch_points.points_of(settings_of(ocean), plan, scene)
-    patch_objects.refresh(ocean, plan, points)
+    refresh(ocean, scene, Wanted.PATCHES | Wanted.NEIGHBOURS)
     return surface
 
 
@@ -86,6 +84,7 @@ def remove_camera_surface(ocean: bpy.types.Object) -> None:
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
     patch_objects.remove(ocean)
+    needs.look_at(ocean)
     _make_room(ocean, is_there=False)
 
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What keeps live oceans moving: frame changes, renders, opened files, undo, changed units and rates."""
+"""What keeps live oceans moving: frame changes, renders, opened files, undo, changed units and rates.
+
+Each event says what it changes of which oceans; `refinement.show` does it, now or step by step.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,7 @@ from . import (
     cache_place,
     evaluation,
     live_image,
+    needs,
     ocean_object,
     patch_objects,
     refinement,
@@ -30,15 +34,8 @@ from . import (
 )
 from .animated import is_animated, shown_settings
 from .refinement import show
-from .refresh import check_files, hold, refresh_and_tell, refresh_patches, refresh_render
-from .settings import (
-    is_ocean,
-    oceans_in,
-    once_oceans_in,
-    settings_of,
-    shown_oceans,
-    was_ocean,
-)
+from .refresh import Wanted, is_live, of_a_frame
+from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, shown_oceans, was_ocean
 
 # scene settings that change an ocean and have no update callback of ours
 _FOLLOWED = (
@@ -74,29 +71,15 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
     """Show the frame that the scene is about to evaluate, sub-frame included."""
     _end_those_without_modifier(once_oceans_in(scene))
     for item in oceans_in(scene):
-        if settings_of(item).source == "LIVE":
-            if not is_animated(item):
-                show(item, scene)
-        else:  # Blender reads the files itself
-            check_files(item, scene)
-            if not is_animated(item):
-                if bake_state.moves(item):
-                    bake_state.check(item, scene)
-                refresh_patches(item, scene)
+        show(item, scene, Wanted.FILES if is_animated(item) else of_a_frame(item))
 
 
 @_loud
 def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
     for item in _evaluated_oceans(scene, depsgraph):
-        if not is_animated(item):
-            continue
-        if settings_of(item).source == "LIVE":
-            show(item, scene, shown=shown_settings(item, depsgraph))
-        else:
-            shown = shown_settings(item, depsgraph)
-            bake_state.check(item, scene, shown)
-            refresh_patches(item, scene, shown)
+        if is_animated(item):
+            show(item, scene, of_a_frame(item) & ~Wanted.FILES, shown_settings(item, depsgraph))
 
 
 @_loud
@@ -106,13 +89,9 @@ def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
     After the evaluation, because only then Blender tells what it was for. What is changed here is evaluated
     once more before anybody reads it.
     """
-    if depsgraph is None or depsgraph.mode != "RENDER":
-        return
-    for item in _evaluated_oceans(scene, depsgraph):
-        shown = shown_settings(item, depsgraph)
-        if refinement.is_unfinished(item):
-            refresh_and_tell(item, scene, statistics=False, shown=shown)
-        refresh_render(item, scene, shown)
+    if depsgraph is not None and depsgraph.mode == "RENDER":
+        for item in _evaluated_oceans(scene, depsgraph):
+            show(item, scene, Wanted.RENDER, shown_settings(item, depsgraph))
 
 
 @persistent
@@ -124,9 +103,8 @@ def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
     for image in changed:
         source_images.forget(image)
     for item in oceans_in(scene):
-        settings = settings_of(item)
-        if settings.source == "LIVE" and changed & {source.image for source in settings.source_images()}:
-            show(item, scene, dragged=True)
+        if is_live(item) and changed & {source.image for source in settings_of(item).source_images()}:
+            show(item, scene, Wanted.CHANGE)
 
 
 @persistent
@@ -150,8 +128,7 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 def look_after_save(_path: object = None, _unused: object = None) -> None:
     """A file that was saved elsewhere may have left its bakes behind."""
     for item, scene in shown_oceans().items():
-        if settings_of(item).source == "SEQUENCE":
-            bake_state.check(item, scene)
+        show(item, scene, Wanted.BAKE)
 
 
 @persistent
@@ -159,7 +136,8 @@ def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """The console hears all again that is wrong with a shot."""
     alarm.render_begins()
     for item in oceans_in(scene):
-        bake_state.warn(item, scene)
+        show(item, scene, Wanted.BAKE)
+        bake_state.warn(item)
 
 
 @persistent
@@ -177,11 +155,25 @@ def end_without_modifier(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
     _end_those_without_modifier(item for item in changed if isinstance(item, bpy.types.Object))
 
 
+@persistent
+def look_around(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Notice objects that go with an ocean, and oceans that are gone."""
+    if depsgraph is not None and needs.is_outdated(depsgraph.updates):
+        _look_around()
+
+
+def _look_around() -> None:
+    needs.look()
+    alarm.keep_only(all_oceans())
+
+
 def _end_those_without_modifier(items: Iterable[bpy.types.Object]) -> None:
     # found before any ends: what showed its sea goes with it
     lost = [item for item in items if was_ocean(item) and not is_ocean(item) and item.library is None]
     for item in lost:
         ocean_object.end(item)
+    if lost:
+        _look_around()
 
 
 @persistent
@@ -198,9 +190,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
     for item, scene in shown_oceans().items():
-        if cache_place.find_moved(item):
-            refresh_and_tell(item, scene)
-    refresh_live_oceans()
+        show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else Wanted.NOTES)
 
 
 @persistent
@@ -234,8 +224,7 @@ def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
 def hold_before_save(_path: object = None, _unused: object = None) -> None:
     """Let live oceans stand still as they are, rather than lie flat, where the extension is missing."""
     for item, scene in shown_oceans().items():
-        if settings_of(item).source == "LIVE" and item.library is None:
-            hold(item, scene)
+        show(item, scene, Wanted.HELD)
 
 
 @persistent
@@ -244,7 +233,8 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     show_that_it_runs()
     live_image.forget_all()
     source_images.forget_all()
-    refresh_live_oceans()
+    for item, scene in shown_oceans().items():
+        show(item, scene, Wanted.ALL if is_live(item) else Wanted.NOTES)
 
 
 def _evaluated_oceans(
@@ -254,16 +244,6 @@ def _evaluated_oceans(
     for item in oceans_in(scene):
         if depsgraph is None or not is_animated(item) or item.evaluated_get(depsgraph).is_evaluated:
             yield item
-
-
-def refresh_live_oceans() -> None:
-    """Refresh every live ocean of the file in its own scene, and look at the files of the others."""
-    for item, scene in shown_oceans().items():
-        if settings_of(item).source == "LIVE":
-            show(item, scene)
-        else:
-            check_files(item, scene)
-            bake_state.check(item, scene)
 
 
 def refresh_all_oceans() -> None:
@@ -277,6 +257,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_animated),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
+    ("depsgraph_update_post", look_around),
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),
@@ -298,7 +279,9 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
 def register() -> None:
     """Attach the handlers."""
     _attach()
-    _tell_live_oceans(show_that_it_runs)
+    if _has_file():
+        show_that_it_runs()
+        needs.look()
     _subscribe()
 
 
@@ -326,7 +309,8 @@ def _detach() -> None:
 
 def unregister() -> None:
     """Detach the handlers and forget the seas."""
-    _tell_live_oceans(show_that_it_ends)
+    if _has_file():
+        show_that_it_ends()
     bpy.msgbus.clear_by_owner(_OWNER)
     _detach()
     bake_process.stop_all()
@@ -334,15 +318,15 @@ def unregister() -> None:
     _forget_all()
 
 
-def _tell_live_oceans(tell: Callable[[], None]) -> None:
-    # while Blender starts, there is no file yet: the opened one is told later
-    if hasattr(bpy.data, "node_groups"):
-        tell()
+def _has_file() -> bool:
+    """Whether there is a file yet: not while Blender starts, and the one that it opens is told."""
+    return hasattr(bpy.data, "node_groups")
 
 
 def _forget_all() -> None:
     alarm.forget_all()
     refinement.forget_all()
+    needs.forget_all()
     evaluation.forget_all()
     live_image.forget_all()
     source_images.forget_all()

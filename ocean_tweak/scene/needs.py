@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands still in a Blender without the extension, told before a farm finds out."""
+"""What stands still in a Blender without the extension, told before a farm finds out.
+
+To find it, all objects of the file are looked at: when something happens, not whenever a panel is drawn.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import bpy
 
 from ..nodes.modifier_inputs import all_inputs
 from . import floating, patch_objects
-from .settings import settings_of
+from .settings import all_oceans, settings_of, was_ocean
 
 
 class Need(NamedTuple):
@@ -29,13 +33,75 @@ class Need(NamedTuple):
         return f"{self.name} {self.reason}: {self.remedy}"
 
 
+class Neighbours(NamedTuple):
+    """What goes with an ocean.
+
+    needs : objects that only the extension moves
+    has_surface : whether a surface around the camera shows it
+    """
+
+    needs: tuple[Need, ...] = ()
+    has_surface: bool = False
+
+
+@dataclass
+class _Seen:
+    """What was found when it was looked for last.
+
+    of : what goes with each ocean, by its session uid
+    readers : session uids of the objects whose modifiers read oceans
+    objects : how many the file had
+    """
+
+    of: dict[int, Neighbours] = field(default_factory=dict)
+    readers: set[int] = field(default_factory=set)
+    objects: int = 0
+
+
+_seen = _Seen()
+
+
+def neighbours_of(ocean: bpy.types.Object) -> Neighbours:
+    """What goes with an ocean, as it was found last; it is looked for again where objects came or went."""
+    if len(bpy.data.objects) != _seen.objects:
+        look()
+    return _seen.of.get(ocean.session_uid, Neighbours())
+
+
+def look_at(ocean: bpy.types.Object) -> None:
+    """Find what goes with an ocean."""
+    has_surface = patch_objects.camera_surface_of(ocean) is not None
+    _seen.of[ocean.session_uid] = Neighbours(needs_of(ocean), has_surface)
+
+
+def look() -> None:
+    """Find what goes with each ocean of the file."""
+    oceans = list(all_oceans())
+    _seen.of.clear()
+    _seen.objects = len(bpy.data.objects)
+    _seen.readers = {item.session_uid for item in bpy.data.objects if _reads(item, oceans)}
+    for ocean in oceans:
+        look_at(ocean)
+
+
+def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:
+    """Whether objects came or went, or one changed that reads an ocean or may do so now."""
+    return len(bpy.data.objects) != _seen.objects or any(map(_concerns, updates))
+
+
+def forget_all() -> None:
+    """Another file is opened, or the extension is disabled."""
+    _seen.of.clear()
+    _seen.readers.clear()
+    _seen.objects = 0
+
+
 def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     """The ocean and what reads it, as far as these need the extension; none where all of it is baked."""
     surface = patch_objects.camera_surface_of(ocean)
     if settings_of(ocean).source == "LIVE":
         return (_live(ocean), *_readers(ocean))
-    patches = patch_objects.patches_of(ocean)
-    if surface is not None and patches and not patch_objects.are_baked(ocean):
+    if surface is not None and patch_objects.are_live(ocean):
         reason = f"shows the patches of {ocean.name}, of which its bake has no points"
         return (Need(surface.name, reason, f"bake {ocean.name} again"),)
     return ()
@@ -51,8 +117,7 @@ def _live(ocean: bpy.types.Object) -> Need:
 def _readers(ocean: bpy.types.Object) -> Iterator[Need]:
     """Objects whose modifiers read a live ocean, and those that float on it."""
     for item in bpy.data.objects:
-        nodes = (each for each in item.modifiers if each.type == "NODES" and each.node_group is not None)
-        if item == ocean or not any(ocean in all_inputs(modifier).values() for modifier in nodes):
+        if item == ocean or not _reads(item, (ocean,)):
             continue
         if not floating.is_carrier(item):
             yield Need(item.name, f"reads {ocean.name}, which is computed live", f"bake {ocean.name}")
@@ -60,3 +125,18 @@ def _readers(ocean: bpy.types.Object) -> Iterator[Need]:
         for other in floating.carried_by(item):
             remedy = f"bake {ocean.name}, or its floating to keys"
             yield Need(other.name, f"floats on {ocean.name}, which is computed live", remedy)
+
+
+def _reads(item: bpy.types.Object, oceans: Sequence[bpy.types.Object]) -> bool:
+    """Whether a modifier of an object has one of some oceans as an input."""
+    nodes = (each for each in item.modifiers if each.type == "NODES" and each.node_group is not None)
+    return any(ocean in all_inputs(modifier).values() for modifier in nodes for ocean in oceans)
+
+
+def _concerns(update: bpy.types.DepsgraphUpdate) -> bool:
+    item = update.id.original
+    if not isinstance(item, bpy.types.Object) or was_ocean(item):  # an ocean's own changes are told
+        return False
+    if update.is_updated_transform and not update.is_updated_geometry:
+        return False
+    return item.session_uid in _seen.readers or any(each.type == "NODES" for each in item.modifiers)

@@ -15,10 +15,10 @@ from .cache_place import new_uid
 from .camera_surface import camera_surface_of, remove_camera_surface
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
 from .modifiers import Textures
-from .refresh import EXPECTED_ERRORS, refresh, refresh_and_tell
+from .refresh import EXPECTED_ERRORS, refresh
 from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
 
-__all__ = ["EXPECTED_ERRORS", "add", "end", "refresh", "refresh_and_tell", "use_sequence"]
+__all__ = ["EXPECTED_ERRORS", "add", "end", "use_sequence"]
 
 _log = logging.getLogger(__name__)
 

@@ -55,16 +55,15 @@ def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
     return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
 
 
-def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None, coarse: bool = False) -> None:
+def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
     """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
 
     points : baked ones that they read
-    coarse : a parameter is dragged: they wait until all samples are wanted
 
     Raises MemoryError for a patch too large, OceanObjectError for masks that part the sea too often.
     """
     # a linked ocean shows what its own file holds: Blender drops changes to it
-    if coarse or ocean.library is not None:
+    if ocean.library is not None:
         return
     surface = camera_surface_of(ocean)
     parameters = plan.parameters if points is None else points.parameters
@@ -85,10 +84,9 @@ def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None, coarse: 
         set_inputs(_modifier_of(surface), {**inputs, "Weights": weighted})
 
 
-def are_baked(ocean: bpy.types.Object) -> bool:
-    """Whether files move the meshes of an ocean's patches, without anybody's help."""
-    items = patches_of(ocean).values()
-    return bool(items) and all(patch_points.modifier_of(item) is not None for item in items)
+def are_live(ocean: bpy.types.Object) -> bool:
+    """Whether an ocean has patches that no files move."""
+    return any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
 
 
 def remove(ocean: bpy.types.Object) -> None:

@@ -9,73 +9,86 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import bpy
 
-from ..core import OceanParameters
-from . import bake_state, evaluation
+from . import evaluation
 from .refresh import (
     EXPECTED_ERRORS,
+    Wanted,
     foam_job,
     has_statistics,
-    refresh_and_tell,
+    refresh,
+    statistics_job,
     tell,
     waves_job,
 )
-from .settings import OceanSettings, all_oceans, scene_of, set_changed, settings_of
+from .settings import OceanSettings, all_oceans, scene_of
 
 # s without a change after which all samples are shown
 PAUSE = 0.15
 # s between two looks at what is to be done
 _INTERVAL = 0.05
 
+#: what follows, and what makes it; none of it touches data of Blender while it is made
+_JOBS: dict[Wanted, Callable[[bpy.types.Object, bpy.types.Scene], Callable[[], object] | None]] = {
+    Wanted.SAMPLES: waves_job,
+    Wanted.HISTORY: foam_job,
+    Wanted.STATISTICS: statistics_job,
+}
+#: what waits for all samples
+_AFTER_SAMPLES = Wanted.SAMPLES | Wanted.PATCHES | Wanted.NEIGHBOURS
+_NOTHING = Wanted(0)
+
 
 @dataclass
 class _Outstanding:
     """What is still to be done, by the object's session uid.
 
-    coarse : when all samples are due
-    preparing : the waves of all samples that are being made
-    uncounted : oceans whose statistics are to be made
-    counting : sea and result of those that are being made
-    foamless : oceans whose foam lacks its history
-    foaming : the foam that is being made
-    worker : the thread that makes waves, foam and statistics; they touch no data of Blender
+    missing : what an ocean lacks, of what _JOBS make
+    due : when all samples are wanted
+    making : what is being made
+    worker : the thread that makes it
     """
 
-    coarse: dict[int, float] = field(default_factory=dict)
-    preparing: dict[int, Future[object]] = field(default_factory=dict)
-    uncounted: set[int] = field(default_factory=set)
-    counting: dict[int, tuple[OceanParameters, Future[str]]] = field(default_factory=dict)
-    foamless: set[int] = field(default_factory=set)
-    foaming: dict[int, Future[object]] = field(default_factory=dict)
+    missing: dict[int, Wanted] = field(default_factory=dict)
+    due: dict[int, float] = field(default_factory=dict)
+    making: dict[tuple[int, Wanted], Future[Any]] = field(default_factory=dict)
     worker: ThreadPoolExecutor | None = None
 
     @property
     def uids(self) -> set[int]:
         """Objects with something to be done."""
-        return {*self.coarse, *self.preparing, *self.uncounted, *self.counting, *self.foamless, *self.foaming}
+        return {*self.missing, *(uid for uid, _ in self.making)}
+
+    def lacks(self, uid: int, parts: Wanted) -> bool:
+        """Whether an object lacks any of some parts."""
+        return bool(self.missing.get(uid, _NOTHING) & parts)
+
+    def note(self, uid: int, parts: Wanted, is_missing: bool) -> None:
+        """An object lacks these parts now, or does not any more."""
+        before = self.missing.pop(uid, _NOTHING)
+        left = before | parts if is_missing else before & ~parts
+        if left:
+            self.missing[uid] = left
 
     def keep_only(self, uids: Iterable[int]) -> None:
         """Forget objects that are gone."""
         for uid in self.uids.difference(uids):
-            self.coarse.pop(uid, None)
-            self.preparing.pop(uid, None)
-            self.uncounted.discard(uid)
-            self.counting.pop(uid, None)
-            self.foamless.discard(uid)
-            self.foaming.pop(uid, None)
+            self.missing.pop(uid, None)
+            self.due.pop(uid, None)
+            for part in _JOBS:
+                self.making.pop((uid, part), None)
 
-    def submit(self, job: Callable[[], object]) -> Future[Any]:
-        """Let the thread do something."""
+    def submit(self, uid: int, part: Wanted, job: Callable[[], object]) -> None:
+        """Let the thread make something."""
         if self.worker is None:
             self.worker = ThreadPoolExecutor(1, "Ocean Tweak")
-        return self.worker.submit(job)
+        self.making[uid, part] = self.worker.submit(job)
 
     def clear(self) -> None:
         """Forget all objects, and end the thread."""
@@ -91,41 +104,52 @@ _outstanding = _Outstanding()
 def show(
     item: bpy.types.Object,
     scene: bpy.types.Scene,
-    dragged: bool = False,
+    wanted: Wanted = Wanted.ALL,
     shown: OceanSettings | None = None,
 ) -> None:
-    """Refresh an ocean, now or in two steps; what is wrong with it is kept in `error`.
+    """Bring what is wanted of an ocean into step with its settings and the scene's frame: what takes long
+    follows where somebody looks on. What is wrong with the ocean is kept in `error`.
 
-    dragged : a setting changed, and it may change again within a moment
+    Everything that happens to an ocean comes here: a changed setting, a frame, a render, an opened file.
+
     shown : the settings as animation makes them, where it does
     """
     if not has_window():
         # statistics of each frame of an animated sea would cost more than the frame
-        refresh_and_tell(item, scene, statistics=shown is None, shown=shown)
+        _show_now(item, scene, wanted if shown is None else wanted & ~Wanted.STATISTICS, shown)
         return
     uid = item.session_uid
-    in_window = threading.current_thread() is threading.main_thread()
-    # a render's frame is complete, it needs no statistics, and timers belong to the main thread
-    coarse = dragged or uid in _outstanding.coarse
-    complete = refresh_and_tell(
-        item, scene, coarse=coarse, statistics=False, patient=not in_window, shown=shown
-    )
-    if not in_window:
+    now = wanted & ~Wanted.STATISTICS
+    if Wanted.RENDER in wanted:  # which does not wait
+        late = Wanted.ALL & ~Wanted.STATISTICS if is_unfinished(item) else _NOTHING
+        _show_now(item, scene, now | late, shown)
         return
-    if dragged:
-        _outstanding.coarse[uid] = time.monotonic() + PAUSE
-    if dragged or not (_is_playing() or has_statistics(item, scene)):
-        _outstanding.uncounted.add(uid)
-    _note_foam(uid, complete)
+    if Wanted.BY_HAND in wanted or _outstanding.lacks(uid, Wanted.SAMPLES):
+        now &= ~_AFTER_SAMPLES
+    # the frame of a render from the window is made on another thread: it is complete, and timers belong here
+    in_window = threading.current_thread() is threading.main_thread()
+    missing = _show_now(item, scene, now & ~Wanted.HISTORY if in_window else now, shown)
+    if not in_window or Wanted.SURFACE not in wanted:
+        return
+    if Wanted.BY_HAND in wanted:
+        _outstanding.due[uid] = time.monotonic() + PAUSE
+        _outstanding.note(uid, Wanted.SAMPLES | Wanted.STATISTICS, True)
+    elif not (_is_playing() or has_statistics(item, scene)):
+        _outstanding.note(uid, Wanted.STATISTICS, True)
+    _outstanding.note(uid, Wanted.HISTORY, Wanted.HISTORY in missing)
     if uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):
         bpy.app.timers.register(go_on, first_interval=_INTERVAL)
 
 
-def _note_foam(uid: int, complete: bool) -> None:
-    if complete:
-        _outstanding.foamless.discard(uid)
-    else:
-        _outstanding.foamless.add(uid)
+def _show_now(
+    item: bpy.types.Object, scene: bpy.types.Scene, wanted: Wanted, shown: OceanSettings | None = None
+) -> Wanted:
+    """Refresh, and keep what is wrong. Returns what is missing."""
+    try:
+        return refresh(item, scene, wanted, shown)
+    except EXPECTED_ERRORS as error:
+        tell(item, error)
+    return _NOTHING
 
 
 def _is_playing() -> bool:
@@ -139,8 +163,7 @@ def has_window() -> bool:
 
 def is_unfinished(item: bpy.types.Object) -> bool:
     """Whether the viewport will show more in a moment: all samples, or foam with its history."""
-    uid = item.session_uid
-    return uid in _outstanding.coarse or uid in _outstanding.foamless
+    return _outstanding.lacks(item.session_uid, Wanted.SAMPLES | Wanted.HISTORY)
 
 
 def is_outstanding(item: bpy.types.Object) -> bool:
@@ -161,96 +184,62 @@ def go_on() -> float | None:
         return 10 * _INTERVAL
     oceans = {item.session_uid: item for item in all_oceans() if item.users_scene}
     _outstanding.keep_only(oceans)
-    done = [*_show_all_samples(oceans), *_take_foam(oceans), *_take_statistics(oceans)]
-    _start_waves(oceans)
-    _start_foam(oceans)
-    _start_statistics(oceans)
-    if done:
+    made = [key for key, future in _outstanding.making.items() if future.done()]
+    for uid, part in made:
+        _take(oceans[uid], part, _outstanding.making.pop((uid, part)))
+    for uid, parts in list(_outstanding.missing.items()):
+        for part in parts:
+            _start(oceans[uid], part)
+    if made:
         _redraw_panels()
     return _INTERVAL if _outstanding.uids else None
 
 
-def _start_waves(oceans: dict[int, bpy.types.Object]) -> None:
-    now = time.monotonic()
-    for uid, due in list(_outstanding.coarse.items()):
-        if due > now or uid in _outstanding.preparing:
-            continue
-        try:
-            job = waves_job(oceans[uid], scene_of(oceans[uid]))
-        except EXPECTED_ERRORS as error:
-            del _outstanding.coarse[uid]
-            tell(oceans[uid], error)
-        else:
-            _outstanding.preparing[uid] = _outstanding.submit(job)
+def _start(item: bpy.types.Object, part: Wanted) -> None:
+    """Let something be made that an ocean lacks, unless it is, or has to wait."""
+    uid = item.session_uid
+    if part is Wanted.SAMPLES:
+        has_to_wait = _outstanding.due[uid] > time.monotonic()
+    else:
+        has_to_wait = _outstanding.lacks(uid, Wanted.SAMPLES)
+    if has_to_wait or (uid, part) in _outstanding.making:
+        return
+    try:
+        job = _JOBS[part](item, scene_of(item))
+    except EXPECTED_ERRORS as error:
+        _fail(item, part, error)
+        return
+    if job is None:
+        _outstanding.note(uid, part, False)
+    else:
+        _outstanding.submit(uid, part, job)
 
 
-def _show_all_samples(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
-    for uid, future in list(_outstanding.preparing.items()):
-        if not future.done():
-            continue
-        del _outstanding.preparing[uid]
-        if _outstanding.coarse.get(uid, 0.0) > time.monotonic():
-            continue  # another sea was set meanwhile
-        _outstanding.coarse.pop(uid, None)
-        _refresh(uid, oceans[uid])  # tells what went wrong with the waves, too
-        yield uid
+def _take(item: bpy.types.Object, part: Wanted, future: Future[Any]) -> None:
+    """Show what was made for an ocean, unless another sea was set meanwhile: then it is made anew."""
+    uid = item.session_uid
+    if part is Wanted.SAMPLES:
+        if _outstanding.due[uid] > time.monotonic():
+            return
+    elif part is Wanted.HISTORY and _outstanding.lacks(uid, Wanted.SAMPLES):
+        return
+    try:
+        made = future.result()
+    except EXPECTED_ERRORS as error:
+        _fail(item, part, error)
+        return
+    if part is Wanted.STATISTICS:
+        evaluation.keep_statistics(*made)  # and shown where they are looked for next
+        return
+    _outstanding.note(uid, part, False)
+    # the history is there now, unless time has jumped again
+    missing = _show_now(item, scene_of(item), Wanted.ALL & ~(Wanted.STATISTICS | Wanted.HISTORY))
+    _outstanding.note(uid, Wanted.HISTORY, Wanted.HISTORY in missing)
 
 
-def _refresh(uid: int, item: bpy.types.Object) -> None:
-    _note_foam(uid, refresh_and_tell(item, scene_of(item), statistics=False, patient=False))
-
-
-def _start_foam(oceans: dict[int, bpy.types.Object]) -> None:
-    for uid in _outstanding.foamless - _outstanding.coarse.keys() - _outstanding.foaming.keys():
-        try:
-            job = foam_job(oceans[uid], scene_of(oceans[uid]))
-        except EXPECTED_ERRORS as error:
-            _outstanding.foamless.discard(uid)
-            tell(oceans[uid], error)
-        else:
-            _outstanding.foaming[uid] = _outstanding.submit(job)
-
-
-def _take_foam(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
-    for uid, future in list(_outstanding.foaming.items()):
-        if not future.done():
-            continue
-        del _outstanding.foaming[uid]
-        try:
-            future.result()
-        except EXPECTED_ERRORS as error:
-            _outstanding.foamless.discard(uid)
-            tell(oceans[uid], error)
-        else:
-            _refresh(uid, oceans[uid])  # the history is there now, unless time has jumped again
-        yield uid
-
-
-def _start_statistics(oceans: dict[int, bpy.types.Object]) -> None:
-    for uid in _outstanding.uncounted - _outstanding.coarse.keys() - _outstanding.counting.keys():
-        _outstanding.uncounted.discard(uid)
-        item = oceans[uid]
-        if has_statistics(item, scene_of(item)):
-            continue
-        parameters = bake_state.shown_parameters(settings_of(item), scene_of(item))
-        future = _outstanding.submit(partial(evaluation.computed_statistics, parameters))
-        _outstanding.counting[uid] = (parameters, future)
-
-
-def _take_statistics(oceans: dict[int, bpy.types.Object]) -> Iterator[int]:
-    for uid, (parameters, future) in list(_outstanding.counting.items()):
-        if not future.done():
-            continue
-        del _outstanding.counting[uid]
-        try:
-            text = future.result()
-        except EXPECTED_ERRORS as error:
-            tell(oceans[uid], error)
-        else:
-            evaluation.keep_statistics(parameters, text)
-            if uid not in _outstanding.uncounted:  # otherwise another sea was set meanwhile
-                set_changed(settings_of(oceans[uid]), statistics=text)
-        yield uid
+def _fail(item: bpy.types.Object, part: Wanted, error: BaseException) -> None:
+    _outstanding.note(item.session_uid, part, False)
+    tell(item, error)
 
 
 def _redraw_panels() -> None:

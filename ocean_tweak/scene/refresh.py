@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from enum import Flag, auto
 
 import bpy
 import numpy as np
 
-from ..core import ParameterError
+from ..core import OceanParameters, ParameterError
 from ..core.channels import CHANNELS, channels_of, image_of
 from ..core.frames import format_frames
 from . import (
@@ -20,6 +21,7 @@ from . import (
     image_sequence,
     live_image,
     modifiers,
+    needs,
     ownership,
     patch_objects,
     patch_points,
@@ -42,124 +44,146 @@ _NO_SEQUENCE = "No image sequence is chosen: choose a baked one, or go back to l
 _turn = threading.RLock()
 
 
-def refresh_and_tell(
-    item: bpy.types.Object,
-    scene: bpy.types.Scene,
-    coarse: bool = False,
-    statistics: bool = True,
-    patient: bool = True,
-    shown: OceanSettings | None = None,
-) -> bool:
-    """Refresh an ocean; what is wrong with its settings is kept in `error`, for the panel to show."""
-    try:
-        return refresh(item, scene, coarse, statistics, patient, shown)
-    except EXPECTED_ERRORS as error:
-        tell(item, error)
-    return True
+class Wanted(Flag):
+    """What of an ocean is to be as its settings and its scene's frame say.
+
+    SURFACE : the viewport's mesh, and what moves it: modifiers, attributes and images
+    SAMPLES : all samples of a live surface; without it, it has few, on the same mesh
+    HISTORY : foam that remembers, however long that takes; without it, only where it is quickly made
+    STATISTICS : those of the sea; without it, only where they are known
+    PATCHES : meshes of the patches, of which a surface around the camera is made
+    FILES : the note of the file that the present frame lacks
+    BAKE : the notes of the sea that the shown bake is of, and of what differs in the settings
+    NEIGHBOURS : the notes of the objects that go with an ocean
+    RENDER : what a render shows, where the viewport does not show the same
+    HELD : the sea of a live ocean on its mesh, which a file keeps: images are saved without texels. It is
+        what a Blender without the extension shows
+    BY_HAND : nothing by itself; a setting was changed, and it may be changed again within a moment
+    """
+
+    SURFACE = auto()
+    SAMPLES = auto()
+    HISTORY = auto()
+    STATISTICS = auto()
+    PATCHES = auto()
+    FILES = auto()
+    BAKE = auto()
+    NEIGHBOURS = auto()
+    RENDER = auto()
+    HELD = auto()
+    BY_HAND = auto()
+    NOTES = FILES | BAKE | NEIGHBOURS
+    ALL = SURFACE | SAMPLES | HISTORY | STATISTICS | PATCHES | NOTES
+    CHANGE = ALL | BY_HAND
+
+
+_NOTHING = Wanted(0)
+_OF_SEA = Wanted.SURFACE | Wanted.PATCHES | Wanted.RENDER
+
+
+def of_a_frame(item: bpy.types.Object) -> Wanted:
+    """What another frame changes of an ocean: Blender itself reads the files of one that is baked.
+
+    Its patches are live where there are no files of their points.
+    """
+    if is_live(item):
+        return Wanted.ALL & ~Wanted.NEIGHBOURS
+    wanted = Wanted.FILES
+    if bake_state.moves(item):
+        wanted |= Wanted.BAKE
+    if patch_objects.are_live(item):
+        wanted |= Wanted.PATCHES
+    return wanted
+
+
+def is_live(item: bpy.types.Object) -> bool:
+    """Whether an ocean is computed, not read from files."""
+    return settings_of(item).source == "LIVE"
 
 
 def refresh(
     item: bpy.types.Object,
     scene: bpy.types.Scene,
-    coarse: bool = False,
-    statistics: bool = True,
-    patient: bool = True,
+    wanted: Wanted = Wanted.ALL,
     shown: OceanSettings | None = None,
-) -> bool:
-    """Show the ocean's present settings and frame in the viewport, and prepare its render.
+) -> Wanted:
+    """Bring what is wanted of an ocean into step with its settings and the scene's frame, now.
 
-    coarse : show a surface of few samples, on the same mesh
-    statistics : bring these up to date too; otherwise they are only where they are known
-    patient : otherwise foam is shown without its history where that would take long
     shown : the settings as animation makes them, where it does
 
-    Returns whether all is shown as it should be. Raises ParameterError, SequenceError or MemoryError, and
-    then leaves the ocean as it was.
+    Returns what of the viewport is still to come: HISTORY where foam is shown without it. Raises
+    ParameterError, SequenceError or MemoryError, and then leaves the surface as it was.
     """
     with _turn:
         settings = settings_of(item)
-        plan = plan_of(shown or settings, scene)
-        counted = (
-            bake_state.shown_parameters(settings, scene) if settings.source != "LIVE" else plan.parameters
-        )
-        text = (evaluation.statistics_of if statistics else evaluation.known_statistics)(counted)
-        complete = True
-        if settings.source == "LIVE":
-            complete = _refresh_live(item, settings, plan, scene, coarse, patient)
-            # a render from the window runs the frame handler on its own thread
-            set_changed(scene.render, use_lock_interface=True)
-        else:
-            _refresh_baked(item, settings, plan, scene)
-        patch_objects.refresh(item, plan, patch_points.points_of(settings, plan, scene), coarse)
-        check_files(item, scene)
-        bake_state.check(item, scene, shown)
-        if text is not None:
-            evaluation.keep_statistics(counted, text)
-            set_changed(settings, statistics=text)
-        set_changed(settings, error="")
+        if Wanted.HELD in wanted:
+            _hold(item, settings, scene)
+        missing = _refresh_sea(item, settings, scene, wanted, shown) if wanted & _OF_SEA else _NOTHING
+        if Wanted.FILES in wanted:
+            _note_files(item, scene)
+        if Wanted.BAKE in wanted:
+            bake_state.check(item, scene, shown)
+        if Wanted.NEIGHBOURS in wanted:
+            needs.look_at(item)
+        if wanted & (Wanted.SURFACE | Wanted.FILES):
+            alarm.follow(item)
+    return missing
+
+
+def _refresh_sea(
+    item: bpy.types.Object,
+    settings: OceanSettings,
+    scene: bpy.types.Scene,
+    wanted: Wanted,
+    shown: OceanSettings | None,
+) -> Wanted:
+    """Show the waves in viewport, patches and render. Returns what is still to come."""
+    plan, missing, is_baked = plan_of(shown or settings, scene), _NOTHING, settings.source != "LIVE"
+    text = _statistics(settings, plan, scene, wanted) if Wanted.SURFACE in wanted else None
+    if Wanted.SURFACE in wanted and is_baked:
+        _refresh_baked(item, settings, plan, scene)
+    elif Wanted.SURFACE in wanted:
+        missing = _refresh_live(item, settings, plan, scene, wanted)
+        # a render from the window runs the frame handler on its own thread
+        set_changed(scene.render, use_lock_interface=True)
+    if Wanted.PATCHES in wanted:
+        patch_objects.refresh(item, plan, patch_points.points_of(settings, plan, scene))
+    if Wanted.RENDER in wanted and plan.has_own_render and not is_baked:
+        _write_render(settings, plan)
+    if Wanted.SURFACE in wanted:
+        set_changed(settings, error="", **({} if text is None else {"statistics": text}))
         alarm.is_well(item)
-    return complete
+    return missing
 
 
-def refresh_patches(
-    item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings | None = None
-) -> None:
-    """Show the present frame on the meshes of the patches, where an ocean has such; all else stays.
+def _statistics(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, wanted: Wanted) -> str | None:
+    """Those of the sea that is shown, as JSON; None where they are not known, and not wanted."""
+    counted = plan.parameters if settings.source == "LIVE" else bake_state.shown_parameters(settings, scene)
+    if Wanted.STATISTICS not in wanted:
+        return evaluation.known_statistics(counted)
+    text = evaluation.statistics_of(counted)
+    evaluation.keep_statistics(counted, text)
+    return text
 
-    They are live where files without points move the ocean's own mesh. What is wrong is kept in `error`.
 
-    shown : the settings as animation makes them, where it does
-    """
-    with _turn:
-        if not patch_objects.patches_of(item) or patch_objects.are_baked(item):
+def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> None:
+    """Put the sea that a live ocean of this file shows on its mesh."""
+    if settings.source != "LIVE" or item.library is not None:
+        return
+    textures = Textures(settings.texture, settings.render_texture)
+    modifiers.tell_held_frame(item, textures, scene.frame_current)
+    try:
+        plan = plan_of(settings, scene)
+        if settings.method == "NODES" and vertex_attributes.can_hold(item.data, plan.viewport):
             return
-        try:
-            patch_objects.refresh(item, plan_of(shown or settings_of(item), scene), None)
-        except EXPECTED_ERRORS as error:
-            tell(item, error)
+        fields, _ = _viewport_fields(plan, Wanted.SAMPLES)
+    except EXPECTED_ERRORS:  # the panel tells
+        return
+    if grid_mesh.is_current(item.data, plan.viewport) and not item.data.is_editmode:
+        vertex_attributes.write(item.data, _on_vertices(fields, plan))
 
 
-def refresh_render(
-    item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings | None = None
-) -> None:
-    """Make the present frame for a render, where the viewport does not show the same; texels that are there
-    stay. What is wrong with the settings is kept in `error`.
-
-    shown : the settings as animation makes them, where it does
-    """
-    with _turn:
-        settings = settings_of(item)
-        if settings.source != "LIVE":
-            return
-        try:
-            plan = plan_of(shown or settings, scene)
-            if plan.has_own_render:
-                _write_render(settings, plan)
-        except EXPECTED_ERRORS as error:
-            tell(item, error)
-
-
-def hold(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Put the sea that a live ocean shows on its mesh, which a file keeps: images are saved without texels.
-
-    It is what a Blender without the extension shows.
-    """
-    with _turn:
-        settings = settings_of(item)
-        textures = Textures(settings.texture, settings.render_texture)
-        modifiers.tell_held_frame(item, textures, scene.frame_current)
-        try:
-            plan = plan_of(settings, scene)
-            if settings.method == "NODES" and vertex_attributes.can_hold(item.data, plan.viewport):
-                return
-            fields, _ = _viewport_fields(plan, coarse=False, patient=False)
-        except EXPECTED_ERRORS:  # the panel tells
-            return
-        if grid_mesh.is_current(item.data, plan.viewport) and not item.data.is_editmode:
-            vertex_attributes.write(item.data, _on_vertices(fields, plan))
-
-
-def check_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
+def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Keep for the panel which file of the present frame is not there, and let the console hear it."""
     settings, file = settings_of(item), None
     if settings.source == "SEQUENCE":
@@ -189,18 +213,34 @@ def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
 
 
 def waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """What makes the waves of all the viewport's samples, before any surface of them; as `foam_job`."""
+    """What makes the waves of all the viewport's samples, before any surface of them.
+
+    As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
+    OceanObjectError for settings that are no sea.
+    """
     return evaluation.sea_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
 
 
 def foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """What makes the foam that the viewport lacks; it touches no data of Blender and may run on any thread.
-
-    Raises ParameterError or OceanObjectError for settings that are no sea.
-    """
+    """What makes the foam that the viewport lacks; raises as `waves_job`."""
     plan = plan_of(settings_of(item), scene)
     maker = evaluation.sea_of(plan.viewport_sea()).foam_of(plan.is_whole)
     return lambda: maker.at(plan.time)
+
+
+def statistics_job(
+    item: bpy.types.Object, scene: bpy.types.Scene
+) -> Callable[[], tuple[OceanParameters, str]] | None:
+    """What makes the statistics of the sea that is shown; None, and they are shown, where they are known."""
+    settings = settings_of(item)
+    if settings.error:
+        return None
+    parameters = bake_state.shown_parameters(settings, scene)
+    text = evaluation.known_statistics(parameters)
+    if text is None:
+        return lambda: (parameters, evaluation.computed_statistics(parameters))
+    set_changed(settings, statistics=text)
+    return None
 
 
 def tell(item: bpy.types.Object, error: BaseException) -> None:
@@ -215,11 +255,10 @@ def _refresh_live(
     settings: OceanSettings,
     plan: Plan,
     scene: bpy.types.Scene,
-    coarse: bool,
-    patient: bool,
-) -> bool:
+    wanted: Wanted,
+) -> Wanted:
     grid = plan.viewport
-    fields, complete = _viewport_fields(plan, coarse, patient)
+    fields, is_complete = _viewport_fields(plan, wanted)
     _refresh_mesh(item, grid)
     by_attributes = settings.method == "NODES" and vertex_attributes.can_hold(item.data, grid)
     if by_attributes:
@@ -254,7 +293,7 @@ def _refresh_live(
             warn=False,
         ),
     )
-    return complete
+    return _NOTHING if is_complete else Wanted.HISTORY
 
 
 def _refresh_baked(
@@ -286,14 +325,15 @@ def _refresh_baked(
     )
 
 
-def _viewport_fields(plan: Plan, coarse: bool, patient: bool) -> tuple[Fields, bool]:
+def _viewport_fields(plan: Plan, wanted: Wanted) -> tuple[Fields, bool]:
     """(samples+1, samples+1, …) by output, m; and whether they are all that they will be."""
-    sea = evaluation.sea_of(plan.viewport_sea(coarse))
-    fields, complete = sea.fields(plan.time, plan.channels, plan.is_whole, patient=patient and not coarse)
+    patient = Wanted.SAMPLES | Wanted.HISTORY in wanted
+    sea = evaluation.sea_of(plan.viewport_sea(coarse=Wanted.SAMPLES not in wanted))
+    fields, is_complete = sea.fields(plan.time, plan.channels, plan.is_whole, patient)
     samples = plan.viewport.samples
     if sea.ocean.parameters.resolution != samples:
         fields = {name: resampled(field, samples) for name, field in fields.items()}
-    return _in_scene_time(fields, plan), complete
+    return _in_scene_time(fields, plan), is_complete
 
 
 def _in_scene_time(fields: Fields, plan: Plan) -> Fields:

@@ -6,7 +6,8 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import IntProperty
 
 from ..core import ParameterError
-from ..scene.camera_surface import add_camera_surface, camera_surface_of, remove_camera_surface
+from ..scene.camera_surface import add_camera_surface, remove_camera_surface
+from ..scene.needs import neighbours_of
 from ..scene.settings import OceanObjectError
 from .active_ocean import OfActiveOcean, refuse
 
@@ -33,7 +34,7 @@ class OCEAN_OT_add_camera_surface(OfActiveOcean, bpy.types.Operator):
         """An ocean of this file is active, and has none yet."""
         if not super().poll(context):
             return False
-        if camera_surface_of(context.active_object) is not None:
+        if neighbours_of(context.active_object).has_surface:
             cls.poll_message_set("The ocean has a camera surface already")
             return False
         return True
@@ -63,7 +64,7 @@ class OCEAN_OT_remove_camera_surface(OfActiveOcean, bpy.types.Operator):
         """An ocean of this file is active, and has one."""
         if not super().poll(context):
             return False
-        if camera_surface_of(context.active_object) is None:
+        if not neighbours_of(context.active_object).has_surface:
             cls.poll_message_set("The ocean has no camera surface")
             return False
         return True
@@ -76,9 +77,8 @@ class OCEAN_OT_remove_camera_surface(OfActiveOcean, bpy.types.Operator):
 
 def draw_camera_surface(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
     """Draw the button that makes it, or the one that takes it away."""
-    there = camera_surface_of(item) is not None
-    kind = OCEAN_OT_remove_camera_surface if there else OCEAN_OT_add_camera_surface
-    layout.operator(kind.bl_idname, icon="X" if there else "CAMERA_DATA")
+    kind = OCEAN_OT_remove_camera_surface if neighbours_of(item).has_surface else OCEAN_OT_add_camera_surface
+    layout.operator(kind.bl_idname, icon="X" if kind is OCEAN_OT_remove_camera_surface else "CAMERA_DATA")
 
 
 CLASSES = (OCEAN_OT_add_camera_surface, OCEAN_OT_remove_camera_surface)

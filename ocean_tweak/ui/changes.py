@@ -5,8 +5,9 @@ from collections.abc import Callable
 
 import bpy
 
-from ..scene import bake_state, bake_versions, stored_paths
+from ..scene import bake_versions, stored_paths
 from ..scene.refinement import show
+from ..scene.refresh import Wanted
 from ..scene.settings import scene_of
 
 
@@ -20,7 +21,7 @@ def changed(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None
     if settings.preset:
         settings.preset = ""
     if item.users_scene:
-        show(item, scene_of(item), dragged=True)
+        show(item, scene_of(item), Wanted.CHANGE)
 
 
 def path_changed(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
@@ -35,6 +36,6 @@ def path_changed(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Cont
         if kept != path:
             setattr(group, name, kept)  # which updates
         elif group.id_data.users_scene:
-            bake_state.check(group.id_data, scene_of(group.id_data))
+            show(group.id_data, scene_of(group.id_data), Wanted.BAKE)
 
     return update

@@ -10,6 +10,8 @@ from ..core.frames import format_frames
 from ..export.exr import ExrError
 from ..scene import bake_state, ocean_object
 from ..scene.image_sequence import find_sequence
+from ..scene.refinement import show
+from ..scene.refresh import Wanted
 from ..scene.settings import settings_of
 from ..scene.shots import animate
 from .active_ocean import OfActiveOcean, refuse
@@ -96,7 +98,7 @@ class OCEAN_OT_settings_from_bake(OfActiveOcean, bpy.types.Operator):
         except ocean_object.EXPECTED_ERRORS as error:
             return refuse(self, error)
         animate(item, scene, shot)
-        bake_state.check(item, scene)
+        show(item, scene, Wanted.BAKE)
         return {"FINISHED"}
 
 

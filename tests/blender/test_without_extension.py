@@ -211,7 +211,7 @@ def test_what_needs_the_extension_is_named(horizon, extension, tmp_path, capsys)
     assert "computed live" not in job()
     for path in tmp_path.rglob("bake.json"):
         path.unlink()
-    extension("scene.ocean_object").refresh(ocean, bpy.context.scene)
+    extension("scene.refresh").refresh(ocean, bpy.context.scene)
     (left,) = needs_of(ocean)
     assert left.name == surface.name
     assert "no points" in left.reason

@@ -12,7 +12,7 @@ from ...export.cache.estimate import Estimate, readable_bytes
 from ...nodes.names import MAP_INPUTS
 from ...scene import alarm, bake_process, bake_versions, stored_paths
 from ...scene.image_sequence import baked_frames
-from ...scene.needs import needs_of
+from ...scene.needs import neighbours_of
 from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
 from .. import bake_operators, sequence_operators
@@ -80,7 +80,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _needs(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw what a render needs the extension for."""
-    needs = needs_of(context.active_object)
+    needs = neighbours_of(context.active_object).needs
     if not needs:
         return
     column = layout.column(align=True)
