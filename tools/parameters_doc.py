@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the tables of docs/parameters.md from the parameters themselves: `make docs`."""
+"""Writes the tables of docs/parameters.md and docs/channels.md from what they describe: `make docs`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import sys
 from fractions import Fraction
 from typing import Any
 
+from ocean_tweak.core.channels import CHANNELS, MAPS, Channel
 from ocean_tweak.core.parameters import (
     Foam,
     HeroWave,
@@ -26,8 +27,7 @@ from ocean_tweak.core.raster import Raster
 
 from .project import ROOT
 
-DOCUMENT = ROOT / "docs" / "parameters.md"
-BEGIN = "<!-- tables: written by `make docs` from ocean_tweak/core/parameters.py, not by hand -->"
+BEGIN = "<!-- tables: written by `make docs` from the code, not by hand -->"
 END = "<!-- end of tables -->"
 
 #: class → where its fields stand in JSON
@@ -46,25 +46,54 @@ CLASSES = {
 }
 
 HEAD = "| name | unit | default | allowed | why this range | what it is |\n|---|---|---|---|---|---|"
+CHANNELS_HEAD = (
+    "| output | what it is | numbers | unit | image | attribute in Blender | in USD | adds up |\n"
+    "|---|---|---|---|---|---|---|---|"
+)
 
 
 def main() -> int:
-    """Write the tables into the document."""
-    DOCUMENT.write_text(updated(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
-    print(f"written: {DOCUMENT.relative_to(ROOT)}")
+    """Write the tables into the documents."""
+    for name, made in DOCUMENTS.items():
+        path = ROOT / "docs" / name
+        path.write_text(updated(path.read_text(encoding="utf-8"), made()), encoding="utf-8")
+        print(f"written: {path.relative_to(ROOT)}")
     return 0
 
 
-def updated(document: str) -> str:
-    """Return the document with today's tables between the marks. Raises ValueError without the marks."""
+def updated(document: str, made: str) -> str:
+    """Return a document with tables between the marks. Raises ValueError without the marks."""
     before, _, rest = document.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not end:
-        raise ValueError(f"{DOCUMENT.name} must hold the marks {BEGIN} and {END}")
-    return f"{before}{BEGIN}\n\n{tables()}\n{END}{after}"
+        raise ValueError(f"the document must hold the marks {BEGIN} and {END}")
+    return f"{before}{BEGIN}\n\n{made}\n{END}{after}"
 
 
-def tables() -> str:
+def channels() -> str:
+    """Return the table of all channels."""
+    return "\n".join([CHANNELS_HEAD, *map(_channel_row, CHANNELS.values()), ""])
+
+
+def _channel_row(channel: Channel) -> str:
+    images = []
+    for name, packed in MAPS.items():
+        letters, first = "RGB", 0
+        for each in packed:
+            count = max(CHANNELS[each].components, 1)
+            if each == channel.name:
+                images.append(f"`{name}` {letters[first : first + count]}")
+            first += count
+    where = " of patches" if channel.switch is None else ""
+    cells = [
+        f"`{channel.name}`", channel.text, str(max(channel.components, 1)), channel.unit, ", ".join(images),
+        f"`{channel.attribute}`{where}" if channel.attribute else "",
+        f"`{channel.usd.name}`" if channel.usd else "", "yes" if channel.adds else "",
+    ]  # fmt: skip
+    return "| " + " | ".join(cells) + " |"
+
+
+def parameters() -> str:
     """Return one headed Markdown table for each parameter class."""
     parts = []
     for kind, place in CLASSES.items():
@@ -112,6 +141,9 @@ def _shown(value: Any) -> str:
         return str(int(value))
     return re.sub(r"e([+-])0*", lambda match: "e" + match[1].strip("+"), f"{float(value):g}")
 
+
+#: file in docs/ → what makes its tables
+DOCUMENTS = {"parameters.md": parameters, "channels.md": channels}
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -208,7 +208,7 @@ _ROWS = (
         adds=True, attribute="slope",
     ),
     Channel(
-        "velocity", "of the water", "m/s", 3, VECTOR, velocity, _MOTION,
+        "velocity", "of the water at the surface", "m/s", 3, VECTOR, velocity, _MOTION,
         adds=True, attribute="velocity", switch="use_velocity",
         usd=UsdAttribute("velocities", "Vector3fArray"),
     ),
@@ -283,6 +283,11 @@ def channels_of(maps: Iterable[str]) -> frozenset[str]:
 def unit_of(map_name: str) -> str:
     """Of a map's numbers."""
     return CHANNELS[MAPS[map_name][0]].unit
+
+
+def is_put_together(map_name: str) -> bool:
+    """Whether a map's image is another array than its channel."""
+    return CHANNELS[MAPS[map_name][0]].components != 3
 
 
 def image_of(map_name: str, fields: Fields) -> RealArray:

@@ -84,3 +84,11 @@ def test_oceans_share_an_image_of_the_same_files(ocean_object, bake, make_parame
     ]
     assert len({sea.ocean_tweak.sequence_maps.disp for sea in seas}) == 1
     assert len([image for image in bpy.data.images if image.source == "SEQUENCE"]) == 1
+
+
+def test_the_script_of_farms_knows_the_maps_that_blender_reads(extension):
+    """It is complete by itself: it is not to import the extension."""
+    script = extension("scene.render_baked")
+    for name in extension("nodes.names").MAP_INPUTS:
+        assert script._FILE.fullmatch(f"sea_{name}.0001.exr")["name"] == "sea"
+    assert script._FILE.fullmatch("sea_slope.0001.exr") is None

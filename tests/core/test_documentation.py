@@ -129,12 +129,25 @@ def test_what_is_not_there_is_not_found() -> None:
         assert not check_exists(name), name
 
 
-# docs/parameters.md
+# docs/parameters.md and docs/channels.md
 
 
-def test_tables_of_parameters_are_current() -> None:
-    document = parameters_doc.DOCUMENT.read_text(encoding="utf-8")
-    assert parameters_doc.updated(document) == document, "out of date: run make docs"
+@pytest.mark.parametrize("name", parameters_doc.DOCUMENTS)
+def test_tables_are_current(name: str) -> None:
+    document = (ROOT / "docs" / name).read_text(encoding="utf-8")
+    made = parameters_doc.DOCUMENTS[name]()
+    assert parameters_doc.updated(document, made) == document, "out of date: run make docs"
+
+
+def test_the_table_of_channels_says_where_each_goes() -> None:
+    table = parameters_doc.channels()
+    assert "| 1 | 1 | `foam` G | `cusp` | `primvars:cusp` |  |" in table
+    assert "| 3 | m/s | `vel` RGB | `velocity` | `velocities` | yes |" in table
+    assert "| 2 | 1 | `slope` RG | `slope` of patches |  | yes |" in table
+
+
+def test_every_parameter_stands_in_a_table() -> None:
+    document = (ROOT / "docs" / "parameters.md").read_text(encoding="utf-8")
     for field in ("`resolution`", "`surface_tension`", "`peak_enhancement`", "`start_frame`"):
         assert f"| {field} |" in document
 
@@ -145,13 +158,13 @@ def test_every_kind_of_parameters_has_a_table() -> None:
 
 
 def test_tables_are_made_from_the_fields() -> None:
-    table = parameters_doc.tables()
+    table = parameters_doc.parameters()
     assert "| `depth` | m | 200 | 0.1 … 11000 | from a puddle to the deepest trench |" in table
     assert "| `fetch` | m | 150000 | 0 … 2e7 |" in table
     assert "| `depth_factor` |  | `KITAIGORODSKII` | `KITAIGORODSKII`, `THOMPSON_VINCENT` |" in table
     assert "| `loop_duration` | s | `null` | 0.01 … 1e6, or `null` |" in table
     with pytest.raises(ValueError, match="marks"):
-        parameters_doc.updated("no marks")
+        parameters_doc.updated("no marks", "")
 
 
 def sea(**layer: object) -> OceanParameters:

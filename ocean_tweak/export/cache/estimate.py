@@ -20,7 +20,7 @@ from typing import NamedTuple
 from ...core import Cascade, OceanParameters
 from ...core.bake import ShotSurfaces
 from ...core.cascades.patch_seas import PARTS, parts
-from ...core.channels import FOAM, SurfaceFields
+from ...core.channels import FOAM, SurfaceFields, is_put_together
 from ...core.foam import LATTICE_RATE
 from ...core.foam_field import foam_outlook
 from ...core.frames import Frame
@@ -116,7 +116,7 @@ def process_memory(job: Job) -> int:
     need = memory_need(parameters, job.outputs - {FOAM})
     sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
     samples = max([*sides, parameters.resolution]) ** 2
-    together = {"foam", "slope"} & set(job.maps)
+    together = any(is_put_together(name) for name in job.images)
     writing = (_PUT_TOGETHER if together else _WRITING) * samples
     if PARTS in job.outputs:
         writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
