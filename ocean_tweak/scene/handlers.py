@@ -35,6 +35,7 @@ from . import (
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import Wanted, is_live, of_a_frame
+from .refresh import forget_all as forget_seas
 from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, shown_oceans, was_ocean
 
 # scene settings that change an ocean and have no update callback of ours
@@ -326,6 +327,7 @@ def _has_file() -> bool:
 def _forget_all() -> None:
     alarm.forget_all()
     refinement.forget_all()
+    forget_seas()
     needs.forget_all()
     evaluation.forget_all()
     live_image.forget_all()

@@ -14,7 +14,7 @@ import bpy
 
 from ..nodes.modifier_inputs import all_inputs
 from . import floating, patch_objects
-from .settings import all_oceans, settings_of, was_ocean
+from .settings import all_oceans, oceans_in, settings_of, was_ocean
 
 
 class Need(NamedTuple):
@@ -49,11 +49,13 @@ class _Seen:
     """What was found when it was looked for last.
 
     of : what goes with each ocean, by its session uid
+    scenes : session uids of those that have an ocean
     readers : session uids of the objects whose modifiers read oceans
     objects : how many the file had
     """
 
     of: dict[int, Neighbours] = field(default_factory=dict)
+    scenes: set[int] = field(default_factory=set)
     readers: set[int] = field(default_factory=set)
     objects: int = 0
 
@@ -68,9 +70,17 @@ def neighbours_of(ocean: bpy.types.Object) -> Neighbours:
     return _seen.of.get(ocean.session_uid, Neighbours())
 
 
+def has_ocean(scene: bpy.types.Scene) -> bool:
+    """Whether a scene has an ocean; as `neighbours_of`."""
+    if len(bpy.data.objects) != _seen.objects:
+        look()
+    return scene.session_uid in _seen.scenes
+
+
 def look_at(ocean: bpy.types.Object) -> None:
     """Find what goes with an ocean."""
     has_surface = patch_objects.camera_surface_of(ocean) is not None
+    _seen.scenes.update(scene.session_uid for scene in ocean.users_scene)
     _seen.of[ocean.session_uid] = Neighbours(needs_of(ocean), has_surface)
 
 
@@ -80,6 +90,7 @@ def look() -> None:
     _seen.of.clear()
     _seen.objects = len(bpy.data.objects)
     _seen.readers = {item.session_uid for item in bpy.data.objects if _reads(item, oceans)}
+    _seen.scenes = {scene.session_uid for scene in bpy.data.scenes if any(True for _ in oceans_in(scene))}
     for ocean in oceans:
         look_at(ocean)
 
@@ -92,6 +103,7 @@ def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:
 def forget_all() -> None:
     """Another file is opened, or the extension is disabled."""
     _seen.of.clear()
+    _seen.scenes.clear()
     _seen.readers.clear()
     _seen.objects = 0
 

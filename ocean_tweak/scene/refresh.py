@@ -40,6 +40,8 @@ EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
 
 _NO_SEQUENCE = "No image sequence is chosen: choose a baked one, or go back to live"
 
+# the sea of each ocean's settings, by session uid: panels and views ask for it whenever they are drawn
+_seas: dict[int, OceanParameters] = {}
 # a render from the window refreshes oceans on its own thread, while the window may refresh them too
 _turn = threading.RLock()
 
@@ -122,6 +124,8 @@ def refresh(
         if Wanted.FILES in wanted:
             _note_files(item, scene)
         if Wanted.BAKE in wanted:
+            if not wanted & _OF_SEA:
+                _seas.pop(item.session_uid, None)
             bake_state.check(item, scene, shown)
         if Wanted.NEIGHBOURS in wanted:
             needs.look_at(item)
@@ -139,6 +143,7 @@ def _refresh_sea(
 ) -> Wanted:
     """Show the waves in viewport, patches and render. Returns what is still to come."""
     plan, missing, is_baked = plan_of(shown or settings, scene), _NOTHING, settings.source != "LIVE"
+    _seas[item.session_uid] = plan.parameters
     text = _statistics(settings, plan, scene, wanted) if Wanted.SURFACE in wanted else None
     if Wanted.SURFACE in wanted and is_baked:
         _refresh_baked(item, settings, plan, scene)
@@ -204,6 +209,21 @@ def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     set_changed(settings, missing_file="" if file is None else str(file))
 
 
+def sea_of_settings(item: bpy.types.Object, scene: bpy.types.Scene) -> OceanParameters | None:
+    """The sea of an ocean's settings; None where they are none. It is read once after each change."""
+    if item.session_uid not in _seas and not settings_of(item).error:
+        try:
+            _seas[item.session_uid] = settings_of(item).to_parameters(scene)
+        except ParameterError:
+            return None
+    return _seas.get(item.session_uid)
+
+
+def forget_all() -> None:
+    """Another file is opened, or the extension is disabled."""
+    _seas.clear()
+
+
 def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     """Whether the statistics that the ocean shows are those of its sea, or there can be none."""
     settings = settings_of(item)
@@ -246,6 +266,7 @@ def statistics_job(
 def tell(item: bpy.types.Object, error: BaseException) -> None:
     """Keep what is wrong for the panel, and let the console hear it."""
     text = str(error) or "Not enough memory for this resolution"
+    _seas.pop(item.session_uid, None)
     set_changed(settings_of(item), error=text, statistics="")
     alarm.refused(item, text)
 

@@ -12,7 +12,8 @@ from ..scene import floating
 from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
-from ..scene.settings import OceanObjectError, is_ocean, oceans_in
+from ..scene.needs import has_ocean
+from ..scene.settings import OceanObjectError, is_ocean
 from .active_ocean import refuse
 
 _EXPECTED_ERRORS = (OceanObjectError, ParameterError, MemoryError, OSError)
@@ -74,7 +75,7 @@ class _Rides:
         """There is an ocean, and something else is selected."""
         if context.mode != "OBJECT":
             cls.poll_message_set("Switch to Object Mode")
-        elif not any(True for _ in oceans_in(context.scene)):
+        elif not has_ocean(context.scene):
             cls.poll_message_set("There is no ocean in this scene: add one first")
         elif not context.selected_objects:
             cls.poll_message_set("Select the objects that shall float")

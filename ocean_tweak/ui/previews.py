@@ -21,6 +21,7 @@ class Previews:
     def __init__(self) -> None:
         self._collection: bpy.utils.previews.ImagePreviewCollection | None = None
         self._drawn: OceanParameters | None = None
+        self._asked: OceanParameters | None = None
 
     @property
     def collection(self) -> bpy.utils.previews.ImagePreviewCollection:
@@ -31,10 +32,12 @@ class Previews:
 
     def spectrum(self, parameters: OceanParameters) -> int:
         """Icon of a sea's spectrum; drawn anew where it shows another sea."""
-        shown = _spectral(parameters)
         if _SPECTRUM not in self.collection:
             self.collection.new(_SPECTRUM)
         picture = self.collection[_SPECTRUM]
+        if parameters is self._asked:
+            return int(picture.icon_id)
+        self._asked, shown = parameters, _spectral(parameters)
         if self._drawn != shown:
             picture.image_size = (SIZE, SIZE)
             picture.image_pixels_float.foreach_set(np.ascontiguousarray(spectrum_picture(shown)).reshape(-1))
@@ -54,7 +57,7 @@ class Previews:
         """Give the pictures back to Blender."""
         if self._collection is not None:
             bpy.utils.previews.remove(self._collection)
-        self._collection, self._drawn = None, None
+        self._collection, self._drawn, self._asked = None, None, None
 
 
 def _spectral(parameters: OceanParameters) -> OceanParameters:

@@ -7,9 +7,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import ParameterError, WindFieldLayer
+from ..core import WindFieldLayer
 from ..core.waves.wind_field.wind import bilinear
 from ..scene.animated import clock_of
+from ..scene.refresh import sea_of_settings
 from ..scene.settings import is_ocean, settings_of
 from ..scene.units import metres_per_unit
 
@@ -41,9 +42,8 @@ def lines(item: bpy.types.Object, scene: bpy.types.Scene) -> NDArray[np.float32]
     shown = [layer.wind_field.show_vectors for layer in settings.layers if layer.kind == "WIND_FIELD"]
     if not any(shown):
         return np.zeros((0, 2, 3), np.float32)
-    try:
-        parameters = settings.to_parameters(scene)
-    except ParameterError:
+    parameters = sea_of_settings(item, scene)
+    if parameters is None:
         return np.zeros((0, 2, 3), np.float32)
     time = float(clock_of(settings, scene, parameters.timing.start_frame).time)
     size = parameters.domain_size

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
+from functools import cache
 from types import ModuleType
 from typing import Any
 
@@ -32,5 +34,12 @@ def pxr() -> Any:
 
 
 def is_installed() -> bool:
-    """Whether there is a package `pxr`; it is not loaded."""
+    """Whether there is a package `pxr`; it is not loaded. Folders are looked through once in a session."""
+    if "pxr" in sys.modules:
+        return sys.modules["pxr"] is not None
+    return _is_found()
+
+
+@cache
+def _is_found() -> bool:
     return importlib.util.find_spec("pxr") is not None

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What panels share: where they stand, rows of label and text, and texts that wrap."""
 
+import json
 import re
 import textwrap
+from functools import lru_cache
+from typing import Any
 
 import bpy
 from bpy.app.translations import pgettext_iface as translated
@@ -62,6 +65,12 @@ def active_waves(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
     """The active layer where it is a wave system."""
     layer = active_layer(settings)
     return layer if layer is not None and layer.kind == "WAVES" else None
+
+
+@lru_cache(maxsize=16)
+def parsed(text: str) -> Any:
+    """What a JSON text of the settings says, which nobody changes: it is parsed once, and drawn often."""
+    return json.loads(text)
 
 
 def row(layout: bpy.types.UILayout, label: str, text: str) -> None:

@@ -6,6 +6,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core.waves.hero.outlook import hero_wave_outlooks
 from ...scene import source_images
+from ...scene.refresh import sea_of_settings
 from ...scene.settings import LAYER_KINDS
 from ...scene.units import metres_per_unit
 from .. import layer_operators, wind_operators
@@ -170,7 +171,11 @@ def _draw_hero_wave(
         return
     before = settings.layers[: nearest(settings.active_layer, settings.layers)]
     number = [layer.kind for layer in before].count("HERO_WAVE")
-    (wave,) = (found for found in hero_wave_outlooks(settings.to_parameters(scene)) if found.number == number)
+    sea = sea_of_settings(context.active_object, scene)
+    waves = () if sea is None else hero_wave_outlooks(sea)
+    wave = next((found for found in waves if found.number == number), None)
+    if wave is None:
+        return
     column = layout.column(align=True)
     row(column, "Focus", f"{translated('Frame')} {wave.frame:.6g}")
     row(column, "Crests Run", f"{length_text(scene, wave.phase_speed)}/s")

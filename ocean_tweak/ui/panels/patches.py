@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Patches: what they are planned for, their list, and the active one in full."""
 
-import json
 from typing import Any
 
 import bpy
@@ -12,7 +11,7 @@ from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
 from .. import patch_operators
 from ..active_ocean import nearest
-from .drawing import SubPanel, active_settings, length_text, message, row, split
+from .drawing import SubPanel, active_settings, length_text, message, parsed, row, split
 from .masks import draw_mask
 
 
@@ -101,13 +100,13 @@ def of_patch(settings: OceanSettings, index: int) -> dict[str, Any] | None:
     """What the last change left of one patch's statistics; None where they are not known."""
     if not settings.statistics:
         return None
-    patches: list[dict[str, Any]] = json.loads(settings.statistics).get("patches", [])
+    patches: list[dict[str, Any]] = parsed(settings.statistics).get("patches", [])
     return patches[index] if len(patches) == len(settings.patches) else None
 
 
 def _warnings(settings: OceanSettings, index: int) -> list[str]:
     """What the core warns of in one patch."""
-    warnings: list[str] = json.loads(settings.statistics)["warnings"] if settings.statistics else []
+    warnings: list[str] = parsed(settings.statistics)["warnings"] if settings.statistics else []
     return [warning for warning in warnings if warning.startswith(f"Patch {index + 1}:")]
 
 

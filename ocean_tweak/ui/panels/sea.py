@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The first panel: the few numbers that make a sea, and what they mean right now."""
 
-import json
 import re
 from typing import Any
 
@@ -30,6 +29,7 @@ from .drawing import (
     active_settings,
     length_text,
     message,
+    parsed,
     row,
     speed_text,
     split,
@@ -103,7 +103,7 @@ def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if settings.missing_file:
         message(layout, context, alarm.missing_text(settings), alert=True)
     if settings.bake_differs:
-        found = json.loads(settings.bake_differs)
+        found = parsed(settings.bake_differs)
         shown = "; ".join(_difference(*entry) for entry in found[:_MOST_DIFFERENCES])
         more = len(found) - _MOST_DIFFERENCES
         text = f"Settings differ from the bake, which is shown: {shown}" + (
@@ -171,7 +171,7 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     baked: dict[str, Any] = {}
     if settings.source == "SEQUENCE" and settings.baked_sea:
         column.label(text="The bake", icon="FILE_CACHE")
-        baked = json.loads(settings.baked_sea)
+        baked = parsed(settings.baked_sea)
         for label, text in _baked_rows(context.scene, baked):
             row(column, label, text)
     if refinement.is_outstanding(item):
@@ -180,7 +180,7 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         column.label(text="Not known with these settings", icon="QUESTION")
     if not settings.statistics:
         return
-    values: dict[str, Any] = json.loads(settings.statistics)
+    values: dict[str, Any] = parsed(settings.statistics)
     winds = _baked_winds(baked) if baked else _winds(settings, context.scene)
     for label, text in [*_beaufort(winds), *_rows(context.scene, values)]:
         row(column, label, text)

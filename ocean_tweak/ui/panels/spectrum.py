@@ -3,8 +3,8 @@
 
 import bpy
 
-from ...core import ParameterError
 from ...core.parameters import WaveLayer
+from ...scene.refresh import sea_of_settings
 from ..previews import PREVIEWS
 from .drawing import SubPanel, active_settings, active_waves, split
 
@@ -32,10 +32,8 @@ class OCEAN_PT_spectrum(SubPanel, bpy.types.Panel):
         """Draw energy over period and over direction, then the models."""
         layout = split(self.layout)
         settings = active_settings(context)
-        try:
-            icon = PREVIEWS.spectrum(settings.to_parameters(context.scene))
-        except ParameterError:
-            icon = 0  # the panel above says what is wrong
+        sea = sea_of_settings(context.active_object, context.scene)
+        icon = 0 if sea is None else PREVIEWS.spectrum(sea)  # without a sea the panel above says why
         if icon:
             layout.template_icon(icon_value=icon, scale=_FRACTIONS)
         layer = active_waves(settings)

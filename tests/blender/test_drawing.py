@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels only draw: how much they do depends neither on the size of the file nor on disks."""
+
+import json
+import sys
+from collections import Counter
+from contextlib import contextmanager
+
+import bpy
+import pytest
+
+from .test_panels import draw  # noqa: F401
+
+#: what Python tells its audit hooks of files and folders
+_OF_DISKS = ("open", "os.listdir", "os.scandir", "os.mkdir", "glob.glob")
+_heard = []
+_listening = False
+
+
+def _hear(event, arguments):
+    if _listening and event in _OF_DISKS:
+        _heard.append((event, arguments[0]))
+
+
+sys.addaudithook(_hear)  # there is no way to take it back
+
+
+@contextmanager
+def listening():
+    global _listening
+    _heard.clear()
+    _listening = True
+    try:
+        yield _heard
+    finally:
+        _listening = False
+
+
+def by_function(run):
+    """How many lines of Python a call takes in each function, of whatever module."""
+    counts = Counter()
+
+    def trace(frame, event, _argument):
+        counts[frame.f_code.co_qualname] += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        run()
+    finally:
+        sys.settrace(before)
+    return counts
+
+
+@pytest.fixture
+def everything(extension, draw, ocean):  # noqa: F811
+    """Draws every panel and menu text of an ocean, and asks each operator whether it may run."""
+    bpy.ops.ocean.layer_add(kind="HERO_WAVE")
+    bpy.ops.ocean.patch_add()
+    classes = extension("registration").CLASSES
+    operators = [each for each in classes if issubclass(each, bpy.types.Operator) and hasattr(each, "poll")]
+    assert len(operators) > 30
+    overlays = extension("ui.error_overlay"), extension("ui.wind_overlay")
+
+    def run():
+        drawn = draw(ocean)
+        for operator in operators:
+            operator.poll(bpy.context)
+        overlays[0].lines(500.0)
+        overlays[1].lines(ocean, bpy.context.scene)
+        return drawn
+
+    return run
+
+
+def add_objects(count):
+    """Objects as a large scene has them: some with modifiers, most of them children of others."""
+    parent = None
+    for number in range(count):
+        item = bpy.data.objects.new(f"Grass {number}", bpy.data.meshes.new("Grass"))
+        bpy.context.scene.collection.objects.link(item)
+        if number % 5 == 0:
+            item.modifiers.new("Grass", "ARRAY")
+        if number % 10 == 0:
+            parent = item
+        else:
+            item.parent = parent
+    bpy.context.view_layer.update()
+
+
+def test_a_large_scene_takes_no_more_lines_than_a_small_one(everything):
+    add_objects(20)
+    everything()
+    few = by_function(everything)
+    add_objects(2000)
+    assert len(bpy.data.objects) > 2000
+    assert by_function(everything) == few
+    assert few.total() > 1000
+
+
+def test_no_folder_is_listed_and_no_file_read(everything, ocean):
+    everything()
+    with listening() as heard:
+        everything()
+    assert heard == []
+
+
+def test_texts_of_the_settings_are_parsed_once(everything, ocean, monkeypatch):
+    everything()
+    parsed = []
+    loads = json.loads
+    monkeypatch.setattr(json, "loads", lambda text, **named: parsed.append(text) or loads(text, **named))
+    everything()
+    assert parsed == []
+    ocean.ocean_tweak.seed = 11
+    parsed.clear()
+    everything()
+    assert parsed == [ocean.ocean_tweak.statistics]
