@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ocean_tweak.core import Cascade, OceanParameters
+from ocean_tweak.core import Ocean, OceanParameters
 from ocean_tweak.core.cascades.patch import NO_LONGEST, Patch
 
 from .field_sets import SIX, TIME, arrays, surface_maker
@@ -43,11 +43,11 @@ def three(resolution: int) -> OceanParameters:
 
 
 def _maker(parameters: OceanParameters) -> Callable[[], object]:
-    cascade = Cascade(parameters, workers=1)
-    out = [arrays(SIX, ocean.parameters.resolution) for ocean in cascade.patches]
+    patches = Ocean(parameters, workers=1).patches
+    out = [arrays(SIX, ocean.parameters.resolution) for ocean in patches]
 
     def make() -> None:
-        for ocean, fields in zip(cascade.patches, out, strict=True):
+        for ocean, fields in zip(patches, out, strict=True):
             ocean.surface(TIME, SIX.outputs, out=fields)
 
     return make

@@ -18,8 +18,7 @@ PACKAGE = "ocean_tweak"
 
 #: what nothing in the program calls → why it is there
 PUBLIC = {
-    "core.cascades.cascade.Cascade.height_at": "the surface above a place, for scripts (README)",
-    "core.grid_sea.GridSea.height_at": "the same of a sea on one grid",
+    "core.sea.ocean.Ocean.height_at": "the surface above a place, for scripts (README)",
     "core.waves.image.filters.unit_gain": "the gain with which Mastin's pictures were made (make papers)",
     "core.sea_scales.beaufort_wind": "the scales both ways, for scripts",
     "core.sea_scales.douglas_degree": "the scales both ways, for scripts",

@@ -11,9 +11,8 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..core import Cascade, OceanParameters, sea_scales
+from ..core import Ocean, OceanParameters, sea_scales
 from ..core.cascades.patch import NO_LONGEST
-from ..core.cascades.statistics import CascadeStatistics
 from ..core.foam_field import foam_outlook
 from ..core.memory import check_memory, memory_need
 from ..core.statistics import SeaState, Statistics
@@ -36,7 +35,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
     for name, of_sea in parameters.items():
         _foretell(name, of_sea)
-    results = {name: Cascade(of_sea).statistics() for name, of_sea in parameters.items()}
+    results = {name: Ocean(of_sea.apart).statistics() for name, of_sea in parameters.items()}
     if arguments.save is not None:
         _save(arguments.save, seas)
     if arguments.json:
@@ -78,9 +77,12 @@ def _save(path: Path, seas: Mapping[str, Sea]) -> None:
     write_text(path, sea.shot.to_json() + "\n")
 
 
-def _plain(statistics: CascadeStatistics) -> dict[str, object]:
+def _plain(statistics: Statistics) -> dict[str, object]:
     """Of a sea of one patch only what is told of the whole."""
-    return statistics.to_dict() if len(statistics.patches) > 1 else statistics.total.to_dict()
+    told = statistics.to_dict()
+    if len(statistics.patches) == 1:
+        del told["patches"]
+    return told
 
 
 def _wind_fields(parameters: OceanParameters) -> dict[str, object]:
@@ -95,13 +97,13 @@ def _hero_waves(parameters: OceanParameters) -> dict[str, object]:
     return {"hero_waves": [wave.to_dict() for wave in outlooks]} if outlooks else {}
 
 
-def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) -> list[str]:
-    statistics = found.total
+def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     state = sea_scales.sea_state(statistics.significant_wave_height)
     need = memory_need(parameters)
-    samples = " and ".join(f"{patch.patch.resolution}²" for patch in found.patches)
-    grid = "grid" if len(found.patches) == 1 else "grids"
+    sides = [patch.resolution for patch in parameters.patches] or [parameters.resolution]
+    samples = " and ".join(f"{side}²" for side in sides)
+    grid = "grid" if len(sides) == 1 else "grids"
     lines = [
         f"{name}: {samples} samples, {statistics.sample_spacing:.3g} m apart; "
         f"{need.peak() / 2**20:.0f} MB of memory, {need.surface / 2**20:.0f} MB more for each further worker",
@@ -111,7 +113,7 @@ def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) ->
         _state_row(f"seed {parameters.seed}", statistics.seed),
         f"  {_peak(parameters, statistics)}sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
-    lines += _patch_rows(found)
+    lines += _patch_rows(statistics)
     if parameters.joined:
         apart = parameters.domain_size / parameters.joined
         lines.append(
@@ -142,9 +144,9 @@ def _report(name: str, parameters: OceanParameters, found: CascadeStatistics) ->
     return lines + [f"  warning: {warning}" for warning in warnings]
 
 
-def _patch_rows(found: CascadeStatistics) -> list[str]:
+def _patch_rows(statistics: Statistics) -> list[str]:
     """A table of the patches, where there are several."""
-    if len(found.patches) == 1:
+    if len(statistics.patches) < 2:
         return []
     head = (
         "patch",
@@ -159,7 +161,7 @@ def _patch_rows(found: CascadeStatistics) -> list[str]:
         "energy",
     )
     rows = [head]
-    for number, of_patch in enumerate(found.patches, 1):
+    for number, of_patch in enumerate(statistics.patches, 1):
         patch = of_patch.patch
         is_open = patch.longest_wavelength >= NO_LONGEST
         rows.append(

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sea itself: NumPy and the standard library, nothing else."""
 
-from .cascades.cascade import Cascade
-from .ocean import Ocean
 from .parameters import (
     Foam,
     HeroWave,
@@ -18,11 +16,12 @@ from .parameters import (
     WindKey,
 )
 from .raster import Raster
+from .sea.ocean import Ocean
+from .sea.on import Area, Places, Tile
 from .sea_state_match import layer_for_sea_state
-from .seas import grid_sea
 
 __all__ = [
-    "Cascade",
+    "Area",
     "Foam",
     "HeroWave",
     "Mask",
@@ -31,12 +30,13 @@ __all__ = [
     "ParameterError",
     "Patch",
     "PictureLayer",
+    "Places",
     "Raster",
+    "Tile",
     "Timing",
     "Water",
     "WaveLayer",
     "WindFieldLayer",
     "WindKey",
-    "grid_sea",
     "layer_for_sea_state",
 ]

@@ -14,14 +14,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .cascades.cascade import Cascade
 from .cascades.patch_seas import PARTS, parts
 from .channels import ADDING, CHANNELS, FOAM, SurfaceFields
 from .frames import Frame
-from .grid_sea import GridSea
 from .memory import check_memory, memory_need
 from .parameters import OceanParameters
-from .seas import grid_sea
+from .sea.ocean import Ocean
 from .shot import Moment, Shot
 
 
@@ -53,18 +51,17 @@ class ShotSurfaces:
     def __init__(self, shot: Shot) -> None:
         self.shot = shot
         self._parameters: OceanParameters | None = None
-        self._seas: tuple[GridSea, ...] = ()
+        self._seas: tuple[Ocean, ...] = ()
         self._parameters_of_parts: OceanParameters | None = None
-        self._parts: tuple[GridSea, ...] = ()
+        self._parts: tuple[Ocean, ...] = ()
 
-    def seas(self, parameters: OceanParameters) -> tuple[GridSea, ...]:
+    def seas(self, parameters: OceanParameters) -> tuple[Ocean, ...]:
         """The grids of the sea of a moment: the last ones where its parameters are the same.
 
         They are its patches, or all of it on one grid.
         """
         if self._parameters != parameters:
-            cascade = Cascade(parameters, workers=1).patches if parameters.is_cascade else None
-            self._seas = cascade or (grid_sea(parameters, workers=1),)
+            self._seas = Ocean(parameters, workers=1).patches
             self._parameters = parameters
         return self._seas
 
@@ -86,12 +83,12 @@ class ShotSurfaces:
         """Fields of each part of the sea in a frame: ADDING."""
         parameters = self.shot.at(frame).parameters
         if self._parameters_of_parts != parameters:
-            self._parts = tuple(grid_sea(part.parameters, workers=1) for part in parts(parameters))
+            self._parts = tuple(Ocean(part.parameters, workers=1) for part in parts(parameters))
             self._parameters_of_parts = parameters
         return self._made(frame, self._parts, ADDING)
 
     def _made(
-        self, frame: Frame, seas: tuple[GridSea, ...], outputs: frozenset[str]
+        self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str]
     ) -> tuple[SurfaceFields, ...]:
         moment: Moment = self.shot.at(frame)
         made = tuple(sea.surface(moment.time, outputs) for sea in seas)
@@ -161,7 +158,7 @@ def bake(
 
 def _foam(surfaces: ShotSurfaces, frame: Frame, tell: Callable[[Frame, str], None]) -> NDArray[np.floating]:
     for sea in surfaces.seas(surfaces.shot.at(frame).parameters):
-        sea.foam.history.tell = lambda done, count: tell(
+        sea.foam_history.tell = lambda done, count: tell(
             frame, f"looked back for foam at {done} of {count} moments"
         )
     return surfaces.frame(frame, {FOAM}).foam

@@ -143,6 +143,27 @@ class FoamHistory:
         return np.roll(model.birth(squeeze, time), (rows, columns), axis=(0, 1))
 
 
+#: gives the squeeze of the sea at places in m, at a time in s
+SqueezeAt = Callable[[Array, Array, Fraction], RealArray]
+
+
+def foam_at(model: FoamModel, squeeze_at: SqueezeAt, x: Array, y: Array, time: float | Fraction) -> RealArray:
+    """(places,) float32 F in 0…1 at rest positions x and y in m, without a grid that could keep births.
+
+    Each place looks back along its own drift: so the foam of a sum repeats with none of its patches.
+    """
+    now = model.reduced(time)
+    result = model.strength(squeeze_at(x, y, now)).astype(np.float32)
+    last = math.floor(now / model.step)
+    for index in range(last - model.memory + 1, last + 1):
+        then = index * model.step
+        age = float(now - then)
+        squeeze = squeeze_at(x - age * model.drift[0], y - age * model.drift[1], model.reduced(then))
+        np.maximum(result, faded(model.birth(squeeze, then), now, model), out=result)
+    result[result < FAINTEST] = 0.0
+    return result
+
+
 def faded(births: Array, now: Fraction, model: FoamModel) -> RealArray:
     """What is left of the foam by now; what a longer history remembers beyond the faintest is none."""
     result = np.exp2((births - float(now)) / model.half_life).astype(np.float32)

@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The foam of a sea: its threshold, its history and its field at the sea's resolution."""
+"""The foam of a sea: how much there is, how it is born, and its field at the sea's resolution."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .foam import FoamHistory, FoamModel, strength_levels
-from .foam_threshold import Strains, foam_wind, strains, whitecap_coverage
-from .initial_state import InitialState
+from .foam import FoamModel, strength_levels
+from .foam_threshold import Strains, foam_wind, whitecap_coverage
 from .parameters import OceanParameters
 
 RealArray = NDArray[np.floating]
@@ -42,20 +40,15 @@ def _coverage(parameters: OceanParameters) -> float:
     return min(1.0, parameters.foam.coverage * whitecap_coverage(wind.speed)) if wind is not None else 0.0
 
 
-def foam_model(parameters: OceanParameters, state: InitialState) -> FoamModel:
-    """How the foam of a sea is born and lives.
-
-    state : of the sea at the resolution at which foam is made: the threshold follows from the strains that
-        this grid holds, so that foam made coarser covers as much
-    """
-    spacing = parameters.domain_size / state.grid.resolution
-    return foam_model_of(parameters, lambda drift: strains(state, parameters, drift), spacing)
-
-
-def foam_model_of(
+def foam_model(
     parameters: OceanParameters, strains_of: Callable[[tuple[float, float]], Strains], spacing: float
 ) -> FoamModel:
-    """The same with what gives the strains that a drifting point meets."""
+    """How the foam of a sea is born and lives.
+
+    strains_of : gives the strains that a point with this drift in m/s meets, of the waves that the samples
+        hold on which foam is made: so foam made coarser covers as much
+    spacing : of those samples, m
+    """
     foam, wind = parameters.foam, foam_wind(parameters)
     drift, threshold = (0.0, 0.0), math.inf
     if wind is not None:
@@ -71,20 +64,6 @@ def foam_model_of(
         spacing=spacing,
         loop_duration=parameters.loop_duration,
     )
-
-
-class FoamField:
-    """Foam at any time, at the sea's resolution; quickest when times ascend."""
-
-    def __init__(self, model: FoamModel, resolution: int, cusp_at: Callable[[Fraction], RealArray]) -> None:
-        """`model` and `cusp_at`, the squeeze at a time, are those of the samples on which foam is made."""
-        self.model = model
-        self._resolution = resolution
-        self.history = FoamHistory(self.model, cusp_at)
-
-    def at(self, time: float | Fraction) -> RealArray:
-        """(N, N) float32, 0…1."""
-        return resampled(self.history.foam(time), self._resolution)
 
 
 def resampled(field: RealArray, resolution: int) -> RealArray:

@@ -94,15 +94,6 @@ class Strains:
         return max(LEAST_SQUEEZE, float(candidates[enough[-1]] if len(enough) else candidates[0]))
 
 
-def strains(state: InitialState, parameters: OceanParameters, drift: tuple[float, float]) -> Strains:
-    """Strains of the waves that the grid resolves, as seen by a point that drifts with (x, y) m/s.
-
-    The gradient of the horizontal displacement is Gaussian with the covariance of its spectrum; so is its
-    rate, independent of it, with ω² (ω as the drifting point meets the waves) in the integral.
-    """
-    return sampled_strains(*strain_covariances(state, parameters.choppiness, drift))
-
-
 def strain_covariances(
     state: InitialState,
     choppiness: float,
@@ -111,6 +102,10 @@ def strain_covariances(
     interpolated: bool = False,
 ) -> tuple[Array, Array]:
     """Covariances (3, 3) of the gradient's xx, yy and xy, and of their rates in 1/s²; those of waves add.
+
+    They are of the waves that the grid resolves, as seen by a point that drifts with (x, y) m/s. The gradient
+    of the horizontal displacement is Gaussian with the covariance of its spectrum; so is its rate,
+    independent of it, with ω² (ω as the drifting point meets the waves) in the integral.
 
     rotation : by which the grid is turned against the axes of the drift and of the gradient, rad
     interpolated : whether what is wanted are the strains between the samples, bilinear: the mean square of a

@@ -16,13 +16,14 @@ import numpy as np
 
 from . import dispersion
 from .initial_state import InitialState
-from .parameters import OceanParameters, PictureLayer
+from .parameters import OceanParameters, Patch, PictureLayer
 from .picture_statistics import (
     longest_random_wave,
     modes_of,
     picture_modes,
     unlooped,
 )
+from .plain_data import to_plain
 from .sea_spectrum import SeaSpectrum
 from .sea_state import SeaState, field_state, mode_state, modes_state, state_of_moments, together
 from .spreading import mean_cosine
@@ -40,6 +41,30 @@ _LARGEST_SPEED_CHANGE = 0.1
 
 
 @dataclass(frozen=True)
+class PatchStatistics:
+    """A patch of a sea, and the statistics of its band in the sea's axes.
+
+    share : of the sum's variance on the grids, 0…1
+    """
+
+    patch: Patch
+    statistics: Statistics
+    share: float
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data for JSON."""
+        patch = self.patch
+        return {
+            **to_plain(patch, brief=True),
+            "spacing": patch.spacing,
+            "samples_a_wave": patch.samples_a_wave or None,
+            "longest_waves_a_side": patch.longest_waves_a_side,
+            "share": self.share,
+            **{name: getattr(self.statistics, name).to_dict() for name in ("spectrum", "resolved", "seed")},
+        }
+
+
+@dataclass(frozen=True)
 class Statistics:
     """What a sea will be.
 
@@ -50,6 +75,8 @@ class Statistics:
     sample_spacing : m
     loop_speed_change : largest relative change of a wave's phase speed by the loop, or None without one
     warnings : one sentence each, with the remedy
+    patches : of a sea of patches, from long waves to short; the rest is then of their sum, its spectrum that
+        of all waves and its grid all grids together
     """
 
     spectrum: SeaState
@@ -59,6 +86,7 @@ class Statistics:
     sample_spacing: float
     loop_speed_change: float | None
     warnings: tuple[str, ...]
+    patches: tuple[PatchStatistics, ...] = ()
 
     @property
     def m0(self) -> float:
@@ -97,6 +125,7 @@ class Statistics:
             "sample_spacing": self.sample_spacing,
             "loop_speed_change": self.loop_speed_change,
             "warnings": list(self.warnings),
+            **({"patches": [patch.to_dict() for patch in self.patches]} if self.patches else {}),
         }
 
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Cascade, OceanParameters, grid_sea
+from ..core import Ocean, OceanParameters
 from ..core.channels import CHANNELS, FOAM
 from ..nodes.camera_surface import PATCH_INPUTS
 from .instant_foam import instant_foam
@@ -35,7 +35,7 @@ class Sea:
     """An ocean and its latest surfaces."""
 
     def __init__(self, parameters: OceanParameters) -> None:
-        self.ocean = grid_sea(parameters)
+        self.ocean = Ocean(parameters)
         self._surfaces: OrderedDict[Fraction, dict[str, RealArray]] = OrderedDict()
         # arrays of a surface that was dropped, for the next one
         self._spare: dict[str, RealArray] = {}
@@ -112,7 +112,7 @@ class FoamMaker:
     """The foam of a sea. It is quickly made where time goes on from the moment before."""
 
     def __init__(self, parameters: OceanParameters) -> None:
-        self._ocean = grid_sea(parameters)
+        self._ocean = Ocean(parameters)
         self._last: Fraction | None = None
         # the window's thread and the one that makes foam ahead of it
         self._busy = threading.Lock()
@@ -170,10 +170,9 @@ def statistics_of(parameters: OceanParameters) -> str:
 
 def computed_statistics(parameters: OceanParameters) -> str:
     """The sea's statistics as JSON, computed; touches no data of Blender and may run on any thread."""
-    if parameters.patches:  # of all waves, also those too short for the one grid that shows their sum
-        return json.dumps(Cascade(parameters).statistics().to_dict())
-    cached = _seas.get(parameters)
-    sea = cached.ocean if cached is not None else grid_sea(parameters)
+    whole = parameters.apart  # all waves, also those too short for the one grid that shows their sum
+    cached = _seas.get(whole)
+    sea = cached.ocean if cached is not None else Ocean(whole)
     return json.dumps(sea.statistics().to_dict())
 
 

@@ -15,9 +15,8 @@ import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 from numpy.typing import NDArray
 
-from ..core import OceanParameters, grid_sea
+from ..core import Ocean, OceanParameters
 from ..core.frames import frame_label
-from ..core.grid_sea import GridSea
 from ..core.surface_query import bilinear, find_points
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
@@ -119,8 +118,8 @@ def _world_normal(ocean: Matrix, normal: Vector) -> Vector:
 
 # the sea of the frame before is most often that of the next one too
 @lru_cache(maxsize=2)
-def _sea(parameters: OceanParameters) -> GridSea:
-    return grid_sea(parameters)
+def _sea(parameters: OceanParameters) -> Ocean:
+    return Ocean(parameters)
 
 
 def _baked(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> RealArray:

@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import OceanParameters, Timing, grid_sea
+from ..core import Ocean, OceanParameters, Timing
 from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
@@ -145,7 +145,7 @@ def add_horizon(
 
 def camera_place(mood: Mood, parameters: OceanParameters) -> NDArray[np.float64]:
     """Where a camera sees the highest wave of the first frame before it: x, y and z in m, in the patch."""
-    sea = grid_sea(parameters)
+    sea = Ocean(parameters)
     elevation = sea.surface(parameters.timing.time(parameters.timing.start_frame)).displacement[..., 2]
     height = sea.statistics().seed.significant_wave_height
     samples, domain = len(elevation), parameters.domain_size

@@ -8,7 +8,7 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 from mathutils import Matrix
 
-from ..core import OceanParameters, ParameterError, grid_sea, layer_for_sea_state
+from ..core import Ocean, OceanParameters, ParameterError, layer_for_sea_state
 from ..core.presets import built_in
 from ..scene import conversion, ocean_object
 from ..scene.settings import OceanObjectError, settings_of
@@ -91,7 +91,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
             explanation = f"{preset.title}: {wanted.wind_speed:g} m/s over {wanted.fetch / 1e3:g} km"
         matched = before.replace(layers=(layer, *rest))
         if self.fit_domain:
-            length = grid_sea(matched.without_patches.at_resolution(16)).statistics().peak_wavelength
+            length = Ocean(matched.without_patches.at_resolution(16)).statistics().peak_wavelength
             if length > 0.0:
                 matched = _fitted(matched, _round(length * _WAVELENGTHS))
         return matched, explanation

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from ocean_tweak.core.cascades.foam import foam_at
 
 from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, Patch
 from ocean_tweak.core.cascades.foam import foam_at

@@ -7,10 +7,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from ocean_tweak.core.cascades.joined import border_shares
 
 from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, ParameterError, Patch, WaveLayer, grid_sea
 from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.cascades.joined import border_shares
 from ocean_tweak.core.cascades.patch_seas import joined_bands
 from ocean_tweak.core.foam_threshold import whitecap_coverage
 from ocean_tweak.core.memory import memory_need

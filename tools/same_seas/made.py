@@ -37,31 +37,41 @@ def of_sea(package: ModuleType, data: dict[str, Any]) -> Iterator[Made]:
     core = part(package, "core")
     parameters = core.OceanParameters.from_dict(data)
     if parameters.is_cascade:
-        yield from _of_patches(package, core.Cascade(parameters))
+        yield from _of_patches(package, parameters)
     else:
         yield from _of_grid(package, parameters)
 
 
 def _of_grid(package: ModuleType, parameters: Any) -> Iterator[Made]:
     core, known = part(package, "core"), channels(package)
+    make = core.grid_sea if hasattr(core, "grid_sea") else core.Ocean
     for precision in ("single", "double"):
-        sea = core.grid_sea(parameters, precision)
+        sea = make(parameters, precision)
         for time in TIMES:
             fields = sea.surface(time, known)
             yield from ((f"{precision} {name} at {time} s", getattr(fields, name)) for name in known)
-    sea = core.grid_sea(parameters)
+    sea = make(parameters)
     surfaces = ("mesh",) if parameters.trough_damping else ("mesh", "exact")
     yield from _of_places(sea, surfaces)
-    yield "statistics", sea.statistics().to_dict()
+    told = sea.statistics().to_dict()
+    told.pop("patches", None)  # of joined ones they were not told
+    yield "statistics", told
     yield "parameters", parameters.to_dict()
 
 
-def _of_patches(package: ModuleType, sea: Any) -> Iterator[Made]:
-    known = channels(package)
+def _of_patches(package: ModuleType, parameters: Any) -> Iterator[Made]:
+    core, known = part(package, "core"), channels(package)
+    is_one_door = not hasattr(core, "Cascade")
+    sea = core.Ocean(parameters) if is_one_door else core.Cascade(parameters)
     for time in TIMES:
-        fields = sea.fields_at(X, Y, time, known)
+        if is_one_door:
+            fields = sea.surface(time, known, core.Places(X, Y))
+        else:
+            fields = sea.fields_at(X, Y, time, known)
         yield from ((f"{name} at {time} s", getattr(fields, name)) for name in known)
-        for number, of_patch in enumerate(sea.surfaces(time, {"displacement", "strain"}), start=1):
+        outputs = {"displacement", "strain"}
+        for number, patch in enumerate(sea.patches, start=1):
+            of_patch = patch.surface(time, outputs)
             yield f"patch {number} displacement at {time} s", of_patch.displacement
             yield f"patch {number} strain at {time} s", of_patch.strain
     yield from _of_places(sea, ("mesh", "exact"))

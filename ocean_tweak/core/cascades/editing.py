@@ -9,9 +9,8 @@ from dataclasses import replace
 
 from ..errors import ParameterError
 from ..parameters import OceanParameters
-from .patch import MOST_PATCHES, NO_SHORTEST, Patch
+from .patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, NO_SHORTEST, REPEATING_SHARE, Patch
 from .plan import RESOLUTIONS, SPARE, odd_side, rotation_of, rounded, wavelength_with_share_below
-from .statistics import LEAST_CELLS, LEAST_SAMPLES, REPEATING_SHARE
 
 #: how often the longest wave of a new patch goes into its side, where its samples allow
 _CELLS = 12.0

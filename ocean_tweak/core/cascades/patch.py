@@ -17,6 +17,13 @@ MOST_PATCHES = 4
 #: the ends of a band that ends nowhere, m
 NO_SHORTEST, NO_LONGEST = 0.0, 1e6
 
+#: a patch samples its shortest wave at least so often, and its longest goes at least so often into a side
+LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
+
+#: share of the variance that patches which repeat within the wanted area may hold: as much as the
+#: autocorrelation of the sea has a domain away
+REPEATING_SHARE = 0.1
+
 
 @dataclass(frozen=True)
 class Patch(Validated):

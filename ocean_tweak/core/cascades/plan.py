@@ -23,8 +23,7 @@ from ..errors import ParameterError
 from ..memory import memory_need
 from ..parameters import OceanParameters
 from ..sea_spectrum import SeaSpectrum
-from .patch import MOST_PATCHES, NO_LONGEST, Patch
-from .statistics import LEAST_CELLS, LEAST_SAMPLES, REPEATING_SHARE
+from .patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, NO_LONGEST, REPEATING_SHARE, Patch
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core import Cascade, OceanParameters
+from ...core import Ocean, OceanParameters
 from ...core.bake import ShotSurfaces
 from ...core.cascades.patch_seas import PARTS, parts
 from ...core.channels import FOAM, SurfaceFields, is_put_together
@@ -186,10 +186,10 @@ def seconds_of_statistics(parameters: OceanParameters) -> float:
     """What the statistics of a sea take, from trials of others like it."""
 
     def timed(side: int) -> list[float]:
-        few = parameters.at_resolution(min(parameters.resolution, side)).replace(seed=_new_seed())
-        return [cpu_seconds(lambda: Cascade(few).statistics())]
+        few = parameters.at_resolution(min(parameters.resolution, side)).replace(seed=_new_seed()).apart
+        return [cpu_seconds(lambda: Ocean(few).statistics())]
 
-    Cascade(parameters.at_resolution(16)).statistics()  # what is made once
+    Ocean(parameters.at_resolution(16).apart).statistics()  # what is made once
     return by_trials(parameters.resolution, 256, timed)[0]
 
 
@@ -218,7 +218,7 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
         for grid in surfaces.seas(parameters):
             grid.prepare()
             if with_foam:
-                grid.foam.model  # noqa: B018
+                grid.foam_history  # noqa: B018
         if PARTS in job.outputs:
             surfaces.parts(frame)
 

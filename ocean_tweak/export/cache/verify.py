@@ -13,7 +13,6 @@ from ...core import Ocean
 from ...core.bake import ShotSurfaces
 from ...core.channels import unit_of
 from ...core.frames import Frame
-from ...core.grid_sea import GridSea
 from ...core.plain_data import to_plain
 from ...core.printable import printable
 from ...core.propagation import propagate
@@ -49,9 +48,9 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
         yield finding
 
 
-def wave_height(sea: GridSea, moment: Moment) -> float:
+def wave_height(sea: Ocean, moment: Moment) -> float:
     """Hs in m of the waves of a moment: of one sum from their amplitudes, or else of the surface."""
-    if not isinstance(sea, Ocean):
+    if sea.parameters.is_sum:
         return _height_of(sea.surface(moment.time).displacement)
     state = sea.initial_state
     weight = state.grid.multiplicity[0]
@@ -62,7 +61,7 @@ def wave_height(sea: GridSea, moment: Moment) -> float:
     return 4.0 * float(np.sqrt(variance))
 
 
-def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: GridSea) -> str:
+def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: Ocean) -> str:
     moment = job.shot.at(frame)
     samples = sequence.resolution
     for name in sequence.maps:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fields of patches at any rest positions, turned into the sea's axes and added up."""
+"""Components of parts at any rest positions, turned into the sea's axes, weighted and added up."""
 
 from __future__ import annotations
 

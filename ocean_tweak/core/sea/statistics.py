@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sea of several patches will be: the sum, and what each patch holds of it."""
+"""What a sea of patches will be: the sum, and what each patch holds of it."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ..parameters import OceanParameters, Patch
-from ..plain_data import to_plain
+from ..cascades.patch import LEAST_CELLS, LEAST_SAMPLES, NO_LONGEST, REPEATING_SHARE
+from ..cascades.patch_seas import patch_parameters
+from ..parameters import OceanParameters
 from ..sea_spectrum import SeaSpectrum
 from ..sea_state import SeaState, together
 from ..statistics import (
     FLAT,
     LEAST_RESOLVED_SHARE,
+    PatchStatistics,
     Statistics,
     continuous_state,
     fetch_warnings,
@@ -24,62 +25,11 @@ from ..statistics import (
     loop_warnings,
     picture_warnings,
 )
-from .patch import NO_LONGEST
-from .patch_seas import patch_parameters
-
-#: a patch samples its shortest wave at least so often, and its longest goes at least so often into a side
-LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
-
-#: share of the variance that patches which repeat within the wanted area may hold: as much as the
-#: autocorrelation of the sea has a domain away
-REPEATING_SHARE = 0.1
 
 
-@dataclass(frozen=True)
-class PatchStatistics:
-    """A patch, and the statistics of its band in the sea's axes.
-
-    share : of the sum's variance on the grids, 0…1
-    """
-
-    patch: Patch
-    statistics: Statistics
-    share: float
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        patch = self.patch
-        return {
-            **to_plain(patch, brief=True),
-            "spacing": patch.spacing,
-            "samples_a_wave": patch.samples_a_wave or None,
-            "longest_waves_a_side": patch.longest_waves_a_side,
-            "share": self.share,
-            **{name: getattr(self.statistics, name).to_dict() for name in ("spectrum", "resolved", "seed")},
-        }
-
-
-@dataclass(frozen=True)
-class CascadeStatistics:
-    """What a sea will be.
-
-    total : of the sum: its spectrum is that of all waves, its grid all grids together
-    patches : from long waves to short
-    """
-
-    total: Statistics
-    patches: tuple[PatchStatistics, ...]
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON: that of the sum, and a list of patches."""
-        return {**self.total.to_dict(), "patches": [patch.to_dict() for patch in self.patches]}
-
-
-def cascade_statistics(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> CascadeStatistics:
-    """Statistics of a sea from those of its patches in their own axes."""
-    patches = parameters.patches or (
-        Patch(domain_size=parameters.domain_size, resolution=parameters.resolution),
-    )
+def statistics_of_patches(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> Statistics:
+    """Statistics of a sea of patches from those of each in its own axes."""
+    patches = parameters.patches
     in_sea = [_turned(found, patch.rotation) for found, patch in zip(of_patches, patches, strict=True)]
     whole = parameters.replace(patches=())
     sea = SeaSpectrum(whole)
@@ -100,7 +50,7 @@ def cascade_statistics(parameters: OceanParameters, of_patches: Sequence[Statist
         for patch, found in zip(patches, in_sea, strict=True)
     )
     warnings = tuple(_warnings(parameters, sea, total, result))
-    return CascadeStatistics(dataclasses.replace(total, warnings=warnings), result)
+    return dataclasses.replace(total, warnings=warnings, patches=result)
 
 
 def _turned(found: Statistics, rotation: float) -> Statistics:

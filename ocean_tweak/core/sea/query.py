@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The surface of several patches above a given place.
+"""The surface of several parts above a given place.
 
 Newton's method goes from the long waves to the short: the place at rest that the first patch finds is where
 the search with the first two begins, and so on. So no step has to cross more than a patch's own waves.

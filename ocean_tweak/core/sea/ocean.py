@@ -1,0 +1,371 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Any sea, that can be asked for its surface at any time: the door to all that is behind it.
+
+A sea is a sum of parts: waves on a grid of their own, which may be turned and lie under masks. Of one part
+that is neither, a tile is made as it is; all others are added up on the tile's samples or at places.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..cascades.patch_seas import joined_bands, parts, patch_parameters
+from ..channels import CHANNELS, FOAM, SurfaceFields, checked_outputs
+from ..foam import FoamHistory, FoamModel, foam_at
+from ..foam_field import foam_model, resampled
+from ..foam_threshold import Strains, sampled_strains
+from ..initial_state import InitialState
+from ..masks.parameters import Mask
+from ..masks.weights import Weights, weights
+from ..memory import MemoryNeed, check_memory, memory_need
+from ..parameters import OceanParameters
+from ..statistics import Statistics, sea_statistics
+from ..surface_query import Field, SurfacePoints, find_points, refine_points
+from .on import Area, Places, Tile
+from .part_waves import PRECISIONS, PartWaves, default_workers, real_type
+from .query import find_summed_points
+from .sampling import Components, Grid, Key, Summed, closed, summed_field, unweighted
+from .statistics import statistics_of_patches
+from .tile import TileSum
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+#: minimum eigenvalue below which several sheets of the surface are looked for
+_NEARLY_FOLDED = 0.1
+
+#: bytes of squeezed surfaces of earlier moments that are kept for the next frame's foam
+_KEPT = 2**28
+
+
+class Ocean:
+    """The sea of some parameters. Making one is cheap; its waves are made when needed.
+
+    It may be of one patch, of patches that are joined on one grid or separate, under masks or not.
+
+    parameters : OceanParameters
+    precision : "single" for float32 fields, "double" for reference work in float64
+    workers : threads that make a surface, by default one a core for 1024² samples or more, else one; the
+        result does not depend on it
+
+    Raises ValueError for an unknown precision or a number of workers below 1. Whatever makes the waves
+    raises MemoryError, before that, where the machine is too small.
+    """
+
+    def __init__(
+        self, parameters: OceanParameters, precision: str = "single", workers: int | None = None
+    ) -> None:
+        if not isinstance(parameters, OceanParameters):
+            raise TypeError(f"Ocean wants OceanParameters, not {type(parameters).__name__}")
+        if precision not in PRECISIONS:
+            raise ValueError(f"precision = {precision!r}: must be one of {', '.join(PRECISIONS)}")
+        if workers is not None and workers < 1:
+            raise ValueError(f"workers = {workers!r}: must be 1 or more")
+        self.parameters = parameters
+        self.precision = precision
+        self._workers = workers
+        self._busy = threading.Lock()
+        self._kept_squeezes: OrderedDict[Fraction, list[Components]] = OrderedDict()
+
+    @cached_property
+    def patches(self) -> tuple[Ocean, ...]:
+        """The seas that have a tile each: separate patches, in axes along their sides and without masks.
+
+        Displacement, velocity, slope and strain of the sea are the sums of theirs, each turned by the patch's
+        rotation; its other fields are not sums. Any other sea is its own only patch.
+        """
+        if not self.parameters.is_cascade:
+            return (self,)
+        return tuple(
+            Ocean(patch, self.precision, self._workers) for patch in patch_parameters(self.parameters)
+        )
+
+    def memory(self, outputs: Iterable[str] = ("displacement",)) -> MemoryNeed:
+        """Bytes that the sea takes, and each surface with these outputs."""
+        return memory_need(self.parameters, outputs, self.precision)
+
+    def prepare(self) -> None:
+        """Make the waves, which all surfaces share; the first surface does so otherwise."""
+        for waves in self._parts:
+            waves.initial_state  # noqa: B018
+
+    @property
+    def initial_state(self) -> InitialState:
+        """The coefficients of a sea that is one sum of waves. Raises ValueError for another."""
+        if self.parameters.is_sum:
+            raise ValueError("initial_state: this sea's waves are not one sum but several, or under masks")
+        return self._parts[0].initial_state
+
+    def surface(
+        self,
+        time: float | Fraction,
+        outputs: Iterable[str] = ("displacement",),
+        on: Tile | Area | Places = Tile(),  # noqa: B008
+        out: Mapping[str, RealArray] | None = None,
+    ) -> SurfaceFields:
+        """Fields at a time in s; only the outputs asked for are computed.
+
+        on : where they are wanted. On a tile, arrays are (N, N) [y, x], in an area (resolution, resolution),
+            at places as the places are, with the field's channels behind. In areas and at places parts are
+            bilinear between their samples and add up before a normal or eigenvalue is made of them.
+        out : arrays to fill, by output; their shape and dtype must be those of the field, and their last
+            axis contiguous. Other outputs get new arrays.
+
+        Raises ValueError for an unknown output, a time that is not finite, an array that does not fit, or the
+        tile of a sea of separate patches, which have one each.
+        """
+        wanted = checked_outputs(outputs)
+        _check_time(time)
+        if isinstance(on, Tile):
+            tile, n = self._tile, self.parameters.resolution
+            fields = self._arrays(wanted, (n, n), out or {})
+            with self._busy:  # the workspace and the foam's history serve one surface at a time
+                tile.fill(time, wanted - {FOAM}, fields)
+                if FOAM in wanted:
+                    fields[FOAM][...] = resampled(self.foam_history.foam(time), n)
+        else:
+            x, y = on.rest_positions()
+            fields = self._arrays(wanted, x.shape, out or {})
+            with self._busy:
+                self._fill_places(x.ravel(), y.ravel(), time, wanted, fields)
+        return SurfaceFields(float(time), fields)
+
+    def frame(
+        self,
+        frame: float | Fraction,
+        outputs: Iterable[str] = ("displacement",),
+        on: Tile | Area | Places = Tile(),  # noqa: B008
+    ) -> SurfaceFields:
+        """Fields at a frame of the shot, which may hold a sub-frame."""
+        return self.surface(self.parameters.timing.time(frame), outputs, on)
+
+    def points_at(
+        self,
+        x: ArrayLike,
+        y: ArrayLike,
+        time: float | Fraction,
+        surface: str = "mesh",
+        velocity: bool = False,
+    ) -> SurfacePoints:
+        """The surface above places x and y in m, of any one shape, at a time in s.
+
+        surface : "mesh" for the bilinear surface between the samples, which a mesh with a vertex a sample
+            shows, or of separate patches the sum of theirs; "exact" for the band-limited one, whose cost
+            grows with points times wave vectors
+        velocity : whether it is wanted too
+
+        Raises ValueError for an unknown surface, a time or place that is not finite, or an exact surface with
+        trough damping: no sum of waves.
+        """
+        if surface not in ("mesh", "exact"):
+            raise ValueError(f"surface = {surface!r}: must be mesh or exact")
+        _check_time(time)
+        x, y = Places(x, y).rest_positions()
+        waves = self._exact_field(time) if surface == "exact" else None
+        if self.parameters.is_cascade:
+            points, spacing = self._points_of_sum(x, y, time, velocity)
+        else:
+            points, spacing = self._points_of_tile(x, y, time, velocity)
+        return points if waves is None else refine_points(x, y, waves, points, spacing, velocity)
+
+    def height_at(
+        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, surface: str = "mesh"
+    ) -> NDArray[np.float64]:
+        """Height of the surface in m above places x and y in m, at a time in s; see `points_at`."""
+        return self.points_at(x, y, time, surface).height
+
+    def statistics(self) -> Statistics:
+        """Wave height, period and wavelength: of the spectrum, as resolved, and of this seed.
+
+        Of joined patches, of the waves that their one grid holds; in all cases without masks.
+        """
+        parameters = self._added_up
+        patches = patch_parameters(parameters)
+        whole = [Ocean(patch, self.precision, self._workers) for patch in patches]
+        states = [sea.initial_state for sea in (whole if parameters.is_masked else self._parts)]
+        found = [sea_statistics(patch, state) for patch, state in zip(patches, states, strict=True)]
+        return statistics_of_patches(parameters, found) if parameters.patches else found[0]
+
+    @cached_property
+    def foam_model(self) -> FoamModel:
+        """How foam is born and lives that is made on these samples.
+
+        Its threshold is that of the sea without masks, and follows from the strains of all parts together.
+        """
+        return foam_model(self.parameters, self._strains, self._spacing)
+
+    @cached_property
+    def foam_history(self) -> FoamHistory:
+        """The births of a tile's foam; it serves ascending times, any other is made from the sea alone.
+
+        Raises ValueError for separate patches.
+        """
+        sea = self._of_foam
+        tile, n = sea._tile, sea.parameters.resolution
+
+        def cusp_at(time: Fraction) -> RealArray:
+            fields = sea._arrays(frozenset({"cusp"}), (n, n), {})
+            tile.fill(time, frozenset(fields), fields)
+            return fields["cusp"]
+
+        return FoamHistory(sea.foam_model, cusp_at)
+
+    @cached_property
+    def _of_foam(self) -> Ocean:
+        """The sea at the resolution at which foam is made."""
+        resolution = self.parameters.foam.resolution
+        if resolution in (0, self.parameters.resolution):
+            return self
+        return Ocean(self.parameters.at_resolution(resolution), self.precision, self._workers)
+
+    @cached_property
+    def _added_up(self) -> OceanParameters:
+        """The sea with patches that are joined apart, as they are added up on their one grid."""
+        return joined_bands(self.parameters) if self.parameters.joined else self.parameters
+
+    @cached_property
+    def _parts(self) -> tuple[PartWaves, ...]:
+        sides = [patch.resolution for patch in self.parameters.patches if self.parameters.is_cascade]
+        samples = " and ".join(f"{side}²" for side in sides or [self.parameters.resolution])
+        check_memory(self.memory().peak(), f"A sea of {samples} samples")
+        side = self.parameters.domain_size
+        return tuple(PartWaves(part, side, self.precision, self._workers) for part in parts(self._added_up))
+
+    @cached_property
+    def _tile(self) -> PartWaves | TileSum:
+        """What fills the samples of the tile. Raises ValueError for separate patches."""
+        if self.parameters.is_cascade:
+            raise ValueError(
+                f"on = Tile(): patches that are separate, here {len(self.parameters.patches)}, have a tile "
+                "each, in axes of their own: ask those in `patches`, ask for an Area or Places of their sum, "
+                "or join them with `parameters.on_one_grid(samples)`"
+            )
+        if not self.parameters.is_sum:
+            return self._parts[0]
+        workers = self._workers or default_workers(self.parameters.resolution)
+        return TileSum(self.parameters, self._parts, real_type(self.precision), workers)
+
+    @property
+    def _spacing(self) -> float:
+        return self.parameters.domain_size / self.parameters.resolution
+
+    def _arrays(
+        self, wanted: frozenset[str], shape: tuple[int, ...], out: Mapping[str, RealArray]
+    ) -> dict[str, RealArray]:
+        dtype = real_type(self.precision)
+        fields: dict[str, RealArray] = {}
+        for name in sorted(wanted):
+            channels = 0 if name == FOAM else CHANNELS[name].components
+            whole = (*shape, channels) if channels else shape
+            array = out[name] if name in out else np.empty(whole, dtype)
+            if array.shape != whole or array.dtype != dtype:
+                raise ValueError(
+                    f"out[{name!r}]: must be an array {whole} of {np.dtype(dtype)}, "
+                    f"not {array.shape} of {array.dtype}"
+                )
+            fields[name] = array
+        return fields
+
+    def _fill_places(
+        self,
+        x: Array,
+        y: Array,
+        time: float | Fraction,
+        wanted: frozenset[str],
+        fields: Mapping[str, RealArray],
+    ) -> None:
+        """Fill arrays whose first axes hold flat x and y."""
+        own = wanted - {FOAM}
+        needs = frozenset().union(*(CHANNELS[name].needs for name in own))
+        sums = self._sums_at(x, y, self._components(time, needs))
+        for name in own:
+            channels = (CHANNELS[name].components,) if CHANNELS[name].components else ()
+            made: RealArray = np.empty((x.size, *channels), fields[name].dtype)
+            CHANNELS[name].write(sums, made)
+            fields[name][...] = made.reshape(fields[name].shape)
+        if FOAM in wanted:
+            foam = foam_at(self._of_foam.foam_model, self._squeeze_at, x, y, time)
+            fields[FOAM][...] = foam.reshape(fields[FOAM].shape)
+
+    def _components(self, time: float | Fraction, needs: Iterable[Key]) -> list[Components]:
+        """Of each part on its own samples, what places need."""
+        wanted = closed(needs)
+        if not wanted:
+            return [{} for _ in self._parts]
+        return [
+            waves.components(time, unweighted(wanted) if waves.part.masks else wanted)
+            for waves in self._parts
+        ]
+
+    def _sums_at(self, x: Array, y: Array, components: Sequence[Components]) -> Summed:
+        known: dict[tuple[Mask, ...], Weights] = {}
+        found = []
+        for waves, of_part in zip(self._parts, components, strict=True):
+            part = waves.part
+            if part.masks and part.masks not in known:
+                known[part.masks] = weights(part.masks, self.parameters.domain_size, x, y)
+            grid = Grid(of_part, part.parameters.domain_size, part.rotation)
+            found.append(grid.read(x, y, known.get(part.masks)))
+        return Summed(found)
+
+    def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
+        squeeze = np.empty(x.shape, np.float32)
+        CHANNELS["cusp"].write(self._of_foam._sums_at(x, y, self._squeezed(time)), squeeze)
+        return squeeze
+
+    def _squeezed(self, time: Fraction) -> list[Components]:
+        """Strains of each part at a time, of which the last ones are kept: the next frame looks back too."""
+        if time not in self._kept_squeezes:
+            made = self._of_foam._components(time, CHANNELS["cusp"].needs)
+            size = sum(field.nbytes for of_part in made for field in of_part.values())
+            while self._kept_squeezes and (len(self._kept_squeezes) + 1) * size > _KEPT:
+                self._kept_squeezes.popitem(last=False)
+            self._kept_squeezes[time] = made
+        return self._kept_squeezes[time]
+
+    def _strains(self, drift: tuple[float, float]) -> Strains:
+        """Of all parts together, as a point with this drift meets them: waves are independent."""
+        found = [
+            # between its samples, a part has less than its waves
+            waves.strain_covariances(drift, self.parameters.is_cascade or not waves.is_on_tile)
+            for waves in self._parts
+        ]
+        of_gradients, of_rates = zip(*found, strict=True)
+        return sampled_strains(np.sum(of_gradients, axis=0), np.sum(of_rates, axis=0))
+
+    def _exact_field(self, time: float | Fraction) -> Field:
+        """The band-limited surface, whose cost grows with points times wave vectors."""
+        return summed_field([waves.exact_field(time) for waves in self._parts])
+
+    def _points_of_tile(
+        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
+    ) -> tuple[SurfacePoints, float]:
+        """Points of the bilinear surface between the tile's samples, and the metres between those."""
+        outputs = {"displacement", "min_eigenvalue"} | ({"velocity"} if with_velocity else set())
+        fields = self.surface(time, outputs)
+        folded = fields.min_eigenvalue < _NEARLY_FOLDED
+        moving = fields.velocity if with_velocity else None
+        return find_points(x, y, fields.displacement, moving, self._spacing, folded), self._spacing
+
+    def _points_of_sum(
+        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
+    ) -> tuple[SurfacePoints, float]:
+        """Points of the sum of the parts' bilinear surfaces, and the fewest metres between samples."""
+        with self._busy:
+            fields, reaches = zip(
+                *(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True
+            )
+        spacings = [waves.part.spacing for waves in self._parts]
+        return find_summed_points(x, y, fields, spacings, sum(reaches), with_velocity), min(spacings)
+
+
+def _check_time(time: float | Fraction) -> None:
+    if not np.isfinite(float(time)):
+        raise ValueError(f"time = {time!r}: must be a finite number of seconds")

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The waves of one part of a sea: one sum of coefficients, on a grid of their own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property, lru_cache, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cascades.patch_seas import Part
+from ..exact_field import exact
+from ..channels import CHANNELS, memory_groups
+from ..foam_threshold import strain_covariances
+from ..initial_state import InitialState, initial_state
+from ..masks.weights import weights
+from ..parameters import Foam, OceanParameters, Timing
+from ..sea_spectrum import SeaSpectrum
+from ..surface_query import Field, bilinear
+from ..synthesis import Rows, Synthesis
+from ..trough_damping import trough_damping
+from ..waves.wind_field.wind_waves import WindWaves
+from .sampling import Key, turned_field, weighted_field
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+PRECISIONS = {"single": np.complex64, "double": np.complex128}
+
+
+@lru_cache(maxsize=4)
+def _cached_initial_state(parameters: OceanParameters, dtype: type) -> InitialState:
+    return initial_state(parameters, dtype)
+
+
+class PartWaves:
+    """The waves of a part. Making one is cheap; its coefficients are made when needed.
+
+    side : of the sea's domain, m, with which masks repeat
+    precision, workers : as for an `Ocean`
+
+    One surface at a time: they share a workspace.
+    """
+
+    def __init__(self, part: Part, side: float, precision: str, workers: int | None) -> None:
+        self.part = part
+        self.parameters = part.parameters
+        self.precision = precision
+        self._side = side
+        self._workers = workers or default_workers(part.parameters.resolution)
+        self._workspace: list[NDArray[np.complexfloating]] = []
+
+    @property
+    def is_on_tile(self) -> bool:
+        """Whether its samples are those of the sea's tile, if that has one."""
+        return self.part.patch == 0 and not self.part.rotation
+
+    @cached_property
+    def initial_state(self) -> InitialState:
+        """Shared by all waves whose parameters differ only in what acts after it."""
+        # a loop's frames were checked against the shot's timing: keep that, but not its start
+        timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
+        shared = self.parameters.replace(
+            choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing, wind_fields=()
+        )
+        return _cached_initial_state(shared, PRECISIONS[self.precision])
+
+    @cached_property
+    def _synthesis(self) -> Synthesis:
+        damping = None
+        if self.parameters.trough_damping > 0.0:
+            peak = SeaSpectrum(self.parameters).peak_wave_number
+            damping = trough_damping(self.parameters.trough_damping, self.initial_state, peak)
+        return Synthesis(
+            self.initial_state,
+            self.parameters,
+            damping,
+            PRECISIONS[self.precision],
+            self._workers,
+            WindWaves(self.parameters) if self.parameters.active_wind_fields else None,
+        )
+
+    def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
+        """Fill the arrays of all outputs but foam, on the part's own samples: what is quickest."""
+        for group in memory_groups(wanted):
+            needs = frozenset().union(*(CHANNELS[name].needs for name in group))
+
+            def write(block: slice, rows: Rows, group: Sequence[str] = group) -> None:
+                for name in group:
+                    CHANNELS[name].write(rows, fields[name][block])
+
+            self._synthesis.fill(time, needs, write, self._workspace)
+
+    def components(self, time: float | Fraction, wanted: Iterable[Key]) -> dict[Key, RealArray]:
+        """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t"."""
+        keys = frozenset(wanted)
+        n, dtype = self.parameters.resolution, real_type(self.precision)
+        made: dict[Key, RealArray] = {key: np.empty((n, n), dtype) for key in keys}
+
+        def write(block: slice, rows: Rows) -> None:
+            for component, derivative in keys:
+                rows.position(component, derivative, out=made[component, derivative][block])
+
+        self._synthesis.fill(time, keys, write, self._workspace)
+        return made
+
+    def strain_covariances(self, drift: tuple[float, float], interpolated: bool) -> tuple[Array, Array]:
+        """As `foam_threshold.strain_covariances` has them, in the sea's axes and without masks."""
+        return strain_covariances(
+            self.initial_state, self.parameters.choppiness, drift, self.part.rotation, interpolated
+        )
+
+    def exact_field(self, time: float | Fraction) -> Field:
+        """The band-limited surface in the sea's axes, whose cost grows with points times wave vectors.
+
+        Raises ValueError with trough damping, which leaves no sum of waves.
+        """
+        if self.parameters.trough_damping > 0.0:
+            raise ValueError("surface = 'exact': there is none with trough damping; use mesh")
+        return self._in_sea(exact(replace(self._synthesis, dtype=np.complex128), time))
+
+    def mesh_field(self, time: float | Fraction, with_velocity: bool) -> tuple[Field, float]:
+        """The surface that is bilinear between the samples, and how far in m it moves a point sideways."""
+        outputs = frozenset({"displacement"} | ({"velocity"} if with_velocity else set()))
+        n, dtype = self.parameters.resolution, real_type(self.precision)
+        made: dict[str, RealArray] = {name: np.empty((n, n, 3), dtype) for name in outputs}
+        self.fill(time, outputs, made)
+        displacement = made["displacement"]
+        reach = float(np.max(np.hypot(displacement[..., 0], displacement[..., 1])))
+        return self._in_sea(bilinear(displacement, made.get("velocity"), self.part.spacing)), reach
+
+    def _in_sea(self, field: Field) -> Field:
+        """Their own surface in the sea's axes, under their masks."""
+        weights_at = partial(weights, self.part.masks, self._side) if self.part.masks else None
+        return weighted_field(turned_field(field, self.part.rotation), weights_at)
+
+
+def real_type(precision: str) -> type:
+    """Of the numbers of fields."""
+    return np.float32 if precision == "single" else np.float64
+
+
+def default_workers(resolution: int) -> int:
+    """Threads that help: one a core, but only one where a surface is too small to share."""
+    return (os.cpu_count() or 1) if resolution >= 1024 else 1

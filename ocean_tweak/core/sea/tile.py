@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts of a sea added up on the samples of its one tile: of patches that are joined, or under masks.
+
+The first patch's own samples are the tile's; the others are read between theirs. PartWaves shorter than two
+samples of the tile are left out, or they would show as longer ones.
+
+A patch that does not fit the square is made to repeat with it: along the far sides it goes over into what
+lies before the near ones. Both are of the same spectrum and independent, so shares whose squares add up to 1
+keep the variance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cascades.patch_seas import Part
+from ..channels import CHANNELS, memory_groups
+from ..masks.parameters import Mask
+from ..masks.weights import Weights, weights_on_grid
+from ..parameters import OceanParameters
+from .part_waves import PartWaves
+from .sampling import Components, Grid, Key, Summed, closed, unweighted, weighted
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+#: rows of the grid that are read at once between the samples of another
+_ROWS = 64
+
+#: width in which a patch goes over at the far sides: in its longest waves, and in sides of the square at most
+_BORDER_WAVES, _WIDEST_BORDER = 2.0, 0.1
+
+
+class TileSum:
+    """The (N, N) samples of a sea's one tile, on which its parts are added up.
+
+    parameters : of the sea
+    parts : whose sum it is
+    dtype : of the fields' numbers
+    workers : threads that read between samples
+    """
+
+    def __init__(
+        self, parameters: OceanParameters, parts: Sequence[PartWaves], dtype: type, workers: int
+    ) -> None:
+        self._parts = parts
+        self._samples = parameters.resolution
+        self._side = parameters.domain_size
+        self._dtype = dtype
+        self._workers = workers
+        self._kept_weights: dict[tuple[Mask, ...], Weights] = {}
+
+    def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
+        """Fill the arrays of all outputs but foam."""
+        for group in memory_groups(wanted):
+            needs = frozenset().union(*(CHANNELS[name].needs for name in group))
+            sums = Summed(self._of_part(waves, time, needs) for waves in self._parts)
+            for name in group:
+                CHANNELS[name].write(sums, fields[name])
+
+    def _of_part(
+        self, waves: PartWaves, time: float | Fraction, needs: frozenset[Key]
+    ) -> dict[Key, RealArray]:
+        """The (N, N) components of a part."""
+        wanted = needs if waves.is_on_tile else unweighted(closed(needs))
+        components = waves.components(time, unweighted(wanted) if waves.part.masks else wanted)
+        on_tile = components if waves.is_on_tile else self._read(components, waves.part)
+        return weighted(on_tile, self._weights(waves.part.masks))
+
+    def _read(self, components: Components, part: Part) -> dict[Key, RealArray]:
+        """A part between its samples, in the sea's axes, made to repeat with the square."""
+        n, side = self._samples, self._side
+        longest = part.parameters.patches[0].longest_wavelength
+        border = min(_BORDER_WAVES * longest, _WIDEST_BORDER * side)
+        grid = Grid(components, part.parameters.domain_size, part.rotation)
+        result: dict[Key, RealArray] = {key: np.empty((n, n), self._dtype) for key in components}
+        along = side / n * np.arange(n)
+        inner = int(np.searchsorted(along, side - border))
+
+        def fill(rows: slice, columns: slice, within: bool) -> None:
+            x, y = (place.ravel() for place in np.meshgrid(along[columns], along[rows]))
+            found = grid.read(x, y) if within else _repeating(grid, x, y, side, border)
+            for key, value in found.items():
+                result[key][rows, columns] = value.reshape(result[key][rows, columns].shape)
+
+        blocks = [slice(first, min(first + _ROWS, inner)) for first in range(0, inner, _ROWS)]
+        beyond = slice(inner, n)
+        areas = [(rows, slice(0, inner), True) for rows in blocks]
+        areas += [(slice(0, inner), beyond, False), (beyond, slice(0, n), False)]
+        with ThreadPoolExecutor(self._workers) as pool:
+            list(pool.map(lambda area: fill(*area), areas))
+        return result
+
+    def _weights(self, masks: tuple[Mask, ...]) -> Weights | None:
+        if masks and masks not in self._kept_weights:
+            made = weights_on_grid(masks, self._side, self._samples)
+            self._kept_weights[masks] = Weights(*(part.astype(self._dtype) for part in made))
+        return self._kept_weights.get(masks)
+
+
+def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> dict[Key, RealArray]:
+    """A grid at places in a square, near whose far sides it goes over into what lies before the near ones."""
+    along_x, along_y = border_shares(x, side, border), border_shares(y, side, border)
+    total: dict[Key, RealArray] = {}
+    for share_x, slope_x, back_x in along_x:
+        for share_y, slope_y, back_y in along_y:
+            there = (share_x > 0.0) & (share_y > 0.0)
+            weights = Weights(share_x * share_y, slope_x * share_y, share_x * slope_y)
+            inside = Weights(*(part[there] for part in weights))
+            for key, value in grid.read(x[there] - back_x, y[there] - back_y, inside).items():
+                if key not in total:
+                    total[key] = np.zeros(x.shape, value.dtype)
+                total[key][there] += value
+    return total
+
+
+def border_shares(place: Array, side: float, border: float) -> tuple[tuple[Array, Array, float], ...]:
+    """How much counts of what is there and of what is a side before, the derivative of that, and the side.
+
+    Shares are cosine and sine of an angle that rises smoothly from 0 to a quarter turn within the border.
+    """
+    part = np.clip((place - (side - border)) / border, 0.0, 1.0)
+    angle = 0.5 * np.pi * part * part * (3.0 - 2.0 * part)
+    rate = 3.0 * np.pi * part * (1.0 - part) / border
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return (cosine, -sine * rate, 0.0), (sine, cosine * rate, side)
