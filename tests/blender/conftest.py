@@ -97,7 +97,7 @@ def bake(extension, core, tmp_path):
         frames = frames or tuple(range(first, last + 1))
         directory.mkdir(exist_ok=True)
         sink = extension("export.exr").ExrSequence(directory, name, parameters, "ZIP", maps)
-        sea = core.grid_sea(parameters)
+        sea = core.Ocean(parameters)
         for frame in frames:
             sink.write(frame, sea.frame(frame, sink.outputs))
         return extension("scene.image_sequence").ImageSequence(directory, name, frames)

@@ -56,7 +56,7 @@ def _numbers(data, name, count):
 def wanted(core, parameters, frame, metres=1.0, repeats=(1, 1)):
     """What `read` must give for a mesh with a vertex a sample, from the core and arithmetic alone."""
     time = (Fraction(frame) - parameters.timing.start_frame) / parameters.timing.fps
-    fields = _surface(core.grid_sea, parameters, time)
+    fields = _surface(core.Ocean, parameters, time)
     samples, size = parameters.resolution, parameters.domain_size / metres
     column, row = (np.arange(count * samples + 1) for count in repeats)
 

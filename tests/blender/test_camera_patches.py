@@ -100,7 +100,7 @@ def test_near_the_camera_it_is_the_sum(shown, core, patched, camera, empty_scene
         assert np.count_nonzero(near) > 300
         names = {"displacement", "velocity", "normal"}
         time = parameters.timing.time(frame)
-        sea = core.Cascade(parameters).fields_at(rest[near, 0], rest[near, 1], time, names)
+        sea = core.Ocean(parameters).surface(time, names, on=core.Places(rest[near, 0], rest[near, 1]))
         # both are bilinear between the patches' samples; places are rounded to a float
         np.testing.assert_allclose(displacement[near], sea.displacement, atol=1e-3)
         np.testing.assert_allclose(numbers(mesh, "velocity", 3)[near], sea.velocity, atol=3e-3)
@@ -253,8 +253,8 @@ def test_slopes_are_in_the_geometry_or_told_as_variance(shown, core, patched, ca
     lost = numbers(mesh, "slope_variance", 1)[:, 0]
     off = away(numbers(mesh, "position", 3), camera)
     total = sum(
-        (sea.slope.astype(np.float64) ** 2).sum(axis=-1).mean()
-        for sea in core.Cascade(parameters).surfaces(0.0, {"slope"})
+        (patch.surface(0.0, {"slope"}).slope.astype(np.float64) ** 2).sum(axis=-1).mean()
+        for patch in core.Ocean(parameters).patches
     )
     far = off > 5000.0
     assert lost[far].mean() == pytest.approx(total, rel=0.02)

@@ -93,7 +93,7 @@ def test_few_samples_then_all_then_the_statistics(
 
 def test_the_waves_of_all_samples_are_made_beside_the_window(item, refinement, extension, monkeypatch):
     run_until(refinement, lambda: not refinement.is_outstanding(item))
-    module, made = extension("core.ocean"), []
+    module, made = extension("core.sea.part_waves"), []
     make = module.initial_state
 
     def noted(parameters, *arguments):

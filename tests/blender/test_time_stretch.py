@@ -151,7 +151,7 @@ def test_a_shot_takes_the_stretch_along(stretched, live, core, make_parameters, 
     assert bpy.ops.ocean.export_parameters(filepath=str(file)) == {"FINISHED"}
     parameters = core.OceanParameters.from_json(file.read_text())
     assert parameters.timing.stretch == stretch
-    heights = core.grid_sea(parameters).frame(7).displacement[..., 2]
+    heights = core.Ocean(parameters).frame(7).displacement[..., 2]
     scene.frame_set(7)
     np.testing.assert_allclose(vertices(item)[:-1, :-1, 2], heights, atol=2e-3)
     scene.render.frame_map_old = scene.render.frame_map_new = 100

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import Cascade, OceanParameters
+from ocean_tweak.core import Ocean, OceanParameters
 from ocean_tweak.export.exr import read_header, read_image
 
 SEA = {
@@ -50,10 +50,8 @@ def test_each_patch_has_images_of_its_own(baked: Path) -> None:
         for name in MAPS.split(",")
         for frame in (1, 2)
     )
-    made = Cascade(OceanParameters.from_dict(SEA)).surfaces(
-        1 / 25, {"displacement", "velocity", "slope", "strain"}
-    )
-    for number, fields in enumerate(made, 1):
+    for number, patch in enumerate(Ocean(OceanParameters.from_dict(SEA)).patches, 1):
+        fields = patch.surface(1 / 25, {"displacement", "velocity", "slope", "strain"})
         for name, field in (
             ("disp", fields.displacement), ("vel", fields.velocity), ("strain", fields.strain),
             ("slope", np.dstack((fields.slope, np.zeros_like(fields.slope[..., 0])))),

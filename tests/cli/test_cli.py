@@ -86,7 +86,7 @@ def test_info_says_before_what_a_large_sea_takes(
     (tmp_path / "sea.json").write_text(json.dumps(sea))
     begun = []
     monkeypatch.setattr(info, "seconds_of_statistics", lambda parameters: 3723.0)
-    monkeypatch.setattr(info.Cascade, "statistics", lambda self: begun.append(self) or 1 / 0)
+    monkeypatch.setattr(info.Ocean, "statistics", lambda self: begun.append(self) or 1 / 0)
     with pytest.raises(ZeroDivisionError):
         main(["info", "--params", str(tmp_path / "sea.json")])
     told = re.fullmatch(

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import OceanParameters, grid_sea
+from ocean_tweak.core import Ocean, OceanParameters
 from ocean_tweak.export.exr import read_header, read_image
 from tests.cli.test_cascades import SEA
 
@@ -73,7 +73,7 @@ def test_joined_patches_have_every_map_and_plain_names(patched: Path, tmp_path: 
     parameters = OceanParameters.from_dict(header["parameters"])
     assert header["domain_size"] == 300.0
     assert parameters.patches == OceanParameters.from_dict(SEA).patches
-    fields = grid_sea(parameters).surface(1 / 25, {"displacement", "foam", "cusp", "normal"})
+    fields = Ocean(parameters).surface(1 / 25, {"displacement", "foam", "cusp", "normal"})
     for name, field in (("disp", fields.displacement), ("normal", fields.normal)):
         np.testing.assert_array_equal(read_image(folder / f"sea_{name}.0002.exr")[0], field)
     foam = read_image(folder / "sea_foam.0002.exr")[0]
@@ -103,7 +103,7 @@ def test_another_wave_height_is_seen(
     folder = bake(masked, tmp_path / "cache")
     baked = job.read_job(folder)
     pixels = read_image(folder / "masked_disp.0001.exr")[0]
-    sea, moment = grid_sea(baked.shot.parameters), baked.shot.at(1)
+    sea, moment = Ocean(baked.shot.parameters), baked.shot.at(1)
     assert verify.wave_height(sea, moment) == pytest.approx(4.0 * np.std(pixels[..., 2]), rel=1e-5)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from ocean_tweak.core import Cascade, Ocean, OceanParameters, Patch, Water, WaveLayer
+from ocean_tweak.core import Ocean, OceanParameters, Patch, Places, Water, WaveLayer
 from ocean_tweak.core.cascades.patch_seas import patch_parameters
 from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
@@ -96,11 +96,12 @@ def test_a_cell_that_a_band_ends_in_is_shared() -> None:
 
 def test_variance_of_the_sum_is_that_of_its_waves() -> None:
     """Sampled in an area much larger than any patch: cross terms vanish as the area grows."""
-    cascade = Cascade(SEA.replace(resolution=512))
-    expected = cascade.statistics().total.seed.m0
+    cascade = Ocean(SEA.replace(resolution=512))
+    expected = cascade.statistics().seed.m0
     places = GENERATOR.uniform(0.0, 50e3, (2, 200_000))
     heights = [
-        cascade.fields_at(*places, time).displacement[:, 2].astype(float) for time in (0.0, 30.0, 71.0)
+        cascade.surface(time, on=Places(*places)).displacement[:, 2].astype(float)
+        for time in (0.0, 30.0, 71.0)
     ]
     assert np.var(heights) == pytest.approx(expected, rel=0.05)
 
@@ -125,13 +126,14 @@ def test_one_patch_is_the_sea_without_patches(windy: OceanParameters) -> None:
     for name in OF_WAVES:
         expected = getattr(Ocean(windy).surface(3.0, OF_WAVES), name)
         np.testing.assert_array_equal(getattr(Ocean(alone).surface(3.0, OF_WAVES), name), expected)
-        np.testing.assert_array_equal(getattr(Cascade(windy).surfaces(3.0, OF_WAVES)[0], name), expected)
+        (patch,) = Ocean(alone).patches
+        np.testing.assert_array_equal(getattr(patch.surface(3.0, OF_WAVES), name), expected)
 
 
 def test_a_turned_patch_keeps_its_sea() -> None:
     """Rotation turns the lattice of wave vectors and not the wind: direction and energy stay."""
     states = [
-        Cascade(SEA.replace(patches=(Patch(600.0, rotation, resolution=128),))).statistics().total.resolved
+        Ocean(SEA.replace(patches=(Patch(600.0, rotation, resolution=128),))).statistics().resolved
         for rotation in (0.0, 0.5, 3.0)
     ]
     for state in states[1:]:

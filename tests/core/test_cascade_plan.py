@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ocean_tweak.core import Cascade, Ocean, OceanParameters, ParameterError, Patch, WaveLayer
+from ocean_tweak.core import Area, Ocean, OceanParameters, ParameterError, Patch, WaveLayer
 from ocean_tweak.core.cascades.plan import SPARE, Wish, odd_side, planned
 from ocean_tweak.core.memory import memory_need
 
@@ -57,10 +57,10 @@ def test_any_plan_keeps_what_it_promises(wind: float, finest: float, area: float
 def test_waves_that_repeat_hold_a_tenth_of_the_variance_at_most() -> None:
     for wind in (5.0, 12.0, 25.0):
         sea = OceanParameters(layers=(WaveLayer(wind_speed=wind, fetch=40e3),))
-        found = Cascade(planned(sea, Wish(0.2, 1500.0))).statistics()
+        found = Ocean(planned(sea, Wish(0.2, 1500.0))).statistics()
         assert sum(patch.share for patch in found.patches[1:]) <= 0.1
-        assert found.total.warnings == ()
-        assert found.total.resolved.m0 == pytest.approx(found.total.spectrum.m0, rel=0.01)
+        assert found.warnings == ()
+        assert found.resolved.m0 == pytest.approx(found.spectrum.m0, rel=0.01)
 
 
 def autocorrelation(height: np.ndarray) -> np.ndarray:
@@ -84,11 +84,13 @@ def test_ten_domains_show_no_repetition() -> None:
     away = np.minimum(np.arange(2 * samples), 2 * samples - np.arange(2 * samples)) * raster / samples
     outside = np.hypot(away, away[:, np.newaxis]) > far
 
-    single = autocorrelation(Cascade(one).area(raster, samples, 0.0).displacement[..., 2].astype(float))
+    single = autocorrelation(
+        Ocean(one).surface(0.0, on=Area(raster, samples)).displacement[..., 2].astype(float)
+    )
     assert np.max(single[outside]) > 0.99
-    several = Cascade(planned(one, Wish(0.5, raster)))
+    several = Ocean(planned(one, Wish(0.5, raster)))
     assert len(several.patches) > 1
-    field = several.area(raster, samples, 0.0).displacement[..., 2].astype(float)
+    field = several.surface(0.0, on=Area(raster, samples)).displacement[..., 2].astype(float)
     assert np.max(autocorrelation(field)[outside]) < 0.1
 
 

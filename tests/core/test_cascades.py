@@ -14,11 +14,11 @@ import pytest
 from scipy import integrate
 
 from ocean_tweak.core import (
-    Cascade,
     Ocean,
     OceanParameters,
     ParameterError,
     Patch,
+    Places,
     Raster,
     Water,
     WindFieldLayer,
@@ -106,27 +106,33 @@ def test_wind_fields_are_on_the_first_patch() -> None:
         sea.replace(patches=turned)
 
 
-def test_an_ocean_is_one_patch() -> None:
+def test_separate_patches_have_no_one_tile() -> None:
     for patches in (THREE, (Patch(100.0, 0.2, resolution=64),)):
-        with pytest.raises(ValueError, match="use Cascade"):
-            Ocean(SEA.replace(patches=patches))
-    cascade = Cascade(SEA)
+        apart = Ocean(SEA.replace(patches=patches))
+        with pytest.raises(ValueError, match=r"^on = Tile\(\): .* here [31], .* `parameters\.on_one_grid"):
+            apart.surface(0.0, {"slope"})
+        with pytest.raises(ValueError, match=r"^on = Tile\(\)"):
+            apart.foam_history  # noqa: B018
+        assert [patch.surface(0.0).displacement.shape[0] for patch in apart.patches] == [
+            patch.resolution for patch in patches
+        ]
+    cascade = Ocean(SEA)
     with pytest.raises(ValueError, match="surface = 'nurbs'"):
         cascade.height_at(0.0, 0.0, 1.0, "nurbs")
     with pytest.raises(ValueError, match="outputs = 'curl'"):
-        cascade.fields_at(0.0, 0.0, 1.0, {"curl"})
+        cascade.surface(1.0, {"curl"}, on=Places(0.0, 0.0))
     with pytest.raises(ValueError, match="time = nan"):
-        cascade.fields_at(0.0, 0.0, math.nan)
+        cascade.surface(math.nan, on=Places(0.0, 0.0))
     with pytest.raises(ValueError, match="finite places"):
-        cascade.fields_at([0.0, math.inf], 0.0, 1.0)
-    with pytest.raises(TypeError, match="Cascade wants OceanParameters"):
-        Cascade({})  # type: ignore[arg-type]
+        cascade.surface(1.0, on=Places([0.0, math.inf], 0.0))
+    with pytest.raises(TypeError, match="Ocean wants OceanParameters"):
+        Ocean({})  # type: ignore[arg-type]
 
 
 def test_a_loop_ends_where_it_began() -> None:
-    cascade = Cascade(small(loop_duration=Fraction(10)), precision="double")
+    cascade = Ocean(small(loop_duration=Fraction(10)), precision="double")
     x, y = GENERATOR.uniform(0.0, 500.0, (2, 100))
-    first, last = (cascade.fields_at(x, y, time).displacement for time in (0.0, 10.0))
+    first, last = (cascade.surface(time, on=Places(x, y)).displacement for time in (0.0, 10.0))
     np.testing.assert_allclose(first, last, atol=1e-9)
 
 
@@ -141,20 +147,20 @@ def test_a_shot_animates_layers_and_not_patches() -> None:
 
 
 def test_statistics_of_the_sum_and_of_its_patches() -> None:
-    found = Cascade(SEA).statistics()
+    found = Ocean(SEA).statistics()
     whole = Ocean(SEA.replace(patches=())).statistics()
-    assert found.total.spectrum == whole.spectrum
-    assert found.total.resolved.m0 == pytest.approx(sum(p.statistics.resolved.m0 for p in found.patches))
+    assert found.spectrum == whole.spectrum
+    assert found.resolved.m0 == pytest.approx(sum(p.statistics.resolved.m0 for p in found.patches))
     assert sum(patch.share for patch in found.patches) == pytest.approx(1.0)
-    assert found.total.resolved.mean_direction == pytest.approx(0.4, abs=0.01)
-    assert found.total.resolved.mean_square_slope == pytest.approx(
+    assert found.resolved.mean_direction == pytest.approx(0.4, abs=0.01)
+    assert found.resolved.mean_square_slope == pytest.approx(
         sum(p.statistics.resolved.mean_square_slope for p in found.patches)
     )
-    assert found.total.sample_spacing == pytest.approx(33.0 / 160)
+    assert found.sample_spacing == pytest.approx(33.0 / 160)
     told = found.to_dict()["patches"]
     assert [patch["domain_size"] for patch in told] == [600.0, 151.0, 33.0]  # type: ignore[attr-defined]
     assert told[2]["samples_a_wave"] == pytest.approx(0.9 * 160 / 33.0)  # type: ignore[index]
-    assert found.total.warnings == ()
+    assert found.warnings == ()
 
 
 def test_statistics_of_one_patch_are_those_of_its_sea() -> None:
@@ -164,23 +170,24 @@ def test_statistics_of_one_patch_are_those_of_its_sea() -> None:
         whole.replace(seed=8),
         whole.replace(layers=(dataclasses.replace(LAYER, muted=True),)),
     ):
-        assert Cascade(sea).statistics().total.to_dict() == Ocean(sea).statistics().to_dict()
+        one_patch = sea.replace(patches=(Patch(sea.domain_size, resolution=sea.resolution),))
+        told = Ocean(one_patch).statistics().to_dict()
+        assert [patch["share"] for patch in told.pop("patches")] == [1.0 if sea.active_layers else 0.0]  # type: ignore[attr-defined]
+        assert told == Ocean(sea).statistics().to_dict()
 
 
 def test_statistics_warn_of_patches_that_are_too_small_or_too_coarse() -> None:
     first, second, third = THREE
-    coarse = Cascade(SEA.replace(patches=(first, second, dataclasses.replace(third, resolution=64))))
-    (warning,) = coarse.statistics().total.warnings
+    coarse = Ocean(SEA.replace(patches=(first, second, dataclasses.replace(third, resolution=64))))
+    (warning,) = coarse.statistics().warnings
     assert "Patch 3: its shortest wave, 0.9 m, has only 1.7 samples. Give it 148 samples" in warning
-    near = Cascade(SEA.replace(patches=(first, dataclasses.replace(second, domain_size=80.0), third)))
-    assert any(
-        "Patch 2: its longest wave, 20 m, goes only 4 times" in w for w in near.statistics().total.warnings
-    )
+    near = Ocean(SEA.replace(patches=(first, dataclasses.replace(second, domain_size=80.0), third)))
+    assert any("Patch 2: its longest wave, 20 m, goes only 4 times" in w for w in near.statistics().warnings)
     early = (
         dataclasses.replace(first, shortest_wavelength=60.0),
         dataclasses.replace(second, longest_wavelength=60.0),
     )
-    shown = Cascade(SEA.replace(patches=early)).statistics().total.warnings
+    shown = Ocean(SEA.replace(patches=early)).statistics().warnings
     assert any("Patch 2: it repeats every 151 m with" in warning for warning in shown)
 
 
@@ -214,10 +221,10 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def test_the_example_is_a_plan_without_warnings() -> None:
     sea = OceanParameters.from_json((ROOT / "examples" / "horizon.json").read_text(encoding="utf-8"))
-    found = Cascade(sea).statistics()
+    found = Ocean(sea).statistics()
     assert len(sea.patches) == 4
-    assert found.total.warnings == ()
-    assert found.total.resolved_share == pytest.approx(1.0, abs=0.01)
+    assert found.warnings == ()
+    assert found.resolved_share == pytest.approx(1.0, abs=0.01)
     assert sea.patches[-1].shortest_wavelength == 0.1
 
 
@@ -225,4 +232,4 @@ def test_the_document_shows_a_sea() -> None:
     text = (ROOT / "docs" / "cascades.md").read_text(encoding="utf-8")
     (patches,) = re.findall(r"^```json\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     sea = OceanParameters.from_json(f"{{{patches}}}")
-    assert Cascade(sea).statistics().total.warnings == ()
+    assert Ocean(sea).statistics().warnings == ()

@@ -10,10 +10,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Cascade, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer, grid_sea
+from ocean_tweak.core import Area, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer
 from ocean_tweak.core.foam import FoamHistory, FoamModel, strength_levels
 from ocean_tweak.core.foam_field import foam_outlook, resampled
-from ocean_tweak.core.foam_threshold import foam_wind, strain_covariances, strains, whitecap_coverage
+from ocean_tweak.core.foam_threshold import foam_wind, sampled_strains, strain_covariances, whitecap_coverage
 
 SEA = OceanParameters(
     resolution=64, domain_size=200.0, seed=2, layers=(WaveLayer(wind_speed=15.0, wind_direction=0.7),)
@@ -123,14 +123,14 @@ def test_a_sea_without_squeeze_has_no_foam(changes: dict, precision: str) -> Non
         **changes
     )
     with np.errstate(all="raise", under="ignore"):
-        fields = grid_sea(sea, precision).surface(4.0, {"foam", "cusp"})
+        fields = Ocean(sea, precision).surface(4.0, {"foam", "cusp"})
     assert not np.any(fields.foam)
     assert not np.any(fields.cusp)
 
 
 def test_patches_without_squeeze_have_no_foam() -> None:
-    sea = Cascade(OceanParameters(choppiness=0.0, layers=(WIND,), patches=HALVES))
-    assert not np.any(sea.area(100.0, 16, 4.0, {"foam"}).foam)
+    sea = Ocean(OceanParameters(choppiness=0.0, layers=(WIND,), patches=HALVES))
+    assert not np.any(sea.surface(4.0, {"foam"}, on=Area(100.0, 16)).foam)
 
 
 def test_crests_of_one_direction_can_be_white_all_over() -> None:
@@ -214,7 +214,9 @@ def test_a_lattice_of_at_most_eight_a_second() -> None:
 def test_strains_are_those_of_the_fields() -> None:
     """Mean, spread and tail of the squeeze, and of its rate, against the sea itself."""
     ocean = Ocean(OceanParameters(resolution=256, domain_size=800.0, layers=SEA.layers, seed=1))
-    expected = strains(ocean.initial_state, ocean.parameters, (0.0, 0.0))
+    expected = sampled_strains(
+        *strain_covariances(ocean.initial_state, ocean.parameters.choppiness, (0.0, 0.0))
+    )
     squeezes, rates = [], []
     for time in np.arange(0.0, 60.0, 5.0):
         before, after = (

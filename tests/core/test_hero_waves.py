@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, Patch, Water, WaveLayer
 from ocean_tweak.core.fingerprint import frame_fingerprint
-from ocean_tweak.core.foam_field import foam_model
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.waves.hero.group import needed_samples
 from ocean_tweak.core.waves.hero.outlook import hero_wave_outlooks
@@ -222,8 +221,7 @@ def test_expected_sea_and_its_foam_are_without_the_hero_wave(windy: OceanParamet
     assert placed.statistics().resolved == plain.statistics().resolved
     assert placed.statistics().spectrum == plain.statistics().spectrum
     assert placed.statistics().seed.m0 > plain.statistics().seed.m0
-    threshold = foam_model(windy, plain.initial_state).threshold
-    assert foam_model(both, placed.initial_state).threshold == threshold
+    assert placed.foam_model.threshold == plain.foam_model.threshold
 
 
 def test_a_hero_wave_squeezes_its_crest_and_foams(windy: OceanParameters) -> None:

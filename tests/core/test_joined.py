@@ -7,13 +7,14 @@ import dataclasses
 
 import numpy as np
 import pytest
-from ocean_tweak.core.cascades.joined import border_shares
 
-from ocean_tweak.core import Cascade, Foam, Ocean, OceanParameters, ParameterError, Patch, WaveLayer, grid_sea
+from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Places, WaveLayer
 from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.cascades.patch_seas import joined_bands
+from ocean_tweak.core.cascades.patch_seas import joined_bands, parts
 from ocean_tweak.core.foam_threshold import whitecap_coverage
 from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core.sea.part_waves import PartWaves, strain_covariances
+from ocean_tweak.core.sea.tile import border_shares
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from tests.core.patched_seas import LAYER, SEA, THREE, summed
@@ -87,7 +88,7 @@ def test_it_is_the_sum_of_the_waves() -> None:
     bands = joined_bands(sea)
     sums = summed(bands, *places.T, 1.5)
     first = summed(bands.replace(patches=bands.patches[:1]), *places.T, 1.5)
-    found = grid_sea(sea, "double").surface(1.5).displacement[index[:, 1], index[:, 0]]
+    found = Ocean(sea, "double").surface(1.5).displacement[index[:, 1], index[:, 0]]
     for component, name in enumerate("xyz"):
         of_second = np.std(sums[name] - first[name])
         assert of_second > 0.02
@@ -98,9 +99,9 @@ def test_each_field_is_that_of_the_sum() -> None:
     """At the grid's samples, as the sea of the same bands tells it for any place."""
     sea = joined(128)
     outputs = {"displacement", "velocity", "slope", "strain", "normal", "cusp", "jacobian", "min_eigenvector"}
-    found = grid_sea(sea).surface(4.0, outputs)
+    found = Ocean(sea).surface(4.0, outputs)
     along = 600.0 / 128 * np.arange(INSIDE)
-    there = Cascade(joined_bands(sea)).fields_at(along, along[:, np.newaxis], 4.0, outputs)
+    there = Ocean(joined_bands(sea)).surface(4.0, outputs, on=Places(along, along[:, np.newaxis]))
     for name in outputs:
         inside = getattr(found, name)[:INSIDE, :INSIDE]
         np.testing.assert_allclose(inside, getattr(there, name), atol=3e-5, err_msg=name)
@@ -109,7 +110,7 @@ def test_each_field_is_that_of_the_sum() -> None:
 def test_the_square_repeats_without_a_seam() -> None:
     """Derivatives by differences across the far sides are those of the fields, as they are inside."""
     sea = joined(512, choppiness=0.0)
-    fields = grid_sea(sea, "double").surface(4.0, {"displacement", "slope"})
+    fields = Ocean(sea, "double").surface(4.0, {"displacement", "slope"})
     spacing = 600.0 / 512
     for axis, name in ((1, "x"), (0, "y")):
         height = np.moveaxis(fields.displacement[..., 2], axis, 0)
@@ -137,7 +138,7 @@ def test_shares_within_the_border() -> None:
 def test_waves_that_the_grid_lacks_are_told_as_slopes() -> None:
     """Together with those that it holds they are all gravity waves."""
     sea = joined(256)
-    held = grid_sea(sea).statistics().resolved.mean_square_slope
+    held = Ocean(sea).statistics().resolved.mean_square_slope
     lacking = unresolved_slope_variance(sea)
     assert held + lacking == pytest.approx(total_slope_variance(APART.without_patches), rel=0.03)
     assert lacking > unresolved_slope_variance(joined(512)) > unresolved_slope_variance(APART)
@@ -148,8 +149,8 @@ def test_the_border_is_as_high_as_the_rest() -> None:
     inside, border = [], []
     for seed in range(40):
         sea = joined(128, seed=seed, choppiness=0.0)
-        first = grid_sea(sea.replace(patches=(dataclasses.replace(PATCHES[0], shortest_wavelength=20.0),)))
-        height = (grid_sea(sea).surface(0.0).displacement - first.surface(0.0).displacement)[..., 2]
+        first = Ocean(sea.replace(patches=(dataclasses.replace(PATCHES[0], shortest_wavelength=20.0),)))
+        height = (Ocean(sea).surface(0.0).displacement - first.surface(0.0).displacement)[..., 2]
         border.append(np.mean(height[INSIDE:] ** 2))
         inside.append(np.mean(height[:INSIDE] ** 2))
     assert np.mean(border) == pytest.approx(np.mean(inside), rel=0.06)
@@ -160,11 +161,11 @@ def test_the_variance_is_that_of_the_waves_that_it_holds() -> None:
     wanted, found = 0.0, 0.0
     for seed in range(12):
         sea = joined(128, seed=seed, choppiness=0.0)
-        statistics = grid_sea(sea).statistics()
+        statistics = Ocean(sea).statistics()
         wanted += statistics.seed.m0
-        found += float(np.var(grid_sea(sea).surface(0.0).displacement[..., 2]))
+        found += float(np.var(Ocean(sea).surface(0.0).displacement[..., 2]))
     assert found == pytest.approx(wanted, rel=0.02)
-    whole = Cascade(APART).statistics().total.resolved.m0
+    whole = Ocean(APART).statistics().resolved.m0
     assert statistics.resolved.m0 < whole
 
 
@@ -172,15 +173,15 @@ def test_one_patch_joined_is_that_patch() -> None:
     sea = joined(32)
     (first,) = joined_bands(sea).patches
     alone = Ocean(sea.replace(joined=0, patches=(first,)))
-    np.testing.assert_array_equal(grid_sea(sea).surface(1.0).displacement, alone.surface(1.0).displacement)
+    np.testing.assert_array_equal(Ocean(sea).surface(1.0).displacement, alone.surface(1.0).displacement)
 
 
 def test_a_first_patch_may_be_turned() -> None:
     turned = (dataclasses.replace(PATCHES[0], rotation=0.3), *PATCHES[1:])
     sea = OceanParameters(seed=3, layers=(LAYER,), patches=turned).on_one_grid(64)
-    found = grid_sea(sea).surface(2.0).displacement
+    found = Ocean(sea).surface(2.0).displacement
     along = 600.0 / 64 * np.arange(57)  # before the border of a tenth of the side
-    there = Cascade(joined_bands(sea)).fields_at(along, along[:, np.newaxis], 2.0).displacement
+    there = Ocean(joined_bands(sea)).surface(2.0, on=Places(along, along[:, np.newaxis])).displacement
     np.testing.assert_allclose(found[:57, :57], there, atol=3e-5)
 
 
@@ -188,9 +189,10 @@ def test_strains_are_as_large_as_the_foam_takes_them_for() -> None:
     """Mean squares over the grid; those of the second patch, read between its samples, make the most."""
     found, wanted = np.zeros(3), np.zeros(3)
     for seed in range(10):
-        sea = grid_sea(joined(128, seed=seed))
-        found += np.mean(sea.surface(0.0, {"strain"}).strain.astype(float) ** 2, axis=(0, 1))
-        wanted += np.diag(sea.strain_covariances((0.0, 0.0))[0])
+        sea = joined(128, seed=seed)
+        found += np.mean(Ocean(sea).surface(0.0, {"strain"}).strain.astype(float) ** 2, axis=(0, 1))
+        waves = [PartWaves(part, 600.0, "single", None) for part in parts(joined_bands(sea))]
+        wanted += np.diag(strain_covariances(waves, (0.0, 0.0))[0])
     np.testing.assert_allclose(found, wanted, rtol=0.02)
 
 
@@ -200,21 +202,21 @@ def test_foam_covers_as_much_as_at_sea() -> None:
     ).on_one_grid(160)
     shares = []
     for seed in range(4):
-        field = grid_sea(sea.replace(seed=seed)).surface(50.0, {"foam"}).foam
+        field = Ocean(sea.replace(seed=seed)).surface(50.0, {"foam"}).foam
         shares.append(np.mean(field >= 0.5))
     assert np.mean(shares) == pytest.approx(whitecap_coverage(16.0), rel=0.25)
 
 
 def test_foam_of_a_frame_alone_is_that_of_a_sequence() -> None:
     sea = joined(64, foam=Foam(half_life=0.5))
-    one = grid_sea(sea)
+    one = Ocean(sea)
     for time in (1.0, 1.125, 1.5):
         in_sequence = one.surface(time, {"foam"}).foam
-    np.testing.assert_array_equal(in_sequence, grid_sea(sea).surface(1.5, {"foam"}).foam)
+    np.testing.assert_array_equal(in_sequence, Ocean(sea).surface(1.5, {"foam"}).foam)
 
 
 def test_the_height_above_a_place_is_that_of_the_mesh() -> None:
-    sea = grid_sea(joined(96), "double")
+    sea = Ocean(joined(96), "double")
     moved = sea.surface(2.0).displacement[10:80:13, 9:80:11].reshape(-1, 3)
     rest = 600.0 / 96 * np.stack(np.meshgrid(np.arange(9, 80, 11), np.arange(10, 80, 13)), axis=-1)
     x, y = (rest.reshape(-1, 2) + moved[:, :2]).T
@@ -226,7 +228,7 @@ def test_the_height_above_a_place_is_that_of_the_mesh() -> None:
 def test_a_shot_is_joined_like_its_sea() -> None:
     shot = Shot(joined(64))
     (fields,) = ShotSurfaces(shot).frames(5, {"displacement", "foam"})
-    there = grid_sea(shot.at(5).parameters).surface(shot.at(5).time, {"displacement", "foam"})
+    there = Ocean(shot.at(5).parameters).surface(shot.at(5).time, {"displacement", "foam"})
     np.testing.assert_array_equal(fields.displacement, there.displacement)
     np.testing.assert_array_equal(fields.foam, there.foam)
 
@@ -237,11 +239,19 @@ def test_what_cannot_be_joined_is_refused(samples: int, patches: tuple[Patch, ..
         OceanParameters(patches=patches, joined=samples)
 
 
-def test_patches_apart_have_no_one_grid() -> None:
-    with pytest.raises(ValueError, match="use Cascade"):
-        grid_sea(APART)
-    with pytest.raises(ValueError, match="grid_sea"):
-        Ocean(joined(64))
+def test_joined_patches_are_one_sea_of_several_sums() -> None:
+    sea = Ocean(joined(64))
+    assert sea.patches == (sea,)
+    with pytest.raises(ValueError, match="not one sum but several, or under masks"):
+        sea.initial_state  # noqa: B018
+
+
+def test_places_of_joined_patches_have_the_waves_that_the_grid_holds() -> None:
+    x, y = GENERATOR.uniform(0.0, 600.0, (2, 50))
+    found = Ocean(joined(128)).surface(4.0, on=Places(x, y)).displacement
+    there = Ocean(joined_bands(joined(128))).surface(4.0, on=Places(x, y)).displacement
+    np.testing.assert_array_equal(found, there)
+    assert np.abs(found - Ocean(APART).surface(4.0, on=Places(x, y)).displacement).max() > 0.01
 
 
 def test_memory_is_told() -> None:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import (
-    Cascade,
     HeroWave,
     Mask,
     Ocean,
@@ -17,12 +16,16 @@ from ocean_tweak.core import (
     ParameterError,
     Patch,
     PictureLayer,
+    Places,
     Raster,
     WaveLayer,
     WindFieldLayer,
-    grid_sea,
 )
+from ocean_tweak.core.cascades.patch_seas import parts
 from ocean_tweak.core.masks.weights import weights, weights_on_grid
+from ocean_tweak.core.sea.part_waves import PartWaves
+from ocean_tweak.core.sea.sampling import summed_field
+from ocean_tweak.core.surface_query import Field
 
 SIZE, SAMPLES = 240.0, 64
 GENERATOR = np.random.default_rng(5)
@@ -47,6 +50,12 @@ def only(parameters: OceanParameters, number: int) -> OceanParameters:
         for index, layer in enumerate(parameters.layers)
     )
     return parameters.replace(layers=layers)
+
+
+def exact_field(parameters: OceanParameters) -> Field:
+    """The band-limited surface at 2 s, with derivatives, at any rest positions."""
+    waves = [PartWaves(part, SIZE, "double", None) for part in parts(parameters)]
+    return summed_field([of_part.exact_field(2.0) for of_part in waves])
 
 
 # weights
@@ -118,7 +127,7 @@ def test_the_sea_is_the_weighted_sum_of_its_layers() -> None:
     storm, ripples = (
         Ocean(only(sea(), number), "double").surface(3.0, {"displacement", "velocity"}) for number in (0, 1)
     )
-    found = grid_sea(sea(), "double").surface(3.0, {"displacement", "velocity"})
+    found = Ocean(sea(), "double").surface(3.0, {"displacement", "velocity"})
     for name in ("displacement", "velocity"):
         expected = weight * getattr(storm, name) + getattr(ripples, name)
         np.testing.assert_allclose(getattr(found, name), expected, atol=1e-12)
@@ -126,8 +135,7 @@ def test_the_sea_is_the_weighted_sum_of_its_layers() -> None:
 
 def test_slopes_and_strains_are_those_of_the_masked_surface() -> None:
     """By differences of the displacement itself, between samples: the exact surface of the sum."""
-    cascade = Cascade(sea(layers=(dataclasses.replace(STORM, mask=IMAGE), RIPPLES)), "double")
-    field = cascade.exact_field(2.0)
+    field = exact_field(sea(layers=(dataclasses.replace(STORM, mask=IMAGE), RIPPLES)))
     x, y = GENERATOR.uniform(0.0, SIZE, (2, 40))
     values, _ = field(x, y, False)
     step = 1e-3
@@ -140,10 +148,10 @@ def test_slopes_and_strains_are_those_of_the_masked_surface() -> None:
 def test_a_grid_has_the_slopes_and_strains_of_the_masked_surface() -> None:
     outputs = {"slope", "strain", "jacobian", "cusp"}
     parameters = sea()
-    found = grid_sea(parameters, "double").surface(2.0, outputs)
+    found = Ocean(parameters, "double").surface(2.0, outputs)
     along = SIZE / SAMPLES * np.arange(SAMPLES)
     x, y = (part.ravel() for part in np.meshgrid(along, along))
-    values, _ = Cascade(parameters, "double").exact_field(2.0)(x, y, False)
+    values, _ = exact_field(parameters)(x, y, False)
     by_x, by_y = (part.reshape(SAMPLES, SAMPLES, 3) for part in (values.by_x, values.by_y))
     np.testing.assert_allclose(found.slope, np.stack((by_x[..., 2], by_y[..., 2]), axis=-1), atol=1e-8)
     gradient = np.stack((by_x[..., :2], by_y[..., :2]), axis=-1) + np.eye(2)
@@ -156,9 +164,9 @@ def test_a_grid_has_the_slopes_and_strains_of_the_masked_surface() -> None:
 @pytest.mark.parametrize("mask", [HARBOUR, IMAGE])
 def test_the_displacement_is_continuous(mask: Mask) -> None:
     """Over texels, over the mask's edge and over the domain's: a step of δ moves it by a rate times δ."""
-    cascade = Cascade(sea(layers=(dataclasses.replace(STORM, mask=mask),)), "double")
+    cascade = Ocean(sea(layers=(dataclasses.replace(STORM, mask=mask),)), "double")
     along = np.linspace(-0.2 * SIZE, 1.2 * SIZE, 30_001)
-    moved = cascade.fields_at(along, 0.4 * SIZE + 0.1 * along, 1.0).displacement
+    moved = cascade.surface(1.0, on=Places(along, 0.4 * SIZE + 0.1 * along)).displacement
     jumps = np.abs(np.diff(moved, axis=0)).max()
     rates = np.abs(np.diff(moved[::10], axis=0)).max() / 10.0
     assert jumps < 3.0 * rates
@@ -166,14 +174,16 @@ def test_the_displacement_is_continuous(mask: Mask) -> None:
 
 def test_calm_in_the_harbour() -> None:
     calm = dataclasses.replace(STORM, mask=HARBOUR)
-    cascade = Cascade(sea(layers=(calm,)))
-    inside = cascade.fields_at(
-        HARBOUR.x + np.array([-9.0, 0.0, 12.0]), HARBOUR.y, 5.0, {"displacement", "foam"}
+    cascade = Ocean(sea(layers=(calm,)))
+    inside = cascade.surface(
+        5.0, {"displacement", "foam"}, on=Places(HARBOUR.x + np.array([-9.0, 0.0, 12.0]), HARBOUR.y)
     )
     assert np.all(inside.displacement == 0.0)
     assert np.all(inside.foam == 0.0)
-    outside = cascade.fields_at(HARBOUR.x + np.array([81.0, 110.0]), HARBOUR.y, 5.0).displacement
-    whole = Cascade(sea(layers=(STORM,))).fields_at(HARBOUR.x + np.array([81.0, 110.0]), HARBOUR.y, 5.0)
+    outside = cascade.surface(5.0, on=Places(HARBOUR.x + np.array([81.0, 110.0]), HARBOUR.y)).displacement
+    whole = Ocean(sea(layers=(STORM,))).surface(
+        5.0, on=Places(HARBOUR.x + np.array([81.0, 110.0]), HARBOUR.y)
+    )
     np.testing.assert_array_equal(outside, whole.displacement)
 
 
@@ -183,10 +193,10 @@ def test_a_patch_has_a_mask_of_its_own() -> None:
     free = parameters.replace(patches=(patches[0], dataclasses.replace(patches[1], mask=None)))
     x, y = GENERATOR.uniform(0.0, SIZE, (2, 60))
     weight = weights((IMAGE,), SIZE, x, y).value[:, np.newaxis]
-    found = Cascade(parameters, "double").fields_at(x, y, 1.0).displacement
-    both = Cascade(free, "double").fields_at(x, y, 1.0).displacement
+    found = Ocean(parameters, "double").surface(1.0, on=Places(x, y)).displacement
+    both = Ocean(free, "double").surface(1.0, on=Places(x, y)).displacement
     first = Ocean(parameters.replace(patches=patches[:1]).replace(patches=(patches[0],)), "double")
-    long = Cascade(first.parameters, "double").fields_at(x, y, 1.0).displacement
+    long = Ocean(first.parameters, "double").surface(1.0, on=Places(x, y)).displacement
     np.testing.assert_allclose(found, long + weight * (both - long), atol=1e-6)
 
 
@@ -198,7 +208,7 @@ def test_layers_of_all_kinds_have_masks(kind: str) -> None:
     }[kind]
     free = dataclasses.replace(layer, mask=None)
     fields = [
-        grid_sea(sea(layers=(RIPPLES,)).replace(**{kind: found})).surface(20.0).displacement
+        Ocean(sea(layers=(RIPPLES,)).replace(**{kind: found})).surface(20.0).displacement
         for found in ((layer,), (free,), ())
     ]
     weight = weights_on_grid((HARBOUR,), SIZE, SAMPLES).value[..., np.newaxis]
@@ -209,7 +219,7 @@ def test_layers_of_all_kinds_have_masks(kind: str) -> None:
 def test_a_hero_wave_is_there_once_and_under_no_mask() -> None:
     hero = HeroWave(x=60.0, y=90.0, time=2.0, wavelength=40.0, crest_height=2.0)
     with_wave, without = (
-        grid_sea(sea(hero_waves=waves), "double").surface(2.0).displacement for waves in ((hero,), ())
+        Ocean(sea(hero_waves=waves), "double").surface(2.0).displacement for waves in ((hero,), ())
     )
     alone = Ocean(only(sea(), 1).replace(hero_waves=(hero,)), "double").surface(2.0).displacement
     plain = Ocean(only(sea(), 1), "double").surface(2.0).displacement
@@ -219,15 +229,15 @@ def test_a_hero_wave_is_there_once_and_under_no_mask() -> None:
 
 def test_the_height_above_a_place_is_that_of_the_masked_surface() -> None:
     x, y = GENERATOR.uniform(0.0, SIZE, (2, 50))
-    points = Cascade(sea(), "double").points_at(x, y, 2.0, surface="exact", velocity=True)
-    values, velocity = Cascade(sea(), "double").exact_field(2.0)(points.rest[:, 0], points.rest[:, 1], True)
+    points = Ocean(sea(), "double").points_at(x, y, 2.0, surface="exact", velocity=True)
+    values, velocity = exact_field(sea())(points.rest[:, 0], points.rest[:, 1], True)
     np.testing.assert_allclose(points.rest[:, 0] + values.value[:, 0], x, atol=1e-4)
     np.testing.assert_allclose(points.height, values.value[:, 2], atol=1e-9)
     np.testing.assert_allclose(points.velocity, velocity, atol=1e-9)
 
 
 def test_a_sample_is_found_above_the_place_to_which_it_was_moved() -> None:
-    masked = grid_sea(sea(), "double")
+    masked = Ocean(sea(), "double")
     moved = masked.surface(2.0).displacement[5:60:9, 3:60:7].reshape(-1, 3)
     rest = SIZE / SAMPLES * np.stack(np.meshgrid(np.arange(3, 60, 7), np.arange(5, 60, 9)), axis=-1)
     x, y = (rest.reshape(-1, 2) + moved[:, :2]).T
@@ -237,13 +247,13 @@ def test_a_sample_is_found_above_the_place_to_which_it_was_moved() -> None:
 def test_a_muted_mask_masks_nothing() -> None:
     muted = sea(layers=(dataclasses.replace(STORM, mask=HARBOUR, muted=True), RIPPLES))
     assert not muted.is_masked
-    assert isinstance(grid_sea(muted), Ocean)
+    assert isinstance(Ocean(muted), Ocean)
 
 
 def test_waves_are_those_of_the_sea_without_masks() -> None:
     """Statistics and seeds: a mask takes no layer's waves, it only says where they are."""
     free = only(sea(), 0).replace(layers=(STORM, RIPPLES))
-    assert grid_sea(sea()).statistics().resolved == Ocean(free).statistics().resolved
+    assert Ocean(sea()).statistics().resolved == Ocean(free).statistics().resolved
 
 
 # values
@@ -277,6 +287,6 @@ def test_troughs_are_not_damped_under_masks() -> None:
         sea(trough_damping=0.5)
 
 
-def test_an_ocean_refuses_masks_and_says_what_makes_them() -> None:
-    with pytest.raises(ValueError, match="grid_sea"):
-        Ocean(sea())
+def test_a_masked_sea_has_no_coefficients_of_one_sum() -> None:
+    with pytest.raises(ValueError, match="not one sum but several, or under masks"):
+        Ocean(sea()).initial_state  # noqa: B018

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from ocean_tweak.core import Cascade, OceanParameters, ParameterError, Patch, WaveLayer
+from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, WaveLayer
 from ocean_tweak.core.cascades.editing import with_another_patch, without_patch
 
 LAYER = WaveLayer(wind_speed=11.0, fetch=80e3)
@@ -54,7 +54,7 @@ def test_of_the_first_only_waves_that_may_repeat_are_taken() -> None:
     sea = with_another_patch(ONE.replace(patches=(Patch(1000.0, 0.0, 5.0, 1e6, 1024),)))
     # half of its octaves would be √(5 · 1000) = 71 m, about its peak
     assert 10.0 <= sea.patches[0].shortest_wavelength < 40.0
-    found = Cascade(sea).statistics()
+    found = Ocean(sea).statistics()
     assert 0.05 < found.patches[1].share < 0.12
 
 

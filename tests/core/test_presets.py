@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from ocean_tweak.core import Cascade, Ocean, OceanParameters, ParameterError, Timing
+from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing
 from ocean_tweak.core.presets import Preset, built_in
 
 from ..reference import rows
@@ -37,7 +37,7 @@ def test_presets_are_the_tables_seas(key: str) -> None:
 
 @pytest.mark.parametrize("key", OTHERS)
 def test_the_other_presets(key: str) -> None:
-    statistics = Cascade(built_in()[key].parameters.replace(resolution=128)).statistics().total
+    statistics = Ocean(built_in()[key].parameters.replace(resolution=128)).statistics()
     height, period = OTHERS[key]
     assert statistics.spectrum.significant_wave_height == pytest.approx(height, abs=0.006)
     assert statistics.spectrum.peak_period == pytest.approx(period, abs=0.06)
@@ -52,7 +52,7 @@ def test_every_preset_is_tested_and_warns_of_nothing() -> None:
             if preset.parameters.resolution < 1024
             else preset.parameters.replace(resolution=512)
         )
-        statistics = Cascade(small).statistics().total
+        statistics = Ocean(small).statistics()
         assert not statistics.warnings, (key, statistics.warnings)
         assert statistics.wavelengths_per_domain > 3.5
 

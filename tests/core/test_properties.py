@@ -12,17 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ocean_tweak.core import (
-    Foam,
-    Ocean,
-    OceanParameters,
-    ParameterError,
-    Patch,
-    Timing,
-    Water,
-    WaveLayer,
-    grid_sea,
-)
+from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Timing, Water, WaveLayer
 from ocean_tweak.core.channels import OF_WAVES
 from ocean_tweak.core.propagation import propagate
 from tests.core.random_seas import SEAS, patched_seas
@@ -52,7 +42,7 @@ def test_any_sea_is_finite_and_keeps_its_energy(parameters: OceanParameters, tim
 @QUICK
 @given(parameters=patched_seas(), time=st.floats(-1e6, 1e6))
 def test_any_sum_is_finite(parameters: OceanParameters, time: float) -> None:
-    sea = grid_sea(parameters.on_one_grid(parameters.resolution))
+    sea = Ocean(parameters.on_one_grid(parameters.resolution))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
         fields = sea.surface(time, OF_WAVES)
     for name in OF_WAVES:

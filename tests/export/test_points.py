@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import Cascade, Ocean, OceanParameters, Patch, WaveLayer
+from ocean_tweak.core import Ocean, OceanParameters, Patch, Places, WaveLayer
 from ocean_tweak.core.cascades.patch_seas import parts
 from ocean_tweak.export.points import PointSequence, PointsError, read_points
 
@@ -88,7 +88,7 @@ def test_the_small_ones_are_means_over_cells(sea, made):
 
 def test_the_sum_of_the_patches_is_the_sea(sea, made):
     at_corner = [columns(made / f"sea_p{number}_points.0001.ply", "z")[0, 0, 0] for number in (1, 2)]
-    whole = Cascade(sea.replace(joined=0)).fields_at(0.0, 0.0, 0.0, {"displacement"}).displacement
+    whole = Ocean(sea.replace(joined=0)).surface(0.0, {"displacement"}, on=Places(0.0, 0.0)).displacement
     assert sum(at_corner) == pytest.approx(float(np.ravel(whole)[2]), abs=1e-4)
 
 

@@ -62,7 +62,7 @@ def bake(extension, parameters, folder, frames):
     """The displacement of some frames, as the sequence storm."""
     folder.mkdir()
     sink = extension.module("export.exr").ExrSequence(folder, "storm", parameters, "ZIP", ("disp",))
-    sea = extension.module("core").grid_sea(parameters)
+    sea = extension.module("core").Ocean(parameters)
     for frame in frames:
         sink.write(frame, sea.frame(frame, sink.outputs))
     return extension.module("scene.image_sequence").ImageSequence(folder, "storm", frames)

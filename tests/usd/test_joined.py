@@ -10,7 +10,7 @@ import pytest
 from pxr import Usd
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import OceanParameters, grid_sea
+from ocean_tweak.core import Ocean, OceanParameters
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.package import Package
@@ -40,7 +40,7 @@ def test_layers_hold_the_sum_on_one_grid(kind: str, form: str, tmp_path: Path) -
         pass
     export.finish()
     samples = SAMPLES[kind]
-    fields = grid_sea(parameters.on_one_grid(samples)).surface(1 / 25, {"displacement", "velocity", "foam"})
+    fields = Ocean(parameters.on_one_grid(samples)).surface(1 / 25, {"displacement", "velocity", "foam"})
     index = np.arange(samples + 1)
     row, column = (part.ravel() for part in np.meshgrid(index, index, indexing="ij"))
     flat = np.stack([column * SIZE / samples, row * SIZE / samples, np.zeros(len(row))], axis=-1)

@@ -27,9 +27,9 @@ from ..masks.weights import Weights, weights
 from ..memory import MemoryNeed, check_memory, memory_need
 from ..parameters import OceanParameters
 from ..statistics import Statistics, sea_statistics
-from ..surface_query import Field, SurfacePoints, find_points, refine_points
+from ..surface_query import SurfacePoints, find_points, refine_points
 from .on import Area, Places, Tile
-from .part_waves import PRECISIONS, PartWaves, default_workers, real_type
+from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
 from .query import find_summed_points
 from .sampling import Components, Grid, Key, Summed, closed, summed_field, unweighted
 from .statistics import statistics_of_patches
@@ -168,12 +168,14 @@ class Ocean:
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
         _check_time(time)
         x, y = Places(x, y).rest_positions()
-        waves = self._exact_field(time) if surface == "exact" else None
+        exact = (
+            summed_field([waves.exact_field(time) for waves in self._parts]) if surface == "exact" else None
+        )
         if self.parameters.is_cascade:
             points, spacing = self._points_of_sum(x, y, time, velocity)
         else:
             points, spacing = self._points_of_tile(x, y, time, velocity)
-        return points if waves is None else refine_points(x, y, waves, points, spacing, velocity)
+        return points if exact is None else refine_points(x, y, exact, points, spacing, velocity)
 
     def height_at(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, surface: str = "mesh"
@@ -331,18 +333,8 @@ class Ocean:
         return self._kept_squeezes[time]
 
     def _strains(self, drift: tuple[float, float]) -> Strains:
-        """Of all parts together, as a point with this drift meets them: waves are independent."""
-        found = [
-            # between its samples, a part has less than its waves
-            waves.strain_covariances(drift, self.parameters.is_cascade or not waves.is_on_tile)
-            for waves in self._parts
-        ]
-        of_gradients, of_rates = zip(*found, strict=True)
-        return sampled_strains(np.sum(of_gradients, axis=0), np.sum(of_rates, axis=0))
-
-    def _exact_field(self, time: float | Fraction) -> Field:
-        """The band-limited surface, whose cost grows with points times wave vectors."""
-        return summed_field([waves.exact_field(time) for waves in self._parts])
+        """Of all parts together, as a point with this drift meets them."""
+        return sampled_strains(*strain_covariances(self._parts, drift, self.parameters.is_cascade))
 
     def _points_of_tile(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool

@@ -12,10 +12,10 @@ from functools import cached_property, lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import foam_threshold
 from ..cascades.patch_seas import Part
-from ..exact_field import exact
 from ..channels import CHANNELS, memory_groups
-from ..foam_threshold import strain_covariances
+from ..exact_field import exact
 from ..initial_state import InitialState, initial_state
 from ..masks.weights import weights
 from ..parameters import Foam, OceanParameters, Timing
@@ -108,12 +108,6 @@ class PartWaves:
         self._synthesis.fill(time, keys, write, self._workspace)
         return made
 
-    def strain_covariances(self, drift: tuple[float, float], interpolated: bool) -> tuple[Array, Array]:
-        """As `foam_threshold.strain_covariances` has them, in the sea's axes and without masks."""
-        return strain_covariances(
-            self.initial_state, self.parameters.choppiness, drift, self.part.rotation, interpolated
-        )
-
     def exact_field(self, time: float | Fraction) -> Field:
         """The band-limited surface in the sea's axes, whose cost grows with points times wave vectors.
 
@@ -147,3 +141,24 @@ def real_type(precision: str) -> type:
 def default_workers(resolution: int) -> int:
     """Threads that help: one a core, but only one where a surface is too small to share."""
     return (os.cpu_count() or 1) if resolution >= 1024 else 1
+
+
+def strain_covariances(
+    parts: Sequence[PartWaves], drift: tuple[float, float], between_samples: bool = False
+) -> tuple[Array, Array]:
+    """As `foam_threshold.strain_covariances` has them, of parts together, without masks.
+
+    Waves are independent, so theirs add.
+
+    between_samples : whether all parts are read between their samples, where they have less than their
+        waves, and not only those whose samples are not the tile's
+    """
+    found = [
+        foam_threshold.strain_covariances(
+            waves.initial_state, waves.parameters.choppiness, drift, waves.part.rotation,
+            between_samples or not waves.is_on_tile,
+        )
+        for waves in parts
+    ]  # fmt: skip
+    gradients, rates = zip(*found, strict=True)
+    return np.sum(gradients, axis=0), np.sum(rates, axis=0)
