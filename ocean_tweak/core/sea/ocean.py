@@ -264,8 +264,8 @@ class Ocean:
         dtype = real_type(self.precision)
         fields: dict[str, RealArray] = {}
         for name in sorted(wanted):
-            channels = 0 if name == FOAM else CHANNELS[name].components
-            whole = (*shape, channels) if channels else shape
+            components = CHANNELS[name].components
+            whole = (*shape, components) if components else shape
             array = out[name] if name in out else np.empty(whole, dtype)
             if array.shape != whole or array.dtype != dtype:
                 raise ValueError(
@@ -288,8 +288,8 @@ class Ocean:
         needs = frozenset().union(*(CHANNELS[name].needs for name in own))
         sums = self._sums_at(x, y, self._components(time, needs))
         for name in own:
-            channels = (CHANNELS[name].components,) if CHANNELS[name].components else ()
-            made: RealArray = np.empty((x.size, *channels), fields[name].dtype)
+            components = CHANNELS[name].components
+            made: RealArray = np.empty((x.size, components) if components else x.size, fields[name].dtype)
             CHANNELS[name].write(sums, made)
             fields[name][...] = made.reshape(fields[name].shape)
         if FOAM in wanted:
