@@ -10,7 +10,8 @@ from pathlib import Path
 from ..core.cascades.plan import Wish
 from ..core.errors import ParameterError
 from ..core.frames import Frame, parse_frames
-from ..export.cache.job import BAKED, UID
+from ..export.cache.job import UID
+from ..export.frame_files import BAKED
 from ..export.places import path_of
 
 _BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}

@@ -8,8 +8,8 @@ from typing import Any
 
 from .. import __version__
 from ..core.presets import built_in
-from ..export.cache.job import BAKED
 from ..export.exr import COMPRESSION_ERROR
+from ..export.frame_files import BAKED
 from ..export.places import CACHE_VARIABLE
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS, written

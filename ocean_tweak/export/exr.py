@@ -21,11 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.channels import SurfaceFields, channels_of, image_of, unit_of
-from ..core.frames import Frame, frame_label
+from ..core.frames import Frame
 from ..core.parameters import OceanParameters, Patch
 from ..core.plain_data import to_plain
 from ..core.printable import printable
 from .files import open_file, whole_file
+from .frame_files import frame_file
 
 FORMAT_VERSION = 1
 METADATA_ATTRIBUTE = "oceanTweak"
@@ -103,8 +104,8 @@ class ExrSequence:
 
     def path(self, frame: Frame, map_name: str = "disp") -> Path:
         """Where a frame's map goes."""
-        name = self.name if self.patch is None else f"{self.name}_p{self.patch + 1}"
-        return self.directory / f"{name}_{map_name}.{frame_label(frame)}.exr"
+        patch = None if self.patch is None else self.patch + 1
+        return self.directory / frame_file(self.name, map_name, frame, patch)
 
     @property
     def domain_size(self) -> float:

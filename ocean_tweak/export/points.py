@@ -19,12 +19,11 @@ from numpy.typing import NDArray
 
 from ..core.cascades.patch_seas import Part
 from ..core.channels import CHANNELS, SurfaceFields
-from ..core.frames import Frame, frame_label
+from ..core.frames import Frame
 from .exr import ExrError
 from .files import open_file, whole_file
+from .frame_files import POINTS, SMALL_POINTS, frame_file
 
-#: the map's name in jobs and files
-POINTS = "points"
 #: samples along each side that a window reads, at most
 MOST_IN_WINDOW = 256
 
@@ -70,8 +69,7 @@ class PointSequence:
 
     def path(self, frame: Frame, small: bool = False) -> Path:
         """Where a frame's points go."""
-        label = f"{points_prefix(self.name, self.number, small)}{frame_label(frame)}.ply"
-        return self.directory / label
+        return self.directory / frame_file(self.name, SMALL_POINTS if small else POINTS, frame, self.number)
 
     def paths(self, frame: Frame) -> tuple[Path, ...]:
         """Where all files of a frame go."""
@@ -111,11 +109,6 @@ class PointSequence:
                 raise PointsError(f"{path}: has not {samples}² points")
             if not all(np.all(np.isfinite(column)) for column in values.values()):
                 raise PointsError(f"{path}: holds values that are not finite")
-
-
-def points_prefix(name: str, number: int, small: bool = False) -> str:
-    """What the names of a part's files begin with, up to the frame; numbers are from 1."""
-    return f"{name}_p{number}_{'small_' if small else ''}{POINTS}."
 
 
 def read_points(path: Path) -> dict[str, NDArray[np.float32]]:

@@ -6,7 +6,6 @@ The sea is that of the render, whatever the viewport shows.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,13 +15,12 @@ from mathutils import Matrix, Quaternion, Vector
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
-from ..core.frames import frame_label
 from ..core.surface_query import bilinear, find_points
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
 from .animated import shown_settings
 from .floating import FloatError, Ride
-from .image_sequence import SequenceError, shown_frame
+from .image_sequence import SequenceError, file_of, shown_frame
 from .plan import plan_of
 from .settings import OceanSettings, is_ocean
 from .stored_paths import image_file
@@ -32,7 +30,6 @@ Array = NDArray[np.float64]
 
 #: minimum eigenvalue below which several sheets of the surface are looked for
 _NEARLY_FOLDED = 0.1
-_NUMBER = re.compile(r"(?:-\d{3,}|\d{4,})(?=\.exr$)")
 
 
 @dataclass(frozen=True)
@@ -127,10 +124,9 @@ def _baked(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> RealA
     image = settings.sequence_maps.disp
     if image is None:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
-    path = image_file(image)
-    label = frame_label(shown_frame(settings, scene, frame))
+    path = file_of(settings, shown_frame(settings, scene, frame)) or image_file(image)
     try:
-        return read_image(path.with_name(_NUMBER.sub(label, path.name)))[0]
+        return read_image(path)[0]
     except ExrError as error:
         raise FloatError(str(error)) from error
 

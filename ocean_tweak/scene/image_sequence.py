@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,15 +13,15 @@ from pathlib import Path
 import bpy
 
 from ..core import ParameterError, Timing
-from ..core.frames import MOST_FRAMES, format_frames, frame_label, held_frame, parse_frames
+from ..core.frames import MOST_FRAMES, format_frames, held_frame, parse_frames
 from ..export.exr import ExrError, read_header, read_size
+from ..export.frame_files import ImageFile, frame_file, image_file_of
 from ..nodes.names import MAP_INPUTS
 from .live_image import mark_as_data
 from .settings import OceanObjectError, OceanSettings
 from .stored_paths import absolute, image_file, relative
 from .units import time_stretch
 
-_FILE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAP_INPUTS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
 # Blender's frames, and so those of files, go as far to either side
 _FARTHEST = 1_048_574
 # what moves the mesh: a sequence has it at every frame
@@ -47,7 +46,7 @@ class ImageSequence:
 
     def path(self, frame: int, map_name: str = _MOVING) -> Path:
         """Where a map of a frame is."""
-        return absolute(self.directory) / f"{self.name}_{map_name}.{frame_label(frame)}.exr"
+        return absolute(self.directory) / frame_file(self.name, map_name, frame)
 
     def check(self) -> tuple[str, ...]:
         """The maps that there are. Raises SequenceError unless every frame has a file of each of them."""
@@ -105,10 +104,10 @@ def find_sequence(path: str | Path) -> ImageSequence:
     chosen = absolute(path)
     directory, name = chosen, None
     if not chosen.is_dir():
-        match = _FILE.fullmatch(chosen.name)
-        if match is None:
+        file = _shown_file(chosen.name)
+        if file is None:
             raise SequenceError(f"{chosen} is neither a folder nor a file named NAME_disp.####.exr")
-        directory, name = chosen.parent, match["name"]
+        directory, name = chosen.parent, file.name
     available = {
         name: frames for (name, kind), frames in _frames_by_map(directory).items() if kind == _MOVING
     }
@@ -223,10 +222,8 @@ def _file_at(image: bpy.types.Image | None, frame: int) -> Path | None:
     if image is None or image.source != "SEQUENCE":
         return None
     path = image_file(image)
-    match = _FILE.fullmatch(path.name)
-    if match is None:
-        return None
-    return path.with_name(f"{match['name']}_{match['map']}.{frame_label(frame)}.exr")
+    file = _shown_file(path.name)
+    return None if file is None else path.with_name(frame_file(file.name, file.map, frame))
 
 
 def _samples(path: Path) -> int:
@@ -272,7 +269,13 @@ def _frames_by_map(directory: Path) -> dict[tuple[str, str], set[int]]:
         raise SequenceError(f"The folder {directory} does not exist")
     frames: dict[tuple[str, str], set[int]] = {}
     for path in directory.iterdir():
-        match = _FILE.fullmatch(path.name)
-        if match is not None and abs(int(match["frame"])) <= _FARTHEST:
-            frames.setdefault((match["name"], match["map"]), set()).add(int(match["frame"]))
+        file = _shown_file(path.name)
+        if file is not None and abs(file.frame) <= _FARTHEST:
+            frames.setdefault((file.name, file.map), set()).add(file.frame)
     return frames
+
+
+def _shown_file(file_name: str) -> ImageFile | None:
+    """What the name of a file tells whose map Blender reads."""
+    file = image_file_of(file_name)
+    return file if file is not None and file.map in MAP_INPUTS else None

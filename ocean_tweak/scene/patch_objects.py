@@ -22,7 +22,7 @@ from ..core.fingerprint import fingerprint
 from ..core.masks.parameters import Mask
 from ..core.masks.weights import weights
 from ..core.plain_data import to_plain
-from ..export.points import POINTS
+from ..export.frame_files import POINTS
 from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT

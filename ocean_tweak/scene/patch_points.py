@@ -13,7 +13,8 @@ import bpy
 from ..core import OceanParameters
 from ..core.cascades.patch_seas import Part
 from ..export.cache.job import JOB_FILE, CacheError, read_job
-from ..export.points import MOST_IN_WINDOW, POINTS, points_prefix
+from ..export.frame_files import POINTS, SMALL_POINTS, files_start, image_file_of
+from ..export.points import MOST_IN_WINDOW
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
@@ -26,8 +27,7 @@ from .stored_paths import image_file, relative
 from .textures import assign
 
 _NAME = "Ocean Tweak Points"
-#: folder, and name of the sea, of a displacement image
-_IMAGE = re.compile(r"(?P<folder>.*[\\/])?(?P<name>[^\\/]+)_disp\.[^.\\/]*\.exr")
+_FOLDER = re.compile(r".*[\\/]")
 
 
 @dataclass(frozen=True)
@@ -81,12 +81,12 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
     if modifier.node_group != node_group(PATCH_POINTS):
         modifier.node_group = node_group(PATCH_POINTS)
     samples = part.parameters.resolution
-    small = samples > MOST_IN_WINDOW
+    in_window = SMALL_POINTS if samples > MOST_IN_WINDOW else POINTS
     set_inputs(
         modifier,
         {
-            FILES[0]: points.folder + points_prefix(points.name, number),
-            FILES[1]: points.folder + points_prefix(points.name, number, small),
+            FILES[0]: points.folder + files_start(points.name, POINTS, number),
+            FILES[1]: points.folder + files_start(points.name, in_window, number),
             **frame_values(points.frames, points.files_per_frame),
             "Domain Size": part.parameters.domain_size,
             "Resolution": samples,
@@ -119,10 +119,10 @@ def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
     image = settings.sequence_maps.disp or settings.early_maps.disp
     if settings.source != "SEQUENCE" or image is None:
         return None
-    match = _IMAGE.fullmatch(relative(image.filepath, ""))
-    if match is None:
-        return None
-    return match["folder"] or "", match["name"], image_file(image).parent
+    path = relative(image.filepath, "")
+    folder = match[0] if (match := _FOLDER.match(path)) else ""
+    file = image_file_of(path.removeprefix(folder))
+    return None if file is None else (folder, file.name, image_file(image).parent)
 
 
 def _baked_parameters(folder: Path) -> OceanParameters | None:

@@ -8,11 +8,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core.frames import Frame, frame_label
+from ...core.frames import Frame
 from ..files import PART, is_link
-from ..points import POINTS
+from ..frame_files import BAKED, POINTS, frame_file
 from .job import (
-    BAKED,
     ENTRY,
     JOB_FILE,
     LOCKS,
@@ -86,8 +85,8 @@ def remove_rest(folder: Path) -> tuple[str, ...]:
 
 def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
     """Why a file that a record lists is not deleted."""
-    ending, what = ("ply", "points are") if entry.map == POINTS else ("exr", "image is")
-    if entry.map not in BAKED or not entry.name.endswith(f"_{entry.map}.{frame_label(frame)}.{ending}"):
+    what = "points are" if entry.map == POINTS else "image is"
+    if entry.map not in BAKED or not entry.name.endswith(frame_file("", entry.map, frame)):
         return f"is not named as a frame's {what}"
     path = home / entry.name
     if is_link(path) or path.resolve().parent != home:

@@ -31,12 +31,11 @@ from ...core.printable import shown
 from ...core.shot import Shot
 from ..exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
-from ..points import POINTS, PointSequence
+from ..frame_files import BAKED, POINTS
+from ..points import PointSequence
 
 JOB_FILE = "bake.json"
 RECORDS, LOCKS = "records", "locks"
-#: what can be baked: images, and points
-BAKED = (*MAPS, POINTS)
 #: locked while versions are told apart, or claims are looked at
 ENTRY = "entry"
 FORMAT = 1

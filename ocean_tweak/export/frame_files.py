@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names of baked files: sea_disp.0001.exr, and of a patch sea_p2_disp.0001.exr and sea_p2_points.0001.ply."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from ..core.channels import MAPS
+from ..core.frames import Frame, frame_label
+
+#: what stands in the place of a map's name in files of points: all samples, and means for windows
+POINTS, SMALL_POINTS = "points", "small_points"
+#: what can be baked, as jobs list it: images, and points
+BAKED = (*MAPS, POINTS)
+
+_IMAGE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
+
+
+class ImageFile(NamedTuple):
+    """What the name of a whole frame's image tells.
+
+    name : of the sea, and of the patch where it has several: storm, storm_p2
+    """
+
+    name: str
+    map: str
+    frame: int
+
+
+def frame_file(name: str, map_name: str, frame: Frame, patch: int | None = None) -> str:
+    """The name of a frame's file.
+
+    map_name : one of MAPS, POINTS or SMALL_POINTS
+    patch : its number, from 1, in a sea of several
+    """
+    ending = "ply" if map_name in (POINTS, SMALL_POINTS) else "exr"
+    return f"{files_start(name, map_name, patch)}{frame_label(frame)}.{ending}"
+
+
+def files_start(name: str, map_name: str, patch: int | None = None) -> str:
+    """What the names of all frames' files begin with."""
+    of_patch = "" if patch is None else f"_p{patch}"
+    return f"{name}{of_patch}_{map_name}."
+
+
+def image_file_of(file_name: str) -> ImageFile | None:
+    """What a file's name tells; None where it is none of an image of a whole frame."""
+    match = _IMAGE.fullmatch(file_name)
+    return None if match is None else ImageFile(match["name"], match["map"], int(match["frame"]))
