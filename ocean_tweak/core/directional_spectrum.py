@@ -231,8 +231,10 @@ class CellMeans:
             radius = np.hypot(np.arange(near)[:, np.newaxis], grid.ky[rows, 0] / grid.spacing)
             wanted = _FINEST_RADIUS / np.clip(radius, 1.0, _FINEST_RADIUS)
             result[:near, rows] = 2 ** np.ceil(np.log2(wanted))
-        for end in self._spectrum.sharp_ends:
-            cut = np.abs(grid.k.T - end) < np.sqrt(0.5) * grid.spacing
+        ends = self._spectrum.sharp_ends
+        k = grid.k.T if len(ends) else None
+        for end in ends:
+            cut = np.abs(k - end) < np.sqrt(0.5) * grid.spacing
             result[cut] = np.maximum(result[cut], _BAND_SUBCELLS)
         result[~grid.usable.T] = 0
         return result

@@ -55,14 +55,14 @@ class WaveVectorGrid:
         index = np.arange(n, dtype=np.float64)
         return (self.spacing * np.where(index < n // 2, index, index - n))[:, np.newaxis]
 
-    @cached_property
+    @property
     def k(self) -> Array:
-        """(N, N//2+1) rad/m, the wave numbers."""
+        """(N, N//2+1) rad/m, the wave numbers; made each time: a grid is kept with much that is small."""
         return np.hypot(self.kx, self.ky)
 
-    @cached_property
+    @property
     def usable(self) -> NDArray[np.bool_]:
-        """(N, N//2+1) bool: all modes but the mean and those at Nyquist."""
+        """(N, N//2+1) bool: all modes but the mean and those at Nyquist; made each time."""
         mask = np.ones(self.shape, bool)
         mask[0, 0] = False
         mask[:, -1] = False

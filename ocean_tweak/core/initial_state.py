@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import dispersion, random
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
+from .memo import remembered, total_bytes
 from .parameters import OceanParameters, WaveLayer
 from .waves.hero.group import add_hero_wave
 from .waves.image.state import PictureWaves, picture_waves
@@ -58,6 +59,13 @@ class InitialState:
         """All of a sea's states, each with frequencies of its own."""
         return self, *self.others
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays, with those of the other states."""
+        own = (self.h_plus, self.h_minus, self.omega, self.expected_plus, self.expected_minus)
+        factor = vars(self).get("potential_factor")
+        return total_bytes((*own, factor, *self.others))
+
     @cached_property
     def potential_factor(self) -> ComplexArray:
         """1/k, (N, N//2+1) m, complex: from the elevation to the potential of the horizontal displacement.
@@ -73,18 +81,19 @@ class InitialState:
         return result.T
 
 
-@lru_cache(maxsize=4)
+@remembered("random phases")
 def random_phasors(
     grid: WaveVectorGrid, seed: int, amplitudes: str, dtype: type = np.complex128
-) -> tuple[ComplexArray, ComplexArray]:
-    """ν·exp(iε) for k and for -k, (N, N//2+1) each: ε uniform in [0, 2π); ν standard normal
+) -> ComplexArray:
+    """ν·exp(iε) for k and for -k, (2, N, N//2+1): ε uniform in [0, 2π); ν standard normal
     (Horvath 2015, eq. 47 and § 7.1.2) or, for FIXED amplitudes, 1 (Chen 2014, eq. 19)."""
-    along, against = (np.empty(grid.shape[::-1], dtype) for _ in range(2))
+    result: ComplexArray = np.empty((2, *grid.shape[::-1]), dtype)
+    along, against = result
     for columns in grid.column_blocks():
         kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
         along[columns] = _phasors(kx, ky, seed, amplitudes)
         against[columns] = _phasors(-kx, -ky, seed, amplitudes)
-    return along.T, against.T
+    return result.swapaxes(1, 2)
 
 
 def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:

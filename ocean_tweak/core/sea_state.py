@@ -79,9 +79,8 @@ def mode_state(
     along, against : (N, N//2+1) m², |h_plus|² and |h_minus|²: energies of the waves along +k and -k
     """
     energy = (along + against) * grid.multiplicity
-    direction = np.divide(
-        grid.kx + 1j * grid.ky, grid.k, out=np.zeros(grid.shape, complex), where=grid.k > 0.0
-    )
+    k = grid.k
+    direction = np.divide(grid.kx + 1j * grid.ky, k, out=np.zeros(grid.shape, complex), where=k > 0.0)
     vector = np.sum((along - against) * grid.multiplicity * direction)
     return _state_of_modes(energy, vector, grid, parameters)
 
@@ -159,9 +158,10 @@ def field_state(elevation: NDArray[np.floating], parameters: OceanParameters) ->
 def _state_of_modes(
     energy: Array, vector: complex, grid: WaveVectorGrid, parameters: OceanParameters
 ) -> SeaState:
-    omega = dispersion.angular_frequency(grid.k, parameters.dispersion, parameters.water)
+    k = grid.k
+    omega = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
     peak = _mode_peak(energy, grid, parameters)
-    m2, slope = np.sum(omega**2 * energy), np.sum(grid.k**2 * energy)
+    m2, slope = np.sum(omega**2 * energy), np.sum(k**2 * energy)
     return state_of_moments(np.sum(energy), m2, slope, vector, peak, parameters)
 
 
@@ -190,12 +190,13 @@ def _mode_peak(energy: Array, grid: WaveVectorGrid, parameters: OceanParameters)
     The spectrum is the mean energy of the modes around a frequency (Gaussian kernel in ln k) times the
     density of modes there, 2πk (dk/dω) / Δk²: a plain sum would show the lattice.
     """
-    position = np.log(grid.k[grid.usable]) * _BINS_PER_LOG
+    usable = grid.usable
+    position = np.log(grid.k[usable]) * _BINS_PER_LOG
     first = int(np.floor(np.min(position))) - _BINS_PER_LOG // 2
     bins = (position - first + 0.5).astype(np.int64)
     size = int(np.max(bins)) + _BINS_PER_LOG // 2
-    count = np.broadcast_to(grid.multiplicity, grid.shape)[grid.usable]
-    sums = [np.bincount(bins, weights, minlength=size) for weights in (energy[grid.usable], count)]
+    count = np.broadcast_to(grid.multiplicity, grid.shape)[usable]
+    sums = [np.bincount(bins, weights, minlength=size) for weights in (energy[usable], count)]
     centres = (first + np.arange(size)) / _BINS_PER_LOG
     reach = int(4.0 * _KERNEL_WIDTH * _BINS_PER_LOG)
     offset = np.arange(-reach, reach + 1) / _BINS_PER_LOG

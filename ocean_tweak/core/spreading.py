@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import constants
+from .memo import remembered
 
 Array = NDArray[np.float64]
 
@@ -178,7 +179,7 @@ class Shape(NamedTuple):
         return result
 
 
-@lru_cache(maxsize=1)
+@cache
 def direction_rule() -> tuple[Array, Array]:
     """Nodes and weights on [0, π], in panels that halve towards 0, where narrow peaks stand, and towards π,
     where a small power of cos(θ/2) falls steeply."""
@@ -190,19 +191,19 @@ def direction_rule() -> tuple[Array, Array]:
     return (edges[:-1, np.newaxis] + 0.5 * width * (x + 1.0)).ravel(), (0.5 * width * w).ravel()
 
 
+@cache
 def _table_ratios() -> Array:
     """The tabulated ω/ω_p, with a node on either side of each jump: nothing is interpolated across it."""
     even = np.geomspace(_TABLE_FROM, _TABLE_TO, _TABLE_SIZE)
     return np.unique(np.concatenate((even, _BREAKS, np.nextafter(_BREAKS, 0.0))))
 
 
-@lru_cache(maxsize=32)
-def _final_table(spreading: Spreading) -> tuple[Array, Array]:
-    """ω/ω_p and ln Q_final(ω), Q_final = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
+@remembered("spreading tables")
+def _final_table(spreading: Spreading) -> Array:
+    """ln Q_final at the tabulated ω/ω_p, Q_final = 1/∫D_base D_ξ dθ. Horvath (2015), eq. 43."""
     theta, weight = direction_rule()
-    ratio = _table_ratios()
-    density = _not_normalised(ratio[:, np.newaxis], spreading).density(theta, spreading)
-    return ratio, -np.log(2.0 * density @ weight)
+    density = _not_normalised(_table_ratios()[:, np.newaxis], spreading).density(theta, spreading)
+    return -np.log(2.0 * density @ weight)
 
 
 def _alone(spreading: Spreading, model: str) -> Spreading:
@@ -212,7 +213,7 @@ def _alone(spreading: Spreading, model: str) -> Spreading:
 
 
 def _normalisation(ratio: Array, spreading: Spreading) -> Array:
-    return np.exp(np.interp(ratio, *_final_table(spreading)))
+    return np.exp(np.interp(ratio, _table_ratios(), _final_table(spreading)))
 
 
 def _not_normalised(ratio: Array, spreading: Spreading) -> Shape:

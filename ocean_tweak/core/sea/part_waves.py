@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from ..channels import CHANNELS, memory_groups
 from ..exact_field import exact
 from ..initial_state import InitialState, initial_state
 from ..masks.weights import weights
+from ..memo import remembered
 from ..parameters import Foam, OceanParameters, Timing
 from ..sea_spectrum import SeaSpectrum
 from ..surface_query import Field, bilinear
@@ -32,7 +33,7 @@ RealArray = NDArray[np.floating]
 PRECISIONS = {"single": np.complex64, "double": np.complex128}
 
 
-@lru_cache(maxsize=4)
+@remembered("waves")
 def _cached_initial_state(parameters: OceanParameters, dtype: type) -> InitialState:
     return initial_state(parameters, dtype)
 

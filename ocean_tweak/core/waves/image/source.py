@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ... import random
+from ...memo import remembered
 from ...raster import Raster
 from .parameters import PictureLayer
 
@@ -40,14 +40,14 @@ def noise_variance() -> float:
     return ((2 * NOISE_REACH + 1) ** 2 - 1) / 12.0
 
 
-@lru_cache(maxsize=4)
+@remembered("noise")
 def noise_coefficients(resolution: int, seed: int) -> ComplexArray:
     """(N, N//2+1) of the white noise without its mean, over its standard deviation; read-only."""
     noise = white_noise(resolution, seed) / np.sqrt(noise_variance())
     return _frozen(_transformed(noise, resolution))
 
 
-@lru_cache(maxsize=4)
+@remembered("pictures")
 def picture_coefficients(picture: Raster) -> ComplexArray:
     """(S, S//2+1) of a picture without its mean, S even and at least its longer side; read-only.
 

@@ -9,13 +9,14 @@ that of a bump moved by spline interpolation, exact where the particle meets a s
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...grid import WaveVectorGrid
+from ...memo import remembered
 from ...splines import spline_weights
 from .shape import bump
 
@@ -32,7 +33,8 @@ _IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 _ROWS = 32
 
 
-class Kernel(NamedTuple):
+@dataclass(frozen=True)
+class Kernel:
     """The transform of a bump for kx and ky from 0 to N/2, (N//2+1, N//2+1) indexed [kx, ky].
 
     Both are complex, or each product with coefficients would convert them.
@@ -44,6 +46,11 @@ class Kernel(NamedTuple):
     height: ComplexArray
     sideways: ComplexArray
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of both."""
+        return self.height.nbytes + self.sideways.nbytes
+
     def columns(self, component: int, block: slice, grid: WaveVectorGrid) -> ComplexArray:
         """(columns, N) transform of x, y or z, for all ky in FFT order."""
         if component == 1:
@@ -53,7 +60,7 @@ class Kernel(NamedTuple):
         return grid.mirror((self.height if component == 2 else self.sideways)[block])
 
 
-@lru_cache(maxsize=8)
+@remembered("particle shapes")
 def kernel(grid: WaveVectorGrid, radius: float, dtype: type) -> Kernel:
     """The transform of a bump of a radius in m, sampled on the grid, in complex64 or complex128."""
     n = grid.resolution
