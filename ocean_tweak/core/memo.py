@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One memory for all arrays that outlive a call, with a budget in bytes.
 
-What is in it can be made again. It is counted as long as anybody has it: an ocean that is in use holds its
-waves itself, so that a small budget makes other seas be forgotten and not this one be made for each frame.
+What is in it can be made again. It counts as long as anybody has it: an ocean that is in use holds its waves
+itself, so that a small budget makes other seas be forgotten, and not this one be made again for each frame.
 """
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 import re
@@ -14,7 +15,7 @@ import threading
 import weakref
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable
-from typing import ParamSpec, Protocol, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 from .errors import ParameterError
 from .machine import usable_memory
@@ -31,23 +32,18 @@ _UNKNOWN_MACHINE = 8 * 10**9
 #: bytes of the least budget
 _LEAST = 10**6
 
+#: bytes that a value counts which has no arrays: a few numbers, and the parameters that are their key
+_SMALL = 10**4
+
 _Parameters = ParamSpec("_Parameters")
+_Value = TypeVar("_Value")
 _Name = tuple[str, Hashable]
-
-
-class Sized(Protocol):
-    """An array, or an object that says what its own arrays take; it can be referred to weakly."""
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes."""
-
-
-_Value = TypeVar("_Value", bound=Sized)
 
 
 class Memo:
     """Values by their kind and key; those that were used last, as many as the budget holds.
+
+    A value's `nbytes` are the bytes of its own arrays, without those of other values that it holds.
 
     budget : bytes, all kinds together; None for OCEAN_TWEAK_MEMORY or else a quarter of the memory that the
         machine, or the container, has
@@ -56,9 +52,9 @@ class Memo:
     def __init__(self, budget: int | None = None) -> None:
         self._budget = budget
         self._lock = threading.Lock()
-        # those that are kept, the one used last at the end, and all that somebody still has
-        self._kept: OrderedDict[_Name, Sized] = OrderedDict()
-        self._living: dict[_Name, weakref.ref[Sized]] = {}
+        # those that are kept, the one used last at the end, and those that others may still have
+        self._kept: OrderedDict[_Name, Any] = OrderedDict()
+        self._dropped: dict[_Name, weakref.ref[Any]] = {}
         self._making: dict[_Name, _Making] = {}
 
     @property
@@ -100,20 +96,25 @@ class Memo:
                 del self._making[name]
             making.done.set()
 
-    def put(self, kind: str, key: Hashable, value: Sized) -> None:
+    def put(self, kind: str, key: Hashable, value: object) -> None:
         """Keep a value, instead of that which the key had."""
         name, budget = (kind, key), self.budget
         with self._lock:
-            self._living[name] = weakref.ref(value)
             self._kept.pop(name, None)
-            if 2 * value.nbytes <= budget:
-                self._kept[name] = value
+            self._kept[name] = value
+            if 2 * _size(value) > budget:
+                self._drop(name)
             self._trim(budget)
 
-    def take(self, kind: str, key: Hashable) -> Sized | None:
+    def find(self, kind: str, key: Hashable) -> Any:
+        """The value of a key; None where there is none."""
+        with self._lock:
+            return self._found((kind, key))
+
+    def take(self, kind: str, key: Hashable) -> Any:
         """The value of a key, for the caller alone until it is put back; None where there is none."""
         with self._lock:
-            self._living.pop((kind, key), None)
+            self._dropped.pop((kind, key), None)
             return self._kept.pop((kind, key), None)
 
     def trim(self) -> None:
@@ -125,7 +126,7 @@ class Memo:
     def drop(self, kind: str | None = None) -> None:
         """Forget all values, or those of a kind."""
         with self._lock:
-            for names in (self._kept, self._living):
+            for names in (self._kept, self._dropped):
                 for name in [name for name in names if kind in (None, name[0])]:
                     del names[name]
 
@@ -137,27 +138,41 @@ class Memo:
                 total[name[0]] = total.get(name[0], 0) + size
         return dict(sorted(total.items(), key=lambda entry: -entry[1]))
 
-    def _found(self, name: _Name) -> Sized | None:
+    def _found(self, name: _Name) -> Any:
         if name in self._kept:
             self._kept.move_to_end(name)
             return self._kept[name]
-        living = self._living.get(name)
-        return None if living is None else living()
+        dropped = self._dropped.get(name)
+        return None if dropped is None else dropped()
 
     def _sizes(self) -> dict[_Name, int]:
-        """Bytes of all that is alive; the rest is no more known."""
-        values = {name: living() for name, living in self._living.items()}
-        sizes = {name: value.nbytes for name, value in values.items() if value is not None}
-        self._living = {name: self._living[name] for name in sizes}
+        """Bytes of all that is kept, and of what others still have."""
+        sizes = {name: _size(value) for name, value in self._kept.items()}
+        for name, dropped in list(self._dropped.items()):
+            value = dropped()
+            if value is None or name in sizes:
+                del self._dropped[name]
+            else:
+                sizes[name] = _size(value)
         return sizes
 
     def _trim(self, budget: int) -> None:
         sizes = self._sizes()
         total = sum(sizes.values())
         while total > budget and len(self._kept) > 1:  # the last one is in use
-            self._kept.popitem(last=False)
-            # it may hold others, or be held
-            total = sum(size for name, size in sizes.items() if self._living[name]() is not None)
+            self._drop(next(iter(self._kept)))
+            # it may be held, or have held others
+            total = sum(sizes[name] for name in self._kept)
+            total += sum(sizes[name] for name, dropped in self._dropped.items() if dropped() is not None)
+
+    def _drop(self, name: _Name) -> None:
+        with contextlib.suppress(TypeError):  # numbers cannot be referred to weakly
+            self._dropped[name] = weakref.ref(self._kept[name])
+        del self._kept[name]
+
+
+def _size(value: object) -> int:
+    return int(getattr(value, "nbytes", _SMALL))
 
 
 class _Making:
@@ -215,6 +230,6 @@ def bytes_in(text: str) -> int | None:
     return round(float(match[1]) * UNITS[match[2].lower()])
 
 
-def total_bytes(arrays: Iterable[Sized | None]) -> int:
-    """Bytes of some arrays, where they are there."""
+def total_bytes(arrays: Iterable[Any]) -> int:
+    """Bytes of some arrays, or of what says how many its arrays take; those that are None have none."""
     return sum(array.nbytes for array in arrays if array is not None)

@@ -181,6 +181,15 @@ def test_a_thread_that_waited_for_a_failure_makes_it() -> None:
         assert second.result(10).nbytes == 3 * KB
 
 
+def test_numbers_count_with_their_keys() -> None:
+    store = Memo(100 * KB)
+    for number in range(1000):
+        store.get("numbers", number, lambda number=number: 0.5 * number)
+    assert store.get("numbers", 999, lambda: pytest.fail("it is there")) == 499.5
+    assert 10 * KB < sum(store.report().values()) <= 100 * KB
+    assert store.find("numbers", 0) is None
+
+
 def test_what_is_taken_is_its_taker_s_alone() -> None:
     store = Memo(100 * KB)
     array = kilobytes(5)
