@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import constants, spectra
+from .memo import remembered
 from .water import Water
 from .waves.spectral import WaveLayer
 from .wind_profile import wind_at_10_m
@@ -100,7 +100,7 @@ def scaled_spectrum(omega: ArrayLike, layer: WaveLayer, scales: LayerScales, wat
     return spectra.jonswap(omega, alpha, omega_p, gamma, water.gravity)
 
 
-@lru_cache(maxsize=64)
+@remembered("scales of layers")
 def _from_sea_state(layer: WaveLayer, water: Water) -> LayerScales:
     """Scales with which the layer has its Hs and its spectrum the peak at its Tp, in this depth.
 

@@ -58,6 +58,11 @@ class Raster:
         rows, columns, channels = self.values.shape
         return rows, columns, channels
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of its numbers, and of their text where it was made."""
+        return self.values.nbytes + len(vars(self).get("_as_text", ("", ""))[1])
+
     @cached_property
     def sha256(self) -> str:
         """Hash of shape and numbers, 64 hexadecimal digits, the same on every platform."""

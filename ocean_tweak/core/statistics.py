@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from . import dispersion
 from .initial_state import InitialState
+from .memo import remembered
 from .parameters import OceanParameters, Patch, PictureLayer
 from .picture_statistics import (
     longest_random_wave,
@@ -155,7 +155,7 @@ def continuous_state(sea: SeaSpectrum) -> SeaState:
     return together([spectrum, *pictures])
 
 
-@lru_cache(maxsize=32)
+@remembered("states of pictures")
 def _picture_state(alone: OceanParameters) -> SeaState:
     """State of all that the only picture of a sea holds: it takes long, and is asked for often."""
     return modes_state([picture_modes(alone, alone.pictures[0])], alone)

@@ -11,8 +11,6 @@ in water. There the gravity waves of these spectra end (Elfouhaily et al. 1997 t
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +18,7 @@ from . import constants, dispersion
 from .cascades.patch_seas import patch_parameters
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
+from .memo import remembered
 from .parameters import OceanParameters
 from .sea_spectrum import SeaSpectrum
 from .water import Water
@@ -38,7 +37,7 @@ def capillary_limit(water: Water) -> float:
     return float(np.sqrt(water.density * water.gravity / tension))
 
 
-@lru_cache(maxsize=16)
+@remembered("slopes")
 def total_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of all gravity waves of a sea, dimensionless; 0 for a flat one."""
     sea = SeaSpectrum(parameters)
@@ -50,7 +49,7 @@ def total_slope_variance(parameters: OceanParameters) -> float:
     return sum((_rings(layer, lowest, limit) for layer in sea.layers), pictured)
 
 
-@lru_cache(maxsize=16)
+@remembered("unresolved slopes")
 def unresolved_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of the waves shorter than the grid can hold, dimensionless.
 

@@ -13,18 +13,14 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from ..core.channels import CHANNELS, FOAM
-from ..nodes.camera_surface import PATCH_INPUTS
+from ..core.memo import MEMO, total_bytes
 from .instant_foam import instant_foam
-from .settings import all_oceans
 
 RealArray = NDArray[np.float32]
 
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
 _MOST_SURFACE_BYTES = 256 * 2**20
-# of one ocean: for the viewport, for the render, the coarse one while a parameter is dragged, and what the
-# surface around the camera reads
-_SEAS_OF_AN_OCEAN = 3 + len(PATCH_INPUTS)
 # s after the foam that was made last, within which the next one is quickly made
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept
@@ -43,6 +39,12 @@ class Sea:
         # its whole frames ascend and so do the moments between them: each has a history of its own
         self._foam = {whole: FoamMaker(parameters) for whole in (True, False)}
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the surfaces, and of the arrays for the next one."""
+        surfaces = [*self._surfaces.values(), self._spare]
+        return total_bytes(field for surface in surfaces for field in list(surface.values()))
+
     def fields(
         self, time: Fraction, outputs: frozenset[str], is_whole: bool = True, patient: bool = True
     ) -> tuple[dict[str, RealArray], bool]:
@@ -58,6 +60,7 @@ class Sea:
         """
         kept = self._kept(time)
         self._make(time, kept, outputs - kept.keys() - {FOAM})
+        MEMO.trim()
         result = {name: kept[name] for name in outputs - {FOAM}}
         if FOAM not in outputs:
             return result, True
@@ -142,24 +145,19 @@ def _close(field: RealArray) -> None:
     field[:, -1] = field[:, 0]
 
 
-# Caches: what was used last, so that playback neither makes an initial state again nor, where the same frame
-# is asked for several times, its surface. They hold nothing that cannot be computed.
-_seas: OrderedDict[OceanParameters, Sea] = OrderedDict()
-_statistics: OrderedDict[OceanParameters, str] = OrderedDict()
+# Kinds of what is kept, so that playback neither makes waves again nor, where the same frame is asked for
+# several times, its surface.
+_SURFACES, _STATISTICS = "surfaces", "statistics"
 
 
 def sea_of(parameters: OceanParameters) -> Sea:
     """The sea with these parameters; oceans that are alike share it."""
-    if parameters not in _seas:
-        _make_room(_seas)
-        _seas[parameters] = Sea(parameters)
-    _seas.move_to_end(parameters)
-    return _seas[parameters]
+    return MEMO.get(_SURFACES, parameters, lambda: Sea(parameters))
 
 
 def known_statistics(parameters: OceanParameters) -> str | None:
     """The sea's statistics as JSON where they are known already."""
-    return _statistics.get(_statistical(parameters))
+    return MEMO.find(_STATISTICS, _statistical(parameters))
 
 
 def statistics_of(parameters: OceanParameters) -> str:
@@ -170,29 +168,15 @@ def statistics_of(parameters: OceanParameters) -> str:
 
 def computed_statistics(parameters: OceanParameters) -> str:
     """The sea's statistics as JSON, computed; touches no data of Blender and may run on any thread."""
-    whole = parameters.apart  # all waves, also those too short for the one grid that shows their sum
-    cached = _seas.get(whole)
-    sea = cached.ocean if cached is not None else Ocean(whole)
-    return json.dumps(sea.statistics().to_dict())
+    # of all waves, also those too short for the one grid that shows their sum
+    return json.dumps(Ocean(parameters.apart).statistics().to_dict())
 
 
 def keep_statistics(parameters: OceanParameters, statistics: str) -> None:
     """Remember what `computed_statistics` gave."""
-    _make_room(_statistics)
-    _statistics[_statistical(parameters)] = statistics
-
-
-def forget_all() -> None:
-    """Drop the caches: another file is opened, or the extension is disabled."""
-    _seas.clear()
-    _statistics.clear()
+    MEMO.put(_STATISTICS, _statistical(parameters), statistics)
 
 
 def _statistical(parameters: OceanParameters) -> OceanParameters:
     """What statistics depend on: heights, not what is done with them."""
     return parameters.replace(choppiness=0.0, trough_damping=0.0, orbits="DEEP")
-
-
-def _make_room(cache: OrderedDict[OceanParameters, object]) -> None:
-    while len(cache) >= max(sum(1 for _ in all_oceans()), 1) * _SEAS_OF_AN_OCEAN:
-        cache.popitem(last=False)

@@ -13,6 +13,7 @@ from functools import wraps
 import bpy
 from bpy.app.handlers import persistent
 
+from ..core.memo import MEMO
 from ..nodes.absence import show_that_it_ends, show_that_it_runs
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
@@ -21,7 +22,6 @@ from . import (
     bake_process,
     bake_state,
     cache_place,
-    evaluation,
     live_image,
     needs,
     ocean_object,
@@ -329,7 +329,7 @@ def _forget_all() -> None:
     refinement.forget_all()
     forget_seas()
     needs.forget_all()
-    evaluation.forget_all()
+    MEMO.drop()
     live_image.forget_all()
     source_images.forget_all()
 

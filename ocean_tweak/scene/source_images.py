@@ -13,7 +13,6 @@ import io
 import time
 import zlib
 from collections.abc import Hashable, Iterable, Iterator
-from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -22,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import ParameterError, Raster
+from ..core.memo import MEMO, remembered
 from ..core.raster import LARGEST_SIDE
 from ..export.pictures import exr_pictures, read_picture, tiff
 from ..export.pictures.checks import UnusableError, opened
@@ -51,23 +51,24 @@ class ImageSource(NamedTuple):
 
 
 class _Known(NamedTuple):
-    """A raster, what its image was like, a sum of its texels while they are unsaved, and when it was seen."""
+    """What an image was like, the hash of its raster, a sum of its texels while they are unsaved, and when it
+    was seen."""
 
     likeness: Hashable
-    raster: Raster
+    raster: str
     sum: int
     seen: float
 
 
-# What images hold, by their session uid, the number of channels and their names. Nothing that cannot be read
-# again.
+# What is known of images, by their session uid, the number of channels and their names. Their rasters are in
+# the memory of all, by their hash.
 _known: dict[tuple[int, int, str], _Known] = {}
+_RASTERS = "images"
 
 
 def forget_all() -> None:
     """Take no image's texels for granted: a file was opened, or a step undone."""
     _known.clear()
-    made_layer.cache_clear()
 
 
 def forget(image: bpy.types.Image) -> None:
@@ -117,17 +118,18 @@ def raster_of(source: ImageSource, channels: int) -> Raster:
     image, names = source
     key, likeness = (image.session_uid, channels, names), _likeness(image)
     known = _known.get(key)
-    if known is not None and known.likeness == likeness and not _is_painted(image, known):
-        return known.raster
+    before = None if known is None or known.likeness != likeness else MEMO.find(_RASTERS, known.raster)
+    if before is not None and not _is_painted(image, known):
+        return before
     if not image.is_dirty:
-        known = _Known(likeness, _saved_raster(image, channels, names), 0, 0.0)
+        raster, summed = _saved_raster(image, channels, names), 0
     else:
         texels = _texels(image)
         summed = _sum(texels)
-        if known is None or known.likeness != likeness or known.sum != summed:
-            known = _Known(likeness, _painted_raster(image, texels, channels, names), summed, 0.0)
-    _known[key] = known._replace(seen=time.monotonic())
-    return known.raster
+        is_same = before is not None and known.sum == summed
+        raster = before if is_same else _painted_raster(image, texels, channels, names)
+    _known[key] = _Known(likeness, raster.sha256, summed, time.monotonic())
+    return MEMO.get(_RASTERS, raster.sha256, lambda: raster)
 
 
 def source_with(raster: Raster, candidates: Iterable[ImageSource]) -> ImageSource:
@@ -166,7 +168,7 @@ def open_image(path: Path, channels: int, names: str = "", axes: str = "") -> Ra
         raise
 
 
-@lru_cache(maxsize=8)
+@remembered("wind rasters")
 def wind_raster(raster: Raster, values: str, speed: float) -> Raster:
     """Vectors in m/s from an image's numbers.
 
@@ -179,7 +181,7 @@ def wind_raster(raster: Raster, values: str, speed: float) -> Raster:
     return Raster((raster.values.astype(np.float64) - calm) * (factor * speed), raster.name)
 
 
-@lru_cache(maxsize=16)
+@remembered("layers")
 def made_layer(kind: type, values: tuple[tuple[str, Hashable], ...]) -> object:
     """A layer of the parameters, made once: to check its rasters takes longer than a frame may.
 

@@ -17,14 +17,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections import OrderedDict
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Raster, WindKey
+from ..core.memo import MEMO, total_bytes
 from ..core.parameters import ParameterError
 from ..core.plain_data import from_plain, parse_json, to_plain
 from ..core.raster import check_numbers, numbers_in
@@ -38,9 +39,19 @@ Array = NDArray[np.float64]
 #: vectors of a whole recording: some megabytes in the file
 MOST_VECTORS = 1_000_000
 
-# Recordings that were read, by their hash. They can be read again.
-_known: OrderedDict[str, tuple[WindKey, ...]] = OrderedDict()
-_MOST_KNOWN = 16
+_RECORDINGS = "wind recordings"
+
+
+@dataclass(frozen=True)
+class _Recording:
+    """Keys that were read: they can be read again."""
+
+    keys: tuple[WindKey, ...]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the rasters."""
+        return total_bytes(key.vectors for key in self.keys)
 
 
 def record(
@@ -173,13 +184,14 @@ def to_text(keys: tuple[WindKey, ...]) -> tuple[str, str]:
     """Keys as JSON, and a hash that tells them from others."""
     text = json.dumps(to_plain(keys), separators=(",", ":"))
     name = hashlib.sha256(text.encode()).hexdigest()
-    _keep(name, keys)
+    MEMO.put(_RECORDINGS, name, _Recording(keys))
     return text, name
 
 
 def known_keys(name: str) -> tuple[WindKey, ...] | None:
     """Keys by their hash, where they were read already."""
-    return _known.get(name)
+    found = MEMO.find(_RECORDINGS, name)
+    return None if found is None else found.keys
 
 
 def from_text(text: str, name: str) -> tuple[WindKey, ...]:
@@ -190,12 +202,5 @@ def from_text(text: str, name: str) -> tuple[WindKey, ...]:
         keys = tuple(from_plain(WindKey, data) for data in plain)
     except (ValueError, TypeError) as error:
         raise ParameterError("recording", text[:20], f"cannot be read, record anew: {error}") from None
-    _keep(name, keys)
+    MEMO.put(_RECORDINGS, name, _Recording(keys))
     return keys
-
-
-def _keep(name: str, keys: tuple[WindKey, ...]) -> None:
-    _known[name] = keys
-    _known.move_to_end(name)
-    while len(_known) > _MOST_KNOWN:
-        _known.popitem(last=False)
