@@ -143,7 +143,7 @@ def test_the_sea_shows_the_size_of_the_first_patch(draw, item, core, empty_scene
     assert drawn[drawn.index("Shortest Has") + 1] == "3.2 samples"
     assert drawn[drawn.index("Longest Fits") + 1] == "2 times"
     energy = drawn[drawn.index("Energy") + 1]
-    statistics = core.Ocean(settings.to_parameters(empty_scene)).statistics()
+    statistics = core.Ocean(settings.to_parameters(empty_scene).apart).statistics()
     assert energy == f"{100.0 * statistics.patches[1].share:.3g} %"
     # in the sea's box and in the patch's
     assert " ".join(drawn).count("Patch 2: its longest wave, 20 m") == 2
@@ -365,5 +365,5 @@ def test_frames_without_a_file_are_told(draw, item, bake, ocean_object, make_par
 def test_drawing_computes_nothing(draw, item, core, monkeypatch):
     monkeypatch.setattr(core, "Ocean", None)
     for name in ("surface", "statistics"):
-        monkeypatch.setattr(f"{core.__name__}.ocean.Ocean.{name}", None)
+        monkeypatch.setattr(f"{core.__name__}.sea.ocean.Ocean.{name}", None)
     assert draw(item)
