@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .bilinear import stretched, wrapped
 from .foam import FoamModel, strength_levels
 from .foam_threshold import Strains, foam_wind, whitecap_coverage
 from .parameters import OceanParameters
@@ -71,9 +72,4 @@ def resampled(field: RealArray, resolution: int) -> RealArray:
     size = field.shape[0]
     if size == resolution:
         return field
-    position = np.arange(resolution) * (size / resolution)
-    low = position.astype(np.intp)
-    fraction = (position - low).astype(field.dtype)
-    high = (low + 1) % size
-    rows = field[low] + fraction[:, np.newaxis] * (field[high] - field[low])
-    return rows[:, low] + fraction * (rows[:, high] - rows[:, low])
+    return stretched(stretched(wrapped(field), 0, resolution), 1, resolution)[:-1, :-1]

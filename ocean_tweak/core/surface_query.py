@@ -15,6 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .bilinear import between
+
 RealArray = NDArray[np.floating]
 Array = NDArray[np.float64]
 
@@ -56,11 +58,8 @@ def bilinear(displacement: RealArray, velocity: RealArray | None, spacing: float
     """The surface that a mesh with a vertex a sample shows: bilinear between the samples, periodic."""
 
     def field(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
-        n = displacement.shape[0]
-        column, row = x / spacing, y / spacing
-        j, i = np.floor(column).astype(np.intp), np.floor(row).astype(np.intp)
-        u, v = (column - j)[:, np.newaxis], (row - i)[:, np.newaxis]
-        corners = [(ii % n, jj % n) for ii in (i, i + 1) for jj in (j, j + 1)]
+        corners, *shares = between(y / spacing, x / spacing, displacement.shape)
+        u, v = (share[:, np.newaxis] for share in shares)
         p00, p01, p10, p11 = (displacement[corner].astype(np.float64) for corner in corners)
         bottom, top = p00 + u * (p01 - p00), p10 + u * (p11 - p10)
         by_x = ((1.0 - v) * (p01 - p00) + v * (p11 - p10)) / spacing

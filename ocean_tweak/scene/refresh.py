@@ -31,9 +31,8 @@ from .grid_mesh import Grid
 from .image_sequence import SequenceError
 from .modifiers import Images, Shown, Textures
 from .plan import Plan, plan_of, velocity_scale
-from .resampling import resampled, tiled
 from .settings import OceanObjectError, OceanSettings, set_changed, settings_of
-from .vertex_attributes import Fields
+from .vertex_attributes import Fields, resampled, tiled
 
 #: what a user can cause: shown with the object; anything else is a bug and raises
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.bilinear import stretched
 from ..core.channels import CHANNELS, Channel
 from .grid_mesh import Grid
 
@@ -50,6 +51,21 @@ def put(mesh: bpy.types.Mesh, channel: Channel, field: RealArray) -> None:
     if attribute is None:
         attribute = mesh.attributes.new(channel.attribute, kind, "POINT")
     attribute.data.foreach_set(numbers, np.ascontiguousarray(field).reshape(-1))
+
+
+def resampled(closed: RealArray, samples: int) -> RealArray:
+    """Bilinear values of an (n+1, n+1, …) field, its far edges included, as (samples+1, samples+1, …)."""
+    # columns while there are few rows: what is left are whole rows, added in place
+    return stretched(stretched(closed, 1, samples), 0, samples)
+
+
+def tiled(closed: RealArray, repeats: tuple[int, int]) -> RealArray:
+    """An (n+1, n+1, …) field side by side along x and y, neighbours sharing their edge."""
+    for axis, count in ((1, repeats[0]), (0, repeats[1])):
+        if count > 1:
+            whole, edge = np.split(closed, [closed.shape[axis] - 1], axis)
+            closed = np.concatenate([whole] * count + [edge], axis)
+    return closed
 
 
 def remove(mesh: bpy.types.Mesh, keep: Container[str] = ()) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import OceanParameters
+from ..core.bilinear import between
 from ..core.spectrum_curves import FrequencyCurves, PolarDensity, frequency_curves, polar_density
 
 Pixels = NDArray[np.float32]
@@ -112,7 +113,7 @@ def _draw_polar(picture: Pixels, polar: PolarDensity, frame: _Frame) -> None:
     distance, angle = np.hypot(x, y), np.arctan2(y, x) % (2.0 * np.pi)
     ring = np.clip(distance * (len(polar.omega) - 1), 0, len(polar.omega) - 1.001)
     direction = angle / (2.0 * np.pi) * len(polar.theta)
-    energy = _bilinear(polar.density * polar.omega[:, np.newaxis], ring, direction)
+    energy = between(ring, direction, polar.density.shape).read(polar.density * polar.omega[:, np.newaxis])
     highest = float(energy.max(initial=0.0))
     shade = np.sqrt(energy / highest) if highest > 0.0 else np.zeros_like(energy)
     stops = np.linspace(0.0, 1.0, len(_HEAT))
@@ -125,18 +126,6 @@ def _draw_polar(picture: Pixels, polar: PolarDensity, frame: _Frame) -> None:
     middle = int(radius)
     part[middle, ::4] = 0.5 * part[middle, ::4] + 0.5 * np.array(_GRID, np.float32)
     part[::4, middle] = 0.5 * part[::4, middle] + 0.5 * np.array(_GRID, np.float32)
-
-
-def _bilinear(
-    field: NDArray[np.float64], row: NDArray[np.float64], column: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Values between the samples; columns go round."""
-    i, j = row.astype(np.intp), column.astype(np.intp)
-    u, v = row - i, column - j
-    j, after = j % field.shape[1], (j + 1) % field.shape[1]
-    near = field[i, j] + v * (field[i, after] - field[i, j])
-    far = field[i + 1, j] + v * (field[i + 1, after] - field[i + 1, j])
-    return near + u * (far - near)
 
 
 def _write(picture: Pixels, text: str, centre: int, bottom: int) -> None:

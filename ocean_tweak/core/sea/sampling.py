@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bilinear import Reader, wrapped
 from ..masks.weights import Weights
 from ..surface_query import Field, Values
 from ..synthesis import X, Y, Z
@@ -62,57 +63,6 @@ def into_patch(x: Array, y: Array, rotation: float) -> tuple[Array, Array]:
     return c * x + s * y, c * y - s * x
 
 
-class Reader:
-    """Reads periodic fields, [y, x] from the origin, at places in their own axes: bilinear.
-
-    The fields are `padded`, so that no neighbour of a sample has to be looked for at the other side.
-    """
-
-    def __init__(self, x: Array, y: Array, size: float, resolution: int) -> None:
-        (j, self._u), (i, self._v) = (_cells(place, size, resolution) for place in (x, y))
-        self._row = resolution + 1
-        i *= self._row
-        i += j
-        self._first = i
-
-    def read(self, field: RealArray) -> RealArray:
-        """One number a place, of the field's precision, from a flat padded field."""
-        p00, p01, p10, p11 = (
-            np.take(field[offset:], self._first) for offset in (0, 1, self._row, self._row + 1)
-        )
-        p01 -= p00
-        p01 *= self._u
-        p01 += p00  # between the two of the row
-        p11 -= p10
-        p11 *= self._u
-        p11 += p10
-        p11 -= p01
-        p11 *= self._v
-        p11 += p01
-        return p11
-
-
-def _cells(place: Array, size: float, resolution: int) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
-    """The cell of each place along an axis, and how far in it the place is, 0…1."""
-    part = place / size
-    part -= np.floor(part)
-    part *= resolution
-    cell = part.astype(np.intp)
-    np.minimum(cell, resolution - 1, out=cell)  # of a place that was rounded up to the far side
-    part -= cell
-    return cell, part.astype(np.float32)
-
-
-def padded(field: RealArray) -> RealArray:
-    """Flat (N+1)² of a periodic (N, N) field: its last row and column are the first ones again."""
-    n = len(field)
-    result = np.empty((n + 1, n + 1), field.dtype)
-    result[:n, :n] = field
-    result[n, :n] = field[0]
-    result[:, n] = result[:, 0]
-    return result.ravel()
-
-
 def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray]:
     """Components in the sea's axes, from those in the axes of a patch: vectors Rv, gradients R G Rᵀ."""
     if not rotation:
@@ -142,7 +92,7 @@ class Grid:
 
     def __init__(self, components: Components, size: float, rotation: float) -> None:
         self._resolution = len(next(iter(components.values()), ()))
-        self._fields = {key: padded(field) for key, field in components.items()}
+        self._fields = {key: wrapped(field).ravel() for key, field in components.items()}
         self._size = size
         self._rotation = rotation
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...bilinear import between
 from ...raster import Raster
 from .parameters import WindFieldLayer
 
@@ -42,12 +43,8 @@ def winds_at(layer: WindFieldLayer, x: Array, y: Array, domain_size: float) -> t
 def bilinear(raster: Raster, x: Array, y: Array, domain_size: float) -> Array:
     """(places, channels) values of a raster over the patch, bilinear and periodic."""
     rows, columns, _ = raster.shape
-    column, row = x * (columns / domain_size), y * (rows / domain_size)
-    left, below = np.floor(column), np.floor(row)
-    u, v = (column - left)[:, np.newaxis], (row - below)[:, np.newaxis]
-    j, i = left.astype(np.intp), below.astype(np.intp)
-    j0, j1, i0, i1 = j % columns, (j + 1) % columns, i % rows, (i + 1) % rows
-    values = raster.values
-    lower = (1.0 - u) * values[i0, j0] + u * values[i0, j1]
-    upper = (1.0 - u) * values[i1, j0] + u * values[i1, j1]
+    corners, *shares = between(y * (rows / domain_size), x * (columns / domain_size), raster.shape)
+    u, v = (share[:, np.newaxis] for share in shares)
+    p00, p01, p10, p11 = (raster.values[corner] for corner in corners)
+    lower, upper = (1.0 - u) * p00 + u * p01, (1.0 - u) * p10 + u * p11
     return np.asarray((1.0 - v) * lower + v * upper)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Values between the samples [y, x] of a field: bilinear, as meshes, renderers and nodes show them.
+
+`between` looks places up in fields of any number of rows and columns, in double precision. A `Reader` reads
+many fields of one grid at the same places, in the fields' own precision. Both are of fields that repeat.
+`stretched` puts more or fewer samples along an axis.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+
+class Between(NamedTuple):
+    """Where places lie in a field that repeats.
+
+    corners : indices of the samples around each: here, next column, next row, both
+    u, v : how far each is from the column and the row before it, 0…1
+    """
+
+    corners: tuple[tuple[NDArray[np.intp], NDArray[np.intp]], ...]
+    u: Array
+    v: Array
+
+    def read(self, field: RealArray) -> RealArray:
+        """The values of a (rows, columns) field there."""
+        here, beside, above, across = (field[corner] for corner in self.corners)
+        low, high = here + self.u * (beside - here), above + self.u * (across - above)
+        return np.asarray(low + self.v * (high - low))
+
+
+def between(row: Array, column: Array, shape: tuple[int, ...]) -> Between:
+    """Places by row and column, of one shape, in fields of (rows, columns, …)."""
+    i, j = np.floor(row).astype(np.intp), np.floor(column).astype(np.intp)
+    corners = tuple((y % shape[0], x % shape[1]) for y in (i, i + 1) for x in (j, j + 1))
+    return Between(corners, column - j, row - i)
+
+
+class Reader:
+    """Reads square fields, [y, x] from the origin, at places in their own axes.
+
+    The fields are `wrapped` and flat, so that no neighbour of a sample is looked for at the other side.
+    """
+
+    def __init__(self, x: Array, y: Array, size: float, resolution: int) -> None:
+        (j, self._u), (i, self._v) = (_cells(place, size, resolution) for place in (x, y))
+        self._row = resolution + 1
+        i *= self._row
+        i += j
+        self._first = i
+
+    def read(self, field: RealArray) -> RealArray:
+        """One number a place, of the field's precision, from (N+1)² numbers."""
+        p00, p01, p10, p11 = (
+            np.take(field[offset:], self._first) for offset in (0, 1, self._row, self._row + 1)
+        )
+        p01 -= p00
+        p01 *= self._u
+        p01 += p00  # between the two of the row
+        p11 -= p10
+        p11 *= self._u
+        p11 += p10
+        p11 -= p01
+        p11 *= self._v
+        p11 += p01
+        return p11
+
+
+def _cells(place: Array, size: float, resolution: int) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
+    """The cell of each place along an axis, and how far in it the place is, 0…1."""
+    part = place / size
+    part -= np.floor(part)
+    part *= resolution
+    cell = part.astype(np.intp)
+    np.minimum(cell, resolution - 1, out=cell)  # of a place that was rounded up to the far side
+    part -= cell
+    return cell, part.astype(np.float32)
+
+
+def wrapped(field: RealArray) -> RealArray:
+    """(N+1, N+1) of an (N, N) field that repeats: its last row and column are the first ones again."""
+    n = len(field)
+    result = np.empty((n + 1, n + 1), field.dtype)
+    result[:n, :n] = field
+    result[n, :n] = field[0]
+    result[:, n] = result[:, 0]
+    return result
+
+
+def stretched(field: RealArray, axis: int, samples: int) -> RealArray:
+    """The field at samples + 1 places along an axis, evenly from its first sample to its last."""
+    last = field.shape[axis] - 1
+    place = np.arange(samples + 1) * (last / samples)
+    before = np.minimum(place.astype(np.intp), last - 1)
+    share = (place - before).astype(field.dtype)
+    result, step = np.take(field, before, axis), np.take(field, before + 1, axis)
+    step -= result
+    step *= share.reshape([-1 if each == axis else 1 for each in range(field.ndim)])
+    result += step
+    return result
