@@ -13,6 +13,7 @@ from . import cli
 from .export import logs
 from .scene import asset_library, handlers
 from .scene.cache_place import cache_folder, own_uid
+from .scene.command_process import CommandProcess
 from .scene.needs import needs_of
 from .scene.patch_objects import shot_maps
 from .scene.settings import OceanObjectError, all_oceans, shown_oceans
@@ -148,6 +149,7 @@ def register(package: str | None = None) -> None:
     bpy.types.VIEW3D_MT_mesh_add.append(scene_operators.draw_add_menu)
     bpy.types.TOPBAR_MT_file_export.append(usd_operators.draw_export_menu)
     bpy.types.TOPBAR_MT_file_import.append(usd_operators.draw_import_menu)
+    CommandProcess.command_line = cli.command()
     handlers.register()
     wind_overlay.register()
     error_overlay.register()

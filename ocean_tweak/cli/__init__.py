@@ -14,12 +14,13 @@ from ..export import logs
 from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..export.exr import ExrError
+from ..export.python_process import module_command
 from ..export.usd.library import UsdError
 from .arguments import make_parser
 from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, message_of, remedy_of
 from .seas import SceneOceans, Sea
 
-__all__ = ["SceneOceans", "Sea", "main"]
+__all__ = ["SceneOceans", "Sea", "command", "main"]
 
 _LOG = logging.getLogger(__name__)
 
@@ -52,6 +53,11 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
     finally:
         logs.end_file()
         _flush()
+
+
+def command() -> list[str]:
+    """The start of a command that is the command line in a process of its own: its arguments follow."""
+    return module_command(__name__.rpartition(".")[0])
 
 
 def _print_anything() -> None:

@@ -26,9 +26,6 @@ FORMS: dict[str, Callable[[Path, ShotJob], list[Path]]] = {"openjd": openjd.writ
 #: what the machines of a farm call Python
 PYTHON = "python" if os.name == "nt" else "python3"
 
-# the package of what needs Blender cannot be imported here, but its file can be read
-_RENDER_SCRIPT = Path(__file__).resolve().parents[1] / "scene" / "render_baked.py"
-
 
 def job(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
     """Write a job for a farm."""
@@ -76,5 +73,4 @@ def _render(arguments: argparse.Namespace) -> Render | None:
         return None
     if not arguments.blend.is_file():
         raise UsageError(f"--blend {arguments.blend}: is no file")
-    script = _RENDER_SCRIPT.read_text(encoding="utf-8")
-    return Render(arguments.blend, arguments.pictures, arguments.render_chunk, script)
+    return Render(arguments.blend, arguments.pictures, arguments.render_chunk)

@@ -115,7 +115,7 @@ class _Process:
         self._events = events
         self._deaths = deaths
         self._process = subprocess.Popen(
-            [*module_command("cli.workers"), str(folder)],
+            [*module_command(__name__), str(folder)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env=environment(), text=True, encoding="utf-8", errors="replace",
         )  # fmt: skip

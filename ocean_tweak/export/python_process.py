@@ -17,9 +17,12 @@ _HOME = Path(__file__).resolve().parents[2]
 _RUN = "import runpy, sys; sys.path[:0] = {path!r}; runpy.run_module({module!r}, None, '__main__', True)"
 
 
-def module_command(module: str = "") -> list[str]:
-    """The start of a command that runs this package, or a module of it by its name inside the package."""
-    whole = f"{PACKAGE}.{module}" if module else PACKAGE
+def module_command(name: str) -> list[str]:
+    """The start of a command that runs a module of this package, or the package itself.
+
+    name : the module's or package's `__name__`, which inside Blender begins with other packages
+    """
+    whole = PACKAGE + name.rpartition(PACKAGE)[2]
     path = [str(_HOME), *(str(entry) for entry in sys.path if not _is_current_folder(entry))]
     return [sys.executable, "-I", "-X", "utf8", "-c", _RUN.format(path=path, module=whole)]
 

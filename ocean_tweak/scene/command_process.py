@@ -10,13 +10,13 @@ import subprocess
 import threading
 import time
 from collections.abc import Sequence
-from typing import IO, Any
+from typing import IO, Any, ClassVar
 
 import bpy
 
 from ..core.shot import Shot
 from ..export import logs
-from ..export.python_process import environment, module_command
+from ..export.python_process import environment
 
 _LOG = logging.getLogger(__name__)
 
@@ -24,10 +24,13 @@ _LOG = logging.getLogger(__name__)
 class CommandProcess:
     """A command under way.
 
+    command_line : how the command line is started: this layer knows none, registration says it
     name : of the ocean that it is about
     left, done : frames that were to be made, and that have been
     error : the last line that told of a failure
     """
+
+    command_line: ClassVar[Sequence[str]] = ()
 
     def __init__(self, name: str, arguments: Sequence[str], shot: Shot | None = None) -> None:
         """Start it. Raises OSError for what the disk refuses.
@@ -43,7 +46,7 @@ class CommandProcess:
         # no file holds the sea: whoever is killed, and whenever, leaves none behind
         sea = () if shot is None else ("--params=-",)
         self._process = subprocess.Popen(
-            [*module_command(), *arguments, "--json", *logs.verbose_arguments(), *sea],
+            [*self.command_line, *arguments, "--json", *logs.verbose_arguments(), *sea],
             env=environment(), stdin=subprocess.PIPE,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8", errors="replace",
         )  # fmt: skip

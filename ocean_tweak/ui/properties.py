@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 import bpy
 from bpy.props import (
@@ -18,7 +19,9 @@ from bpy.props import (
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
 from ..nodes.names import MAP_INPUTS
+from ..scene import cache_place, ocean_object
 from ..scene.cache_place import DEFAULT_CACHE
+from ..scene.image_sequence import ImageSequence
 from ..scene.settings import (
     LAYER_KINDS,
     METHODS,
@@ -26,6 +29,7 @@ from ..scene.settings import (
     SOURCES,
     VIEWPORT_RESOLUTION,
     OceanObjectError,
+    shown_oceans,
 )
 from ..scene.source_images import ImageSource
 from ..scene.units import frame_rate, metres_per_unit, time_stretch
@@ -223,6 +227,19 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return OceanParameters.from_dict(data)
+
+    def shown_in(self) -> bpy.types.Scene | None:
+        """The scene that shows the ocean; None for what is none. For scripts of farms, as the next two."""
+        return shown_oceans().get(self.id_data)
+
+    def use_sequence(self, folder: Path, name: str, frames: Sequence[int]) -> None:
+        """Let baked files of these frames move the ocean. Raises SequenceError, and then changes nothing."""
+        item = self.id_data
+        ocean_object.use_sequence(item, shown_oceans()[item], ImageSequence(folder, name, tuple(frames)))
+
+    def own_uid(self) -> str:
+        """What tells the ocean's bakes from those of others."""
+        return cache_place.own_uid(self.id_data)
 
     def source_images(self) -> set[ImageSource]:
         """The images from which waves or masks are made."""

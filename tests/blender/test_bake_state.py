@@ -131,7 +131,7 @@ def test_a_live_ocean_has_no_bake(baked):
 
 
 def test_the_farm_renders_no_ocean_that_was_changed_after_its_bake(baked, extension, empty_scene):
-    script = extension("scene.render_baked")
+    script = extension("export.farm.render_baked")
     folder = extension("scene.cache_place").shown_bake(baked)
     of_job = script.Bake(folder.parent.parent, f"{folder.parent.name}/{folder.name.partition('-')[2]}")
     script.use_sequence(baked, of_job, [1, 2, 3])

@@ -44,7 +44,7 @@ def test_refused(sequences, bake, make_parameters, tmp_path):
 
 
 def test_frames_for_a_render_are_counted_before_they_are_made(extension, capsys):
-    frame_ranges = extension("scene.render_baked").frame_ranges
+    frame_ranges = extension("export.farm.render_baked").frame_ranges
     assert frame_ranges("1-9:4,20") == [range(1, 10, 4), range(20, 21)]
     for text in ("1-600000,1-600000", "1,1000000000", "9" * 5000):
         with pytest.raises(SystemExit) as ended:
@@ -88,7 +88,7 @@ def test_oceans_share_an_image_of_the_same_files(ocean_object, bake, make_parame
 
 def test_the_script_of_farms_knows_the_maps_that_blender_reads(extension):
     """It is complete by itself: it is not to import the extension."""
-    script = extension("scene.render_baked")
+    script = extension("export.farm.render_baked")
     for name in extension("nodes.names").MAP_INPUTS:
         assert script._FILE.fullmatch(f"sea_{name}.0001.exr")["name"] == "sea"
     assert script._FILE.fullmatch("sea_slope.0001.exr") is None

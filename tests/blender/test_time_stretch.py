@@ -165,7 +165,7 @@ def test_a_shot_takes_the_stretch_along(stretched, live, core, make_parameters, 
 def test_a_farm_renders_no_bake_of_another_stretch(
     extension, core, make_parameters, bake, empty_scene, tmp_path
 ):
-    render_baked = extension("scene.render_baked")
+    render_baked = extension("export.farm.render_baked")
     folder = tmp_path / "sea-1" / "v001-0123abcd"
     folder.mkdir(parents=True)
     bake(make_parameters(), 1, 2, directory=folder)

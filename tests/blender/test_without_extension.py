@@ -218,7 +218,7 @@ def test_what_needs_the_extension_is_named(horizon, extension, tmp_path, capsys)
 
 
 def render(extension, blend, tmp_path, *arguments):
-    script = extension("scene.render_baked").__file__
+    script = extension("export.farm.render_baked").__file__
     return run_script(script, "--pictures", str(tmp_path / "pictures"), *arguments, blend=blend)
 
 

@@ -12,6 +12,7 @@ from ...core.frames import format_frames
 from ..cache.job import uid_of
 from ..files import write_texts
 from .shot_job import (
+    RENDER_SCRIPT,
     SEAS,
     ShotJob,
     bake_arguments,
@@ -22,7 +23,6 @@ from .shot_job import (
 
 _SCRIPT = Path(__file__).with_name("flamenco.js")
 _PLACE = '"@SHOT@"'
-_RENDER_SCRIPT = "render_baked.py"
 #: around the name of a value; no name or path holds it
 _BORDER = "\0"
 
@@ -33,7 +33,7 @@ def write(folder: Path, job: ShotJob) -> list[Path]:
     shot = json.dumps(_shot(folder, job), indent=4).replace("<", "\\u003c")
     texts = sea_files(folder, job)
     if job.render is not None:
-        texts[folder / _RENDER_SCRIPT] = job.render.script
+        texts[folder / RENDER_SCRIPT.name] = RENDER_SCRIPT.read_text(encoding="utf-8")
     texts[folder / f"ocean_tweak_{_type_name(job.name)}.js"] = _SCRIPT.read_text(encoding="utf-8").replace(
         _PLACE, shot
     )
@@ -91,7 +91,7 @@ def _render(folder: Path, job: ShotJob) -> dict[str, Any] | None:
     if job.render is None:
         return None
     cache, frames, pictures = map(_value, ("cache", "frames", "pictures"))
-    script = f"{_value('job_folder')}/{_RENDER_SCRIPT}"
+    script = f"{_value('job_folder')}/{RENDER_SCRIPT.name}"
     arguments = render_arguments(job, cache, frames, pictures, openjd=False)
     return {
         "chunk": job.render.chunk,

@@ -17,6 +17,7 @@ from ..cache.job import Job
 from ..files import write_texts
 from .shot_job import (
     LONGEST_VALUE,
+    RENDER_SCRIPT,
     SEAS,
     ShotJob,
     bake_arguments,
@@ -191,7 +192,12 @@ def _render_step(job: ShotJob) -> _Data:
     verified = [_name("Verify", job, number) for number in range(len(job.bakes))]
     step = _step("Render", tasks, _command("blender", arguments), verified)
     step["script"]["embeddedFiles"] = [
-        {"name": "Render", "filename": "render_baked.py", "type": "TEXT", "data": render.script}
+        {
+            "name": "Render",
+            "filename": RENDER_SCRIPT.name,
+            "type": "TEXT",
+            "data": RENDER_SCRIPT.read_text(encoding="utf-8"),
+        }
     ]
     return step
 

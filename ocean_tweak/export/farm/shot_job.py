@@ -14,6 +14,8 @@ from pathlib import Path
 from ...core.frames import Frame, format_frames
 from ..cache.job import Job
 
+#: the Python script that renders, in a Blender with or without this extension
+RENDER_SCRIPT = Path(__file__).with_name("render_baked.py")
 #: folder of the seas' parameters, in a job's own
 SEAS = "seas"
 #: characters of a value and of the job's name, in the strictest form of job
@@ -33,13 +35,11 @@ class Render:
     blend : the .blend file
     pictures : folder for the pictures; None for one in the job's own
     chunk : frames in a task
-    script : text of the Python script that renders, in a Blender with or without this extension
     """
 
     blend: Path
     pictures: Path | None
     chunk: int
-    script: str
 
 
 @dataclass(frozen=True)

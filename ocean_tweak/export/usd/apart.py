@@ -69,7 +69,7 @@ def _answers(path: Path, asked: dict[str, Any]) -> Iterator[dict[str, Any]]:
 def lines(path: Path, asked: dict[str, Any]) -> Iterable[dict[str, Any]]:
     """What the process answers. Raises UsdError where it breaks off."""
     done = subprocess.run(
-        module_command("export.usd.apart"), input=json.dumps(asked), env=environment(), capture_output=True,
+        module_command(__name__), input=json.dumps(asked), env=environment(), capture_output=True,
         encoding="utf-8", errors="replace", check=False,
     )  # fmt: skip
     for line in done.stderr.splitlines():

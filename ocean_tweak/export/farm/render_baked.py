@@ -11,13 +11,11 @@ Where it has not, images of a sequence with the bake's name are looked for in th
 from __future__ import annotations
 
 import argparse
-import importlib
 import json
 import re
 import sys
 from fractions import Fraction
 from pathlib import Path
-from types import ModuleType
 
 import bpy
 
@@ -146,7 +144,7 @@ def show(bake: Bake, frames: list[int], alone: bool) -> None:
     alone : whether there is no other bake, so that a file's only ocean is meant whatever its name is
     """
     images = [image for image in bpy.data.images if sequence_name(image) == bake.name]
-    oceans = [item for item in bpy.data.objects if is_ocean(item)]
+    oceans = [item for item in bpy.data.objects if scene_of(item) is not None]
     named = [item for item in oceans if re.sub(r"[^\w\- ]+", "_", item.name).strip() == bake.name]
     meant = named or (oceans if alone and len(oceans) == 1 else [])
     for item in meant:
@@ -195,37 +193,24 @@ def is_live(item: bpy.types.Object) -> bool:
     return False
 
 
-def is_ocean(item: bpy.types.Object) -> bool:
-    """Whether the extension is there and takes the object for an ocean."""
-    if not hasattr(item, "ocean_tweak"):
-        return False
-    settings = of_extension(item, "scene.settings")
-    return bool(settings.is_ocean(item)) and item in settings.shown_oceans()
-
-
-def of_extension(item: bpy.types.Object, name: str) -> ModuleType:
-    """A module of the extension that knows an object's settings."""
-    package = type(item.ocean_tweak).__module__.rpartition(".ui.")[0]
-    return importlib.import_module(f"{package}.{name}")
+def scene_of(item: bpy.types.Object) -> bpy.types.Scene | None:
+    """The scene that shows an object which the extension, where it is there, takes for an ocean."""
+    return item.ocean_tweak.shown_in() if hasattr(item, "ocean_tweak") else None
 
 
 def use_sequence(item: bpy.types.Object, bake: Bake, frames: list[int]) -> None:
     """Let the extension switch an ocean to the bake. Raises RenderError where it cannot."""
-    ocean_object = of_extension(item, "scene.ocean_object")
-    sequences = of_extension(item, "scene.image_sequence")
-    scene = of_extension(item, "scene.settings").shown_oceans()[item]
-    baked = bake.domain_size
-    own = item.ocean_tweak.to_parameters(scene).domain_size
+    settings, baked = item.ocean_tweak, bake.domain_size
+    own = settings.to_parameters(scene_of(item)).domain_size
     if abs(own - baked) > 1e-6 * baked:
         raise RenderError(
             f"{item.name} is {own:g} m wide, the bake {bake.folder} {baked:g} m: give both one size"
         )
-    sequence = sequences.ImageSequence(bake.folder, bake.name, tuple(sorted(set(frames))))
     try:
-        ocean_object.use_sequence(item, scene, sequence)
+        settings.use_sequence(bake.folder, bake.name, sorted(set(frames)))
     except ValueError as error:
         raise RenderError(f"{item.name}: {error}") from error
-    if of_extension(item, "scene.cache_place").own_uid(item) == bake.uid:  # baked from this very ocean
+    if settings.own_uid() == bake.uid:  # baked from this very ocean
         check_settings(item, bake, frames)
     print(f"{item.name} reads {bake.folder}", flush=True)
 
@@ -296,7 +281,7 @@ def show_frames(bake: Bake, images: list[bpy.types.Image], frames: list[int]) ->
             modifier.id_data.update_tag()
     for texture in bpy.data.textures:
         if getattr(texture, "image", None) in images:
-            # as `scene.textures` does, which says why
+            # as an ocean's own textures do, which say why
             begin, user = int(first == last), texture.image_user
             user.frame_start, user.frame_offset = first + 1 - begin, first - begin
             user.frame_duration = last - first + begin
