@@ -24,6 +24,7 @@ from ocean_tweak.core.parameters import (
     WindKey,
 )
 from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.validation import default_of
 
 from .project import ROOT
 
@@ -107,7 +108,7 @@ def _row(field: dataclasses.Field[Any]) -> str:
     cells = [
         f"`{field.name}`",
         meta.get("unit", ""),
-        "" if meta["kind"] is Raster and not meta["optional"] else _shown(field.default),
+        "" if meta["kind"] is Raster and not meta["optional"] else _shown(default_of(field)),
         _allowed(meta),
         meta.get("why", ""),
         meta["description"],

@@ -18,7 +18,7 @@ from .errors import ParameterError
 from .masks.parameters import Mask
 from .plain_data import from_plain, parse_json, to_plain
 from .raster import check_numbers, numbers_in
-from .validation import Validated, choice, integer, nested, number, rational, switch
+from .validation import OPEN, Validated, choice, default_of, integer, nested, number, rational, switch
 from .water import Water
 from .waves.hero.group import check_hero_waves, is_held
 from .waves.hero.parameters import HeroWave
@@ -46,6 +46,9 @@ __all__ = [
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
 AMPLITUDES = ("GAUSSIAN", "FIXED")
 ORBITS = ("DEEP", "FINITE_DEPTH")
+
+#: fields that patches tell, where there are any
+_TILE = ("resolution", "domain_size")
 
 
 @dataclass(frozen=True)
@@ -117,11 +120,11 @@ class OceanParameters(Validated):
 
     resolution: int = integer(
         512, 16, 8192, "Samples along each side of the domain, an even number",
-        "below 16 there is no sea, above 8192 no memory",
+        "below 16 there is no sea, above 8192 no memory", may_be_told=True,
     )  # fmt: skip
     domain_size: float = number(
         400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
-        "a wave vector is told apart from its neighbours up to 100 km",
+        "a wave vector is told apart from its neighbours up to 100 km", may_be_told=True,
     )  # fmt: skip
     seed: int = integer(
         0,
@@ -165,9 +168,7 @@ class OceanParameters(Validated):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_joined(self.joined, self.patches)
-        if self.patches:  # one place tells the size of the first patch, on which pictures and wind fields are
-            object.__setattr__(self, "resolution", self.joined or self.patches[0].resolution)
-            object.__setattr__(self, "domain_size", self.patches[0].domain_size)
+        self._settle_tile()
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
         object.__setattr__(self, "layers", _identified("layers", self.layers))
@@ -184,6 +185,24 @@ class OceanParameters(Validated):
                 "trough_damping", self.trough_damping,
                 "must be 0 in a sea with masks, whose waves do not know the troughs of the others",
             )  # fmt: skip
+
+    def _settle_tile(self) -> None:
+        """Fill in size and samples of the tile where they are left open: patches tell those of the first, on
+        which pictures and wind fields are. Raises ParameterError where others are given too.
+        """
+        told: dict[str, float] = {}
+        if self.patches:
+            first = self.patches[0]
+            told = {"resolution": self.joined or first.resolution, "domain_size": first.domain_size}
+        for field in dataclasses.fields(self):
+            if field.name not in _TILE:
+                continue
+            given = getattr(self, field.name)
+            if given is OPEN:
+                object.__setattr__(self, field.name, told.get(field.name, default_of(field)))
+            elif given != told.get(field.name, given):
+                reason = f"must be {told[field.name]:g}, which the patches tell: leave it out, or change them"
+                raise ParameterError(field.name, given, reason)
 
     @property
     def is_cascade(self) -> bool:
@@ -250,6 +269,8 @@ class OceanParameters(Validated):
                     changes["domain_size"],
                     "is that of the first of the patches: change it there",
                 )
+        if changes.get("patches", self.patches):  # they tell it anew
+            changes = {**dict.fromkeys(_TILE, OPEN), **changes}
         return dataclasses.replace(self, **changes)
 
     def at_resolution(self, resolution: int) -> OceanParameters:
@@ -293,6 +314,8 @@ class OceanParameters(Validated):
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
         check_numbers(numbers_in(data))
+        if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
+            data = {key: value for key, value in data.items() if key not in _TILE}
         return from_plain(cls, data)
 
     @classmethod

@@ -13,6 +13,15 @@ from .errors import ParameterError
 from .raster import Raster
 
 
+class _Open:
+    def __repr__(self) -> str:
+        return "OPEN"
+
+
+#: stands in a field that nobody gave, until it is known what else tells it
+OPEN: Any = _Open()
+
+
 def number(
     default: float,
     minimum: float,
@@ -23,17 +32,20 @@ def number(
     *,
     useful: tuple[float, float] | None = None,
     changes: bool = False,
+    may_be_told: bool = False,
 ) -> Any:
     """A real-valued dataclass field with its range, unit, description and the reason for the range.
 
     useful : what a slider offers, where the range is much wider
     changes : whether it can change during a shot; the rest sets which waves there are and how fast they run
+    may_be_told : whether other fields may tell it, so that it is open until all are known, see `default_of`
     """
     return dataclasses.field(
-        default=default,
+        default=OPEN if may_be_told else default,
         metadata={
             "kind": float, "minimum": minimum, "maximum": maximum, "useful": useful or (minimum, maximum),
             "unit": unit, "description": description, "why": why, "changes": changes,
+            "default": default,
         },
     )  # fmt: skip
 
@@ -44,19 +56,33 @@ def changing_fields(kind: type) -> tuple[str, ...]:
 
 
 def integer(
-    default: int, minimum: int, maximum: int, description: str, why: str = "", left_out: bool = False
+    default: int,
+    minimum: int,
+    maximum: int,
+    description: str,
+    why: str = "",
+    *,
+    left_out: bool = False,
+    may_be_told: bool = False,
 ) -> Any:
     """A whole-number dataclass field with its range.
 
     left_out : where it is 0, JSON has no such key
+    may_be_told : as of a `number`
     """
     return dataclasses.field(
-        default=default,
+        default=OPEN if may_be_told else default,
         metadata={
             "kind": int, "minimum": minimum, "maximum": maximum,
             "unit": "", "description": description, "why": why, "left_out": left_out,
+            "default": default,
         },
     )  # fmt: skip
+
+
+def default_of(field: dataclasses.Field[Any]) -> Any:
+    """What a field is where nothing is given and nothing else tells it."""
+    return field.metadata["default"] if field.default is OPEN else field.default
 
 
 def choice(default: str, choices: tuple[str, ...], description: str) -> Any:
@@ -157,8 +183,8 @@ def _checked_fraction(name: str, value: object, meta: Any) -> Fraction:
 def _checked(field: dataclasses.Field[Any], value: object) -> object:
     meta = field.metadata
     kind = meta.get("kind")
-    if value is None and meta.get("optional"):
-        return None
+    if (value is None and meta.get("optional")) or (value is OPEN and field.default is OPEN):
+        return value
     if "nested" in meta:
         return _checked_nested(field, value)
     if kind is Fraction:

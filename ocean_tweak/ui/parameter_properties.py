@@ -20,6 +20,7 @@ import numpy as np
 
 from ..core.errors import ParameterError
 from ..core.raster import Raster
+from ..core.validation import default_of
 from ..scene.settings import scene_of
 from ..scene.units import metres_per_unit, shortest_decimal
 
@@ -120,7 +121,7 @@ def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
 def _property(field: _Field, update: _Update) -> Any:
     common = {
         "name": field.name.replace("_", " ").title(),
-        "default": field.default,
+        "default": default_of(field),
         "update": _limited(field, update) if _is_length(field) else update,
         "options": {"ANIMATABLE"} if field.metadata.get("changes") else set(),
         "override": {"LIBRARY_OVERRIDABLE"},

@@ -27,6 +27,7 @@ from ocean_tweak.core import (
     WindFieldLayer,
     WindKey,
 )
+from ocean_tweak.core.validation import OPEN
 
 
 def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
@@ -118,7 +119,7 @@ def patched_seas() -> st.SearchStrategy[OceanParameters]:
     layers = st.builds(lambda layer, mask: (dataclasses.replace(layer, mask=mask),), LAYERS, MASKS)
     return instances(
         OceanParameters, patches=patches, joined=st.sampled_from([0, 16, 48]), layers=layers,
-        trough_damping=st.just(0.0), **COMMON,
+        trough_damping=st.just(0.0), resolution=st.just(OPEN), domain_size=st.just(OPEN), **COMMON,
     )  # fmt: skip
 
 

@@ -51,6 +51,21 @@ def patches_between(*bands: tuple[float, float]) -> tuple[Patch, ...]:
     return tuple(Patch(100.0, 0.0, shortest, longest, 64) for shortest, longest in bands)
 
 
+def test_what_patches_tell_is_not_given_otherwise() -> None:
+    """The tile is the first patch's, or has as many samples as they are joined on."""
+    for given, wanted in (({"resolution": 64}, "128"), ({"domain_size": 50.0}, "600")):
+        with pytest.raises(ParameterError, match=rf"must be {wanted}, which the patches tell: leave it out"):
+            OceanParameters(patches=THREE, **given)
+    with pytest.raises(ParameterError, match=r"resolution = 128: must be 48, which"):
+        OceanParameters(patches=THREE, joined=48, resolution=128)
+    same = OceanParameters(patches=THREE, resolution=128, domain_size=600.0)
+    assert same == OceanParameters(patches=THREE) == OceanParameters().replace(patches=THREE)
+    with pytest.raises(ParameterError, match=r"resolution = None: must be a whole number"):
+        OceanParameters(resolution=None)
+    # a file may still tell both, and the patches win
+    assert OceanParameters.from_dict({**same.to_dict(), "resolution": 64}) == same
+
+
 @pytest.mark.parametrize(
     ("bands", "said"),
     [
