@@ -44,7 +44,7 @@ def make_parameters(core):
             # foam that is soon forgotten: every frame alone looks back over its memory
             "foam": core.Foam(half_life=0.3),
         }
-        return core.OceanParameters(**{**values, **changes})
+        return core.OceanParameters(**values).replace(**changes)
 
     return make
 

@@ -46,7 +46,8 @@ def awkward_sea(core, seed):
     timing = core.Timing(fps=fps, start_frame=9)
     given = {"resolution": SAMPLES, "joined": 0}
     if seed % 2:
-        given |= {"joined": SAMPLES, "patches": awkward_patches(core, chance)}
+        patches = awkward_patches(core, chance)
+        given |= {"joined": SAMPLES, "patches": patches, "domain_size": patches[0].domain_size}
     if seed % 2 or any(masks):
         given["trough_damping"] = 0.0
     return awkward(
