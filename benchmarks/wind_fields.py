@@ -10,7 +10,6 @@ import numpy as np
 
 from ocean_tweak.core import Ocean, OceanParameters, WindFieldLayer, WindKey
 from ocean_tweak.core.waves.wind_field.wind import sampled_wind
-from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 
 from .field_sets import SIX, TIME, FieldSet, arrays, surface_maker
 from .measure import interleaved
@@ -29,7 +28,7 @@ def rows(plan: Plan) -> Iterator[Row]:
     """One and two workers against the spectrum's six fields with as many."""
     resolution = 128 if plan.smoke else 1024
     parameters = windy(resolution)
-    count = len(WindWaves(parameters).particles(TIME).x)
+    count = len(WindFieldLayer.shares(parameters).particles(TIME).x)
     for workers in (1, 2):
         sides = {
             "with particles": _maker(parameters, workers),
@@ -57,7 +56,7 @@ def windy(resolution: int) -> OceanParameters:
     for cells in range(4, 64):
         layer = replace(layer, rows=cells, columns=cells)
         parameters = storm.replace(wind_fields=(layer,))
-        if len(WindWaves(parameters).particles(TIME).x) >= PARTICLES:
+        if len(WindFieldLayer.shares(parameters).particles(TIME).x) >= PARTICLES:
             break
     return parameters
 

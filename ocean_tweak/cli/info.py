@@ -16,8 +16,9 @@ from ..core.cascades.patch import NO_LONGEST
 from ..core.foam_field import foam_outlook
 from ..core.memory import check_memory, memory_need
 from ..core.statistics import SeaState, Statistics
-from ..core.waves.hero.outlook import HeroWaveOutlook, hero_wave_outlooks
-from ..core.waves.wind_field.outlook import wind_wave_outlook
+from ..core.waves.contribution import Contribution, Outlook
+from ..core.waves.kinds import KINDS
+from ..core.waves.spectral import WaveLayer
 from ..export.cache.estimate import readable_bytes, seconds_of_statistics, statistics_memory
 from ..export.files import write_text
 from .outcome import DONE, UsageError
@@ -44,8 +45,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
                 "parameters": seas[name].shot.to_dict(),
                 "statistics": _plain(statistics),
                 "memory": dataclasses.asdict(memory_need(parameters[name])),
-                **_wind_fields(parameters[name]),
-                **_hero_waves(parameters[name]),
+                **{kind.former_list: found.to_plain() for kind, found in _outlooks(parameters[name])},
             }
             for name, statistics in results.items()
         }
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
 
 def _foretell(name: str, parameters: OceanParameters) -> None:
     """Say what the numbers of a large sea take, before they are made. Raises MemoryError for too much."""
-    need, layers = statistics_memory(parameters), len(parameters.active_layers)
+    need, layers = statistics_memory(parameters), len(parameters.active(WaveLayer))
     what = f"{name}: {parameters.resolution}² samples and {layers} layer{'s' if layers != 1 else ''}"
     check_memory(need, what)
     if parameters.resolution**2 * max(1, layers) < _LARGE:
@@ -85,16 +85,11 @@ def _plain(statistics: Statistics) -> dict[str, object]:
     return told
 
 
-def _wind_fields(parameters: OceanParameters) -> dict[str, object]:
-    """What `info --json` says of wind fields, where there are any."""
-    outlook = wind_wave_outlook(parameters)
-    return {} if outlook is None else {"wind_fields": outlook._asdict()}
-
-
-def _hero_waves(parameters: OceanParameters) -> dict[str, object]:
-    """What `info --json` says of hero waves, where there are any."""
-    outlooks = hero_wave_outlooks(parameters)
-    return {"hero_waves": [wave.to_dict() for wave in outlooks]} if outlooks else {}
+def _outlooks(parameters: OceanParameters) -> list[tuple[type[Contribution], Outlook]]:
+    """What kinds of layers say of waves that the sea's heights are without."""
+    shown = sorted(KINDS, key=lambda kind: kind.names.number)
+    found = ((kind, kind.outlook(parameters)) for kind in shown)
+    return [(kind, outlook) for kind, outlook in found if outlook is not None]
 
 
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
@@ -129,18 +124,10 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.loop_duration or 0)
         lines.append(f"  loop of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
-    of_wind = wind_wave_outlook(parameters)
-    if of_wind is not None:
-        lines.append(
-            f"  wind fields: waves up to {of_wind.longest_wavelength:.3g} m long, at most "
-            f"{of_wind.most_particles} particles at once; the heights above are without them"
-        )
-    heroes = hero_wave_outlooks(parameters)
-    lines += [_hero_row(wave) for wave in heroes]
-    if heroes:
-        lines.append("  hero waves are in the row of the seed alone: no spectrum expects them")
-    warnings = (*statistics.warnings, *(of_wind.warnings if of_wind else ()))
-    warnings += tuple(warning for wave in heroes for warning in wave.warnings)
+    warnings = [*statistics.warnings]
+    for _, outlook in _outlooks(parameters):
+        lines += [f"  {line}" for line in outlook.lines()]
+        warnings += outlook.warnings
     return lines + [f"  warning: {warning}" for warning in warnings]
 
 
@@ -181,15 +168,6 @@ def _patch_rows(statistics: Statistics) -> list[str]:
     widths = [max(len(row[column]) for row in rows) for column in range(len(head))]
     cells = (zip(row, widths, strict=True) for row in rows)
     return ["  " + "  ".join(f"{cell:>{width}}" for cell, width in row) for row in cells]
-
-
-def _hero_row(wave: HeroWaveOutlook) -> str:
-    return (
-        f"  hero wave {wave.number}: {wave.crest_height:.3g} m high at x = {wave.x:.4g}, y = {wave.y:.4g} m "
-        f"at {wave.time:.4g} s (frame {wave.frame:.6g}), {wave.wavelength:.4g} m and {wave.period:.3g} s "
-        f"long, towards {math.degrees(wave.direction):.0f}°; crests run {wave.phase_speed:.3g} m/s, the "
-        f"group {wave.group_speed:.3g} m/s and {wave.domain_size / wave.group_speed:.3g} s through the patch"
-    )
 
 
 def _peak(parameters: OceanParameters, statistics: Statistics) -> str:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +17,9 @@ from .layer_scales import LayerScales, layer_scales, scaled_spectrum
 from .radial_table import RadialTable
 from .spreading import WIND_MODELS, Shape, Spreading, directional_spreading, spreading_shape, wrap_angle
 from .water import Water
-from .waves.spectral import WaveLayer
+
+if TYPE_CHECKING:
+    from .waves.spectral import WaveLayer
 
 Array = NDArray[np.float64]
 

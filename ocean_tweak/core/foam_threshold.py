@@ -8,7 +8,6 @@ from the sea's own strains, so that the share of the surface under foam is the o
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +15,7 @@ from numpy.typing import NDArray
 from . import constants, random
 from .initial_state import InitialState
 from .parameters import OceanParameters
-from .waves.image.state import wanted_variance
-from .wind_profile import wind_at_10_m
+from .waves.contribution import Wind
 
 Array = NDArray[np.float64]
 
@@ -27,25 +25,9 @@ _SAMPLES = 2**18
 LEAST_SQUEEZE = 1e-6
 
 
-class Wind(NamedTuple):
-    """The strongest wind among the layers and pictures that are given by a wind."""
-
-    speed: float
-    direction: float
-
-
 def foam_wind(parameters: OceanParameters) -> Wind | None:
-    """The wind at 10 m that makes whitecaps, m/s and rad; None without one: swell does not break."""
-    winds = [
-        Wind(wind_at_10_m(layer.wind_speed, layer.wind_height), layer.wind_direction)
-        for layer in parameters.raised_layers
-        if layer.definition == "WIND" and layer.gain > 0.0
-    ]
-    winds += [
-        Wind(picture.wind_speed, picture.wind_direction)
-        for picture in parameters.active_pictures
-        if picture.filter == "MODIFIED_PIERSON_MOSKOWITZ" and wanted_variance(picture, parameters.water) > 0.0
-    ]
+    """The strongest of the winds that the layers are given by; None without one: swell does not break."""
+    winds = [wind for layer in parameters.active() if (wind := layer.wind(parameters)) is not None]
     return max(winds, key=lambda wind: wind.speed) if winds else None
 
 

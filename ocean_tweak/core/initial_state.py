@@ -14,9 +14,9 @@ from . import dispersion, random
 from .directional_spectrum import DirectionalSpectrum
 from .grid import WaveVectorGrid
 from .memo import remembered, total_bytes
-from .parameters import OceanParameters, WaveLayer
-from .waves.hero.group import add_hero_wave
-from .waves.image.state import PictureWaves, picture_waves
+from .parameters import OceanParameters
+from .sea_spectrum import SeaSpectrum
+from .waves.contribution import Contribution, Gives
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -41,6 +41,7 @@ class InitialState:
     orbit_depth : depth in m that widens the water's orbits; infinite for those of deep water
     mirrored : whether ω is even in ky, which halves the work; where it is not, it still is even in k
     others : states on the same grid whose waves add to these, with frequencies of their own
+    layer : whose waves they are, where they are one of the others
     """
 
     grid: WaveVectorGrid
@@ -53,6 +54,7 @@ class InitialState:
     orbit_depth: float = float("inf")
     mirrored: bool = True
     others: tuple[InitialState, ...] = ()
+    layer: Contribution | None = None
 
     @property
     def parts(self) -> tuple[InitialState, ...]:
@@ -106,80 +108,93 @@ def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
     return phasors
 
 
-def layer_seed(parameters: OceanParameters, layer: WaveLayer) -> int:
-    """The seed of one layer: its own, or one that follows from the ocean's seed and the layer's id."""
-    return layer.seed if layer.seed >= 0 else random.combine(parameters.seed, layer.id)
+class Coefficients:
+    """What layers add their waves to; arrays (N, N//2+1), transposed in memory.
+
+    grid, omega : of the sea
+    h_plus, h_minus, expected_plus, expected_minus : of its state, as `InitialState` has them
+    dtype : of the coefficients
+    """
+
+    def __init__(self, sea: OceanParameters, dtype: type) -> None:
+        self._sea = sea
+        self.dtype = dtype
+        self.grid = WaveVectorGrid(sea.resolution, sea.domain_size)
+        shape = self.grid.shape[::-1]
+        self.h_plus, self.h_minus = (np.zeros(shape, dtype).T for _ in range(2))
+        real = self.h_plus.real.dtype
+        self.expected_plus, self.expected_minus = (np.zeros(shape, real).T for _ in range(2))
+        self.omega = _angular_frequency(self.grid, sea)
+        self._others: list[InitialState] = []
+
+    def set_apart(
+        self,
+        layer: Contribution,
+        h_plus: ComplexArray,
+        h_minus: ComplexArray,
+        omega: Array,
+        expected_plus: RealArray,
+        expected_minus: RealArray,
+        mirrored: bool,
+    ) -> None:
+        """Add a layer's waves with frequencies of their own; the arguments are as `InitialState` has them."""
+        self._others.append(
+            InitialState(
+                self.grid, h_plus, h_minus, omega, expected_plus, expected_minus,
+                self._sea.loop_duration, _orbit_depth(self._sea), mirrored, layer=layer,
+            )
+        )  # fmt: skip
+
+    def state(self) -> InitialState:
+        """The sea's state with all that was added."""
+        state = InitialState(
+            self.grid,
+            self.h_plus,
+            self.h_minus,
+            self.omega,
+            self.expected_plus,
+            self.expected_minus,
+            loop_duration=self._sea.loop_duration,
+            orbit_depth=_orbit_depth(self._sea),
+            others=tuple(self._others),
+        )
+        state.potential_factor  # noqa: B018  made with the state, not by its first surface
+        return state
 
 
 def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> InitialState:
-    """Coefficients of all layers together: layers add in the spectrum, and so do hero waves.
+    """Coefficients of all layers together: layers add in the spectrum, and so do those of other kinds."""
+    made = Coefficients(parameters, dtype)
+    for spectrum in SeaSpectrum(parameters).layers:
+        _add_random_waves(spectrum, parameters, made)
+    if parameters.match_height:
+        _match_height(made.grid, made.h_plus, made.h_minus, made.expected_plus + made.expected_minus)
+    for layer in parameters.active():
+        if Gives.COEFFICIENTS in layer.gives:
+            layer.add(parameters, made)
+    return made.state()
+
+
+def _add_random_waves(spectrum: DirectionalSpectrum, sea: OceanParameters, to: Coefficients) -> None:
+    """Draw waves from a spectrum.
 
     The amplitude of a cosine is ν√(2ΨΔkxΔky), so its coefficient is half of that (Horvath 2015, eq. 47,
     corrected by this half; Chen 2014, eq. 10 and 18), and the elevation's variance is ΣΨΔkxΔky = m0.
     """
-    grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
-    transposed = grid.shape[::-1]
-    h_plus, h_minus = (np.zeros(transposed, dtype).T for _ in range(2))
-    expected_plus, expected_minus = (np.zeros(transposed, h_plus.real.dtype).T for _ in range(2))
-    for layer in parameters.raised_layers:
-        spectrum = DirectionalSpectrum(layer, parameters.water, parameters.dispersion, parameters.band)
-        forward, backward = spectrum.cell_means(grid)
-        along, against = random_phasors(grid, layer_seed(parameters, layer), parameters.amplitudes, dtype)
-        for mean, phasors, h, expected in (
-            (forward, along, h_plus, expected_plus),
-            (backward, np.conj(against), h_minus, expected_minus),
-        ):
-            mean *= 0.5 * grid.cell_area
-            expected += mean
-            h += phasors * np.sqrt(mean).astype(expected.dtype, copy=False)
-    if parameters.match_height:
-        _match_height(grid, h_plus, h_minus, expected_plus + expected_minus)
-    omega = _angular_frequency(grid, parameters)
-    for wave in parameters.active_hero_waves:
-        add_hero_wave(wave, grid, omega, h_plus, h_minus)
-    others = []
-    for picture in parameters.active_pictures:
-        waves = picture_waves(
-            picture, grid, parameters.dispersion, parameters.water, parameters.seed,
-            parameters.loop_duration, parameters.match_height, dtype,
-        )  # fmt: skip
-        if picture.animation == "DISPERSION":  # of the same frequencies: no more work for any frame
-            _add(waves, h_plus, h_minus, expected_plus, expected_minus)
-        else:
-            others.append(_state(grid, waves, parameters, mirrored=picture.animation != "TRANSLATION"))
-    state = InitialState(
-        grid,
-        h_plus,
-        h_minus,
-        omega,
-        expected_plus,
-        expected_minus,
-        loop_duration=parameters.loop_duration,
-        orbit_depth=_orbit_depth(parameters),
-        others=tuple(others),
-    )
-    state.potential_factor  # noqa: B018  made with the state, not by its first surface
-    return state
+    forward, backward = spectrum.cell_means(to.grid)
+    seed = spectrum.layer.random_seed(sea)
+    along, against = random_phasors(to.grid, seed, sea.amplitudes, to.dtype)
+    for mean, phasors, h, expected in (
+        (forward, along, to.h_plus, to.expected_plus),
+        (backward, np.conj(against), to.h_minus, to.expected_minus),
+    ):
+        mean *= 0.5 * to.grid.cell_area
+        expected += mean
+        h += phasors * np.sqrt(mean).astype(expected.dtype, copy=False)
 
 
 def _orbit_depth(parameters: OceanParameters) -> float:
     return parameters.water.depth if parameters.orbits == "FINITE_DEPTH" else float("inf")
-
-
-def _add(waves: PictureWaves, *to: ComplexArray | RealArray) -> None:
-    parts = (waves.h_plus, waves.h_minus, waves.expected_plus, waves.expected_minus)
-    for target, part in zip(to, parts, strict=True):
-        target += part
-
-
-def _state(
-    grid: WaveVectorGrid, waves: PictureWaves, parameters: OceanParameters, mirrored: bool
-) -> InitialState:
-    """A picture's waves as a state of its own."""
-    return InitialState(
-        grid, waves.h_plus, waves.h_minus, waves.omega, waves.expected_plus, waves.expected_minus,
-        parameters.loop_duration, _orbit_depth(parameters), mirrored,
-    )  # fmt: skip
 
 
 def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import constants, spectra
 from .memo import remembered
 from .water import Water
-from .waves.spectral import WaveLayer
+
+if TYPE_CHECKING:
+    from .waves.spectral import WaveLayer
 from .wind_profile import wind_at_10_m
 
 Array = NDArray[np.float64]

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,36 +12,14 @@ from .channels import ADDING, CHANNELS, FOAM, memory_groups
 from .machine import usable_memory
 from .parameters import OceanParameters
 from .synthesis import term
-from .waves.image.source import side
-from .waves.wind_field.bounds import bytes_of
-from .waves.wind_field.shape import MOST_CLASSES
+from .waves.contribution import Gives, MemoryNeed
+from .waves.kinds import KINDS
 
 #: float64 arrays of half the plane that live while the initial state is made, beyond what stays
 _TEMPORARY_ARRAYS = 5
 
-#: complex arrays of half a picture's plane that live while it is filtered
-_PICTURE_ARRAYS = 3
-
 #: bytes of the tables from which a state is made, whatever the resolution
 TABLES = 48 * 2**20
-
-
-@dataclass(frozen=True)
-class MemoryNeed:
-    """Bytes that a sea takes.
-
-    state : kept as long as the sea: coefficients, frequencies, random numbers
-    building : on top of it, while the state is made
-    surface : of each surface that is made at the same time: its fields and the arrays between the passes
-    """
-
-    state: int
-    building: int
-    surface: int
-
-    def peak(self, surfaces: int = 1) -> int:
-        """The most that is taken at once, with a number of surfaces at the same time."""
-        return self.state + max(self.building, surfaces * self.surface)
 
 
 def memory_need(
@@ -57,30 +34,20 @@ def memory_need(
     n = parameters.resolution
     half_plane = n * (n // 2 + 1)
     real = 4 if precision == "single" else 8
-    phasors = min(len(parameters.active_layers), 4) * 2 * 2 * real
-    state = half_plane * (3 * 2 * real + 2 * real + 8 + phasors)
-    moved_apart = [layer for layer in parameters.active_pictures if layer.animation != "DISPERSION"]
-    state += half_plane * (3 * 2 * real + 8) * len(moved_apart)
-    building = half_plane * 8 * _TEMPORARY_ARRAYS + TABLES
-    building += max(
-        (16 * _PICTURE_ARRAYS * side(layer) ** 2 for layer in parameters.active_pictures), default=0
-    )
     wanted = outputs - {FOAM}
+    moving = any(derivative == "t" for name in wanted for _, derivative in CHANNELS[name].needs)
+    given = {kind: kind.memory(parameters, real, moving) for kind in KINDS if parameters.active(kind)}
+    state = half_plane * (3 * 2 * real + 2 * real + 8) + sum(need.state for need in given.values())
+    building = half_plane * 8 * _TEMPORARY_ARRAYS + TABLES
+    building += max((given[kind].building for kind in given if Gives.COEFFICIENTS in kind.gives), default=0)
     fields = _foam_bytes(parameters) if FOAM in outputs else 0
     fields += sum(int(np.prod(CHANNELS[name].shape(n))) * real for name in wanted)
-    gradient = not parameters.active_wind_fields
+    gradient = not any(Gives.SHARES in kind.gives for kind in given)
     columns = max((_columns(group, gradient) for group in memory_groups(wanted)), default=0)
     if parameters.trough_damping > 0.0:
         columns *= 2
-    surface = fields + columns * half_plane * 2 * real
-    if parameters.active_wind_fields:
-        kept, making = bytes_of(parameters.wind_fields, parameters.water.gravity)
-        moving = any(derivative == "t" for name in wanted for _, derivative in CHANNELS[name].needs)
-        # of each radius two quarters of a plane stay; each weight takes a grid and half a plane a radius
-        state += kept + MOST_CLASSES * half_plane * 2 * real
-        building = max(building, 40 * n * n)
-        surface += making + (3 if moving else 1) * (8 * n * n + MOST_CLASSES * half_plane * 2 * real)
-    return MemoryNeed(state, building, surface)
+    surface = fields + columns * half_plane * 2 * real + sum(need.surface for need in given.values())
+    return MemoryNeed(state, max([building, *(need.building for need in given.values())]), surface)
 
 
 def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:

@@ -11,7 +11,7 @@ import dataclasses
 import json
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 from .cascades.patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
 from .errors import ParameterError
@@ -20,11 +20,11 @@ from .plain_data import from_plain, parse_json, to_plain
 from .raster import check_numbers, numbers_in
 from .validation import OPEN, Validated, choice, default_of, integer, nested, number, rational, switch
 from .water import Water
-from .waves.hero.group import check_hero_waves, is_held
+from .waves.contribution import Contribution, Gives
 from .waves.hero.parameters import HeroWave
-from .waves.image.parameters import PictureLayer, check_loop
+from .waves.image.parameters import PictureLayer
+from .waves.kinds import KINDS
 from .waves.spectral import WaveLayer
-from .waves.wind_field.bounds import check_bounds
 from .waves.wind_field.parameters import WindFieldLayer, WindKey
 
 __all__ = [
@@ -49,6 +49,8 @@ ORBITS = ("DEEP", "FINITE_DEPTH")
 
 #: fields that patches tell, where there are any
 _TILE = ("resolution", "domain_size")
+
+_Layer = TypeVar("_Layer", bound=Contribution)
 
 
 @dataclass(frozen=True)
@@ -175,9 +177,7 @@ class OceanParameters(Validated):
         object.__setattr__(self, "pictures", _identified("pictures", self.pictures))
         object.__setattr__(self, "wind_fields", _identified("wind_fields", self.wind_fields))
         _check_loop(self.loop_duration, self.timing)
-        check_loop(self.pictures, self.domain_size, self.loop_duration)
-        _check_wind_fields(self)
-        check_hero_waves(self.hero_waves, self.domain_size, self.resolution)
+        self._check_layers()
         on_the_first = [name for name in ("pictures", "wind_fields", "hero_waves") if getattr(self, name)]
         check_patches(self.patches, self.trough_damping, on_the_first)
         if self.is_masked and self.trough_damping > 0.0:
@@ -212,9 +212,7 @@ class OceanParameters(Validated):
     @property
     def is_masked(self) -> bool:
         """Whether a mask lies over some of its waves."""
-        own: tuple[WaveLayer | PictureLayer | WindFieldLayer | Patch, ...] = (
-            *self.active_layers, *self.active_pictures, *self.active_wind_fields, *self.patches,
-        )  # fmt: skip
+        own: tuple[Contribution | Patch, ...] = (*self.active(), *self.patches)
         return any(layer.mask is not None for layer in own)
 
     @property
@@ -227,30 +225,47 @@ class OceanParameters(Validated):
         """Shortest and longest wavelength in m of a sea that is one patch of several; None for all waves."""
         return self.patches[0].band if len(self.patches) == 1 else None
 
-    @property
-    def active_layers(self) -> tuple[WaveLayer, ...]:
-        """The layers that are not muted."""
-        return tuple(layer for layer in self.layers if not layer.muted)
+    def of(self, kind: type[_Layer]) -> tuple[_Layer, ...]:
+        """The layers of a kind, muted ones too."""
+        layers: tuple[_Layer, ...] = getattr(self, kind.former_list or "layers")
+        return layers
+
+    @overload
+    def active(self) -> tuple[Contribution, ...]: ...
+    @overload
+    def active(self, kind: type[_Layer]) -> tuple[_Layer, ...]: ...
+    def active(self, kind: type[Contribution] | None = None) -> tuple[Contribution, ...]:
+        """The layers, or those of a kind, that are not muted, in the order in which their waves are added."""
+        kinds = KINDS if kind is None else (kind,)
+        return tuple(layer for known in kinds for layer in self.of(known) if not layer.muted)
 
     @property
-    def raised_layers(self) -> tuple[WaveLayer, ...]:
-        """The active layers that have waves: not those in a calm."""
-        return tuple(layer for layer in self.active_layers if not layer.is_calm)
+    def has_states(self) -> bool:
+        """Whether it is told how high waves are that are no spectrum's."""
+        return any(Gives.STATE in layer.gives for layer in self.active())
 
-    @property
-    def active_pictures(self) -> tuple[PictureLayer, ...]:
-        """The pictures that are not muted."""
-        return tuple(layer for layer in self.pictures if not layer.muted)
+    def alone(self, layer: Contribution) -> OceanParameters:
+        """What of the sea acts on the state of one layer, with that layer."""
+        own: dict[str, Any] = {layer.former_list or "layers": (layer,)}
+        return OceanParameters(
+            resolution=16, domain_size=self.domain_size, seed=self.seed, water=self.water,
+            dispersion=self.dispersion, **own,
+        )  # fmt: skip
 
-    @property
-    def active_wind_fields(self) -> tuple[WindFieldLayer, ...]:
-        """The wind fields that are not muted."""
-        return tuple(layer for layer in self.wind_fields if not layer.muted)
-
-    @property
-    def active_hero_waves(self) -> tuple[HeroWave, ...]:
-        """The hero waves that are not muted."""
-        return tuple(wave for wave in self.hero_waves if not wave.muted)
+    def _check_layers(self) -> None:
+        """What is not as the sea needs it; what repeats in no time fits into no loop."""
+        for kind in KINDS:
+            for index, layer in enumerate(self.of(kind)):
+                path = f"{kind.former_list or 'layers'}.{index}"
+                if layer.muted:
+                    continue
+                if self.loop_duration is not None and Gives.LOOPS not in layer.gives:
+                    raise ParameterError(
+                        "loop_duration", to_plain(self.loop_duration),
+                        f"{path} raises waves that do not repeat: mute it, or take away the loop",
+                    )  # fmt: skip
+                layer.check(self, path)
+            kind.check_together(self)
 
     def replace(self, **changes: Any) -> OceanParameters:
         """A copy with some fields changed, validated anew.
@@ -285,8 +300,7 @@ class OceanParameters(Validated):
 
     def _held_by(self, resolution: int) -> tuple[HeroWave, ...]:
         return tuple(
-            wave if is_held(wave, self.domain_size, resolution) else dataclasses.replace(wave, muted=True)
-            for wave in self.hero_waves
+            wave if wave.is_held(self, resolution) else wave.changed(muted=True) for wave in self.hero_waves
         )
 
     @property
@@ -324,9 +338,6 @@ class OceanParameters(Validated):
         return cls.from_dict(parse_json(text))
 
 
-_Layer = TypeVar("_Layer", WaveLayer, PictureLayer, WindFieldLayer)
-
-
 def _identified(name: str, layers: tuple[_Layer, ...]) -> tuple[_Layer, ...]:
     """Layers with distinct ids; those without one take the first numbers that are free."""
     taken: set[int] = set()
@@ -335,30 +346,7 @@ def _identified(name: str, layers: tuple[_Layer, ...]) -> tuple[_Layer, ...]:
             raise ParameterError(f"{name}.{index}.id", layer.id, "is the id of another layer too")
         taken.add(layer.id)
     free = (number for number in range(len(layers) + len(taken)) if number not in taken)
-    return tuple(layer if layer.id >= 0 else dataclasses.replace(layer, id=next(free)) for layer in layers)
-
-
-def _check_wind_fields(parameters: OceanParameters) -> None:
-    """Waves of a wind field do not repeat in time, and must find room in the patch."""
-    size = parameters.domain_size
-    for index, layer in enumerate(parameters.wind_fields):
-        if layer.muted:
-            continue
-        if parameters.loop_duration is not None:
-            raise ParameterError(
-                "loop_duration", to_plain(parameters.loop_duration),
-                f"wind_fields.{index} raises waves that do not repeat: mute it, or take away the loop",
-            )  # fmt: skip
-        speed = layer.greatest_speed
-        longest = speed**2 / parameters.water.gravity
-        if longest > size:
-            fitting = (size * parameters.water.gravity) ** 0.5
-            raise ParameterError(
-                f"wind_fields.{index}", f"{speed:g} m/s",
-                f"this wind's waves are {longest:.4g} m long and the domain {size:g} m: make the domain "
-                f"larger, or the wind at most {fitting:.4g} m/s, by its strength for one",
-            )  # fmt: skip
-    check_bounds(parameters.wind_fields, parameters.water.gravity)
+    return tuple(layer if layer.id >= 0 else layer.changed(id=next(free)) for layer in layers)
 
 
 def _check_loop(duration: Fraction | None, timing: Timing) -> None:

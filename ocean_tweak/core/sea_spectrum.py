@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import dispersion
-from .directional_spectrum import DirectionalSpectrum
 from .layer_scales import frequency_rule, refined_peak
 from .parameters import OceanParameters
 
@@ -21,10 +20,8 @@ class SeaSpectrum:
 
     def __init__(self, parameters: OceanParameters) -> None:
         self.parameters = parameters
-        self.layers = tuple(
-            DirectionalSpectrum(layer, parameters.water, parameters.dispersion, parameters.band)
-            for layer in parameters.raised_layers
-        )
+        spectra = (layer.directional_spectrum(parameters) for layer in parameters.active())
+        self.layers = tuple(spectrum for spectrum in spectra if spectrum is not None)
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:
         """S(ω) in m²·s/rad, any shape."""

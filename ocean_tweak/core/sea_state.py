@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,9 @@ from numpy.typing import NDArray
 from . import dispersion
 from .grid import WaveVectorGrid
 from .layer_scales import refined_peak
-from .parameters import OceanParameters
-from .picture_statistics import Modes
+
+if TYPE_CHECKING:
+    from .parameters import OceanParameters
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -26,6 +28,20 @@ RealArray = NDArray[np.floating]
 #: width in ln k of the kernel that turns the energies of single modes into a frequency spectrum
 _KERNEL_WIDTH = 0.1
 _BINS_PER_LOG = 400
+
+
+class Modes(NamedTuple):
+    """Energies of modes and how fast they turn.
+
+    grid : which they are
+    along, against : (N, N//2+1) m², of waves along k and against it
+    omega : (N, N//2+1) rad/s
+    """
+
+    grid: WaveVectorGrid
+    along: RealArray
+    against: RealArray
+    omega: Array
 
 
 @dataclass(frozen=True)
@@ -87,7 +103,7 @@ def mode_state(
 
 def modes_state(parts: Sequence[Modes], parameters: OceanParameters) -> SeaState:
     """State of waves of one grid that turn as they like: their periods are those that a place sees."""
-    if not parameters.active_pictures:
+    if not parameters.has_states:
         (part,) = parts
         return mode_state(part.along, part.against, part.grid, parameters)
     grid = parts[0].grid

@@ -9,25 +9,22 @@ zero up-crossings.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import dispersion
 from .initial_state import InitialState
-from .memo import remembered
-from .parameters import OceanParameters, Patch, PictureLayer
-from .picture_statistics import (
-    longest_random_wave,
-    modes_of,
-    picture_modes,
-    unlooped,
-)
+from .parameters import OceanParameters, Patch
 from .plain_data import to_plain
 from .sea_spectrum import SeaSpectrum
-from .sea_state import SeaState, field_state, mode_state, modes_state, state_of_moments, together
+from .sea_state import Modes, SeaState, field_state, mode_state, modes_state, state_of_moments, together
 from .spreading import mean_cosine
-from .waves.image.state import wanted_variance
+from .waves.contribution import WAVES, Gives
+
+Array = NDArray[np.float64]
 
 __all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
 
@@ -133,10 +130,15 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
     """Statistics of a sea from its parameters and its initial state."""
     sea = SeaSpectrum(parameters)
     spectrum = continuous_state(sea)
+    placed = [layer.state(parameters) for layer in parameters.active() if Gives.FIELDS in layer.gives]
+    told = [state for state in placed if state is not None]
+    resolved, seed = (
+        together([modes_state(_modes(state, expected), parameters), *told]) for expected in (True, False)
+    )
     result = Statistics(
         spectrum=spectrum,
-        resolved=modes_state(modes_of(state, expected=True), parameters),
-        seed=modes_state(modes_of(state, expected=False), parameters),
+        resolved=resolved,
+        seed=seed,
         wavelengths_per_domain=parameters.domain_size / spectrum.peak_wavelength,
         sample_spacing=parameters.domain_size / parameters.resolution,
         loop_speed_change=_loop_speed_change(parameters, state),
@@ -145,28 +147,20 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
     return dataclasses.replace(result, warnings=_warnings(parameters, sea, result))
 
 
+def _modes(state: InitialState, expected: bool) -> list[Modes]:
+    """Energies of all of a sea's states: expected over all seeds, or of this seed."""
+    return [
+        Modes(part.grid, part.expected_plus, part.expected_minus, part.omega)
+        if expected
+        else Modes(part.grid, np.abs(part.h_plus) ** 2, np.abs(part.h_minus) ** 2, part.omega)
+        for part in state.parts
+    ]
+
+
 def continuous_state(sea: SeaSpectrum) -> SeaState:
-    """State of all that a sea's layers and pictures hold, whether a grid resolves it or not."""
-    parameters = sea.parameters
-    spectrum = spectrum_state(sea)
-    if not parameters.active_pictures:
-        return spectrum
-    pictures = [_picture_state(_alone(parameters, layer)) for layer in parameters.active_pictures]
-    return together([spectrum, *pictures])
-
-
-@remembered("states of pictures")
-def _picture_state(alone: OceanParameters) -> SeaState:
-    """State of all that the only picture of a sea holds: it takes long, and is asked for often."""
-    return modes_state([picture_modes(alone, alone.pictures[0])], alone)
-
-
-def _alone(parameters: OceanParameters, layer: PictureLayer) -> OceanParameters:
-    """What of a sea acts on the state of one of its pictures."""
-    return OceanParameters(
-        resolution=16, domain_size=parameters.domain_size, seed=parameters.seed, water=parameters.water,
-        dispersion=parameters.dispersion, pictures=(layer,),
-    )  # fmt: skip
+    """State of all waves of a sea of which it is told, whether a grid resolves them or not."""
+    others = (layer.state(sea.parameters) for layer in sea.parameters.active())
+    return together([spectrum_state(sea), *(state for state in others if state is not None)])
 
 
 def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> float | None:
@@ -174,48 +168,62 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
     if state.loop_duration is None:
         return None
     changes = [0.0]
-    for part, without_loop in zip(state.parts, unlooped(parameters, state.grid), strict=True):
+    for part in state.parts:
         energy = ((part.expected_plus + part.expected_minus) * part.grid.multiplicity).ravel()
         order = np.argsort(energy)[::-1]
         cumulated = np.cumsum(energy[order])
         if not cumulated[-1] > 0.0:
             continue
         carrying = order[: int(np.searchsorted(cumulated, 0.99 * cumulated[-1])) + 1]
-        true = without_loop.ravel()[carrying]
+        true = _without_loop(parameters, part).ravel()[carrying]
         moving = true > 0.0
         changes.append(np.max(np.abs(part.omega.ravel()[carrying][moving] / true[moving] - 1.0), initial=0.0))
     return float(max(changes))
 
 
+def _without_loop(parameters: OceanParameters, part: InitialState) -> Array:
+    """ω in rad/s of a state's waves as it would be without a loop."""
+    own = None if part.layer is None else part.layer.frequencies(parameters, part.grid)
+    if own is not None:
+        return own
+    return dispersion.angular_frequency(part.grid.k, parameters.dispersion, parameters.water)
+
+
 def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> tuple[str, ...]:
-    of_pictures = tuple(picture_warnings(parameters))
+    of_layers = tuple(layer_warnings(parameters))
     if not np.isfinite(statistics.peak_wavelength):
-        placed = parameters.active_wind_fields or parameters.active_hero_waves
-        return of_pictures if placed else (*of_pictures, FLAT)
+        return of_layers if is_told_apart(parameters) else (*of_layers, FLAT)
     return (
-        *of_pictures,
+        *of_layers,
         *grid_warnings(parameters, sea, statistics),
         *loop_warnings(parameters, statistics),
         *fetch_warnings(parameters, sea),
     )
 
 
-def picture_warnings(parameters: OceanParameters) -> list[str]:
-    """Of pictures of which nothing is left."""
-    return [
-        f"Picture {layer.id}: its filter leaves nothing of it. Take another filter, wind or picture"
-        for layer in parameters.active_pictures
-        if wanted_variance(layer, parameters.water) > 0.0
-        and not _picture_state(_alone(parameters, layer)).m0 > 0.0
-    ]
+def is_told_apart(parameters: OceanParameters) -> bool:
+    """Whether some waves are in no statistics, so that a sea whose statistics are flat need not be."""
+    return any(not layer.gives & (Gives.SPECTRUM | Gives.STATE) for layer in parameters.active())
+
+
+def layer_warnings(parameters: OceanParameters) -> Iterator[str]:
+    """What layers say themselves, and of which waves nobody says anything."""
+    for layer in parameters.active():
+        yield from layer.warnings(parameters)
+        is_told = layer.gives & (Gives.SPECTRUM | Gives.STATE) or type(layer).outlook(parameters) is not None
+        if layer.gives & WAVES and not is_told:
+            yield (
+                f"{layer.names.label}: nothing tells how high these waves are, so neither the numbers of "
+                "this sea nor its foam know of them"
+            )
 
 
 def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> list[str]:
     """Of a grid that is too small or too coarse for its waves."""
     warnings = []
     wavelength = statistics.peak_wavelength
-    if parameters.active_pictures:
-        wavelength = longest_random_wave(parameters, 2.0 * np.pi / sea.peak_wave_number)
+    if parameters.has_states:
+        wavelength = _longest_random_wave(parameters, 2.0 * np.pi / sea.peak_wave_number)
     if parameters.domain_size / wavelength < _LEAST_WAVELENGTHS:
         warnings.append(
             f"The domain of {parameters.domain_size:g} m holds only "
@@ -229,6 +237,12 @@ def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Sta
             f"{statistics.sample_spacing:.3g} m apart. Raise the resolution or make the domain smaller"
         )
     return warnings
+
+
+def _longest_random_wave(parameters: OceanParameters, of_spectra: float) -> float:
+    """Wavelength in m of the longest peak among what differs in height from seed to seed; NaN for none."""
+    peaks = (of_spectra, *(layer.longest_random_wave(parameters) for layer in parameters.active()))
+    return max((peak for peak in peaks if np.isfinite(peak)), default=float("nan"))
 
 
 def _round_up(length: float) -> str:

@@ -10,8 +10,8 @@ The first pass goes over blocks of columns kx: it moves the coefficients to thei
 (i ky)ⁿ and transforms along y. The second goes over blocks of rows y: it multiplies by (i kx)ᵐ, which
 commutes with the first transform, and transforms along x. Fields that differ only in m share a first pass.
 
-Waves of a wind field are not the gradient of a potential: with them λDx and λDy, each with a first pass of
-its own, take the potential's place, and all three hold the sum of both kinds of waves.
+Waves of a wind field are not the gradient of a potential: where there are such, λDx and λDy, each with a
+first pass of its own, take the potential's place, and all three hold the sum of both kinds of waves.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .initial_state import InitialState
 from .parameters import OceanParameters
 from .propagation import PropagatedState, propagate
 from .trough_damping import TroughDamping
-from .waves.wind_field.wind_waves import BlockShares, Shares, WindWaves
+from .waves.contribution import BlockShares, Shares, Sharing
 
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
@@ -92,7 +92,7 @@ class Synthesis:
     state, parameters, damping : the sea
     dtype : complex64 or complex128
     workers : threads; the result does not depend on their number
-    wind_waves : those of the sea's wind fields, if it has any
+    sharing : waves that are no gradient of a potential
     """
 
     state: InitialState
@@ -100,11 +100,11 @@ class Synthesis:
     damping: TroughDamping | None = None
     dtype: type = np.complex64
     workers: int = 1
-    wind_waves: WindWaves | None = None
+    sharing: tuple[Sharing, ...] = ()
 
     def term(self, component: int, derivative: str = "", long: bool = False) -> Term:
         """The field of this sea's P[component] or of its derivative by "x", "y" or "t"."""
-        return term(component, derivative, long, self.wind_waves is None)
+        return term(component, derivative, long, not self.sharing)
 
     def x_factor(self, wanted: Term) -> ComplexArray:
         """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none."""
@@ -152,16 +152,17 @@ class Synthesis:
         """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
         with_rate = any(column.rate for column in columns)
         shares = self._shares(time, columns)
-        added = None if shares is None else shares.of_block(slice(None))
+        added = [share.of_block(slice(None)) for share in shares]
         sources = _Sources(self, propagate(self.state, time, self.dtype, with_rate), slice(None), added)
         return {column: sources.coefficients(column).T for column in columns}
 
-    def _shares(self, time: float | Fraction, columns: Iterable[Column]) -> Shares | None:
-        """What the waves of wind fields add to some columns."""
-        if self.wind_waves is None:
-            return None
+    def _shares(self, time: float | Fraction, columns: Iterable[Column]) -> list[Shares]:
+        """What is added to some columns that is no gradient."""
         rates = {column.rate for column in columns}
-        return self.wind_waves.shares(float(time), False in rates, True in rates, self.dtype, self.workers)
+        return [
+            waves.shares(float(time), False in rates, True in rates, self.dtype, self.workers)
+            for waves in self.sharing
+        ]
 
     def _with_long_waves(self, wanted: Iterable[tuple[int, str]]) -> set[tuple[int, str, bool]]:
         wanted = set(wanted)
@@ -177,7 +178,7 @@ class Synthesis:
         n = self.state.grid.resolution
         spare = max(1, _MEMORY - _COLUMN * columns)
         numbers = min(_BLOCK, n * n * spare // _TEMPORARIES)
-        if self.wind_waves is not None:  # what they take is told apart, and small blocks are slow
+        if self.sharing:  # what they take is told apart, and small blocks are slow
             numbers = _BLOCK
         size = max(1, numbers // self.workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
@@ -187,14 +188,14 @@ class Synthesis:
         time: float | Fraction,
         block: slice,
         first_pass: Mapping[Column, ComplexArray],
-        shares: Shares | None,
+        shares: Sequence[Shares],
     ) -> None:
         """The first pass for some columns: to y, into the arrays (N, N//2+1) of the first pass."""
         with_rate = any(column.rate for column in first_pass)
         # the inverse transforms divide by N each: what they are given is larger by N²
         scale = float(self.state.grid.resolution) ** 2
         moved = propagate(self.state, time, self.dtype, with_rate, block, scale)
-        added = None if shares is None else shares.of_block(block, scale)
+        added = [share.of_block(block, scale) for share in shares]
         sources = _Sources(self, moved, block, added)
         for column, target in first_pass.items():
             coefficients = sources.coefficients(column)
@@ -205,7 +206,7 @@ class _Sources:
     """Coefficients of a block of columns, (columns, N), each made once."""
 
     def __init__(
-        self, synthesis: Synthesis, moved: PropagatedState, block: slice, added: BlockShares | None = None
+        self, synthesis: Synthesis, moved: PropagatedState, block: slice, added: Sequence[BlockShares]
     ) -> None:
         self._synthesis = synthesis
         self._block = block
@@ -224,9 +225,7 @@ class _Sources:
 
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
-            added = self._added
-            base = self._spectral(column) if added is None else self._with_wind_waves(column, added)
-            self._bases[column] = base
+            self._bases[column] = self._with_shares(column) if self._added else self._spectral(column)
         return self._bases[column]
 
     def _spectral(self, column: Column) -> ComplexArray:
@@ -240,14 +239,15 @@ class _Sources:
             base = base * damping.long_waves.T[self._block].astype(base.dtype)
         return base
 
-    def _with_wind_waves(self, column: Column, added: BlockShares) -> ComplexArray:
-        """h, λDx or λDy of the spectrum's waves and of those of the wind fields.
+    def _with_shares(self, column: Column) -> ComplexArray:
+        """h, λDx or λDy of the spectrum's waves and of those that are no gradient.
 
         The latter count among the long waves: it is not them that troughs are rid of.
         """
         if column.source == ELEVATION:
             result = self._spectral(column).copy()
-            added.add(Z, column.rate, result)
+            for added in self._added:
+                added.add(Z, column.rate, result)
             return result
         potential = column._replace(source=POTENTIAL)
         if potential not in self._bases:
@@ -257,7 +257,8 @@ class _Sources:
         east = column.source == ALONG_X
         along = grid.kx[0, self._block, np.newaxis] if east else grid.ky[:, 0]
         result = self._bases[potential] * (1j * choppiness * along).astype(self._synthesis.dtype)
-        added.add(X if east else Y, column.rate, result, choppiness)
+        for added in self._added:
+            added.add(X if east else Y, column.rate, result, choppiness)
         return result
 
 

@@ -22,7 +22,6 @@ from .memo import remembered
 from .parameters import OceanParameters
 from .sea_spectrum import SeaSpectrum
 from .water import Water
-from .waves.image.state import filtered
 
 Array = NDArray[np.float64]
 
@@ -41,21 +40,21 @@ def capillary_limit(water: Water) -> float:
 def total_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of all gravity waves of a sea, dimensionless; 0 for a flat one."""
     sea = SeaSpectrum(parameters)
-    pictured = _pictured(parameters, None)
+    others = _of_others(parameters, None)
     if not np.isfinite(sea.peak_frequency):
-        return pictured
+        return others
     limit = capillary_limit(parameters.water)
     lowest = 0.01 * min(sea.peak_wave_number, limit)  # below, S is 0 to the last digit
-    return sum((_rings(layer, lowest, limit) for layer in sea.layers), pictured)
+    return sum((_rings(layer, lowest, limit) for layer in sea.layers), others)
 
 
 @remembered("unresolved slopes")
 def unresolved_slope_variance(parameters: OceanParameters) -> float:
     """Mean square slope of the waves shorter than the grid can hold, dimensionless.
 
-    The grid holds a square of wave vectors: its modes and half a cell around them. Of pictures, what they
-    hold and the grid does not. Of a sea of patches, the waves shorter than the last one holds, or than the
-    one grid on which they are joined.
+    The grid holds a square of wave vectors: its modes and half a cell around them. Of waves that are no
+    spectrum's, what the layers hold and the grid does not. Of a sea of patches, the waves shorter than the
+    last one holds, or than the one grid on which they are joined.
     """
     if parameters.joined:
         return unresolved_slope_variance(parameters.without_patches)
@@ -67,36 +66,26 @@ def unresolved_slope_variance(parameters: OceanParameters) -> float:
         if sharp > 2.0 * last.domain_size / last.resolution:
             limit = capillary_limit(last.water)
             rings = (_rings(layer, 2.0 * np.pi / sharp, limit) for layer in SeaSpectrum(whole).layers)
-            return sum(rings, _missing_from_pictures(longer[0] if longer else last))
+            return sum(rings, _missing_from_others(longer[0] if longer else last))
         return unresolved_slope_variance(whole)
-    pictured = _missing_from_pictures(parameters)
+    others = _missing_from_others(parameters)
     grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
     edge = (0.5 * parameters.resolution - 0.5) * grid.spacing
     limit = capillary_limit(parameters.water)
     if edge >= limit:
-        return pictured
+        return others
     corner = min(np.sqrt(2.0) * edge, limit)
     layers = SeaSpectrum(parameters).layers
-    return sum((_sides(layer, edge, corner) + _rings(layer, corner, limit) for layer in layers), pictured)
+    return sum((_sides(layer, edge, corner) + _rings(layer, corner, limit) for layer in layers), others)
 
 
-def _missing_from_pictures(parameters: OceanParameters) -> float:
-    return _pictured(parameters, None) - _pictured(parameters, parameters.resolution)
+def _missing_from_others(parameters: OceanParameters) -> float:
+    return _of_others(parameters, None) - _of_others(parameters, parameters.resolution)
 
 
-def _pictured(parameters: OceanParameters, resolution: int | None) -> float:
-    """Mean square slope of the pictures' waves, of all that they hold or of those on a grid."""
-    return sum(
-        filtered(
-            layer,
-            parameters.domain_size,
-            resolution,
-            parameters.dispersion,
-            parameters.water,
-            parameters.seed,
-        ).slope_variance
-        for layer in parameters.active_pictures
-    )
+def _of_others(parameters: OceanParameters, resolution: int | None) -> float:
+    """Mean square slope of the waves that are no spectrum's: of all, or of those on a grid."""
+    return sum((layer.slope_variance(parameters, resolution) for layer in parameters.active()), 0.0)
 
 
 def _rings(layer: DirectionalSpectrum, lowest: float, highest: float) -> float:

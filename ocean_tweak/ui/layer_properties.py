@@ -209,7 +209,7 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
     for item, (kind, layer) in zip(layers, wanted, strict=True):
         item.kind = kind
         parameter_properties.write(item.group, type(layer), to_plain(layer, brief=True), metres)
-        if hasattr(layer, "mask"):
+        if hasattr(item.group, "mask"):
             mask_properties.write(item.group.mask, layer.mask, metres, known_images)
         if isinstance(layer, WindFieldLayer):
             _write_wind(item.wind_field, layer, known_winds, known_images)

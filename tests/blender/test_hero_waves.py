@@ -64,7 +64,7 @@ def test_the_menus_wave_stands_in_the_middle_now(ocean, empty_scene, evaluated):
 def test_the_menus_wave_fits(ocean, resolution):
     ocean.ocean_tweak.resolution = resolution
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
-    assert len(sea_of(ocean).active_hero_waves) == 1
+    assert [layer.kind for layer in sea_of(ocean).active()].count("HERO_WAVE") == 1
 
 
 def test_duplicate_move_solo_and_remove(ocean, placed, empty_scene):
@@ -78,8 +78,7 @@ def test_duplicate_move_solo_and_remove(ocean, placed, empty_scene):
     bpy.ops.ocean.layer_move(direction="DOWN")
     assert sea_of(ocean).hero_waves == (second, first)
     bpy.ops.ocean.layer_solo()
-    assert sea_of(ocean).active_hero_waves == (first,)
-    assert not sea_of(ocean).active_layers
+    assert sea_of(ocean).active() == (first,)
 
 
 def test_what_does_not_fit_is_told_and_a_coarse_viewport_leaves_it_out(ocean, placed, empty_scene, evaluated):

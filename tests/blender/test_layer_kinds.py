@@ -157,8 +157,7 @@ def test_duplicate_move_solo_and_remove_work_for_every_kind(ocean, rich, empty_s
     settings.active_layer = 6
     bpy.ops.ocean.layer_solo()
     sea = sea_of(ocean)
-    assert len(sea.active_layers) == len(sea.active_wind_fields) == 0
-    assert [layer.id for layer in sea.active_pictures] == [1]
+    assert [(layer.kind, layer.id) for layer in sea.active()] == [("IMAGE", 1)]
     bpy.ops.ocean.layer_solo()
     assert sea_of(ocean) == rich
 

@@ -187,7 +187,7 @@ def test_statistics_of_one_patch_are_those_of_its_sea() -> None:
     ):
         one_patch = sea.replace(patches=(Patch(sea.domain_size, resolution=sea.resolution),))
         told = Ocean(one_patch).statistics().to_dict()
-        assert [patch["share"] for patch in told.pop("patches")] == [1.0 if sea.active_layers else 0.0]  # type: ignore[attr-defined]
+        assert [patch["share"] for patch in told.pop("patches")] == [1.0 if sea.active() else 0.0]  # type: ignore[attr-defined]
         assert told == Ocean(sea).statistics().to_dict()
 
 

@@ -13,7 +13,6 @@ from ocean_tweak.core.waves.wind_field.emission import Emission
 from ocean_tweak.core.waves.wind_field.origins import layer_origins
 from ocean_tweak.core.waves.wind_field.shape import radius_classes
 from ocean_tweak.core.waves.wind_field.wind import bilinear, sampled_wind
-from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 from tests.core.wind_seas import LONE, G, keyed, particles, sea
 
 
@@ -73,7 +72,8 @@ def test_more_resolution_is_the_same_sea() -> None:
     wind = Raster(np.random.default_rng(5).normal(0.0, 9.0, (6, 5, 2)))
     low, high = (sea(resolution=n, keys=(WindKey(0.0, wind),), rows=4, columns=4) for n in (512, 1024))
     coarse, fine = particles(low, 10.0), particles(high, 10.0)
-    np.testing.assert_array_equal(WindWaves(low).classes.radii, WindWaves(high).classes.radii)
+    radii = [WindFieldLayer.shares(of).classes.radii for of in (low, high)]
+    np.testing.assert_array_equal(*radii)
     assert set(zip(coarse.x, coarse.y, strict=True)) <= set(zip(fine.x, fine.y, strict=True))
 
 

@@ -18,7 +18,6 @@ from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, P
 from ocean_tweak.core.fingerprint import frame_fingerprint
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.waves.hero.group import needed_samples
-from ocean_tweak.core.waves.hero.outlook import hero_wave_outlooks
 
 SIZE, SAMPLES = 400.0, 256
 #: deviation of a Gaussian whose width at half its height is 1
@@ -123,7 +122,7 @@ def test_crests_and_group_run_at_their_speeds(
         x=200.0, wavelength=wavelength, group_length=200.0 / wavelength, group_width=400.0, crest_height=1.0
     )
     parameters = sea(wave, dispersion=relation, water=water)
-    (told,) = hero_wave_outlooks(parameters)
+    (told,) = HeroWave.outlook(parameters).waves
     assert told.phase_speed == pytest.approx(phase_speed, rel=1e-4)
     assert told.group_speed == pytest.approx(group_speed, rel=1e-4)
     (_, before), (signal, now), (later_signal, after) = (
@@ -139,7 +138,7 @@ def test_crests_and_group_run_at_their_speeds(
 
 def test_crests_run_towards_the_direction() -> None:
     wave = HeroWave(x=200.0, y=200.0, direction=math.radians(120.0), wavelength=40.0, group_width=80.0)
-    (told,) = hero_wave_outlooks(sea(wave))
+    (told,) = HeroWave.outlook(sea(wave)).waves
     later = height(sea(wave), 20.0)
     x = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
     energy = later**2
@@ -245,8 +244,8 @@ def test_loop_ends_where_it_began_and_keeps_the_focus() -> None:
     start, end, focus = (ocean.surface(t).displacement[..., 2] for t in (0, 90, 100))
     np.testing.assert_array_equal(start, end)
     assert focus[128, 128] == pytest.approx(2.0, rel=1e-5)
-    assert not hero_wave_outlooks(parameters)[0].warnings
-    (short,) = hero_wave_outlooks(sea(HeroWave(), loop_duration=Fraction(40)))
+    assert not HeroWave.outlook(parameters).warnings
+    (short,) = HeroWave.outlook(sea(HeroWave(), loop_duration=Fraction(40))).waves
     assert "the loop is shorter" in short.warnings[0]
 
 
@@ -281,7 +280,7 @@ def test_a_sea_without_hero_waves_is_written_as_before_there_were_any() -> None:
 def test_hero_waves_survive_json_and_make_frames_of_their_own() -> None:
     parameters = sea(HeroWave(x=1.5, phase=0.25), HeroWave(muted=True))
     assert OceanParameters.from_json(parameters.to_json()) == parameters
-    assert len(parameters.active_hero_waves) == 1
+    assert len(parameters.active(HeroWave)) == 1
     prints = {frame_fingerprint(Shot(sea(*waves)), 1) for waves in ((), (HeroWave(),), (HeroWave(time=1.0),))}
     assert len(prints) == 3
     shot = Shot(parameters, Animation(1, (("choppiness", (0.5, 1.0)),)))
@@ -312,16 +311,16 @@ def test_what_cannot_be_is_refused_by_name(wave: dict[str, Any], where: str, rea
 
 
 def test_muted_waves_may_be_any_size() -> None:
-    assert not sea(HeroWave(wavelength=1000.0, group_width=600.0, muted=True)).active_hero_waves
+    assert not sea(HeroWave(wavelength=1000.0, group_width=600.0, muted=True)).active(HeroWave)
 
 
 def test_waves_that_would_break_are_told() -> None:
     """In deep water H/λ = 0.142 (Miche 1944): of 60 m, crests of half of 8.52 m."""
-    assert not hero_wave_outlooks(sea(HeroWave(crest_height=4.25)))[0].warnings
-    (steep,) = hero_wave_outlooks(sea(HeroWave(crest_height=4.27)))
+    assert not HeroWave.outlook(sea(HeroWave(crest_height=4.25))).warnings
+    (steep,) = HeroWave.outlook(sea(HeroWave(crest_height=4.27))).waves
     assert "break" in steep.warnings[0]
     shallow = sea(HeroWave(crest_height=2.0), water=Water(depth=3.0))
-    assert "at most 1.3 m high" in hero_wave_outlooks(shallow)[0].warnings[0]
+    assert "at most 1.3 m high" in HeroWave.outlook(shallow).warnings[0]
 
 
 # any of them

@@ -19,7 +19,6 @@ from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.waves.wind_field.bounds import bytes_of, most_particles
 from ocean_tweak.core.waves.wind_field.convolution import deposit
-from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 from tests.core.stamping import stamp
 from tests.core.wind_seas import FLAT, LONE, OUTPUTS, G, keyed, particles, random_wind, sea
 
@@ -49,7 +48,7 @@ def convolution_error(radius: int) -> float:
     for seed in range(6):
         own = parameters.replace(seed=seed)
         now = particles(own, 2.0 * math.sqrt(2.0 * math.pi) * speed / G)
-        stamped = stamp(now, WindWaves(own).classes, n, float(n))
+        stamped = stamp(now, WindFieldLayer.shares(own).classes, n, float(n))
         height = Ocean(own, "double").surface(2.0 * math.sqrt(2.0 * math.pi) * speed / G).displacement
         worst = max(worst, np.abs(height - stamped.position).max() / now.amplitude.max())
     return worst
@@ -63,7 +62,7 @@ def test_convolution_against_stamping() -> None:
 
 def test_all_fields_of_many_particles_against_stamping() -> None:
     parameters = sea(512, 160.0, **random_wind(3)).replace(choppiness=0.7)
-    waves = WindWaves(parameters)
+    waves = WindFieldLayer.shares(parameters)
     now = waves.particles(12.0)
     assert len(waves.classes.radii) == 4
     expected = stamp(now, waves.classes, 512, 160.0)
@@ -101,7 +100,7 @@ def test_the_spectrums_waves_and_the_winds_add() -> None:
 
 def test_edges_agree_and_without_mirrors_they_do_not() -> None:
     parameters = sea(64, 80.0, **random_wind(7, rows=9, columns=9))
-    waves = WindWaves(parameters)
+    waves = WindFieldLayer.shares(parameters)
     now = waves.particles(8.0)
     fine = stamp(now, waves.classes, 256, 80.0, without_mean=False).position[..., 2]
     cracked = stamp(now, waves.classes, 256, 80.0, mirrors=False, without_mean=False).position[..., 2]
@@ -235,12 +234,10 @@ def test_bounds_hold_and_are_refused_beyond() -> None:
             WindFieldLayer(keys=keys[:1]),
         ):
             parameters = OceanParameters(domain_size=200.0, resolution=2048, wind_fields=(layer,))
-            waves = WindWaves(parameters)
+            waves = WindFieldLayer.shares(parameters)
             most = max(len(waves.particles(time).x) for time in np.arange(0.0, 60.0, 3.1))
             assert 0 < most <= most_particles(layer)
-    with pytest.raises(
-        ParameterError, match=r"wind_fields = 'up to \d+ particles': must have at most 2000000"
-    ):
+    with pytest.raises(ParameterError, match=r"layers = 'up to \d+ particles': must have at most 2000000"):
         sea(rows=512, columns=512)
     with pytest.raises(ParameterError, match="waves looked at"):
         sea(rows=100, columns=100, calm=0.1, life=20.0, particles=1, split_angle=0.0,

@@ -9,11 +9,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.errors import ParameterError
 from ocean_tweak.core.grid import WaveVectorGrid
 from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.waves.image import animation
-from ocean_tweak.core.waves.image.parameters import PictureLayer, check_loop
+from ocean_tweak.core.waves.image.parameters import PictureLayer
 from tests.core.pictures import DEEP, L, N, drawing, elevation, single_wave, spectrum, state
 
 
@@ -92,23 +93,27 @@ def test_loops_close(animated: str) -> None:
     )
 
 
+def check_loop(layer: PictureLayer, duration: Fraction | None) -> None:
+    OceanParameters(domain_size=L, resolution=N, pictures=(layer,), loop_duration=duration)
+
+
 def test_loops_of_a_translation_close_or_are_refused() -> None:
     whole = PictureLayer(
         picture=Raster(drawing()), animation="TRANSLATION", translation_speed=L / 10 * np.sqrt(2),
         wind_direction=np.pi / 4,
     )  # fmt: skip
-    check_loop((whole,), L, Fraction(10))
+    check_loop(whole, Fraction(10))
     of = state(whole, loop=Fraction(10))
     np.testing.assert_array_equal(elevation(of, Fraction(0)), elevation(of, Fraction(10)))
     half_way = np.roll(elevation(of, 0), (N // 2, N // 2), (0, 1))
     np.testing.assert_allclose(elevation(of, Fraction(5)), half_way, atol=1e-9)
     other = replace(whole, translation_speed=21.0, wind_direction=0.0)
-    check_loop((other,), L, None)
-    check_loop((replace(other, muted=True),), L, Fraction(10))
+    check_loop(other, None)
+    check_loop(replace(other, muted=True), Fraction(10))
     with pytest.raises(
         ParameterError, match=r"pictures\.0\.translation_speed = 21\.0: moves the picture by 1\.05"
     ) as info:
-        check_loop((other,), L, Fraction(10))
+        check_loop(other, Fraction(10))
     assert "take 20 m/s towards 0 rad" in str(info.value)
 
 

@@ -39,7 +39,7 @@ def test_a_sea_without_wind_fields_is_written_as_before_there_were_any() -> None
     assert OceanParameters.from_dict({"wind_fields": []}) == OceanParameters()
     muted = OceanParameters().replace(wind_fields=(WindFieldLayer(muted=True),))
     assert muted.to_dict()["wind_fields"][0]["muted"] is True
-    assert not muted.active_wind_fields
+    assert not muted.active(WindFieldLayer)
 
 
 @pytest.mark.parametrize(

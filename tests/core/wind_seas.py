@@ -10,7 +10,6 @@ import numpy as np
 
 from ocean_tweak.core import OceanParameters, Raster, WaveLayer, WindFieldLayer, WindKey
 from ocean_tweak.core.waves.wind_field.life import Particles
-from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 
 G = 9.81
 FLAT = (WaveLayer(muted=True),)
@@ -32,7 +31,7 @@ def sea(resolution: int = 256, size: float = 160.0, **layer: Any) -> OceanParame
 
 
 def particles(parameters: OceanParameters, time: float) -> Particles:
-    return WindWaves(parameters).particles(time)
+    return WindFieldLayer.shares(parameters).particles(time)
 
 
 def keyed(*winds: tuple[float, Any]) -> tuple[WindKey, ...]:

@@ -10,7 +10,6 @@ import numpy as np
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, WindFieldLayer
 from ocean_tweak.core.waves.wind_field import presets
-from ocean_tweak.core.waves.wind_field.wind_waves import WindWaves
 
 from .measures import elevation, seam_steps
 from .pages import Table
@@ -90,7 +89,7 @@ def splitting() -> Table:
     rows = [["splitting", "particles after 25 s", "sum of amplitudes over that without"]]
     sums = {}
     for on, parameters in SPLITTING.items():
-        particles = WindWaves(parameters).particles(25.0)
+        particles = WindFieldLayer.shares(parameters).particles(25.0)
         sums[on] = float(np.sum(particles.amplitude))
         rows.append(["on" if on else "off", f"{len(particles.amplitude)}", f"{sums[on] / sums[False]:.3f}"])
     return rows

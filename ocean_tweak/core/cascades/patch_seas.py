@@ -8,19 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .. import random
-from ..initial_state import layer_seed
-from ..parameters import Mask, OceanParameters, Patch, WaveLayer
-
-_LARGEST_SEED = 2**31 - 1
+from ..parameters import Mask, OceanParameters, Patch
 
 #: samples along the shortest wave of a patch that is read between its samples for a grid: bilinear, a tenth
 #: of that wave's variance is lost, and less of longer ones
 _SAMPLES_A_WAVE = 8.0
 _FEWEST, _MOST = 16, 8192
-
-#: rad; directions are allowed up to this
-_MOST_TURNED = 1e6
 
 #: the fields that hold layers of any kind
 _LAYERS = ("layers", "pictures", "wind_fields")
@@ -38,10 +31,8 @@ def rotations(parameters: OceanParameters) -> tuple[float, ...]:
 def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
     """The parameters of each patch, in axes that lie along its sides; a sea without patches is its only one.
 
-    Masks are left out, and patches are apart even where they are joined. A wind towards θ blows towards
-    θ - rotation there. Each patch has random numbers of its own, or waves at a band's end, of which two
-    patches hold a part each, would be alike in both. The first keeps those of a sea of one patch, and holds
-    the pictures, wind fields and hero waves.
+    Masks are left out, and patches are apart even where they are joined. What a patch holds of a layer is for
+    the layer to say; the first keeps the random numbers of a sea of one patch.
     """
     parameters = _without_masks(parameters).apart
     if not parameters.patches:
@@ -50,21 +41,15 @@ def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]
 
 
 def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanParameters:
-    layers = tuple(_in_patch(parameters, layer, index, patch.rotation) for layer in parameters.layers)
-    others = {"pictures": (), "wind_fields": (), "hero_waves": ()} if index else {}
-    return parameters.replace(layers=layers, patches=(replace(patch, rotation=0.0),), **others)
-
-
-def _in_patch(parameters: OceanParameters, layer: WaveLayer, index: int, rotation: float) -> WaveLayer:
-    if rotation:
-        direction = layer.wind_direction - rotation
-        if abs(direction) > _MOST_TURNED:
-            direction = math.remainder(direction, math.tau)
-        layer = replace(layer, wind_direction=direction)
-    if index:
-        seed = random.combine(layer_seed(parameters, layer), index) & _LARGEST_SEED
-        layer = replace(layer, seed=seed)
-    return layer
+    held = {
+        name: tuple(
+            layer
+            for given in getattr(parameters, name)
+            if (layer := given.in_patch(parameters, index, patch.rotation)) is not None
+        )
+        for name in (*_LAYERS, "hero_waves")
+    }
+    return parameters.replace(patches=(replace(patch, rotation=0.0),), **held)
 
 
 @dataclass(frozen=True)

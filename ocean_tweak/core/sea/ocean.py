@@ -24,12 +24,15 @@ from ..foam_threshold import Strains, sampled_strains
 from ..initial_state import InitialState
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, weights
-from ..memory import MemoryNeed, check_memory, memory_need
+from ..memory import check_memory, memory_need
 from ..parameters import OceanParameters
 from ..statistics import Statistics, sea_statistics
 from ..surface_query import SurfacePoints, find_points, refine_points
+from ..waves.contribution import MemoryNeed
 from .on import Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
+from .placed_waves import PlacedWaves, check_repeats, placed_waves
+from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import find_summed_points
 from .sampling import Components, Grid, Key, Summed, closed, summed_field, unweighted
 from .statistics import statistics_of_patches
@@ -118,8 +121,8 @@ class Ocean:
         out : arrays to fill, by output; their shape and dtype must be those of the field, and their last
             axis contiguous. Other outputs get new arrays.
 
-        Raises ValueError for an unknown output, a time that is not finite, an array that does not fit, or the
-        tile of a sea of separate patches, which have one each.
+        Raises ValueError for an unknown output, a time that is not finite, an array that does not fit, or a
+        tile of what has none: separate patches, which have one each, and waves that do not repeat.
         """
         wanted = checked_outputs(outputs)
         _check_time(time)
@@ -168,10 +171,11 @@ class Ocean:
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
         _check_time(time)
         x, y = Places(x, y).rest_positions()
-        exact = (
-            summed_field([waves.exact_field(time) for waves in self._parts]) if surface == "exact" else None
-        )
-        if self.parameters.is_cascade:
+        exact = None
+        if surface == "exact":
+            placed = [waves.field(time) for waves in self._placed]
+            exact = summed_field([*(waves.exact_field(time) for waves in self._parts), *placed])
+        if self.parameters.is_cascade or self._placed:
             points, spacing = self._points_of_sum(x, y, time, velocity)
         else:
             points, spacing = self._points_of_tile(x, y, time, velocity)
@@ -241,8 +245,13 @@ class Ocean:
         return tuple(PartWaves(part, side, self.precision, self._workers) for part in parts(self._added_up))
 
     @cached_property
+    def _placed(self) -> tuple[PlacedWaves, ...]:
+        return placed_waves(self.parameters)
+
+    @cached_property
     def _tile(self) -> PartWaves | TileSum:
-        """What fills the samples of the tile. Raises ValueError for separate patches."""
+        """What fills the samples of the tile. Raises ValueError for separate patches and placed waves."""
+        check_repeats(self.parameters)
         if self.parameters.is_cascade:
             raise ValueError(
                 f"on = Tile(): patches that are separate, here {len(self.parameters.patches)}, have a tile "
@@ -286,7 +295,7 @@ class Ocean:
         """Fill arrays whose first axes hold flat x and y."""
         own = wanted - {FOAM}
         needs = frozenset().union(*(CHANNELS[name].needs for name in own))
-        sums = self._sums_at(x, y, self._components(time, needs))
+        sums = self._sums_at(x, y, time, needs, self._components(time, needs))
         for name in own:
             components = CHANNELS[name].components
             made: RealArray = np.empty((x.size, components) if components else x.size, fields[name].dtype)
@@ -306,7 +315,14 @@ class Ocean:
             for waves in self._parts
         ]
 
-    def _sums_at(self, x: Array, y: Array, components: Sequence[Components]) -> Summed:
+    def _sums_at(
+        self,
+        x: Array,
+        y: Array,
+        time: float | Fraction,
+        needs: Iterable[Key],
+        components: Sequence[Components],
+    ) -> Summed:
         known: dict[tuple[Mask, ...], Weights] = {}
         found = []
         for waves, of_part in zip(self._parts, components, strict=True):
@@ -315,11 +331,11 @@ class Ocean:
                 known[part.masks] = weights(part.masks, self.parameters.domain_size, x, y)
             grid = Grid(of_part, part.parameters.domain_size, part.rotation)
             found.append(grid.read(x, y, known.get(part.masks)))
-        return Summed(found)
+        return Summed([*found, *(waves.at(x, y, time, needs) for waves in self._placed)])
 
     def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
-        squeeze = np.empty(x.shape, np.float32)
-        CHANNELS["cusp"].write(self._of_foam._sums_at(x, y, self._squeezed(time)), squeeze)
+        squeeze, cusp = np.empty(x.shape, np.float32), CHANNELS["cusp"]
+        cusp.write(self._of_foam._sums_at(x, y, time, cusp.needs, self._squeezed(time)), squeeze)
         return squeeze
 
     def _squeezed(self, time: Fraction) -> list[Components]:
@@ -334,7 +350,11 @@ class Ocean:
 
     def _strains(self, drift: tuple[float, float]) -> Strains:
         """Of all parts together, as a point with this drift meets them."""
-        return sampled_strains(*strain_covariances(self._parts, drift, self.parameters.is_cascade))
+        between_samples = self.parameters.is_cascade or bool(self._placed)
+        gradient, rates = strain_covariances(self._parts, drift, between_samples)
+        for of_gradient, of_rates in placed_strain_covariances(self.parameters, drift):
+            gradient, rates = gradient + of_gradient, rates + of_rates
+        return sampled_strains(gradient, rates)
 
     def _points_of_tile(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
@@ -355,7 +375,12 @@ class Ocean:
                 *(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True
             )
         spacings = [waves.part.spacing for waves in self._parts]
-        return find_summed_points(x, y, fields, spacings, sum(reaches), with_velocity), min(spacings)
+        finest, reach = min(spacings), sum(reaches)
+        for waves in self._placed:
+            fields, spacings = (*fields, waves.field(time)), [*spacings, finest]
+            moved = waves.at(np.ravel(x), np.ravel(y), time, ((0, ""), (1, "")))
+            reach += float(np.max(np.hypot(moved[0, ""], moved[1, ""]), initial=0.0))
+        return find_summed_points(x, y, fields, spacings, reach, with_velocity), finest
 
 
 def _check_time(time: float | Fraction) -> None:

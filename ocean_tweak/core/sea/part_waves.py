@@ -24,7 +24,7 @@ from ..sea_spectrum import SeaSpectrum
 from ..surface_query import Field, bilinear
 from ..synthesis import Rows, Synthesis
 from ..trough_damping import trough_damping
-from ..waves.wind_field.wind_waves import WindWaves
+from ..waves.kinds import KINDS
 from .sampling import Key, turned_field, weighted_field
 
 Array = NDArray[np.float64]
@@ -76,13 +76,14 @@ class PartWaves:
         if self.parameters.trough_damping > 0.0:
             peak = SeaSpectrum(self.parameters).peak_wave_number
             damping = trough_damping(self.parameters.trough_damping, self.initial_state, peak)
+        given = (kind.shares(self.parameters) for kind in KINDS if self.parameters.active(kind))
         return Synthesis(
             self.initial_state,
             self.parameters,
             damping,
             PRECISIONS[self.precision],
             self._workers,
-            WindWaves(self.parameters) if self.parameters.active_wind_fields else None,
+            tuple(sharing for sharing in given if sharing is not None),
         )
 
     def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:

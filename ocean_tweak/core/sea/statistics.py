@@ -22,8 +22,9 @@ from ..statistics import (
     continuous_state,
     fetch_warnings,
     grid_warnings,
+    is_told_apart,
+    layer_warnings,
     loop_warnings,
-    picture_warnings,
 )
 
 
@@ -69,9 +70,9 @@ def _turned(found: Statistics, rotation: float) -> Statistics:
 def _warnings(
     parameters: OceanParameters, sea: SeaSpectrum, total: Statistics, patches: Sequence[PatchStatistics]
 ) -> Iterator[str]:
-    yield from picture_warnings(sea.parameters)
+    yield from layer_warnings(sea.parameters)
     if not np.isfinite(total.peak_wavelength):
-        if not (parameters.active_wind_fields or parameters.active_hero_waves):
+        if not is_told_apart(parameters):
             yield FLAT
         return
     if not parameters.is_cascade:

@@ -1,15 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a layer of waves by a spectrum is: its energy, its directions, its band."""
+"""Waves by a spectrum: their energy, their directions, their band."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
-from .. import constants
+from .. import constants, random
+from ..directional_spectrum import DirectionalSpectrum
 from ..errors import ParameterError
-from ..layer_fields import direction, identity, muted, own_seed
 from ..masks.parameters import Mask
-from ..validation import Validated, choice, nested, number, switch
+from ..validation import choice, nested, number, switch
+from ..wind_profile import wind_at_10_m
+from .contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
+
+if TYPE_CHECKING:
+    from ..parameters import OceanParameters
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
@@ -18,10 +25,22 @@ FETCH_LIMITED = ("TMA", "JONSWAP")
 DEFINITIONS = ("WIND", "SEA_STATE")
 DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
 
+_LARGEST_SEED = 2**31 - 1
+
+#: rad; directions are allowed up to this
+_MOST_TURNED = 1e6
+
+#: layers whose random numbers are kept
+_KEPT = 4
+
 
 @dataclass(frozen=True)
-class WaveLayer(Validated):
+class WaveLayer(Contribution):
     """One wave system, given by its wind and fetch or by its height and period."""
+
+    kind = "WAVES"
+    gives = Gives.SPECTRUM | Gives.LOOPS
+    names = Names(0, "", "wave layer", "Waves", "A wave system: a wind and its fetch, or a swell", "MOD_WAVE")
 
     spectrum: str = choice("TMA", SPECTRA, "How the energy is shared among wavelengths")
     wind_speed: float = number(
@@ -139,3 +158,38 @@ class WaveLayer(Validated):
             return False  # its energy comes from elsewhere
         has_fetch = self.spectrum in FETCH_LIMITED
         return self.wind_speed < constants.CALM or (has_fetch and self.fetch < constants.CALM)
+
+    def random_seed(self, sea: OceanParameters) -> int:
+        """Its own, or one that follows from the ocean's seed and its id."""
+        return self.seed if self.seed >= 0 else random.combine(sea.seed, self.id)
+
+    def in_patch(self, sea: OceanParameters, patch: int, rotation: float) -> Self:
+        """The same wind in the patch's axes, where one towards θ blows towards θ - rotation.
+
+        Each patch but the first has random numbers of its own, or waves at a band's end, of which two patches
+        hold a part each, would be alike in both.
+        """
+        changes = {}
+        if rotation:
+            turned = self.wind_direction - rotation
+            far = abs(turned) > _MOST_TURNED
+            changes["wind_direction"] = math.remainder(turned, math.tau) if far else turned
+        if patch:
+            changes["seed"] = random.combine(self.random_seed(sea), patch) & _LARGEST_SEED
+        return self.changed(**changes) if changes else self
+
+    def directional_spectrum(self, sea: OceanParameters) -> DirectionalSpectrum | None:
+        """In the sea's water, within its band; None in a calm."""
+        return None if self.is_calm else DirectionalSpectrum(self, sea.water, sea.dispersion, sea.band)
+
+    def wind(self, sea: OceanParameters) -> Wind | None:
+        """The layer's own, at 10 m."""
+        if self.is_calm or self.definition != "WIND" or self.gain == 0.0:
+            return None
+        return Wind(wind_at_10_m(self.wind_speed, self.wind_height), self.wind_direction)
+
+    @classmethod
+    def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
+        """Random numbers, which are kept."""
+        kept = min(len(sea.active(cls)), _KEPT)
+        return MemoryNeed(sea.resolution * (sea.resolution // 2 + 1) * kept * 2 * 2 * real, 0, 0)

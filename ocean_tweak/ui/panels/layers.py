@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core.waves.hero.outlook import hero_wave_outlooks
+from ...core import HeroWave
 from ...scene import source_images
 from ...scene.refresh import sea_of_settings
 from ...scene.settings import LAYER_KINDS
@@ -172,7 +172,8 @@ def _draw_hero_wave(
     before = settings.layers[: nearest(settings.active_layer, settings.layers)]
     number = [layer.kind for layer in before].count("HERO_WAVE")
     sea = sea_of_settings(context.active_object, scene)
-    waves = () if sea is None else hero_wave_outlooks(sea)
+    outlook = None if sea is None else HeroWave.outlook(sea)
+    waves = () if outlook is None else outlook.waves
     wave = next((found for found in waves if found.number == number), None)
     if wave is None:
         return

@@ -9,15 +9,17 @@ sea's own ω(k), so that crests run with ω/k and the group with dω/dk.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import ParameterError
 from ...grid import WaveVectorGrid
-from .parameters import HeroWave
+
+if TYPE_CHECKING:
+    from .parameters import HeroWave
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
@@ -69,34 +71,26 @@ def needed_samples(wave: HeroWave, domain_size: float) -> int:
     return 2 * max(of_group, math.ceil(0.5 * FEWEST_SAMPLES * domain_size / wave.wavelength))
 
 
-def check_hero_waves(waves: Sequence[HeroWave], domain_size: float, resolution: int) -> None:
+def check_hero_wave(wave: HeroWave, domain_size: float, resolution: int, path: str) -> None:
     """Raise ParameterError, with the remedy, for a wave that the patch or its samples cannot hold."""
-    for index, wave in enumerate(waves):
-        if wave.muted:
-            continue
-        length = wave.group_length * wave.wavelength
-        for name, value, size, smaller in (
-            ("wavelength", wave.wavelength, wave.wavelength, "shorter"),
-            ("group_length", wave.group_length, length, "smaller"),
-            ("group_width", wave.group_width, wave.group_width, "smaller"),
-        ):
-            if size > domain_size:
-                raise ParameterError(
-                    f"hero_waves.{index}.{name}", value,
-                    f"is {size:.4g} m in a domain of {domain_size:g} m: make it {smaller}, or that larger",
-                )  # fmt: skip
-        needed = needed_samples(wave, domain_size)
-        if needed > resolution:
+    length = wave.group_length * wave.wavelength
+    for name, value, size, smaller in (
+        ("wavelength", wave.wavelength, wave.wavelength, "shorter"),
+        ("group_length", wave.group_length, length, "smaller"),
+        ("group_width", wave.group_width, wave.group_width, "smaller"),
+    ):
+        if size > domain_size:
             raise ParameterError(
-                f"hero_waves.{index}.wavelength", wave.wavelength,
-                f"needs {needed} samples a side with this length and width of its group, and the resolution "
-                f"is {resolution}: raise it, or make the wave longer, its group longer or the domain smaller",
+                f"{path}.{name}", value,
+                f"is {size:.4g} m in a domain of {domain_size:g} m: make it {smaller}, or that larger",
             )  # fmt: skip
-
-
-def is_held(wave: HeroWave, domain_size: float, resolution: int) -> bool:
-    """Whether so many samples hold a wave."""
-    return needed_samples(wave, domain_size) <= resolution
+    needed = needed_samples(wave, domain_size)
+    if needed > resolution:
+        raise ParameterError(
+            f"{path}.wavelength", wave.wavelength,
+            f"needs {needed} samples a side with this length and width of its group, and the resolution "
+            f"is {resolution}: raise it, or make the wave longer, its group longer or the domain smaller",
+        )  # fmt: skip
 
 
 class _Waves(NamedTuple):

@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ... import constants, dispersion
-from ...parameters import OceanParameters
 from .group import wave_number
-from .parameters import HeroWave
+
+if TYPE_CHECKING:
+    from ...parameters import OceanParameters
+    from .parameters import HeroWave
 
 
 class HeroWaveOutlook(NamedTuple):
@@ -48,18 +51,41 @@ class HeroWaveOutlook(NamedTuple):
             (self.y + way * math.sin(self.direction)) % self.domain_size,
         )
 
-    def to_dict(self) -> dict[str, Any]:
+    def line(self) -> str:
+        """What `info` says."""
+        return (
+            f"hero wave {self.number}: {self.crest_height:.3g} m high at x = {self.x:.4g}, y = {self.y:.4g} "
+            f"m at {self.time:.4g} s (frame {self.frame:.6g}), {self.wavelength:.4g} m and {self.period:.3g} "
+            f"s long, towards {math.degrees(self.direction):.0f}°; crests run {self.phase_speed:.3g} m/s, "
+            f"the group {self.group_speed:.3g} m/s and {self.domain_size / self.group_speed:.3g} s through "
+            "the patch"
+        )
+
+
+class HeroWaveOutlooks(NamedTuple):
+    """What to expect of all hero waves of a sea that are not muted."""
+
+    waves: tuple[HeroWaveOutlook, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence each, with the remedy."""
+        return tuple(warning for wave in self.waves for warning in wave.warnings)
+
+    def lines(self) -> list[str]:
+        """What `info` says."""
+        alone = "hero waves are in the row of the seed alone: no spectrum expects them"
+        return [*(wave.line() for wave in self.waves), alone]
+
+    def to_plain(self) -> list[dict[str, Any]]:
         """Plain data for JSON."""
-        return {**self._asdict(), "warnings": list(self.warnings)}
+        return [{**wave._asdict(), "warnings": list(wave.warnings)} for wave in self.waves]
 
 
-def hero_wave_outlooks(parameters: OceanParameters) -> tuple[HeroWaveOutlook, ...]:
-    """Of all hero waves that are not muted."""
-    return tuple(
-        _outlook(parameters, index, wave)
-        for index, wave in enumerate(parameters.hero_waves)
-        if not wave.muted
-    )
+def hero_wave_outlooks(parameters: OceanParameters, waves: Sequence[HeroWave]) -> HeroWaveOutlooks | None:
+    """Of a sea's hero waves that are not muted; None where there are none."""
+    found = (_outlook(parameters, index, wave) for index, wave in enumerate(waves) if not wave.muted)
+    return HeroWaveOutlooks(tuple(found)) if any(not wave.muted for wave in waves) else None
 
 
 def _outlook(parameters: OceanParameters, index: int, wave: HeroWave) -> HeroWaveOutlook:

@@ -1,24 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a hero wave is: when and where its group is together, and how large it is there."""
+"""Hero waves: when and where a group is together, and how large it is there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ...errors import ParameterError
-from ...validation import Validated, number, switch
+from ...validation import number, switch
+from ..contribution import Contribution, Gives, Names
+from .group import add_hero_wave, check_hero_wave, needed_samples
+from .outlook import HeroWaveOutlooks, hero_wave_outlooks
+
+if TYPE_CHECKING:
+    from ...initial_state import Coefficients
+    from ...parameters import OceanParameters
 
 #: wavelengths that a crest must be wide: a narrower hump is no wave, it runs apart in all directions
 NARROWEST = 0.5
 
 
 @dataclass(frozen=True)
-class HeroWave(Validated):
+class HeroWave(Contribution):
     """A group of waves under a bell-shaped (Gaussian) envelope, which adds to the sea.
 
     Its waves obey the sea's dispersion relation: at its focus the group is what these numbers say; before
     and after it runs along its direction, and is longer, wider and lower.
     """
+
+    kind = "HERO_WAVE"
+    gives = Gives.COEFFICIENTS | Gives.LOOPS
+    names = Names(
+        3, "hero_wave", "hero wave", "Hero Wave", "A single group of waves, placed by hand", "SMOOTHCURVE"
+    )
+    former_list = "hero_waves"
+    constant = "a wave that runs freely keeps what it is; place a second one, or animate ocean_time"
 
     x: float = number(
         200.0, -1e6, 1e6, "m", "Place of the focus along x; the patch repeats, and the wave with it",
@@ -66,3 +82,20 @@ class HeroWave(Validated):
                 f"must be at least {NARROWEST * self.wavelength:.4g} m, {NARROWEST:g} of its wavelength: "
                 "a narrower hump runs apart in all directions",
             )  # fmt: skip
+
+    def check(self, sea: OceanParameters, path: str) -> None:
+        """The patch and its samples must hold its waves."""
+        check_hero_wave(self, sea.domain_size, sea.resolution, path)
+
+    def is_held(self, sea: OceanParameters, resolution: int) -> bool:
+        """Whether so many samples hold all of the group's waves."""
+        return needed_samples(self, sea.domain_size) <= resolution
+
+    def add(self, sea: OceanParameters, to: Coefficients) -> None:
+        """Add its waves; none of their energy is expected, which no seed changes."""
+        add_hero_wave(self, to.grid, to.omega, to.h_plus, to.h_minus)
+
+    @classmethod
+    def outlook(cls, sea: OceanParameters) -> HeroWaveOutlooks | None:
+        """When and where they have their focus."""
+        return hero_wave_outlooks(sea, sea.of(cls))

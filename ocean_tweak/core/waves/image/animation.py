@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,9 @@ from ... import constants, dispersion
 from ...grid import WaveVectorGrid
 from ...water import Water
 from .filters import POWERS, peak_frequency, pierson_moskowitz
-from .parameters import PictureLayer
+
+if TYPE_CHECKING:
+    from .parameters import PictureLayer
 
 Array = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 from ... import constants, dispersion
 from ...grid import WaveVectorGrid
 from ...water import Water
-from .parameters import PictureLayer
+
+if TYPE_CHECKING:
+    from .parameters import PictureLayer
 
 Array = NDArray[np.float64]
 

@@ -1,20 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a picture needs to become waves."""
+"""Waves out of a picture."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...errors import ParameterError
-from ...layer_fields import direction, identity, muted, own_seed
 from ...masks.parameters import Mask
 from ...raster import Raster
-from ...validation import Validated, choice, integer, nested, number, raster
+from ...validation import choice, integer, nested, number, raster
+from ..contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
+from . import statistics
+from .animation import angular_frequency
+from .source import side
+from .state import filtered, picture_waves, wanted_variance
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from ...grid import WaveVectorGrid
+    from ...initial_state import Coefficients
+    from ...parameters import OceanParameters
+    from ...sea_state import SeaState
 
 FILTERS = ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE")
 FILTER_GAINS = ("PHYSICAL", "PAPER")
@@ -23,10 +36,21 @@ ANIMATIONS = ("DISPERSION", "DOMINANT_BAND", "TRANSLATION")
 #: how far from a whole number of patches a loop's translation may be: rounding, no more
 _WHOLE = 1e-6
 
+#: complex arrays of half a picture's plane that live while it is filtered
+_WORKING_ARRAYS = 3
+
 
 @dataclass(frozen=True)
-class PictureLayer(Validated):
+class PictureLayer(Contribution):
     """Waves out of one picture, which is stretched over the patch and filtered there."""
+
+    kind = "IMAGE"
+    gives = Gives.COEFFICIENTS | Gives.STATE | Gives.LOOPS
+    names = Names(
+        2, "picture", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
+    )
+    former_list = "pictures"
+    constant = "each keeps its waves; what can change is how fast they move, by ocean_time"
 
     picture: Raster | None = raster(
         "Picture whose phases and magnitudes become the waves'; none for white noise",
@@ -102,6 +126,79 @@ class PictureLayer(Validated):
         """Whether the wind sets the wave height."""
         return self.filter == "MODIFIED_PIERSON_MOSKOWITZ" and self.filter_gain == "PHYSICAL"
 
+    def check(self, sea: OceanParameters, path: str) -> None:
+        """A translation must end where it began when the loop does: another one would bend the picture.
+
+        It does where it moves by whole patches both ways.
+        """
+        if sea.loop_duration is None or self.animation != "TRANSLATION":
+            return
+        duration = float(sea.loop_duration)
+        patches = self.translation_speed * duration / sea.domain_size
+        moved = [patches * part(self.wind_direction) for part in (math.cos, math.sin)]
+        nearest = [round(distance) for distance in moved]
+        if any(abs(a - b) > _WHOLE * max(1.0, patches) for a, b in zip(moved, nearest, strict=True)):
+            speed = math.hypot(*nearest) * sea.domain_size / duration
+            direction = math.atan2(nearest[1], nearest[0]) if any(nearest) else self.wind_direction
+            raise ParameterError(
+                f"{path}.translation_speed", self.translation_speed,
+                f"moves the picture by {moved[0]:.4g} and {moved[1]:.4g} patches in the loop, not by whole "
+                f"ones: take {speed:.9g} m/s towards {direction:.9g} rad, another animation, or no loop",
+            )  # fmt: skip
+
+    def add(self, sea: OceanParameters, to: Coefficients) -> None:
+        """Add its waves: to the sea's own where they have its frequencies, which is no more work a frame."""
+        waves = picture_waves(
+            self, to.grid, sea.dispersion, sea.water, sea.seed, sea.loop_duration, sea.match_height, to.dtype
+        )
+        if self.animation == "DISPERSION":
+            for target, part in (
+                (to.h_plus, waves.h_plus), (to.h_minus, waves.h_minus),
+                (to.expected_plus, waves.expected_plus), (to.expected_minus, waves.expected_minus),
+            ):  # fmt: skip
+                target += part
+        else:
+            to.set_apart(self, *waves, mirrored=self.animation != "TRANSLATION")
+
+    def frequencies(self, sea: OceanParameters, grid: WaveVectorGrid) -> NDArray[np.float64] | None:
+        """How fast its phases turn without a loop."""
+        return angular_frequency(self, grid, sea.dispersion, sea.water)
+
+    def state(self, sea: OceanParameters) -> SeaState:
+        """Of all that the picture holds."""
+        return statistics.state_of(sea.alone(self), self)
+
+    def longest_random_wave(self, sea: OceanParameters) -> float:
+        """That of noise through the physical filter; all others have the height that they are given."""
+        if self.picture is not None or not self.is_physical or not wanted_variance(self, sea.water) > 0.0:
+            return float("nan")
+        return statistics.peak_wavelength(self, sea.dispersion, sea.water)
+
+    def slope_variance(self, sea: OceanParameters, resolution: int | None) -> float:
+        """Of what the picture holds, or of what of it so many samples do."""
+        made = filtered(self, sea.domain_size, resolution, sea.dispersion, sea.water, sea.seed)
+        return made.slope_variance
+
+    def wind(self, sea: OceanParameters) -> Wind | None:
+        """That of the modified Pierson-Moskowitz filter."""
+        if self.filter != "MODIFIED_PIERSON_MOSKOWITZ" or not wanted_variance(self, sea.water) > 0.0:
+            return None
+        return Wind(self.wind_speed, self.wind_direction)
+
+    @classmethod
+    def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
+        """Coefficients of waves with frequencies of their own, and what filtering takes."""
+        layers = sea.active(cls)
+        apart = sum(layer.animation != "DISPERSION" for layer in layers)
+        half_plane = sea.resolution * (sea.resolution // 2 + 1)
+        filtering = max((16 * _WORKING_ARRAYS * side(layer) ** 2 for layer in layers), default=0)
+        return MemoryNeed(half_plane * (3 * 2 * real + 8) * apart, filtering, 0)
+
+    def warnings(self, sea: OceanParameters) -> Iterator[str]:
+        """Of a picture of which nothing is left."""
+        if wanted_variance(self, sea.water) > 0.0 and not self.state(sea).m0 > 0.0:
+            yield f"Picture {self.id}: its filter leaves nothing of it. Take another filter, wind or picture"
+
 
 def _grey(picture: Raster) -> Raster:
     """One channel: the luminance of a colour picture; the fourth is transparency, which is left out.
@@ -115,26 +212,3 @@ def _grey(picture: Raster) -> Raster:
             what, float(picture.values.flat[0]), "everywhere: it holds no waves; give one with contrast"
         )
     return picture
-
-
-def check_loop(pictures: Sequence[PictureLayer], domain_size: float, loop_duration: Fraction | None) -> None:
-    """Raise ParameterError for a translation that does not end where it began when the loop does.
-
-    It does where it moves by whole patches both ways; any other would have to bend the picture.
-    """
-    if loop_duration is None:
-        return
-    for index, layer in enumerate(pictures):
-        if layer.animation != "TRANSLATION" or layer.muted:
-            continue
-        patches = layer.translation_speed * float(loop_duration) / domain_size
-        moved = [patches * part(layer.wind_direction) for part in (math.cos, math.sin)]
-        nearest = [round(distance) for distance in moved]
-        if any(abs(a - b) > _WHOLE * max(1.0, patches) for a, b in zip(moved, nearest, strict=True)):
-            speed = math.hypot(*nearest) * domain_size / float(loop_duration)
-            direction = math.atan2(nearest[1], nearest[0]) if any(nearest) else layer.wind_direction
-            raise ParameterError(
-                f"pictures.{index}.translation_speed", layer.translation_speed,
-                f"moves the picture by {moved[0]:.4g} and {moved[1]:.4g} patches in the loop, not by whole "
-                f"ones: take {speed:.9g} m/s towards {direction:.9g} rad, another animation, or no loop",
-            )  # fmt: skip

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from ... import random
 from ...memo import remembered
 from ...raster import Raster
-from .parameters import PictureLayer
+
+if TYPE_CHECKING:
+    from .parameters import PictureLayer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

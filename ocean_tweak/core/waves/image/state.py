@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,10 @@ from ...grid import WaveVectorGrid
 from ...water import Water
 from .animation import angular_frequency, runs_along
 from .filters import filter_power, total_energy
-from .parameters import PictureLayer
 from .source import fitted, noise_coefficients, picture_coefficients
+
+if TYPE_CHECKING:
+    from .parameters import PictureLayer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -50,8 +52,7 @@ class Filtered:
         return float(np.sum(self.grid.k**2 * self.expected * self.grid.multiplicity))
 
 
-@dataclass(frozen=True)
-class PictureWaves:
+class PictureWaves(NamedTuple):
     """Waves of a picture, arrays as those of the sea's initial state, transposed in memory.
 
     h_plus, h_minus : waves that run along k and against it, m

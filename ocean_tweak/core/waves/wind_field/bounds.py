@@ -5,10 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from ...errors import ParameterError
-from .parameters import WindFieldLayer
 from .relations import period
+
+if TYPE_CHECKING:
+    from .parameters import WindFieldLayer
 
 #: particles of all layers together: beyond it a frame takes seconds
 MOST_PARTICLES = 2_000_000
@@ -25,36 +28,35 @@ _ROUNDING = math.sqrt(2.0)
 
 def check_bounds(layers: Sequence[WindFieldLayer], gravity: float) -> None:
     """Raise ParameterError, with the number and the remedy, where layers would have too many particles."""
-    active = [layer for layer in layers if not layer.muted]
-    particles = sum(most_particles(layer) for layer in active)
+    particles = sum(most_particles(layer) for layer in layers)
     if particles > MOST_PARTICLES:
         raise ParameterError(
-            "wind_fields", f"up to {particles} particles",
+            "layers", f"up to {particles} particles",
             f"must have at most {MOST_PARTICLES}: take fewer columns, rows, origins or particles, a smaller "
             "split_angle or a shorter life",
         )  # fmt: skip
-    births = sum(most_births(layer, gravity) for layer in active)
+    births = sum(most_births(layer, gravity) for layer in layers)
     if births > MOST_BIRTHS:
         raise ParameterError(
-            "wind_fields", f"up to {births} waves looked at",
+            "layers", f"up to {births} waves looked at",
             f"must be at most {MOST_BIRTHS}: take a stronger calm, fewer columns, rows or origins, or a "
             "shorter life",
         )  # fmt: skip
-    winds = sum(_origins(layer) * len(layer.keys) for layer in active)
+    winds = sum(_origins(layer) * len(layer.keys) for layer in layers)
     if winds > MOST_WINDS:
         raise ParameterError(
-            "wind_fields", f"{winds} winds",
+            "layers", f"{winds} winds",
             f"must have at most {MOST_WINDS}, keys times origins: take fewer keys, columns, rows or origins",
         )  # fmt: skip
 
 
 def bytes_of(layers: Sequence[WindFieldLayer], gravity: float) -> tuple[int, int]:
     """Bytes that layers keep, and bytes more while their particles are made: at most."""
-    active = [layer for layer in layers if not layer.muted]
-    kept = sum(_origins(layer) * (24 + 16 * max(1, len(layer.keys))) for layer in active)
-    kept += sum(8 * min(MOST_WINDS, 32 * _origins(layer) * len(layer.keys)) for layer in active)
-    particles = sum(most_particles(layer) for layer in active)
-    births = sum(most_births(layer, gravity) for layer in active)
+    layers = [layer for layer in layers if not layer.muted]
+    kept = sum(_origins(layer) * (24 + 16 * max(1, len(layer.keys))) for layer in layers)
+    kept += sum(8 * min(MOST_WINDS, 32 * _origins(layer) * len(layer.keys)) for layer in layers)
+    particles = sum(most_particles(layer) for layer in layers)
+    births = sum(most_births(layer, gravity) for layer in layers)
     return kept, PARTICLE_BYTES * (particles + births)
 
 

@@ -7,15 +7,17 @@ passes a whole number. So the waves that live at any time follow from that time,
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .origins import Origins
-from .parameters import WindFieldLayer
 from .relations import period
 from .wind import winds_at
+
+if TYPE_CHECKING:
+    from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

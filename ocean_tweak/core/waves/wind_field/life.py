@@ -7,15 +7,17 @@ All of it follows from the age. Positions are not reduced to the patch, which re
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .emission import Births
-from .parameters import WindFieldLayer
 from .relations import period, phase_speed, wavelength
 from .shape import RadiusClasses
+
+if TYPE_CHECKING:
+    from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]
 

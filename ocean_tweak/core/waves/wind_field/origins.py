@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ... import random
-from .parameters import WindFieldLayer
+
+if TYPE_CHECKING:
+    from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]
 

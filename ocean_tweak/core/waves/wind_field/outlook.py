@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...parameters import OceanParameters
 from .bounds import most_particles
 from .relations import wavelength
 from .wind_waves import SHORTEST
+
+if TYPE_CHECKING:
+    from ...parameters import OceanParameters
+    from .parameters import WindFieldLayer
 
 
 class WindWaveOutlook(NamedTuple):
@@ -23,14 +27,27 @@ class WindWaveOutlook(NamedTuple):
     longest_wavelength: float
     warnings: tuple[str, ...]
 
+    def lines(self) -> list[str]:
+        """What `info` says."""
+        return [
+            f"wind fields: waves up to {self.longest_wavelength:.3g} m long, at most "
+            f"{self.most_particles} particles at once; the heights above are without them"
+        ]
 
-def wind_wave_outlook(parameters: OceanParameters) -> WindWaveOutlook | None:
-    """Of all wind fields that are not muted; None where there are none."""
-    if not parameters.active_wind_fields:
+    def to_plain(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return self._asdict()
+
+
+def wind_wave_outlook(
+    parameters: OceanParameters, layers: Sequence[WindFieldLayer]
+) -> WindWaveOutlook | None:
+    """Of a sea's wind fields that are not muted; None where there are none."""
+    if all(layer.muted for layer in layers):
         return None
     spacing = parameters.domain_size / parameters.resolution
     longest, warnings = 0.0, []
-    for index, layer in enumerate(parameters.wind_fields):
+    for index, layer in enumerate(layers):
         if layer.muted:
             continue
         speed = layer.greatest_speed
@@ -46,5 +63,5 @@ def wind_wave_outlook(parameters: OceanParameters) -> WindWaveOutlook | None:
                 f"Wind field {index}: its waves of {length:.3g} m are shorter than {SHORTEST:g} samples of "
                 f"{spacing:.3g} m and are left out. Raise the resolution or make the domain smaller"
             )
-    particles = sum(most_particles(layer) for layer in parameters.wind_fields)
+    particles = sum(most_particles(layer) for layer in layers)
     return WindWaveOutlook(particles, longest, tuple(warnings))

@@ -1,18 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a layer of waves from a wind field is: the wind, where waves are born, what they are like."""
+"""Waves from a wind field: the wind, where waves are born, what they are like."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...errors import ParameterError
-from ...layer_fields import direction, identity, muted, own_seed
 from ...masks.parameters import Mask
 from ...raster import Raster
 from ...validation import Validated, choice, integer, nested, number, raster, switch
+from ..contribution import Contribution, Gives, MemoryNeed, Names, direction, identity, muted, own_seed
+from .bounds import bytes_of, check_bounds
+from .outlook import WindWaveOutlook, wind_wave_outlook
+from .shape import MOST_CLASSES
+from .wind_waves import WindWaves
+
+if TYPE_CHECKING:
+    from ...parameters import OceanParameters
 
 FRONTS = ("ARC", "PARALLEL")
 HEIGHTS = ("STEEPNESS", "WIND_SPEED")
@@ -38,11 +46,20 @@ class WindKey(Validated):
 
 
 @dataclass(frozen=True)
-class WindFieldLayer(Validated):
+class WindFieldLayer(Contribution):
     """Waves that follow a wind field. Each keeps the wind of the place and time of its birth.
 
     A wave of wind V has the length λ = V²/g, the period T = √(2π)·V/g and the speed V/√(2π).
     """
+
+    kind = "WIND_FIELD"
+    gives = Gives.SHARES
+    names = Names(
+        1, "wind_field", "wind field", "Wind Field",
+        "Waves that follow a wind that differs from place to place", "FORCE_WIND",
+    )  # fmt: skip
+    former_list = "wind_fields"
+    constant = "a wave keeps the wind of its birth; give the wind keys at several times instead"
 
     wind_speed: float = number(
         12.0, 0.0, 100.0, "m/s", "Speed of the wind where it is the same everywhere: without keys",
@@ -121,3 +138,38 @@ class WindFieldLayer(Validated):
     def rasters(self) -> tuple[Raster, ...]:
         """The vectors of all keys, in the order of their times."""
         return tuple(key.vectors for key in self.keys if key.vectors is not None)
+
+    def check(self, sea: OceanParameters, path: str) -> None:
+        """Its waves must find room in the patch."""
+        size, speed = sea.domain_size, self.greatest_speed
+        longest = speed**2 / sea.water.gravity
+        if longest > size:
+            fitting = (size * sea.water.gravity) ** 0.5
+            raise ParameterError(
+                path, f"{speed:g} m/s",
+                f"this wind's waves are {longest:.4g} m long and the domain {size:g} m: make the domain "
+                f"larger, or the wind at most {fitting:.4g} m/s, by its strength for one",
+            )  # fmt: skip
+
+    @classmethod
+    def check_together(cls, sea: OceanParameters) -> None:
+        """There must not be too many particles."""
+        check_bounds(sea.active(cls), sea.water.gravity)
+
+    @classmethod
+    def shares(cls, sea: OceanParameters) -> WindWaves:
+        """Their particles, put on the sea's grid."""
+        return WindWaves(sea, sea.active(cls))
+
+    @classmethod
+    def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
+        """Of each radius two quarters of a plane stay; each weight takes a grid and half a plane a radius."""
+        n = sea.resolution
+        of_radii = MOST_CLASSES * n * (n // 2 + 1) * 2 * real
+        kept, making = bytes_of(sea.active(cls), sea.water.gravity)
+        return MemoryNeed(kept + of_radii, 40 * n * n, making + (3 if moving else 1) * (8 * n * n + of_radii))
+
+    @classmethod
+    def outlook(cls, sea: OceanParameters) -> WindWaveOutlook | None:
+        """How many particles they have, and waves how long."""
+        return wind_wave_outlook(sea, sea.of(cls))

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .parameters import WindFieldLayer
 from .relations import wavelength
+
+if TYPE_CHECKING:
+    from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]
 

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...bilinear import between
 from ...raster import Raster
-from .parameters import WindFieldLayer
+
+if TYPE_CHECKING:
+    from .parameters import WindFieldLayer
 
 Array = NDArray[np.float64]
 

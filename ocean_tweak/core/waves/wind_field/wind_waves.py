@@ -3,19 +3,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...grid import WaveVectorGrid
-from ...parameters import OceanParameters
 from .convolution import Points, along_x, deposit, kernel
 from .emission import Emission
 from .life import Particles, joined, particles_of
 from .origins import layer_origins
 from .shape import RadiusClasses, radius_classes
+
+if TYPE_CHECKING:
+    from ...parameters import OceanParameters
+    from .parameters import WindFieldLayer
 
 ComplexArray = NDArray[np.complexfloating]
 
@@ -24,12 +29,12 @@ SHORTEST = 4.0
 
 
 class WindWaves:
-    """The waves of all wind fields that are not muted."""
+    """The waves of some wind fields of a sea."""
 
-    def __init__(self, parameters: OceanParameters) -> None:
+    def __init__(self, parameters: OceanParameters, layers: Sequence[WindFieldLayer]) -> None:
         self._parameters = parameters
         self._gravity = parameters.water.gravity
-        self._layers = parameters.active_wind_fields
+        self._layers = layers
         self._grid = WaveVectorGrid(parameters.resolution, parameters.domain_size)
 
     @cached_property
