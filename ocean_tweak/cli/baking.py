@@ -29,6 +29,7 @@ from ..export.cache.job import (
     JOB_FILE,
     CacheError,
     Job,
+    NewerBakeError,
     log_file,
     made_with,
     open_folder,
@@ -94,6 +95,8 @@ def resume(arguments: argparse.Namespace) -> int:
     folder = only_bake(arguments.folder, arguments.json)
     try:
         job = read_job(folder)
+    except NewerBakeError:
+        raise
     except CacheError as error:
         job = recovered_job(folder)
         job = replace(job, frames=known_frames(folder, job))

@@ -10,11 +10,9 @@ from __future__ import annotations
 import hashlib
 import json
 
+from . import formats
 from .frames import Frame, frame_label
 from .shot import Shot, time_text
-
-#: raised whenever the same parameters give another surface
-SYNTHESIS_VERSION = 1
 
 
 def fingerprint(data: object) -> str:
@@ -25,7 +23,7 @@ def fingerprint(data: object) -> str:
 
 def shot_fingerprint(shot: Shot) -> str:
     """That of a whole shot, whichever of its frames are made."""
-    return fingerprint({"synthesis": SYNTHESIS_VERSION, "shot": shot.to_dict()})
+    return fingerprint({"synthesis": formats.SYNTHESIS, "shot": shot.to_dict()})
 
 
 def frame_fingerprint(shot: Shot, frame: Frame) -> str:
@@ -33,7 +31,7 @@ def frame_fingerprint(shot: Shot, frame: Frame) -> str:
     moment = shot.at(frame)
     return fingerprint(
         {
-            "synthesis": SYNTHESIS_VERSION,
+            "synthesis": formats.SYNTHESIS,
             "parameters": moment.parameters.to_dict(),
             "frame": frame_label(frame),
             "time": time_text(moment.time),

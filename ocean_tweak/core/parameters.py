@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeVar, overload
 
+from . import formats
 from .cascades.patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
 from .errors import ParameterError
 from .masks.parameters import Mask
@@ -322,12 +323,13 @@ class OceanParameters(Validated):
 
     def to_json(self, indent: int | None = 2) -> str:
         """JSON text that `from_json` reads back to equal parameters."""
-        return json.dumps(self.to_dict(), indent=indent, ensure_ascii=False)
+        return json.dumps({"format": formats.SEA, **self.to_dict()}, indent=indent, ensure_ascii=False)
 
     @classmethod
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
         check_numbers(numbers_in(data))
+        data = formats.checked_sea(data)
         if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
             data = {key: value for key, value in data.items() if key not in _TILE}
         return from_plain(cls, data)

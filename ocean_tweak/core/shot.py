@@ -16,6 +16,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from . import formats
 from .errors import ParameterError
 from .frames import LARGEST_FRAME, Frame
 from .parameters import OceanParameters, parse_json
@@ -224,7 +225,7 @@ class Shot:
 
     def to_json(self, indent: int | None = 2) -> str:
         """JSON text that `from_json` reads back to an equal shot."""
-        return json.dumps(self.to_dict(), indent=indent, ensure_ascii=False)
+        return json.dumps({"format": formats.SEA, **self.to_dict()}, indent=indent, ensure_ascii=False)
 
     @classmethod
     def from_dict(cls, data: object) -> Shot:

@@ -20,7 +20,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import formats
 from ..core.channels import SurfaceFields, channels_of, image_of, unit_of
+from ..core.errors import ParameterError
 from ..core.frames import Frame
 from ..core.parameters import OceanParameters, Patch
 from ..core.plain_data import to_plain
@@ -28,7 +30,6 @@ from ..core.printable import printable
 from .files import open_file, whole_file
 from .frame_files import frame_file
 
-FORMAT_VERSION = 1
 METADATA_ATTRIBUTE = "oceanTweak"
 
 #: numbers of all channels together, all of which OpenEXR reads at once: a gigabyte
@@ -46,6 +47,10 @@ _OPENEXR_NAMES = {"NONE": "NO", "HTJ2K": "HTJ2K256"}
 
 class ExrError(RuntimeError):
     """An image that cannot be written or read, with its path and the reason."""
+
+
+class NewerExrError(ExrError):
+    """An image of a newer version of the program."""
 
 
 @contextlib.contextmanager
@@ -143,7 +148,7 @@ class ExrSequence:
     ) -> tuple[NDArray[np.floating], dict[str, Any]]:
         """A map's image and what its header tells."""
         metadata = {
-            "format": FORMAT_VERSION,
+            "format": formats.IMAGE,
             "map": name,
             "unit": unit_of(name),
             "frame": to_plain(frame),
@@ -246,6 +251,11 @@ def _header(path: Path) -> tuple[dict[str, Any], tuple[int, int]]:
         or numbers > MOST_NUMBERS
     ):
         raise ExrError(f"{path}: not a readable image of Ocean Tweak")
+    try:
+        formats.check_format(metadata, formats.IMAGE)
+    except ParameterError as error:
+        kind = NewerExrError if isinstance(error, formats.NewerFormatError) else ExrError
+        raise kind(f"{path}: {error}") from None
     return metadata, (rows, columns)
 
 

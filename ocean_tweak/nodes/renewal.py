@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node groups of another version, from another file, are replaced where they are used."""
+"""Node groups of an older version, from another file, are replaced where they are used."""
 
 from __future__ import annotations
 
@@ -8,18 +8,24 @@ from typing import Any
 
 import bpy
 
+from ..core.formats import NewerFormatError
 from .modifier_inputs import all_inputs, input_sockets, set_inputs
-from .versioned import GroupKind, is_stale, node_group
+from .versioned import GroupKind, check_not_newer, is_stale, node_group
 
 
 def renew_groups(kinds: Iterable[GroupKind]) -> None:
-    """Put the present version of each group in the place of another, on modifiers and inside other groups.
+    """Put the present version of each group in the place of an older, on modifiers and inside other groups.
 
-    Inputs and links keep what they have by their names, where the type of the socket is still the same; new
-    inputs get their defaults.
+    A file with newer groups stays as it is: whoever shows its oceans says so. Inputs and links keep what they
+    have by their names, where the type of the socket is still the same; new inputs get their defaults.
     """
     kinds = tuple(kinds)
     own = [group for group in bpy.data.node_groups if group.library is None]
+    try:
+        for kind in kinds:
+            check_not_newer(own, kind)
+    except NewerFormatError:
+        return
     stale = {group: kind for group in own for kind in kinds if is_stale(group, kind)}
     if not stale:
         return

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import bpy
+
+from ..core.formats import NewerFormatError
 
 _KEY = "ocean_tweak_group"
 
@@ -33,10 +35,15 @@ class GroupKind:
 
 
 def node_group(kind: GroupKind) -> bpy.types.NodeTree:
-    """The group of this kind and version in the file; made when there is none."""
-    for group in bpy.data.node_groups:
-        if group.library is None and group.get(_KEY) == kind.tag:
+    """The group of this kind and version in the file; made when there is none.
+
+    Raises NewerFormatError where the file has one of a newer version in its place.
+    """
+    own = [group for group in bpy.data.node_groups if group.library is None and is_of_kind(group, kind)]
+    for group in own:
+        if group[_KEY] == kind.tag:
             return group
+    check_not_newer(own, kind)
     group = bpy.data.node_groups.new(kind.name, kind.tree_type)
     kind.build(group)
     group[_KEY] = kind.tag
@@ -54,5 +61,17 @@ def is_of_kind(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
 
 
 def is_stale(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
-    """Whether a group was built as this kind, but by another version of the extension."""
-    return group is not None and is_of_kind(group, kind) and group.get(_KEY) != kind.tag
+    """Whether a group was built as this kind, but by an older version of the extension."""
+    return group is not None and is_of_kind(group, kind) and _version(group) < kind.version
+
+
+def check_not_newer(groups: Iterable[bpy.types.NodeTree], kind: GroupKind) -> None:
+    """Raise NewerFormatError where a group of this kind is of a newer version of the extension."""
+    newest = max((_version(group) for group in groups if is_of_kind(group, kind)), default=0)
+    if newest > kind.version:
+        raise NewerFormatError(f"node group {kind.name}", newest, kind.version)
+
+
+def _version(group: bpy.types.NodeTree) -> int:
+    number = str(group[_KEY]).rpartition(" ")[2]
+    return int(number) if number.isdecimal() else 0

@@ -14,7 +14,7 @@ import bpy
 
 from ..core import ParameterError, Timing
 from ..core.frames import MOST_FRAMES, format_frames, held_frame, parse_frames
-from ..export.exr import ExrError, read_header, read_size
+from ..export.exr import ExrError, NewerExrError, read_header, read_size
 from ..export.frame_files import ImageFile, frame_file, image_file_of
 from ..nodes.names import MAP_INPUTS
 from .live_image import mark_as_data
@@ -251,10 +251,12 @@ def _image(path: Path) -> bpy.types.Image:
 
 
 def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
-    """Frames per second of a file's shot, and its stretch."""
+    """Frames per second of a file's shot, and its stretch. Raises SequenceError for a newer file."""
     try:
         timing = Timing(**read_header(path)["parameters"]["timing"])
         return timing.fps, timing.stretch
+    except NewerExrError as error:
+        raise SequenceError(str(error)) from None
     except (ExrError, KeyError, TypeError, ParameterError):  # a file that somebody else made
         return None, Fraction(1)
 

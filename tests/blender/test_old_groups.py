@@ -121,3 +121,17 @@ def test_every_kind_is_renewed(extension, package):
     assert len(made) > 10
     assert made <= set(known)
     assert {extension("nodes.ocean").ocean_group(count) for count in (1, 2, 8)} <= set(known)
+
+
+def test_newer_groups_are_kept_and_told(extension, ocean_object, make_parameters, empty_scene, open_again):
+    item = ocean_object.add(empty_scene, make_parameters())
+    kind = extension("nodes.ocean").ocean_group(1)
+    newer = f"{kind.name} {kind.version + 1}"
+    item.modifiers[0].node_group["ocean_tweak_group"] = newer
+    open_again()
+    item = bpy.data.objects["Ocean"]
+    assert item.modifiers[0].node_group["ocean_tweak_group"] == newer
+    assert item.ocean_tweak.error == (
+        f"node group {kind.name} = {kind.version + 1}: was written by a newer Ocean Tweak, and this one "
+        f"reads up to {kind.version}: update the extension"
+    )

@@ -94,6 +94,17 @@ def test_a_record_of_other_values(
 
 
 @pytest.mark.usefixtures("in_this_process")
+def test_a_record_of_a_newer_version(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    layer = Sdf.Layer.FindOrOpen(str(copy / "sea.usd"))
+    prim = layer.GetPrimAtPath("/sea")
+    prim.customData = {"ocean_tweak": {**prim.customData["ocean_tweak"], "format": 2}}
+    layer.Save()
+    assert main(["info", "--params", str(copy / "sea.usd")]) == 1
+    told = "format = 2: was written by a newer Ocean Tweak, and this one reads up to 1: update the extension"
+    assert told in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize("copy", ["points", "clips"], indirect=True)
 @pytest.mark.parametrize(
     ("name", "kind", "value"),

@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from .. import formats
 from ..errors import ParameterError
 from ..parameters import OceanParameters, parse_json
 
@@ -48,6 +49,7 @@ class Preset:
     def to_json(self) -> str:
         """JSON text that `from_json` reads back to an equal preset."""
         data = {
+            "format": formats.SEA,
             "title": self.title,
             "description": self.description,
             "parameters": self.parameters.to_dict(),
@@ -59,7 +61,7 @@ class Preset:
         """A preset from JSON text. Raises ParameterError for what is not valid; nothing in it is executed."""
         if len(text) > LARGEST:
             raise ParameterError("preset", text[:20], f"is larger than {LARGEST // 1000} kB: not a preset")
-        data: Any = parse_json(text)
+        data: Any = formats.checked_sea(parse_json(text))
         if not isinstance(data, dict) or set(data) != {"title", "description", "parameters"}:
             raise ParameterError("preset", data, "must be an object with title, description and parameters")
         try:

@@ -21,10 +21,11 @@ from typing import Any
 
 import numpy as np
 
+from ...core import formats
 from ...core.cascades.patch_seas import PARTS, parts
 from ...core.channels import ADDING, MAPS, SurfaceFields, channels_of
 from ...core.errors import ParameterError
-from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint
+from ...core.fingerprint import fingerprint
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.parameters import OceanParameters
 from ...core.printable import shown
@@ -38,7 +39,6 @@ JOB_FILE = "bake.json"
 RECORDS, LOCKS = "records", "locks"
 #: locked while versions are told apart, or claims are looked at
 ENTRY = "entry"
-FORMAT = 1
 _SEAL = "sha256"
 
 UID = re.compile("[0-9A-Za-z]{1,32}")
@@ -49,6 +49,10 @@ _TELLING_IMAGES = 8
 
 class CacheError(RuntimeError):
     """A folder of baked frames that cannot be used, with its path, the reason and the remedy."""
+
+
+class NewerBakeError(CacheError):
+    """A folder that a newer version of the program baked: nothing in it is to be replaced."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +88,8 @@ class Job:
         """SHA-256 of all that the frames' files depend on, whichever frames are made."""
         return fingerprint(
             {
-                "format": FORMAT,
-                "synthesis": SYNTHESIS_VERSION,
+                "format": formats.JOB,
+                "synthesis": formats.SYNTHESIS,
                 "shot": self.shot.to_dict(),
                 "maps": list(self.maps),
                 "compression": self.compression,
@@ -157,8 +161,8 @@ class Job:
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in `bake.json`."""
         data = {
-            "format": FORMAT,
-            "synthesis": SYNTHESIS_VERSION,
+            "format": formats.JOB,
+            "synthesis": formats.SYNTHESIS,
             "fingerprint": self.fingerprint,
             "name": self.name,
             "uid": self.uid,
@@ -175,10 +179,12 @@ class Job:
         """A job from plain data. Raises ValueError naming what is wrong."""
         if not isinstance(data, dict):
             raise ValueError("is not a JSON object")
-        if data.get("format") != FORMAT or data.get("synthesis") != SYNTHESIS_VERSION:
+        for key, known in (("format", formats.JOB), ("synthesis", formats.SYNTHESIS)):
+            formats.check_format(data, known, key)
+        if data.get("format") != formats.JOB or data.get("synthesis") != formats.SYNTHESIS:
             raise ValueError(
                 f"is of format {shown(data.get('format'))} and synthesis {shown(data.get('synthesis'))}; "
-                f"this version bakes format {FORMAT} and synthesis {SYNTHESIS_VERSION}"
+                f"this version bakes format {formats.JOB} and synthesis {formats.SYNTHESIS}"
             )
         check_seal(data)
         name, uid, maps = data.get("name"), data.get("uid"), data.get("maps")
@@ -287,6 +293,8 @@ def write_job(folder: Path, job: Job) -> None:
         return
     try:
         present = read_job(folder)
+    except NewerBakeError:
+        raise
     except CacheError:
         write_text(path, text)
         return
@@ -325,6 +333,8 @@ def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:
         raise CacheError(f"{path}: {error.strerror}; a bake's folder is named vNNN-hash8") from None
     except json.JSONDecodeError as error:
         raise CacheError(f"{path} is no JSON ({error}): run resume to have it written again") from None
+    except formats.NewerFormatError as error:
+        raise NewerBakeError(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise CacheError(f"{path} {error}: run resume to have it written again") from None
     return replace(job, frames=asked) if asked else job

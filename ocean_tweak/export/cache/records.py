@@ -16,13 +16,14 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ...core import formats
 from ...core.channels import SurfaceFields
 from ...core.errors import ParameterError
 from ...core.fingerprint import frame_fingerprint
 from ...core.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
 from ...core.printable import shown
 from ..files import PART, begun_file, open_file, read_bytes, remove_begun, sync_folder, write_text
-from .job import FORMAT, LOCKS, RECORDS, Job, check_seal, made_with, record_path, sealed
+from .job import LOCKS, RECORDS, Job, NewerBakeError, check_seal, made_with, record_path, sealed
 
 _LARGEST_RECORD = 2**20
 _BLOCK = 2**20
@@ -55,7 +56,7 @@ class FrameRecord:
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in the file."""
         data = {
-            "format": FORMAT,
+            "format": formats.RECORD,
             "frame": frame_label(self.frame),
             "fingerprint": self.fingerprint,
             "files": [entry._asdict() for entry in self.files],
@@ -67,7 +68,10 @@ class FrameRecord:
     @classmethod
     def from_dict(cls, data: Any) -> FrameRecord:
         """A record from plain data. Raises ValueError for what is none."""
-        if not isinstance(data, dict) or data.get("format") != FORMAT:
+        if not isinstance(data, dict):
+            raise ValueError("it is of another format")
+        formats.check_format(data, formats.RECORD)
+        if data.get("format") != formats.RECORD:
             raise ValueError("it is of another format")
         check_seal(data)
         files = data.get("files")
@@ -190,9 +194,14 @@ def asked_frames(folder: Path) -> set[Frame]:
 
 
 def inspect(folder: Path, job: Job, frame: Frame) -> Finding:
-    """Whether a frame is whole: its record, its fingerprint and all bytes of its files."""
+    """Whether a frame is whole: its record, its fingerprint and all bytes of its files.
+
+    Raises NewerBakeError for the record of a newer version of the program.
+    """
     try:
         record = read_record(folder, frame)
+    except formats.NewerFormatError as error:
+        raise NewerBakeError(f"{record_path(folder, frame)}: {error}") from None
     except ValueError as error:
         return Finding(frame, State.DAMAGED, f"its record cannot be used: {error}")
     if record is None:

@@ -9,11 +9,12 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
+from ...core import formats
 from ...core.frames import Frame
 from ...core.printable import printable, shown
 from ..files import PART, begun_file, whole_file
 from .library import UsdError, pxr
-from .package import FORMAT, Package
+from .package import Package
 
 #: key of customData and customLayerData
 MARK = "ocean_tweak"
@@ -119,7 +120,7 @@ def write_header(
     root = layer.pseudoRoot
     root.SetInfo("metersPerUnit", package.metres_per_unit)
     root.SetInfo("upAxis", {"Z": usd_geom.Tokens.z, "Y": usd_geom.Tokens.y}[package.up_axis])
-    layer.customLayerData = {MARK: {"format": FORMAT, "asset": package.name, **(mark or {})}}
+    layer.customLayerData = {MARK: {"format": formats.LAYER, "asset": package.name, **(mark or {})}}
 
 
 def mark_of(path: Path) -> dict[str, Any] | None:

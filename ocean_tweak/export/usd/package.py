@@ -12,14 +12,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ...core import ParameterError
-from ...core.fingerprint import SYNTHESIS_VERSION, fingerprint, shot_fingerprint
+from ...core import ParameterError, formats
+from ...core.fingerprint import fingerprint, shot_fingerprint
 from ...core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
-from ...core.printable import shown
 from ...core.shot import Shot
 from .attributes import ATTRIBUTES
 
-FORMAT = 1
 FORMS = ("points", "clips", "displacement")
 UP_AXES = ("Z", "Y")
 #: names of the layers beside the asset's own
@@ -111,8 +109,8 @@ class Package:
         """SHA-256 of all that an edition's animated arrays depend on, whichever frames are made."""
         return fingerprint(
             {
-                "format": FORMAT,
-                "synthesis": SYNTHESIS_VERSION,
+                "format": formats.LAYER,
+                "synthesis": formats.SYNTHESIS,
                 "shot": self.at(resolution).to_dict(),
                 "up_axis": self.up_axis,
                 "metres_per_unit": self.metres_per_unit,
@@ -125,7 +123,7 @@ class Package:
     def record(self) -> dict[str, Any]:
         """What stands in the asset's customData: strings and plain numbers."""
         return {
-            "format": FORMAT,
+            "format": formats.LAYER,
             "name": self.name,
             "form": self.form,
             "fingerprint": self.fingerprint,
@@ -143,8 +141,7 @@ class Package:
     @classmethod
     def from_record(cls, data: dict[str, Any]) -> Package:
         """The package that `record` described. Raises ValueError or KeyError for what is none."""
-        if data.get("format") != FORMAT:
-            raise ValueError(f"is of format {shown(data.get('format'))}, and this version reads {FORMAT}")
+        formats.check_format(data, formats.LAYER)
         across, along = str(data["tiles"]).split("x")
         package = cls(
             data["name"],

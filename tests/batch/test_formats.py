@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a newer version of the program wrote is refused in a line, and stays as it is."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.core import OceanParameters, ParameterError, formats
+from ocean_tweak.core.fingerprint import fingerprint, shot_fingerprint
+from ocean_tweak.core.presets import built_in
+from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.export.cache.job import CacheError, Job, read_job
+from ocean_tweak.export.cache.records import FrameRecord
+from ocean_tweak.export.exr import ExrError, read_header, read_image, write_image
+
+NEWER = r"format = 2: was written by a newer Ocean Tweak, and this one reads up to 1: update the extension"
+SEA = OceanParameters(resolution=16)
+#: what the first version without a number in its JSON made of the default sea of 16² samples
+FINGERPRINT = "bef05b5eee19f69524838c47ecc4610db0e427d4334f2ebed229ceb2ca55e6c1"
+
+
+def with_format(text, number):
+    return json.dumps({**json.loads(text), "format": number})
+
+
+def changed(path, **values):
+    """Change JSON in a file, with a seal that fits."""
+    data = {**json.loads(path.read_text()), **values}
+    del data["sha256"]
+    path.write_text(json.dumps({**data, "sha256": fingerprint(data)}))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A bake of one frame."""
+    command = ["bake", "--set", "resolution=16", "--frames", "1", "--name", "sea", "--out"]
+    assert main([*command, str(tmp_path)]) == 0
+    (found,) = tmp_path.glob("*/v001-*")
+    return found
+
+
+@pytest.mark.parametrize("kind", [OceanParameters, Shot])
+def test_json_of_seas(kind):
+    sea = SEA if kind is OceanParameters else Shot(SEA, Animation(1, (("choppiness", (0.5, 1.0)),)))
+    text = sea.to_json()
+    assert json.loads(text)["format"] == 1
+    assert "format" not in sea.to_dict()
+    without = json.dumps(sea.to_dict())
+    assert kind.from_json(text) == kind.from_json(without) == sea
+    with pytest.raises(ParameterError, match=NEWER):
+        kind.from_json(with_format(text, 2))
+    for number in (0, True, "1", 1.0, None):
+        with pytest.raises(ParameterError, match=r"format = .*: must be a whole number from 1"):
+            kind.from_json(with_format(text, number))
+
+
+def test_a_number_changes_no_fingerprint():
+    numbered = Shot.from_json(Shot(SEA).to_json())
+    assert shot_fingerprint(numbered) == FINGERPRINT
+
+
+def test_presets():
+    preset = next(iter(built_in().values()))
+    assert type(preset).from_json(preset.to_json()) == preset
+    with pytest.raises(ParameterError, match=NEWER):
+        type(preset).from_json(with_format(preset.to_json(), 2))
+
+
+def test_images(tmp_path):
+    path = tmp_path / "image.exr"
+    for number, refused in ((1, False), (2, True)):
+        write_image(path, np.zeros((4, 4, 3)), {"format": number}, SEA.timing.fps)
+        for read in (read_image, read_header):
+            if refused:
+                with pytest.raises(ExrError, match=rf"{re.escape(str(path))}: {NEWER}"):
+                    read(path)
+            else:
+                read(path)
+
+
+@pytest.mark.parametrize("key", ["format", "synthesis"])
+def test_jobs_are_refused_and_not_written_again(folder, key, capsys):
+    changed(folder / "bake.json", **{key: 2})
+    before = (folder / "bake.json").read_bytes()
+    with pytest.raises(CacheError, match=NEWER.replace("format", key)):
+        read_job(folder)
+    for command in (["resume", str(folder)], ["verify", str(folder)]):
+        assert main(command) == 1
+        assert "update the extension" in capsys.readouterr().err
+    assert (
+        main(
+            [
+                "bake",
+                "--set",
+                "resolution=16",
+                "--frames",
+                "1",
+                "--name",
+                "sea",
+                "--out",
+                str(folder.parents[1]),
+            ]
+        )
+        == 1
+    )
+    assert (folder / "bake.json").read_bytes() == before
+
+
+def test_records_are_refused_and_their_frames_not_made_again(folder, capsys):
+    record = folder / "records" / "0001.json"
+    changed(record, format=2)
+    before = {path: path.read_bytes() for path in folder.rglob("*.*") if path.is_file()}
+    for command in (["resume", str(folder)], ["verify", str(folder)]):
+        assert main(command) == 1
+        assert re.search(rf"{re.escape(str(record))}: {NEWER}", capsys.readouterr().err)
+    assert {path: path.read_bytes() for path in before} == before
+    with pytest.raises(formats.NewerFormatError):
+        FrameRecord.from_dict(json.loads(record.read_text()))
+
+
+def test_a_bake_without_newer_numbers_is_read(folder):
+    job = read_job(folder)
+    assert isinstance(job, Job)
+    assert json.loads((folder / "bake.json").read_text())["format"] == 1
