@@ -14,7 +14,7 @@ from pathlib import Path
 from ..core import Ocean, OceanParameters, sea_scales
 from ..core.cascades.patch import NO_LONGEST
 from ..core.foam_field import foam_outlook
-from ..core.memory import check_memory, memory_need
+from ..core.memory import check_memory
 from ..core.statistics import SeaState, Statistics
 from ..core.waves.contribution import Contribution, Outlook
 from ..core.waves.kinds import KINDS
@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
             name: {
                 "parameters": seas[name].shot.to_dict(),
                 "statistics": _plain(statistics),
-                "memory": dataclasses.asdict(memory_need(parameters[name])),
+                "memory": dataclasses.asdict(Ocean(parameters[name]).memory()),
                 **{kind.former_list: found.to_plain() for kind, found in _outlooks(parameters[name])},
             }
             for name, statistics in results.items()
@@ -95,7 +95,7 @@ def _outlooks(parameters: OceanParameters) -> list[tuple[type[Contribution], Out
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     state = sea_scales.sea_state(statistics.significant_wave_height)
-    need = memory_need(parameters)
+    need = Ocean(parameters).memory()
     sides = [patch.resolution for patch in parameters.patches] or [parameters.resolution]
     samples = " and ".join(f"{side}²" for side in sides)
     grid = "grid" if len(sides) == 1 else "grids"

@@ -30,7 +30,7 @@ ALL_KINDS = (
     patch.PATCH,
     patch_points.PATCH_POINTS,
     frame_warnings.WARNINGS,
-    *(ocean.ocean_group(patches) for patches in range(1, ocean.MOST_PATCHES + 1)),
+    *(ocean.ocean_group(patches) for patches in range(1, ocean.MOST_ADDED + 1)),
     surface.GRID_FACTS,
     surface.CELL,
     surface.SURFACE,

@@ -37,8 +37,8 @@ from .versioned import GroupKind, node_group
 _VERSION = 3
 _NAME = "Ocean Tweak"
 
-#: patches that a group can add
-MOST_PATCHES = 8
+#: patches that a group can add, of whichever seas
+MOST_ADDED = 8
 
 #: n_z of a slope is at least this
 _LEAST_UPWARDS = 0.01
@@ -84,9 +84,9 @@ def numbered(name: str, patch: int) -> str:
 
 @lru_cache
 def ocean_group(patches: int = 1) -> GroupKind:
-    """The group for a number of patches. Raises ValueError for one that is not from 1 to MOST_PATCHES."""
-    if not 1 <= patches <= MOST_PATCHES:
-        raise ValueError(f"patches = {patches}: must be from 1 to {MOST_PATCHES}")
+    """The group for a number of patches. Raises ValueError for one that is not from 1 to MOST_ADDED."""
+    if not 1 <= patches <= MOST_ADDED:
+        raise ValueError(f"patches = {patches}: must be from 1 to {MOST_ADDED}")
     name = _NAME if patches == 1 else f"{_NAME} {patches} Patches"
     return GroupKind(name, _VERSION, lambda tree: _build(tree, patches))
 

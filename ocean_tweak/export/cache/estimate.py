@@ -25,7 +25,7 @@ from ...core.foam import LATTICE_RATE
 from ...core.foam_field import foam_outlook
 from ...core.frames import Frame
 from ...core.machine import usable_cores, usable_memory
-from ...core.memory import TABLES, memory_need
+from ...core.memory import TABLES
 from ...core.shot import OCEAN_TIME, Shot
 from .job import CacheError, Job
 
@@ -100,7 +100,7 @@ def estimate(folder: Path, job: Job, frames: Sequence[Frame], workers: int = 1) 
 def statistics_memory(parameters: OceanParameters) -> int:
     """Bytes that a process takes which makes the statistics of a sea."""
     sides = [patch.resolution for patch in parameters.patches] or [parameters.resolution]
-    return max(_LEAST, _PROCESS + memory_need(parameters).state + _STATISTICS * max(sides) ** 2)
+    return max(_LEAST, _PROCESS + Ocean(parameters).memory().state + _STATISTICS * max(sides) ** 2)
 
 
 def fitting_workers(job: Job, frames: int) -> int:
@@ -113,7 +113,7 @@ def fitting_workers(job: Job, frames: int) -> int:
 def process_memory(job: Job) -> int:
     """Bytes that a process takes which makes and writes frames of a job."""
     parameters = job.shot.parameters
-    need = memory_need(parameters, job.outputs - {FOAM})
+    need = Ocean(parameters).memory(job.outputs - {FOAM})
     sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
     samples = max([*sides, parameters.resolution]) ** 2
     together = any(is_put_together(name) for name in job.images)
@@ -123,7 +123,7 @@ def process_memory(job: Job) -> int:
     making = need.surface + writing
     if FOAM in job.outputs:  # made for the next frame meanwhile
         own = parameters.foam.resolution or parameters.resolution
-        coarse = memory_need(parameters.at_resolution(own), {"cusp"})
+        coarse = Ocean(parameters.at_resolution(own)).memory({"cusp"})
         making += coarse.surface + _FOAM * own**2 + 4 * samples
         making += coarse.state if own != parameters.resolution else 0
     return max(_LEAST, _PROCESS + need.state + max(need.building - TABLES, making))

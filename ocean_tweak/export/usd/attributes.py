@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.channels import CHANNELS, VECTOR, Channel, SurfaceFields
-from .grid import Patch
+from .grid import UsdGrid
 
 RealArray = NDArray[np.floating]
 
@@ -28,7 +28,7 @@ class Attribute(NamedTuple):
 
     name, type : in USD, the type a name of `Sdf.ValueTypeNames`
     outputs : the fields that it is made of
-    values : from those and the patch to (vertices, …) float32 in the layer's units and axes
+    values : from those and the grid to (vertices, …) float32 in the layer's units and axes
     rest : the same of a flat sea
     halved : whether it may be stored in 16 bits
     """
@@ -36,17 +36,17 @@ class Attribute(NamedTuple):
     name: str
     type: str
     outputs: frozenset[str]
-    values: Callable[[Patch, SurfaceFields], RealArray]
-    rest: Callable[[Patch], RealArray]
+    values: Callable[[UsdGrid, SurfaceFields], RealArray]
+    rest: Callable[[UsdGrid], RealArray]
     halved: bool = False
 
 
-def _points(patch: Patch, fields: SurfaceFields) -> RealArray:
-    return patch.positions(fields.displacement)
+def _points(grid: UsdGrid, fields: SurfaceFields) -> RealArray:
+    return grid.positions(fields.displacement)
 
 
-def _colours(patch: Patch, fields: SurfaceFields) -> RealArray:
-    return _mixed(patch.wrapped(fields.foam).reshape(-1, 1))
+def _colours(grid: UsdGrid, fields: SurfaceFields) -> RealArray:
+    return _mixed(grid.wrapped(fields.foam).reshape(-1, 1))
 
 
 def _mixed(foam: RealArray) -> RealArray:
@@ -57,28 +57,28 @@ def _mixed(foam: RealArray) -> RealArray:
 def _of_channel(channel: Channel) -> Attribute:
     assert channel.usd is not None
 
-    def in_layer(patch: Patch, field: RealArray) -> RealArray:
+    def in_layer(grid: UsdGrid, field: RealArray) -> RealArray:
         if channel.turns == VECTOR:
-            return patch.turned(field, patch.scale if channel.scales else 1.0)
-        return field.reshape(patch.vertices, *field.shape[2:])
+            return grid.turned(field, grid.scale if channel.scales else 1.0)
+        return field.reshape(grid.vertices, *field.shape[2:])
 
-    def values(patch: Patch, fields: SurfaceFields) -> RealArray:
-        return in_layer(patch, patch.wrapped(fields[channel.name]))
+    def values(grid: UsdGrid, fields: SurfaceFields) -> RealArray:
+        return in_layer(grid, grid.wrapped(fields[channel.name]))
 
-    def rest(patch: Patch) -> RealArray:
-        flat = np.full(channel.shape(patch.quads + 1), channel.rest, np.float32)
-        return in_layer(patch, flat) + np.float32(0.0)  # no -0 where axes turn
+    def rest(grid: UsdGrid) -> RealArray:
+        flat = np.full(channel.shape(grid.quads + 1), channel.rest, np.float32)
+        return in_layer(grid, flat) + np.float32(0.0)  # no -0 where axes turn
 
     name, type_name, halved = channel.usd
     return Attribute(name, type_name, frozenset({channel.name}), values, rest, halved)
 
 
 POINTS = Attribute(
-    "points", "Point3fArray", frozenset({"displacement"}), _points, lambda patch: patch.positions(None)
+    "points", "Point3fArray", frozenset({"displacement"}), _points, lambda grid: grid.positions(None)
 )
 _COLOURS = Attribute(
     "primvars:displayColor", "Color3fArray", frozenset({"foam"}), _colours,
-    lambda patch: _mixed(np.zeros((patch.vertices, 1), np.float32)),
+    lambda grid: _mixed(np.zeros((grid.vertices, 1), np.float32)),
 )  # fmt: skip
 
 #: in .blend files the attributes are flags by their order: others are to stand behind these
@@ -122,14 +122,14 @@ def to_vt(vt: Any, values: RealArray, half: bool = False) -> Any:
 
 
 def mesh_values(
-    vt: Any, patch: Patch, attributes: tuple[Attribute, ...], half: bool, fields: SurfaceFields | None
+    vt: Any, grid: UsdGrid, attributes: tuple[Attribute, ...], half: bool, fields: SurfaceFields | None
 ) -> Mapping[str, Any]:
     """Arrays of a mesh at a frame by attribute name, its extent among them; without fields those at rest.
 
     Raises ValueError for numbers that are not finite.
     """
     arrays = {
-        attribute.name: attribute.rest(patch) if fields is None else attribute.values(patch, fields)
+        attribute.name: attribute.rest(grid) if fields is None else attribute.values(grid, fields)
         for attribute in attributes
     }
     for name, array in arrays.items():

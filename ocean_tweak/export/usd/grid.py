@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mesh of one patch: quads between its samples, closed by the first row and column repeated a period on.
+"""The mesh of a sea: quads between its samples, closed by the first row and column repeated a period on.
 
 Vertices stand x fastest, from 0 to the domain's size, as in Blender.
 """
@@ -15,10 +15,10 @@ RealArray = NDArray[np.floating]
 
 
 @dataclass(frozen=True)
-class Patch:
-    """A mesh over a patch of the sea.
+class UsdGrid:
+    """A mesh over the tile of a sea.
 
-    size : side of the patch in m
+    size : side of the tile in m
     samples : along each side
     texels : along each side of the images that may lie on it
     step : how many samples from one vertex to the next

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mesh prims of a patch: what of them never changes, and their values at a frame."""
+"""The mesh prims of a sea: what of them never changes, and their values at a frame."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from ...core.channels import SurfaceFields
 from ...core.frames import Frame
 from .attributes import EXTENT, Attribute, chosen, mesh_values, to_vt, type_name
-from .grid import Patch, proxy_step
+from .grid import UsdGrid, proxy_step
 from .library import pxr
 from .package import Package
 
@@ -38,15 +38,15 @@ class Edition:
         """Those of the meshes, points first."""
         return chosen(() if self.static else self.package.attributes)
 
-    def meshes(self) -> Iterator[tuple[str, Patch]]:
-        """Paths of the mesh prims and their patches."""
+    def meshes(self) -> Iterator[tuple[str, UsdGrid]]:
+        """Paths of the mesh prims and their grids."""
         package = self.package
         sea = package.shot.parameters
-        patch = Patch(sea.domain_size, self.resolution, sea.resolution, 1, package.up_axis, package.scale)
-        yield f"/{ROOT}/{SURFACE}", patch
+        grid = UsdGrid(sea.domain_size, self.resolution, sea.resolution, 1, package.up_axis, package.scale)
+        yield f"/{ROOT}/{SURFACE}", grid
         step = proxy_step(self.resolution, package.proxy)
         if step:
-            yield f"/{ROOT}/{PROXY}", replace(patch, step=step)
+            yield f"/{ROOT}/{PROXY}", replace(grid, step=step)
 
 
 def write_topology(layer: Any, edition: Edition) -> None:
@@ -55,26 +55,26 @@ def write_topology(layer: Any, edition: Edition) -> None:
     root = sdf.CreatePrimInLayer(layer, f"/{ROOT}")
     root.specifier, root.typeName = sdf.SpecifierDef, "Xform"
     meshes = dict(edition.meshes())
-    for path, patch in meshes.items():
+    for path, grid in meshes.items():
         prim = sdf.CreatePrimInLayer(layer, path)
         prim.specifier, prim.typeName = sdf.SpecifierDef, "Mesh"
         # a material that moves the mesh dices it; a flat grid is the same after any subdivision
-        _write_constants(prim, patch, "catmullClark" if edition.static else "none")
+        _write_constants(prim, grid, "catmullClark" if edition.static else "none")
         _write_declarations(prim, edition)
-        values = mesh_values(pxr().Vt, patch, edition.attributes, edition.package.half, None)
+        values = mesh_values(pxr().Vt, grid, edition.attributes, edition.package.half, None)
         for name, value in values.items():
             prim.attributes[name].default = value
         if len(meshes) > 1:
             _write_purpose(prim, path)
 
 
-def _write_constants(prim: Any, patch: Patch, subdivision: str) -> None:
+def _write_constants(prim: Any, grid: UsdGrid, subdivision: str) -> None:
     sdf, vt = pxr().Sdf, pxr().Vt
     names = sdf.ValueTypeNames
-    counts = np.full(patch.quads**2, 4, np.int32)
+    counts = np.full(grid.quads**2, 4, np.int32)
     constants = (
         ("faceVertexCounts", names.IntArray, vt.IntArray.FromNumpy(counts)),
-        ("faceVertexIndices", names.IntArray, vt.IntArray.FromNumpy(patch.corners().reshape(-1))),
+        ("faceVertexIndices", names.IntArray, vt.IntArray.FromNumpy(grid.corners().reshape(-1))),
         ("subdivisionScheme", names.Token, subdivision),
         ("orientation", names.Token, "rightHanded"),
         ("doubleSided", names.Bool, True),
@@ -85,7 +85,7 @@ def _write_constants(prim: Any, patch: Patch, subdivision: str) -> None:
         sdf.AttributeSpec(prim, name, kind, variability).default = value
     coordinates = sdf.AttributeSpec(prim, "primvars:st", names.TexCoord2fArray)
     coordinates.SetInfo("interpolation", "vertex")
-    coordinates.default = to_vt(vt, patch.texture_coordinates())
+    coordinates.default = to_vt(vt, grid.texture_coordinates())
 
 
 def _write_declarations(prim: Any, edition: Edition) -> None:
@@ -126,8 +126,8 @@ def write_frame(layer: Any, edition: Edition, frame: Frame, fields: SurfaceField
     """
     sdf, vt = pxr().Sdf, pxr().Vt
     size = 0
-    for path, patch in edition.meshes():
-        values = mesh_values(vt, patch, edition.attributes, edition.package.half, fields)
+    for path, grid in edition.meshes():
+        values = mesh_values(vt, grid, edition.attributes, edition.package.half, fields)
         for name, value in values.items():
             layer.SetTimeSample(sdf.Path(f"{path}.{name}"), float(frame), value)
             size += np.asarray(value).nbytes

@@ -66,12 +66,12 @@ def relative_path(image: Path, layer: Path) -> str:
 
 def displaced_box(edition: Edition, images: Sequence[Path]) -> Box:
     """Around the displaced surface in all frames. Raises ExrError for an image that cannot be read."""
-    (_, patch), *_ = edition.meshes()
-    points = patch.positions(None)
+    (_, grid), *_ = edition.meshes()
+    points = grid.positions(None)
     flat = Box(points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64))
 
     def of_image(path: Path) -> Box:
-        vectors = patch.turned(read_image(path)[0], patch.scale)
+        vectors = grid.turned(read_image(path)[0], grid.scale)
         return Box(flat.least + vectors.min(axis=0), flat.greatest + vectors.max(axis=0))
 
     return union(map(of_image, images))

@@ -199,7 +199,7 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
     made: list[NDArray[np.floating]] = []
     for frame in frames:
         fields = surfaces.frame(frame, outputs)
-        for path, patch in edition.meshes():
+        for path, grid in edition.meshes():
             mesh = path.rpartition("/")[2]
             points = _value(opened, POINTS.name, mesh, frame)
             if points is None or points.shape[1:] != (3,):
@@ -208,7 +208,7 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
             for attribute in edition.attributes:
                 found = _value(opened, attribute.name, mesh, frame)
                 yield from _difference(opened, frame, f"{mesh}.{attribute.name}", attribute, found,
-                                       attribute.values(patch, fields))  # fmt: skip
+                                       attribute.values(grid, fields))  # fmt: skip
             yield from _outside(opened, frame, mesh, points)
             if mesh == SURFACE:
                 shown.append(points)
@@ -295,12 +295,12 @@ def _image_difference(path: Path, frame: Frame, surfaces: ShotSurfaces) -> Itera
 
 
 def _still_grid(opened: _Opened) -> Iterator[Problem]:
-    _, patch = next(iter(opened.edition.meshes()))
+    _, grid = next(iter(opened.edition.meshes()))
     points = opened.attribute(POINTS.name).Get()
     if (
         points is None
-        or len(points) != patch.vertices
-        or not np.allclose(np.array(points), patch.positions(None), atol=_SINGLE)
+        or len(points) != grid.vertices
+        or not np.allclose(np.array(points), grid.positions(None), atol=_SINGLE)
     ):
         yield Problem(None, f"{opened.sea}/{SURFACE} is not the flat grid that the images displace")
 
