@@ -241,7 +241,7 @@ NAMED = (
     ("foam_threshold.py", "wind_at_10_m(layer.wind_speed, layer.wind_height)", "layer.wind_speed"),
     ("spectra.py", "_over(constants.DEVELOPMENT**-0.25 * g", "_over(1.05 * constants.DEVELOPMENT**-0.25 * g"),
     ("statistics.py", "_LARGEST_SPEED_CHANGE = 0.1", "_LARGEST_SPEED_CHANGE = 0.105"),
-    ("surface_query.py", "_STEPS = 40", "_STEPS = 8"),
+    ("sea/query.py", "_STEPS = 40", "_STEPS = 8"),
     ("memory.py", "_TEMPORARY_ARRAYS = 5", "_TEMPORARY_ARRAYS = 1"),
 )
 

@@ -15,7 +15,8 @@ from mathutils import Matrix, Quaternion, Vector
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
-from ..core.surface_query import bilinear, find_points
+from ..core.sea.query import find_points
+from ..core.sea.surfaces import bilinear
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
 from .animated import shown_settings

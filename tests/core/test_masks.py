@@ -24,8 +24,7 @@ from ocean_tweak.core import (
 from ocean_tweak.core.cascades.patch_seas import parts
 from ocean_tweak.core.masks.weights import weights, weights_on_grid
 from ocean_tweak.core.sea.part_waves import PartWaves
-from ocean_tweak.core.sea.sampling import summed_field
-from ocean_tweak.core.surface_query import Field
+from ocean_tweak.core.sea.surfaces import Field, summed_field
 
 SIZE, SAMPLES = 240.0, 64
 GENERATOR = np.random.default_rng(5)

@@ -8,7 +8,8 @@ import pytest
 from scipy import optimize
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
-from ocean_tweak.core.surface_query import Values, inside_quad, newton
+from ocean_tweak.core.sea.query import inside_quad, newton
+from ocean_tweak.core.sea.surfaces import Values
 
 SEA = OceanParameters(resolution=128, domain_size=200.0, seed=3)
 GENERATOR = np.random.default_rng(5)

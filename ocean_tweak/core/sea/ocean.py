@@ -27,15 +27,15 @@ from ..masks.weights import Weights, weights
 from ..memory import check_memory, memory_need
 from ..parameters import OceanParameters
 from ..statistics import Statistics, sea_statistics
-from ..surface_query import SurfacePoints, find_points, refine_points
 from ..waves.contribution import MemoryNeed
 from .on import Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves
 from .placed_waves import strain_covariances as placed_strain_covariances
-from .query import find_summed_points
-from .sampling import Components, Grid, Key, Summed, closed, summed_field, unweighted
+from .query import SurfacePoints, find_points, find_summed_points, refine_points
+from .sampling import Components, Grid, Key, Summed, closed, unweighted
 from .statistics import statistics_of_patches
+from .surfaces import summed_field
 from .tile import TileSum
 
 Array = NDArray[np.float64]

@@ -15,17 +15,16 @@ from numpy.typing import NDArray
 from .. import foam_threshold
 from ..cascades.patch_seas import Part
 from ..channels import CHANNELS, memory_groups
-from ..exact_field import exact
 from ..initial_state import InitialState, initial_state
 from ..masks.weights import weights
 from ..memo import remembered
 from ..parameters import Foam, OceanParameters, Timing
 from ..sea_spectrum import SeaSpectrum
-from ..surface_query import Field, bilinear
 from ..synthesis import Rows, Synthesis
 from ..trough_damping import trough_damping
 from ..waves.kinds import KINDS
-from .sampling import Key, turned_field, weighted_field
+from .sampling import Key
+from .surfaces import Field, bilinear, exact, turned_field, weighted_field
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

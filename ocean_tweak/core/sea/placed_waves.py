@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ..masks.weights import weights
 from ..parameters import OceanParameters
-from ..surface_query import Field, Values
 from ..synthesis import X, Y, Z
 from ..waves.contribution import Contribution, Gives
 from .sampling import Key, unweighted, weighted
+from .surfaces import Field, Values
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..bilinear import Reader, wrapped
 from ..masks.weights import Weights
-from ..surface_query import Field, Values
 from ..synthesis import X, Y, Z
 
 Array = NDArray[np.float64]
@@ -121,50 +120,3 @@ class Summed:
             return result
         out[...] = result
         return out
-
-
-def turned_field(field: Field, rotation: float) -> Field:
-    """A patch's surface in the sea's axes."""
-    if not rotation:
-        return field
-    c, s = math.cos(rotation), math.sin(rotation)
-
-    def vectors(values: Array) -> Array:
-        return np.stack(
-            (c * values[:, 0] - s * values[:, 1], s * values[:, 0] + c * values[:, 1], values[:, 2]), axis=-1
-        )
-
-    def in_sea(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
-        (value, by_x, by_y), velocity = field(*into_patch(x, y, rotation), with_velocity)
-        turned_values = Values(vectors(value), vectors(c * by_x - s * by_y), vectors(s * by_x + c * by_y))
-        return turned_values, None if velocity is None else vectors(velocity)
-
-    return in_sea
-
-
-def weighted_field(field: Field, weights_at: Callable[[Array, Array], Weights] | None) -> Field:
-    """A surface times weights, both in the sea's axes."""
-    if weights_at is None:
-        return field
-
-    def under(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
-        (value, by_x, by_y), velocity = field(x, y, with_velocity)
-        weight, along_x, along_y = (part[:, np.newaxis] for part in weights_at(x, y))
-        values = Values(weight * value, weight * by_x + along_x * value, weight * by_y + along_y * value)
-        return values, None if velocity is None else weight * velocity
-
-    return under
-
-
-def summed_field(fields: Sequence[Field]) -> Field:
-    """The surface of several patches together."""
-
-    def total(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
-        parts = [field(x, y, with_velocity) for field in fields]
-        values = Values(
-            *(np.sum(columns, axis=0) for columns in zip(*(part for part, _ in parts), strict=True))
-        )
-        moving = [velocity for _, velocity in parts if velocity is not None]
-        return values, np.sum(moving, axis=0) if len(moving) == len(parts) else None
-
-    return total
