@@ -1,4 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ocean Tweak: directional wave spectra with true wave heights, for Blender and for batch rendering."""
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .export.sea_files import read_sea, write_sea
+
 __version__ = "0.1.0"
+__all__ = ["read_sea", "write_sea"]
+
+
+def __getattr__(name: str) -> object:
+    """What the package offers itself, loaded when it is asked for: Blender imports it when it starts."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from .export import sea_files
+
+    return getattr(sea_files, name)

@@ -20,7 +20,7 @@ from ..core.waves.contribution import Contribution, Outlook
 from ..core.waves.kinds import KINDS
 from ..core.waves.spectral import WaveLayer
 from ..export.cache.estimate import readable_bytes, seconds_of_statistics, statistics_memory
-from ..export.files import write_text
+from ..export.sea_files import write_sea
 from .outcome import DONE, UsageError
 from .progress import duration
 from .seas import Sea
@@ -74,7 +74,7 @@ def _save(path: Path, seas: Mapping[str, Sea]) -> None:
     if len(seas) > 1:
         raise UsageError("--save: the file has several oceans; choose one with --object")
     (sea,) = seas.values()
-    write_text(path, sea.shot.to_json() + "\n")
+    write_sea(path, sea.shot)
 
 
 def _plain(statistics: Statistics) -> dict[str, object]:

@@ -17,10 +17,8 @@ from ..core.parameters import parse_json
 from ..core.presets import built_in
 from ..core.printable import printable
 from ..core.shot import Shot
-from ..export.files import LARGEST_JSON, read_bytes
-from ..export.pictures import with_pictures
-from ..export.usd import apart
-from ..export.usd.reading import SUFFIXES
+from ..export.files import LARGEST_JSON
+from ..export.sea_files import read_sea, sea_of_text
 from .outcome import UsageError
 
 
@@ -71,24 +69,19 @@ def _file_sea_name(path: Path | None) -> str:
 def _file_shot(path: Path | None) -> Shot:
     if path is None:
         return Shot(OceanParameters())
-    if path.suffix in SUFFIXES:
-        return apart.read_package(path)[1].shot
     try:
-        text = _text_of(path)
+        return sea_of_text(_piped_text(), Path()) if path == _STDIN else read_sea(path)
     except UnicodeDecodeError as error:
         raise ParameterError("params", str(path), f"is not UTF-8 text ({error.reason})") from None
     except OSError as error:
         raise UsageError(f"--params {path}: {error.strerror}") from None
-    return Shot.from_dict(with_pictures(OceanParameters, parse_json(text), path.parent))
 
 
-def _text_of(path: Path) -> str:
-    if path == _STDIN:
-        content = sys.stdin.buffer.read(LARGEST_JSON + 1)
-        if len(content) > LARGEST_JSON:
-            raise OSError(None, f"is larger than {LARGEST_JSON / 1e6:g} MB")
-        return content.decode("utf-8")
-    return read_bytes(path, LARGEST_JSON).decode("utf-8")
+def _piped_text() -> str:
+    content = sys.stdin.buffer.read(LARGEST_JSON + 1)
+    if len(content) > LARGEST_JSON:
+        raise OSError(None, f"is larger than {LARGEST_JSON / 1e6:g} MB")
+    return content.decode("utf-8")
 
 
 def _chosen(oceans: Mapping[str, Sea], name: str | None) -> dict[str, Sea]:

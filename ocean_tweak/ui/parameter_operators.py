@@ -9,10 +9,8 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core import OceanParameters, ParameterError
-from ..core.parameters import parse_json
-from ..core.shot import Shot
-from ..export.files import LARGEST_JSON, read_bytes, write_text
-from ..export.pictures import with_pictures
+from ..export.files import LARGEST_JSON, read_bytes
+from ..export.sea_files import sea_of_text, write_sea
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import animate, shot_of
 from ..scene.source_images import open_image
@@ -57,8 +55,8 @@ class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper
         """Read the file and apply it as a whole, or not at all."""
         try:
             path = Path(self.filepath)
-            data = with_pictures(OceanParameters, parse_json(_read_text(path)), path.parent, open_image)
-            shot = Shot.from_dict(data)
+            text = read_bytes(path, LARGEST_JSON).decode("utf-8")
+            shot = sea_of_text(text, path.parent, open_image)
             apply_parameters(context, shot.parameters, self.use_frame_rate)
             animate(context.active_object, context.scene, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
@@ -83,15 +81,11 @@ class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper
         """Write the file; settings that are no sea are refused."""
         try:
             shot = shot_of(context.active_object, context.scene)
-            write_text(Path(self.filepath), shot.to_json() + "\n")
+            write_sea(self.filepath, shot)
         except (ParameterError, OSError) as error:
             return refuse(self, error)
         self.report({"INFO"}, translated("Parameters written to {file}").format(file=self.filepath))
         return {"FINISHED"}
-
-
-def _read_text(path: Path) -> str:
-    return read_bytes(path, LARGEST_JSON).decode("utf-8")
 
 
 CLASSES = (OCEAN_OT_import_parameters, OCEAN_OT_export_parameters)
