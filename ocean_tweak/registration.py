@@ -77,7 +77,7 @@ _COMMAND = "ocean_tweak"
 _commands: list[object] = []
 
 
-class _SceneOceans(Mapping[str, cli.Sea]):
+class _SceneOceans(Mapping[str, cli.FileSea]):
     """The oceans of the open file by object name; each sea is made when it is asked for.
 
     That raises ParameterError for what is no sea.
@@ -91,7 +91,7 @@ class _SceneOceans(Mapping[str, cli.Sea]):
             name = item.name if item.name not in self._oceans else item.name_full
             self._oceans[name] = item, shown[item]
 
-    def __getitem__(self, name: str) -> cli.Sea:
+    def __getitem__(self, name: str) -> cli.FileSea:
         """The sea of an object, over the frames of its scene."""
         item, scene = self._oceans[name]
         frames = scene_frames(scene)
@@ -104,7 +104,7 @@ class _SceneOceans(Mapping[str, cli.Sea]):
             _log.warning("%s: %s", name, error)
             cache = None
         needs = tuple(need.text for need in needs_of(item))
-        return cli.Sea(shot, own_uid(item), frames, cache, shot_maps(item), needs)
+        return cli.FileSea(shot, own_uid(item), frames, cache, shot_maps(item), needs)
 
     def __iter__(self) -> Iterator[str]:
         """The names."""
@@ -115,7 +115,7 @@ class _SceneOceans(Mapping[str, cli.Sea]):
         return len(self._oceans)
 
 
-def scene_oceans() -> Mapping[str, cli.Sea]:
+def scene_oceans() -> Mapping[str, cli.FileSea]:
     """The oceans of the open file by object name."""
     return _SceneOceans()
 

@@ -18,9 +18,9 @@ from ..export.python_process import module_command
 from ..export.usd.library import UsdError
 from .arguments import make_parser
 from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, message_of, remedy_of
-from .seas import SceneOceans, Sea
+from .seas import FileSea, SceneOceans
 
-__all__ = ["SceneOceans", "Sea", "command", "main"]
+__all__ = ["FileSea", "SceneOceans", "command", "main"]
 
 _LOG = logging.getLogger(__name__)
 

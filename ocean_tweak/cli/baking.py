@@ -44,7 +44,7 @@ from ..export.files import writable_folder
 from .checking import known_frames, wanted_frames
 from .outcome import DONE, FAILED, UsageError, message_of, remedy_of, shell_word
 from .progress import Progress, duration
-from .seas import Sea
+from .seas import FileSea
 from .stopping import end_now, stop_requested
 from .wanted_bake import cache_of, jobs_of, only_bake
 from .workers import make_in_processes
@@ -52,7 +52,7 @@ from .workers import make_in_processes
 _LOG = logging.getLogger(__name__)
 
 
-def bake(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
+def bake(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     """Bake each sea into its own folder of the cache; after one that fails or is stopped, no more."""
     for name, job in jobs_of(arguments, seas).items():
         code = _bake_sea(arguments, cache_of(arguments, seas[name]), job)

@@ -23,7 +23,7 @@ from ..export.cache.estimate import readable_bytes, seconds_of_statistics, stati
 from ..export.sea_files import write_sea
 from .outcome import DONE, UsageError
 from .progress import duration
-from .seas import Sea
+from .seas import FileSea
 
 _LOG = logging.getLogger(__name__)
 
@@ -31,7 +31,7 @@ _LOG = logging.getLogger(__name__)
 _LARGE = 8 * 2048**2
 
 
-def run(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
+def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     """Print what each sea will be; an animated one at its first frame."""
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
     for name, of_sea in parameters.items():
@@ -70,7 +70,7 @@ def _foretell(name: str, parameters: OceanParameters) -> None:
     )  # fmt: skip
 
 
-def _save(path: Path, seas: Mapping[str, Sea]) -> None:
+def _save(path: Path, seas: Mapping[str, FileSea]) -> None:
     if len(seas) > 1:
         raise UsageError("--save: the file has several oceans; choose one with --object")
     (sea,) = seas.values()

@@ -15,7 +15,7 @@ from ..export.farm.shot_job import BAKERS, Render, ShotJob
 from ..export.files import writable_folder
 from .outcome import DONE, UsageError
 from .progress import Progress
-from .seas import Sea
+from .seas import FileSea
 from .wanted_bake import jobs_of, known_cache
 
 __all__ = ["BAKERS", "FORMS", "PYTHON", "job"]
@@ -27,7 +27,7 @@ FORMS: dict[str, Callable[[Path, ShotJob], list[Path]]] = {"openjd": openjd.writ
 PYTHON = "python" if os.name == "nt" else "python3"
 
 
-def job(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> int:
+def job(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     """Write a job for a farm."""
     bakes = tuple(jobs_of(arguments, seas).values())
     caches = {known_cache(arguments.cache, sea) for sea in seas.values()}

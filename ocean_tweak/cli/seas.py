@@ -22,8 +22,8 @@ from ..export.sea_files import read_sea, sea_of_text
 from .outcome import UsageError
 
 
-class Sea(NamedTuple):
-    """A sea and what its .blend file says of it.
+class FileSea(NamedTuple):
+    """A sea of a file, and what a .blend file says of it.
 
     uid : tells it from other seas of the same name; None for one that has none of its own
     frames : of the scene
@@ -48,15 +48,15 @@ class Sea(NamedTuple):
 #: `--params -`: what is piped in
 _STDIN = Path("-")
 
-SceneOceans = Callable[[], Mapping[str, Sea]]
+SceneOceans = Callable[[], Mapping[str, FileSea]]
 
 
-def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> dict[str, Sea]:
+def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> dict[str, FileSea]:
     """The seas that the command is about, by name. Raises ParameterError or UsageError."""
     if arguments.preset is not None:
-        seas = {arguments.preset: Sea(Shot(built_in()[arguments.preset].parameters))}
+        seas = {arguments.preset: FileSea(Shot(built_in()[arguments.preset].parameters))}
     elif arguments.params is not None or scene_oceans is None:
-        seas = {_file_sea_name(arguments.params): Sea(_file_shot(arguments.params))}
+        seas = {_file_sea_name(arguments.params): FileSea(_file_shot(arguments.params))}
     else:
         seas = _chosen(scene_oceans(), arguments.object)
     return {name: sea._replace(shot=_changed(sea.shot, arguments)) for name, sea in seas.items()}
@@ -84,7 +84,7 @@ def _piped_text() -> str:
     return content.decode("utf-8")
 
 
-def _chosen(oceans: Mapping[str, Sea], name: str | None) -> dict[str, Sea]:
+def _chosen(oceans: Mapping[str, FileSea], name: str | None) -> dict[str, FileSea]:
     if not oceans:
         raise UsageError("the file holds no ocean: add one, or give --params FILE.json")
     if name is None:

@@ -13,10 +13,10 @@ from ..export.cache.records import recorded_frames
 from ..export.places import CACHE_VARIABLE, environment_cache
 from .outcome import UsageError
 from .progress import Progress
-from .seas import Sea
+from .seas import FileSea
 
 
-def jobs_of(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> dict[str, Job]:
+def jobs_of(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> dict[str, Job]:
     """What would be baked of each sea, by its name in the file. Raises UsageError or ParameterError."""
     if arguments.name and len(seas) > 1:
         raise UsageError("--name: the file has several oceans; choose one with --object")
@@ -25,7 +25,7 @@ def jobs_of(arguments: argparse.Namespace, seas: Mapping[str, Sea]) -> dict[str,
     return {name: _job(arguments, name, sea) for name, sea in seas.items()}
 
 
-def _job(arguments: argparse.Namespace, name: str, sea: Sea) -> Job:
+def _job(arguments: argparse.Namespace, name: str, sea: FileSea) -> Job:
     frames: tuple[Frame, ...] = arguments.frames or sea.frames
     if frames:
         sea.shot.check(frames)
@@ -36,7 +36,7 @@ def _job(arguments: argparse.Namespace, name: str, sea: Sea) -> Job:
     return Job(name, uid, sea.shot, (*arguments.maps, *needed), arguments.compression, frames)
 
 
-def cache_of(arguments: argparse.Namespace, sea: Sea) -> Path:
+def cache_of(arguments: argparse.Namespace, sea: FileSea) -> Path:
     """The folder of all bakes. Raises UsageError where nobody said which."""
     cache = known_cache(arguments.out, sea)
     if cache is None:
@@ -44,7 +44,7 @@ def cache_of(arguments: argparse.Namespace, sea: Sea) -> Path:
     return cache
 
 
-def known_cache(chosen: Path | None, sea: Sea) -> Path | None:
+def known_cache(chosen: Path | None, sea: FileSea) -> Path | None:
     """The folder of all bakes: the chosen one, else the .blend file's, else the environment's.
 
     Raises UsageError where the environment's is none of this system.

@@ -293,11 +293,11 @@ def test_frames_are_named_as_they_were_asked_for(capsys: pytest.CaptureFixture[s
 
 def test_several_seas_one_after_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Where one fails, the next is not begun as if nothing had been."""
-    from ocean_tweak.cli import Sea
+    from ocean_tweak.cli import FileSea
     from ocean_tweak.core import OceanParameters
     from ocean_tweak.core.shot import Shot
 
-    oceans = {name: Sea(Shot(OceanParameters(resolution=16, seed=len(name)))) for name in ("A", "BB")}
+    oceans = {name: FileSea(Shot(OceanParameters(resolution=16, seed=len(name)))) for name in ("A", "BB")}
     bad = tmp_path / "bad"
     bad.write_text("a file")
     assert main(["bake", "--frames", "1", "--out", str(bad)], lambda: oceans) == 1

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from ocean_tweak.cli import Sea, main
+from ocean_tweak.cli import FileSea, main
 from ocean_tweak.cli.outcome import shell_word
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot
@@ -44,7 +44,7 @@ def test_modules_of_the_current_folder_are_not_run(tmp_path: Path) -> None:
 def test_a_uid_of_a_scene_is_no_path(
     tmp_path: Path, caplog: pytest.LogCaptureFixture, uid: str, arguments: list[str]
 ) -> None:
-    seas = {"Sea": Sea(Shot(SMALL), uid, (1,))}
+    seas = {"Sea": FileSea(Shot(SMALL), uid, (1,))}
     code = main([*arguments, str(tmp_path / "chosen" / "out")], lambda: seas)
     assert code == (0 if uid == "" else 2)  # without one, it follows from the name
     if code:

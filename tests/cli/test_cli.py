@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocean_tweak.cli import Sea, info, main
+from ocean_tweak.cli import FileSea, info, main
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, memory
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.exr import read_image
@@ -238,8 +238,8 @@ def test_a_tilde_is_the_home_without_a_shell(
 
 def test_scene_oceans(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     oceans = {
-        "Bay.001": Sea(Shot(OceanParameters(resolution=16)), "0123abcd", (5, 6)),
-        "Open/Sea": Sea(Shot(OceanParameters(resolution=32, layers=(WaveLayer(wind_speed=20.0),)))),
+        "Bay.001": FileSea(Shot(OceanParameters(resolution=16)), "0123abcd", (5, 6)),
+        "Open/Sea": FileSea(Shot(OceanParameters(resolution=32, layers=(WaveLayer(wind_speed=20.0),)))),
     }
     assert main(["bake", "--frames", "2", "--out", str(tmp_path)], lambda: oceans) == 0
     assert image_names(tmp_path) == ["Bay_001_disp.0002.exr", "Open_Sea_disp.0002.exr"]

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from ocean_tweak.cli import Sea, main
+from ocean_tweak.cli import FileSea, main
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot as SeaOfShot
 from tools import environments
@@ -41,7 +41,9 @@ def compile_job(run: Run) -> Callable[..., dict[str, Any]]:
 
 
 def test_tasks_wait_for_what_they_need(compile_job: Callable[..., dict[str, Any]], tmp_path: Path) -> None:
-    seas = {name: Sea(SeaOfShot(OceanParameters(resolution=32)), None, tuple(range(1, 9))) for name in "AB"}
+    seas = {
+        name: FileSea(SeaOfShot(OceanParameters(resolution=32)), None, tuple(range(1, 9))) for name in "AB"
+    }
     blend = tmp_path / "shot.blend"
     blend.touch()
     arguments = ["job", "--form", "flamenco", "--out", str(tmp_path / "job"), "--blend", str(blend)]
@@ -72,7 +74,7 @@ def test_stepped_frames_are_named_one_by_one(
     compile_job: Callable[..., dict[str, Any]], tmp_path: Path
 ) -> None:
     """Flamenco knows no steps; what it makes of them is what the render's script reads."""
-    seas = {"A": Sea(SeaOfShot(OceanParameters(resolution=32)), None, (1,))}
+    seas = {"A": FileSea(SeaOfShot(OceanParameters(resolution=32)), None, (1,))}
     blend = tmp_path / "shot.blend"
     blend.touch()
     arguments = ["job", "--form", "flamenco", "--out", str(tmp_path / "job"), "--blend", str(blend)]
@@ -110,7 +112,7 @@ def test_settings_are_of_kinds_that_flamenco_knows(
 
 def test_paths_and_names_stay_as_they_are(compile_job: Callable[..., dict[str, Any]], tmp_path: Path) -> None:
     """Whatever they hold: names of other settings, quotes, ends of scripts, or a minus at the front."""
-    seas = {"-<cache>\u2028": Sea(SeaOfShot(OceanParameters(resolution=32)), None, (1,))}
+    seas = {"-<cache>\u2028": FileSea(SeaOfShot(OceanParameters(resolution=32)), None, (1,))}
     blend = tmp_path / "'\"\\ <script> é海 `${x}`.blend"
     blend.touch()
     cache, pictures = tmp_path / "<pictures>$&<frames></script>", tmp_path / "<cache>"

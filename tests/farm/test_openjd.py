@@ -12,7 +12,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from ocean_tweak.cli import Sea, main
+from ocean_tweak.cli import FileSea, main
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.shot import Shot as SeaOfShot
 from tools import environments, real_blender
@@ -76,8 +76,8 @@ def test_openjd_accepts_it(
 
 def test_oceans_of_a_file_are_baked_side_by_side(openjd: Run, tmp_path: Path) -> None:
     seas = {
-        "Bay.001": Sea(SeaOfShot(OceanParameters(resolution=32)), "0123abcd", (1, 2)),
-        "Open Sea": Sea(SeaOfShot(OceanParameters(resolution=64)), None, (1, 2)),
+        "Bay.001": FileSea(SeaOfShot(OceanParameters(resolution=32)), "0123abcd", (1, 2)),
+        "Open Sea": FileSea(SeaOfShot(OceanParameters(resolution=64)), None, (1, 2)),
     }
     (tmp_path / "shot.blend").touch()
     out = tmp_path / "job"
@@ -97,7 +97,7 @@ NAMES = ["{{Param.Nothing}}", "a{{b", "a}}b{{{{", "x" * 200, "a\nb\u2028c\x1b[31
 
 @pytest.mark.parametrize("stem", NAMES)
 def test_any_name_of_a_file_makes_a_job(openjd: Run, tmp_path: Path, stem: str) -> None:
-    seas = {name: Sea(SeaOfShot(OceanParameters(resolution=32)), None, (1,)) for name in ("A", "{{B}}")}
+    seas = {name: FileSea(SeaOfShot(OceanParameters(resolution=32)), None, (1,)) for name in ("A", "{{B}}")}
     blend = tmp_path / f"{stem}.blend"
     blend.touch()
     arguments = ["job", "--frames", "1-2", "--blend", str(blend), "--out", str(tmp_path / "job")]

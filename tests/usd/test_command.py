@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pxr import Sdf, Usd, Vt
 
-from ocean_tweak.cli import Sea, main
+from ocean_tweak.cli import FileSea, main
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.usd.package import with_samples_between
 from ocean_tweak.export.usd.verify import verify
@@ -178,7 +178,7 @@ def test_a_changed_record_is_refused(exported, tmp_path, capsys):
 
 
 def test_the_oceans_of_a_file(tmp_path, capsys):
-    oceans = {"Bay": Sea(shot(), frames=(1001, 1002)), "Pond": Sea(shot())}
+    oceans = {"Bay": FileSea(shot(), frames=(1001, 1002)), "Pond": FileSea(shot())}
     command = ["usd", "--form", "points", "--out", str(tmp_path / "bay.usd")]
     assert main(command, lambda: oceans) == 2
     assert "choose one with --object, of Bay, Pond" in capsys.readouterr().err
