@@ -5,6 +5,11 @@ A process runs this module with the folder as its argument: it reads a JSON line
 them from what lies in the folder and prints a JSON line a frame. It locks nothing: whoever started it holds
 the lock. When its input is closed, as it is when whoever started it is gone, it ends: after its frame or,
 where that takes too long, in the middle of it.
+
+Python's own pool of processes, `concurrent.futures.ProcessPoolExecutor`, does none of this. Where one process
+is killed, it ends the others in the middle of their frames and gives up all that was asked for. Where whoever
+started them is killed, even by SIGTERM, they stay and wait for ever. And they take modules from the folder
+that one stands in, which somebody else may have sent. Only threads are its: each minds one process.
 """
 
 from __future__ import annotations
@@ -20,6 +25,8 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
@@ -59,148 +66,148 @@ def make_in_processes(
     Raises what ended a process, as OSError or CacheError, or CacheError when one dies again and again.
     """
     size = -(-len(frames) // workers)
-    events: queue.SimpleQueue[tuple[_Process, dict[str, Any] | None]] = queue.SimpleQueue()
-    running = [
-        _Process(folder, job, frames[start : start + size], events) for start in range(0, len(frames), size)
+    heard: queue.SimpleQueue[BakedFrame | tuple[Frame, str] | None] = queue.SimpleQueue()
+    stretches = [
+        _Stretch(folder, job, list(frames[start : start + size]), heard, stopped)
+        for start in range(0, len(frames), size)
     ]
+    with ThreadPoolExecutor(len(stretches), "Ocean Tweak workers") as threads:
+        minding = [threads.submit(stretch.make) for stretch in stretches]
+        under_way = len(stretches)
+        try:
+            while under_way:
+                # where one fails, the others end after their frame
+                if stopped() or any(each.done() and each.exception() for each in minding):
+                    _end(stretches)
+                try:
+                    said = heard.get(timeout=_LOOK)
+                except queue.Empty:
+                    continue
+                if isinstance(said, BakedFrame):
+                    yield said
+                elif said is not None:
+                    tell(*said)
+                else:
+                    under_way -= 1
+        finally:
+            _end(stretches)
+    for each in minding:
+        each.result()
+
+
+def _end(stretches: Sequence[_Stretch]) -> None:
+    for stretch in stretches:
+        stretch.end()
+
+
+@dataclass
+class _Stretch:
+    """Some frames, and the process that makes what is left of them.
+
+    heard : takes the frames, what is done for one that takes long, and None at the end
+    stopped : whether nobody wants them any more
+    """
+
+    folder: Path
+    job: Job
+    left: list[Frame]
+    heard: queue.SimpleQueue[BakedFrame | tuple[Frame, str] | None]
+    stopped: Callable[[], bool]
+    process: subprocess.Popen[str] | None = None
+    is_ended: threading.Event = field(default_factory=threading.Event)
+    said: list[str] = field(default_factory=list)
     problem: CacheError | OSError | None = None
-    try:
-        while running:
-            if stopped():
-                _end(running)
-            try:
-                process, line = events.get(timeout=_LOOK)
-            except queue.Empty:
-                continue
-            if line is not None:
-                baked = process.made(line, tell)
-                if baked is not None:
-                    yield baked
-                continue
-            running.remove(process)
-            if process.succeeded() or stopped() or problem is not None:
-                continue
-            try:
-                running.append(process.again())
-            except (CacheError, OSError) as error:  # the others end after their frame
-                problem = error
-                _end(running)
-    finally:
-        _end(running)
-        for process in running:
-            process.wait()
-    if problem is not None:
-        raise problem
 
+    def make(self) -> None:
+        """Make them, by one process after another where they are killed. Raises OSError or CacheError."""
+        deaths = 0
+        try:
+            while not self._is_over():
+                before = len(self.left)
+                code = self._run()
+                deaths = deaths + 1 if len(self.left) == before else 1
+                if not self._is_over():
+                    self._refuse(code, deaths)
+                    _LOG.info("a process of the bake ended with code %s; another goes on", code)
+        finally:
+            self.heard.put(None)
 
-def _end(running: Sequence[_Process]) -> None:
-    for process in running:
-        process.end()
+    def end(self) -> None:
+        """Let the process end after its frame; there is no other one then."""
+        self.is_ended.set()
+        self._close()
 
+    def _close(self) -> None:
+        if self.process is not None and self.process.stdin is not None:
+            with contextlib.suppress(OSError):
+                self.process.stdin.close()
 
-class _Process:
-    """A process that makes some frames, and what is left of them."""
+    def _is_over(self) -> bool:
+        return not self.left or self.is_ended.is_set() or self.stopped()
 
-    def __init__(
-        self,
-        folder: Path,
-        job: Job,
-        frames: Sequence[Frame],
-        events: queue.SimpleQueue[tuple[_Process, dict[str, Any] | None]],
-        deaths: int = 0,
-    ) -> None:
-        self.folder = folder
-        self.job = job
-        self.left = list(frames)
-        self._events = events
-        self._deaths = deaths
-        self._process = subprocess.Popen(
-            [*module_command(__name__), str(folder)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            env=environment(), text=True, encoding="utf-8", errors="replace",
-        )  # fmt: skip
-        self._said: list[str] = []
-        self._problem: CacheError | OSError | None = None
-        self._readers = [
-            threading.Thread(target=self._read_errors, daemon=True),
-            threading.Thread(target=self._read_frames, daemon=True),
-        ]
-        for reader in self._readers:
-            reader.start()
-        # not among the arguments, whose length systems limit
-        order = {
-            "frames": format_frames(frames),
-            "asked": format_frames(job.frames),
-            "log": logs.level(),
-        }
-        with contextlib.suppress(OSError):  # it has ended already, and is asked why
-            assert self._process.stdin is not None
-            self._process.stdin.write(json.dumps(order) + "\n")
-            self._process.stdin.flush()
-
-    def made(self, line: dict[str, Any], tell: Callable[[Frame, str], None]) -> BakedFrame | None:
-        """Take a line: a frame, or None where it is what ended the process or what it is doing."""
-        if "failed" in line:
-            code, path = line["errno"], line["path"]
-            self._problem = OSError(code, os.strerror(code), path) if code else CacheError(line["failed"])
-            return None
-        (frame,) = parse_frames(line["frame"])
-        if "doing" in line:
-            tell(frame, line["doing"])
-            return None
-        self.left.remove(frame)
-        self._deaths = 0
-        return BakedFrame(frame, tuple(map(Path, line["paths"])), line["seconds"])
-
-    def succeeded(self) -> bool:
-        """Whether it made all of its frames; it has ended."""
-        return self.wait() == DONE and not self.left
-
-    def again(self) -> _Process:
-        """Another process for what is left. Raises OSError or CacheError where that does not help."""
-        code, said = self.wait(), " ".join(self._said).strip()
-        if self._problem is not None:
-            raise self._problem
+    def _refuse(self, code: int, deaths: int) -> None:
+        """Raise OSError or CacheError where another process would not help."""
+        said = " ".join(self.said).strip()
+        if self.problem is not None:
+            raise self.problem
         if code == FAILED:  # Python's own end by an error, which would come again
             raise CacheError(f"a process of the bake failed: {said or 'without a word'}")
-        if self._deaths + 1 >= _MOST_DEATHS:
+        if deaths >= _MOST_DEATHS:
             raise CacheError(
                 f"a process of the bake ended {_MOST_DEATHS} times with code {code} before it had made "
                 f"frame {self.left[0]}: {said or 'perhaps there is not enough memory; use fewer workers'}"
             )
-        _LOG.info("a process of the bake ended with code %s; another goes on", code)
-        return _Process(self.folder, self.job, self.left, self._events, self._deaths + 1)
 
-    def end(self) -> None:
-        """Let it end after its frame."""
-        stdin = self._process.stdin
-        if stdin is not None and not stdin.closed:
-            with contextlib.suppress(OSError):
-                stdin.close()
-
-    def wait(self) -> int:
-        """Wait until it has ended and all that it said is here. Returns its code."""
-        code = self._process.wait()
-        for reader in self._readers:
-            if reader is not threading.current_thread():
-                reader.join()
-        self.end()
+    def _run(self) -> int:
+        """Let a process make what is left. Returns its code when it has ended."""
+        self.said.clear()
+        self.process = process = subprocess.Popen(
+            [*module_command(__name__), str(self.folder)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            env=environment(), text=True, encoding="utf-8", errors="replace",
+        )  # fmt: skip
+        errors = threading.Thread(target=self._read_errors, args=(process.stderr,), daemon=True)
+        errors.start()
+        # not among the arguments, whose length systems limit
+        order = {
+            "frames": format_frames(self.left),
+            "asked": format_frames(self.job.frames),
+            "log": logs.level(),
+        }
+        with contextlib.suppress(OSError, ValueError):  # it has ended already, or shall
+            assert process.stdin is not None
+            process.stdin.write(json.dumps(order) + "\n")
+            process.stdin.flush()
+        if self.is_ended.is_set():  # meanwhile
+            self._close()
+        for line in _lines(process.stdout):
+            try:
+                said = json.loads(line)
+            except ValueError:  # what was being written when it was killed, or what a library had to say
+                continue
+            if isinstance(said, dict):
+                self._take(said)
+        errors.join()
+        code = process.wait()
+        self._close()
         return code
 
-    def _read_frames(self) -> None:
-        try:
-            for line in _lines(self._process.stdout):
-                # what was being written when it was killed, or what a library had to say
-                with contextlib.suppress(ValueError):
-                    said = json.loads(line)
-                    if isinstance(said, dict):
-                        self._events.put((self, said))
-        finally:
-            self._events.put((self, None))
+    def _take(self, line: dict[str, Any]) -> None:
+        """Take a line: a frame, what is done for one, or what ends the process."""
+        if "failed" in line:
+            code, path = line["errno"], line["path"]
+            self.problem = OSError(code, os.strerror(code), path) if code else CacheError(line["failed"])
+            return
+        (frame,) = parse_frames(line["frame"])
+        if "doing" in line:
+            self.heard.put((frame, line["doing"]))
+            return
+        self.left.remove(frame)
+        self.heard.put(BakedFrame(frame, tuple(map(Path, line["paths"])), line["seconds"]))
 
-    def _read_errors(self) -> None:
-        for line in _lines(self._process.stderr):
-            self._said = [*self._said[-3:], logs.relay(line, _LOG)]
+    def _read_errors(self, stream: IO[str] | None) -> None:
+        for line in _lines(stream):
+            self.said = [*self.said[-3:], logs.relay(line, _LOG)]
 
 
 def _lines(stream: IO[str] | None) -> Iterator[str]:
