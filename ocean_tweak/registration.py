@@ -20,39 +20,36 @@ from .scene.settings import OceanObjectError, all_oceans, shown_oceans
 from .scene.shots import scene_frames, shot_of
 from .scene.view_layers import is_in_view_layer
 from .ui import (
-    asset_operators,
+    adding,
     bake_operators,
     camera_operators,
-    error_overlay,
     float_operators,
     layer_operators,
     mask_operators,
     material_operators,
     node_operators,
     object_menu,
-    operators,
+    overlays,
     panels,
     parameter_operators,
     patch_operators,
     preferences,
     preset_operators,
-    preset_thumbnails,
+    previews,
     properties,
     scene_operators,
     sea_operators,
     sequence_operators,
     usd_operators,
     wind_operators,
-    wind_overlay,
 )
 
 CLASSES = (
     *preferences.CLASSES,
     *properties.CLASSES,
-    *operators.CLASSES,
+    *adding.CLASSES,
     *parameter_operators.CLASSES,
     *sequence_operators.CLASSES,
-    *asset_operators.CLASSES,
     *bake_operators.CLASSES,
     *usd_operators.CLASSES,
     *layer_operators.CLASSES,
@@ -141,7 +138,7 @@ def register(package: str | None = None) -> None:
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
-    preset_thumbnails.register()
+    previews.register()
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_object.append(object_menu.draw_object_menu)
@@ -151,8 +148,7 @@ def register(package: str | None = None) -> None:
     bpy.types.TOPBAR_MT_file_import.append(usd_operators.draw_import_menu)
     CommandProcess.command_line = cli.command()
     handlers.register()
-    wind_overlay.register()
-    error_overlay.register()
+    overlays.register()
     _commands.append(bpy.utils.register_cli_command(_COMMAND, run_command))
 
 
@@ -161,8 +157,7 @@ def unregister() -> None:
     atexit.unregister(unregister)
     while _commands:
         bpy.utils.unregister_cli_command(_commands.pop())
-    error_overlay.unregister()
-    wind_overlay.unregister()
+    overlays.unregister()
     handlers.unregister()
     asset_library.remove()
     bpy.types.TOPBAR_MT_file_import.remove(usd_operators.draw_import_menu)
@@ -172,7 +167,7 @@ def unregister() -> None:
     bpy.types.VIEW3D_MT_object.remove(object_menu.draw_object_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
-    preset_thumbnails.unregister()
+    previews.unregister()
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -19,7 +19,8 @@ from . import alarm
 from .animated import clock_of, is_animated
 from .cache_place import is_left_behind
 from .image_sequence import SequenceError, baked_frames, file_of, folder_of, shown_frame, unbaked_frames
-from .settings import OceanSettings, set_changed, settings_of
+from .modifiers import set_changed
+from .settings import OceanSettings, settings_of
 
 #: s: times that are nearer are the same; Blender keeps them as float32
 _SAME_TIME = 1e-3

@@ -282,7 +282,6 @@ def register() -> None:
     _attach()
     if _has_file():
         show_that_it_runs()
-        needs.look()
     _subscribe()
 
 

@@ -2,12 +2,12 @@
 """The modifiers that move the grid: geometry nodes, or Displace and nodes that write what shots read.
 
 Where a render is finer than the viewport, it has modifiers of its own. All give the same vertices and
-attributes.
+attributes. Displace reads image textures.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,6 @@ from ..nodes.ocean import ocean_group
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
 from .grid_mesh import Grid
-from .textures import assign, show
 
 Images = Mapping[str, bpy.types.Image]
 
@@ -234,8 +233,8 @@ def _set_texture(
     if texture.image != image:
         # whether the modifier depends on time is found out only when its texture is assigned
         modifier.texture = None
-    show(texture, image, shown.frames)
-    assign(
+    _show_image(texture, image, shown.frames)
+    set_changed(
         modifier,
         texture=texture, direction="RGB_TO_XYZ", space="LOCAL", mid_level=0.0, strength=shown.scale,
         texture_coords="UV", uv_layer=TEXTURE_COORDINATES,
@@ -252,7 +251,7 @@ def _only_modifiers(
     own = own_modifiers(item, textures)
     place = min((list(item.modifiers).index(modifier) for _, modifier in own), default=0)
     for modifier in [modifier for _, modifier in own if is_of_library(modifier)]:
-        assign(modifier, show_viewport=False, show_render=False)
+        set_changed(modifier, show_viewport=False, show_render=False)
         place += 1
     own = [(purpose, modifier) for purpose, modifier in own if not is_of_library(modifier)]
     # one that others stood in for before the object was made local comes last
@@ -302,3 +301,41 @@ def _new_modifier(item: bpy.types.Object, purpose: str, place: int) -> str:
     name = modifier.name
     item.modifiers.move(len(item.modifiers) - 1, place)
     return name
+
+
+def new_texture(name: str) -> bpy.types.Texture:
+    """An image texture that reads texels as they are: bilinear, repeating, not clamped."""
+    texture = bpy.data.textures.new(name, "IMAGE")
+    texture.extension = "REPEAT"
+    texture.use_interpolation = True
+    texture.use_clamp = False
+    # any other size blurs or shifts the texels
+    texture.filter_size = 1.0
+    if hasattr(texture, "filter_type"):  # until 4.5
+        texture.filter_type = "BOX"
+        texture.use_mipmap = False
+    return texture
+
+
+def _show_image(texture: bpy.types.Texture, image: bpy.types.Image, frames: Sequence[int] | None) -> None:
+    """Let a texture read an image; `frames` are those that a sequence has, ascending and without a gap."""
+    set_changed(texture, image=image)
+    if frames is None:
+        return
+    first, last = frames[0], frames[-1]
+    # File number = frame_offset + frame - frame_start + 1, and what is added to the offset is held between
+    # 0 and the duration. To begin at 0 rather than 1 holds the first frame too; a single file has no 0.
+    begin = 0 if last > first else 1
+    set_changed(
+        texture.image_user,
+        frame_start=first + 1 - begin, frame_offset=first - begin, frame_duration=last - first + begin,
+        use_auto_refresh=True, use_cyclic=False,
+    )  # fmt: skip
+    texture.update_tag()
+
+
+def set_changed(target: object, **values: object) -> None:
+    """Set what differs: what is set again marks the file as changed, and its owner for evaluation."""
+    for name, value in values.items():
+        if getattr(target, name) != value:
+            setattr(target, name, value)

@@ -9,8 +9,8 @@ import bpy
 
 from ..nodes.names import MAP_INPUTS
 from . import live_image
+from .modifiers import new_texture
 from .settings import all_oceans, settings_of
-from .textures import new_texture
 
 
 def own_image(item: bpy.types.Object, owner: str, name: str, label: str, samples: int) -> bpy.types.Image:

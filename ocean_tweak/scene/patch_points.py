@@ -20,11 +20,10 @@ from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
 from .image_sequence import baked_frames, baked_stretch
-from .modifiers import is_of_library
+from .modifiers import is_of_library, set_changed
 from .plan import Plan, velocity_scale
 from .settings import OceanSettings
 from .stored_paths import image_file, relative
-from .textures import assign
 
 _NAME = "Ocean Tweak Points"
 _FOLDER = re.compile(r".*[\\/]")
@@ -101,7 +100,7 @@ def read_none(item: bpy.types.Object) -> None:
     """Let a patch's mesh hold the patch itself."""
     modifier = modifier_of(item)
     if modifier is not None and is_of_library(modifier):
-        assign(modifier, show_viewport=False, show_render=False)
+        set_changed(modifier, show_viewport=False, show_render=False)
     elif modifier is not None:
         item.modifiers.remove(modifier)
 

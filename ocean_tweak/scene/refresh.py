@@ -29,9 +29,9 @@ from . import (
 )
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
-from .modifiers import Images, Shown, Textures
+from .modifiers import Images, Shown, Textures, set_changed
 from .plan import Plan, plan_of, velocity_scale
-from .settings import OceanObjectError, OceanSettings, set_changed, settings_of
+from .settings import OceanObjectError, OceanSettings, settings_of
 from .vertex_attributes import Fields, resampled, tiled
 
 #: what a user can cause: shown with the object; anything else is a bug and raises

@@ -199,13 +199,6 @@ def settings_of(item: bpy.types.Object) -> OceanSettings:
         raise RuntimeError("Ocean Tweak is not enabled: call registration.register() first") from None
 
 
-def set_changed(target: object, **values: object) -> None:
-    """Set what differs: writing a property again would mark the file as changed on every frame."""
-    for name, value in values.items():
-        if getattr(target, name) != value:
-            setattr(target, name, value)
-
-
 def scene_of(item: bpy.types.Object) -> bpy.types.Scene:
     """The scene whose units and frame an object has: the context's, unless it is in other ones only."""
     scene, scenes = bpy.context.scene, item.users_scene

@@ -1,7 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators share that add an ocean."""
+"""Adding an ocean, and what operators share that do."""
 
 import bpy
+from bpy.props import EnumProperty
+
+from ..core import OceanParameters, Timing
+from ..scene import ocean_object
+from ..scene.settings import METHODS, VIEWPORT_RESOLUTION
+from ..scene.units import frame_rate, metres_per_unit
+from .active_ocean import refuse
 
 
 class InObjectMode:
@@ -23,3 +30,45 @@ def make_active(item: bpy.types.Object, layer: bpy.types.ViewLayer) -> None:
     if item.name in layer.objects:
         item.select_set(True, view_layer=layer)
         layer.objects.active = item
+
+
+def default_sea(scene: bpy.types.Scene) -> OceanParameters:
+    """The core's default, a strong breeze on the open sea, with time zero at the scene's first frame."""
+    return OceanParameters(timing=Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
+
+
+class MESH_OT_ocean_tweak_add(InObjectMode, bpy.types.Operator):
+    """Add a patch of sea that moves on playback."""
+
+    bl_idname = "mesh.ocean_tweak_add"
+    bl_description = "Add a patch of sea that moves on playback"
+    bl_label = "Ocean Tweak"
+    bl_options = {"REGISTER", "UNDO"}
+
+    method: EnumProperty(
+        name="Method",
+        items=[(key, *texts) for key, texts in METHODS.items()],
+        default="NODES",
+        description="What moves the mesh",
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Add the default sea around the 3D cursor."""
+        scene = context.scene
+        parameters = default_sea(scene)
+        try:
+            item = ocean_object.add(
+                scene, parameters, method=self.method, collection=context.collection,
+                viewport_resolution=VIEWPORT_RESOLUTION,
+            )  # fmt: skip
+        except ocean_object.EXPECTED_ERRORS as error:
+            return refuse(self, error)
+        half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))
+        item.location = scene.cursor.location
+        item.location.x -= half
+        item.location.y -= half
+        make_active(item, context.view_layer)
+        return {"FINISHED"}
+
+
+CLASSES = (MESH_OT_ocean_tweak_add,)

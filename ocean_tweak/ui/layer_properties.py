@@ -36,8 +36,8 @@ from ..scene.settings import LAYER_KINDS, scene_of
 from ..scene.source_images import ImageSource
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties
-from .changes import changed
 from .mask_properties import OCEAN_PG_mask, channels_property
+from .parameter_properties import changed
 
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
 _SHOWN = {"options": set(), "update": changed, **_OVERRIDE}

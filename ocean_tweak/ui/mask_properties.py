@@ -13,7 +13,7 @@ from ..core.plain_data import to_plain
 from ..scene import source_images
 from ..scene.source_images import ImageSource
 from . import parameter_properties
-from .changes import changed
+from .parameter_properties import changed
 
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
 _SHOWN = {"options": set(), "update": changed, **_OVERRIDE}

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wind of the active ocean's layers as arrows in the 3D view."""
+"""What is drawn over the 3D view: the wind of the active ocean's layers as arrows, and what keeps oceans from
+being shown, since the sea that stands there then is an old one.
+"""
 
 from __future__ import annotations
+
+import textwrap
 
 import bpy
 import numpy as np
@@ -9,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..core import WindFieldLayer
 from ..core.waves.wind_field.wind import bilinear
+from ..scene import alarm
 from ..scene.animated import clock_of
 from ..scene.refresh import sea_of_settings
 from ..scene.settings import is_ocean, settings_of
@@ -20,6 +25,12 @@ _ARROWS = 16
 _LENGTH, _HEAD = 0.9, 0.3
 _COLOUR, _WIDTH = (1.0, 0.65, 0.1, 0.9), 1.5
 
+_FONT = 0  # Blender's own
+_SIZE, _LINE, _MARGIN = 13.0, 18.0, 14.0  # pixels, at a scale of 1
+_BELOW_TOP = 75.0  # Blender's own text about the view stands above
+_LETTER = 0.55  # width of a letter over the size of the font
+_TEXT, _SHADOW = (1.0, 0.5, 0.4, 1.0), (0.0, 0.0, 0.0, 0.8)
+
 # what Blender gave for the drawing, needed to take it back
 _handles: list[object] = []
 
@@ -27,7 +38,8 @@ _handles: list[object] = []
 def register() -> None:
     """Draw in every 3D view; without a window there is none."""
     if not bpy.app.background:
-        _handles.append(bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+        for draw, kind in ((_draw_wind, "POST_VIEW"), (_draw_troubles, "POST_PIXEL")):
+            _handles.append(bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", kind))
 
 
 def unregister() -> None:
@@ -36,7 +48,7 @@ def unregister() -> None:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
 
 
-def lines(item: bpy.types.Object, scene: bpy.types.Scene) -> NDArray[np.float32]:
+def wind_lines(item: bpy.types.Object, scene: bpy.types.Scene) -> NDArray[np.float32]:
     """(n, 2, 3) ends of the lines of all arrows, in Blender units of the ocean's own space."""
     settings = settings_of(item)
     shown = [layer.wind_field.show_vectors for layer in settings.layers if layer.kind == "WIND_FIELD"]
@@ -95,12 +107,12 @@ def wind_now(
     return layer.strength * ((1.0 - share) * values[0] + share * values[1])
 
 
-def _draw() -> None:
+def _draw_wind() -> None:
     context = bpy.context
     item, space = context.active_object, context.space_data
     if not (space.overlay.show_overlays and is_ocean(item) and item.visible_get()):
         return
-    ends = lines(item, context.scene)
+    ends = wind_lines(item, context.scene)
     if not len(ends):
         return
     import gpu
@@ -117,3 +129,32 @@ def _draw() -> None:
         gpu.matrix.multiply_matrix(item.matrix_world)
         batch.draw(shader)
     gpu.state.blend_set("NONE")
+
+
+def trouble_lines(width: float) -> list[str]:
+    """What is written, wrapped to a width in pixels at a scale of 1."""
+    letters = max(int((width - 2.0 * _MARGIN) / (_LETTER * _SIZE)), 20)
+    return [line for text in alarm.troubles() for line in textwrap.wrap(text, letters)]
+
+
+def _draw_troubles() -> None:
+    area, region = bpy.context.area, bpy.context.region
+    scale = bpy.context.preferences.system.ui_scale
+    # bars lie over the view
+    beside = {part.type: part for part in area.regions}
+    left, right = (beside[kind].width if kind in beside else 0 for kind in ("TOOLS", "UI"))
+    bars = sum(beside[kind].height for kind in ("HEADER", "TOOL_HEADER") if kind in beside)
+    written = trouble_lines((region.width - left - right) / scale)
+    if not written:
+        return
+    import blf
+
+    blf.size(_FONT, _SIZE * scale)
+    blf.color(_FONT, *_TEXT)
+    blf.enable(_FONT, blf.SHADOW)
+    blf.shadow(_FONT, 3, *_SHADOW)
+    top = region.height - bars - _BELOW_TOP * scale
+    for index, line in enumerate(written):
+        blf.position(_FONT, left + _MARGIN * scale, top - index * _LINE * scale, 0.0)
+        blf.draw(_FONT, line)
+    blf.disable(_FONT, blf.SHADOW)

@@ -22,8 +22,8 @@ from ..scene.settings import OceanObjectError
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties
 from .active_ocean import nearest
-from .changes import changed
 from .layer_properties import set_count
+from .parameter_properties import changed
 
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
 

@@ -34,8 +34,8 @@ from ..scene.settings import (
 from ..scene.source_images import ImageSource
 from ..scene.units import frame_rate, metres_per_unit, time_stretch
 from . import layer_properties, mask_properties, parameter_properties, patch_properties
-from .changes import changed, path_changed
 from .layer_properties import OCEAN_PG_layer
+from .parameter_properties import changed, path_changed
 from .patch_properties import OCEAN_PG_patch
 from .usd_properties import OCEAN_PG_usd
 

@@ -17,7 +17,7 @@ from bpy.props import (
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS
 from ..export.usd.package import MOST_TILES, UNITS, UP_AXES
-from .changes import path_changed
+from .parameter_properties import path_changed
 
 _KEPT = {"options": set(), "override": {"LIBRARY_OVERRIDABLE"}}
 

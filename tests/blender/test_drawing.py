@@ -61,14 +61,14 @@ def everything(extension, draw, ocean):  # noqa: F811
     classes = extension("registration").CLASSES
     operators = [each for each in classes if issubclass(each, bpy.types.Operator) and hasattr(each, "poll")]
     assert len(operators) > 30
-    overlays = extension("ui.error_overlay"), extension("ui.wind_overlay")
+    overlays = extension("ui.overlays")
 
     def run():
         drawn = draw(ocean)
         for operator in operators:
             operator.poll(bpy.context)
-        overlays[0].lines(500.0)
-        overlays[1].lines(ocean, bpy.context.scene)
+        overlays.trouble_lines(500.0)
+        overlays.wind_lines(ocean, bpy.context.scene)
         return drawn
 
     return run

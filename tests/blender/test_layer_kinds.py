@@ -253,12 +253,12 @@ def test_a_bake_of_every_kind_and_its_parameters(ocean, rich, empty_scene, tmp_p
 
 
 def test_arrows_point_where_the_wind_blows(ocean, core, extension, empty_scene):
-    overlay = extension("ui.wind_overlay")
-    assert overlay.lines(ocean, empty_scene).shape == (0, 2, 3)
+    overlay = extension("ui.overlays")
+    assert overlay.wind_lines(ocean, empty_scene).shape == (0, 2, 3)
     bpy.ops.ocean.layer_add(kind="WIND_FIELD", wind="OPPOSED_HALVES")
-    assert overlay.lines(ocean, empty_scene).shape == (0, 2, 3)
+    assert overlay.wind_lines(ocean, empty_scene).shape == (0, 2, 3)
     ocean.ocean_tweak.layers[1].wind_field.show_vectors = True
-    shafts = overlay.lines(ocean, empty_scene)[:256]
+    shafts = overlay.wind_lines(ocean, empty_scene)[:256]
     towards = shafts[:, 1, 0] - shafts[:, 0, 0]
     # bilinear between the two columns where the halves meet
     assert (towards[shafts[:, 0, 0] < 0.45 * DOMAIN] < 0).all()
@@ -268,7 +268,7 @@ def test_arrows_point_where_the_wind_blows(ocean, core, extension, empty_scene):
 
 
 def test_arrows_of_a_keyed_wind_are_those_of_the_time(core, extension):
-    overlay = extension("ui.wind_overlay")
+    overlay = extension("ui.overlays")
     winds = [core.Raster([[[speed, 0.0]]]) for speed in (2.0, 6.0)]
     layer = core.WindFieldLayer(
         keys=(core.WindKey(time=1.0, vectors=winds[0]), core.WindKey(time=3.0, vectors=winds[1]))

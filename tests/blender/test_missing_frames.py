@@ -48,7 +48,7 @@ def test_frames_beyond_the_baked_ones_are_told_or_not(item, draw, empty_scene): 
 
 
 def test_what_is_wrong_stands_over_the_view_and_on_the_console(item, baked, extension, empty_scene, caplog):
-    written = extension("ui.error_overlay").lines
+    written = extension("ui.overlays").trouble_lines
     empty_scene.frame_set(11)
     assert written(600.0) == []
     baked.path(13).unlink()

@@ -69,7 +69,7 @@ def drawn_by(draw, item):
 
 
 def test_the_panel_and_the_browser_show_the_choices(ocean, extension):
-    panel, browser = extension("ui.panels.usd").OCEAN_PT_usd, extension("ui.usd_operators")
+    panel, browser = extension("ui.panels.output").OCEAN_PT_usd, extension("ui.usd_operators")
     always = {"form", "up_axis", "metres_per_unit", "subframes", "tiles", "proxy", "variants", "force"}
     for draw in (panel.draw, browser.OCEAN_OT_export_usd_as.draw):
         ocean.ocean_tweak.usd.form = "clips"
@@ -83,7 +83,7 @@ def test_the_panel_and_the_browser_show_the_choices(ocean, extension):
 
 
 def test_the_panel_shows_how_far_it_is_and_what_is_missing(ocean, extension, process, monkeypatch):
-    draw = extension("ui.panels.usd").OCEAN_PT_usd.draw
+    draw = extension("ui.panels.output").OCEAN_PT_usd.draw
     monkeypatch.setitem(sys.modules, "pxr", None)
     assert "pip install usd-core" in " ".join(drawn_by(draw, ocean))
     export = SimpleNamespace(done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import asset_operators, camera_operators, material_operators, parameter_operators
+from .. import camera_operators, material_operators, parameter_operators
 from .drawing import SubPanel, active_settings, split
 
 
@@ -113,7 +113,7 @@ class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
         buttons.operator(
             parameter_operators.OCEAN_OT_export_parameters.bl_idname, text="Export", icon="EXPORT"
         )
-        self.layout.operator(asset_operators.OCEAN_OT_install_assets.bl_idname, icon="ASSET_MANAGER")
+        self.layout.operator(material_operators.OCEAN_OT_install_assets.bl_idname, icon="ASSET_MANAGER")
 
 
 CLASSES = (OCEAN_PT_water, OCEAN_PT_shape, OCEAN_PT_time, OCEAN_PT_foam, OCEAN_PT_mesh, OCEAN_PT_parameters)

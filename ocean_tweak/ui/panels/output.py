@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Baking, and which of live and baked is shown."""
+"""What goes to disk: bakes, with the choice of what is shown, and USD layers for other programs."""
 
 import time
 from datetime import datetime
@@ -9,13 +9,15 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core.frames import format_frames
 from ...export.cache.estimate import Estimate, readable_bytes
+from ...export.usd import library
 from ...nodes.names import MAP_INPUTS
-from ...scene import alarm, bake_process, bake_versions, stored_paths
+from ...scene import alarm, bake_process, bake_versions, stored_paths, usd_process
 from ...scene.image_sequence import baked_frames
 from ...scene.needs import neighbours_of
 from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
-from .. import bake_operators, sequence_operators
+from .. import bake_operators, sequence_operators, usd_operators
+from ..usd_properties import draw_choices
 from .drawing import OceanPanel, active_settings, message, progress_bar, row, split
 
 #: lines of what needs the extension
@@ -141,4 +143,29 @@ def _version(layout: bpy.types.UILayout, version: bake_versions.Version, is_show
         delete.version = version.folder.name
 
 
-CLASSES = (OCEAN_PT_bake,)
+class OCEAN_PT_usd(OceanPanel, bpy.types.Panel):
+    """The sea as USD."""
+
+    bl_idname = "OCEAN_PT_usd"
+    bl_label = "USD"
+    bl_parent_id = "OCEAN_PT_bake"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw where the layers go, what they hold, and the buttons or the progress."""
+        layout, item = split(self.layout), context.active_object
+        settings, process = active_settings(context).usd, usd_process.running(item)
+        if not library.is_installed():
+            message(layout, context, library.MISSING_IN_BLENDER, alert=True)
+        layout.prop(settings, "file", placeholder=usd_process.default_file(item))
+        draw_choices(layout, settings, usd_process.has_bake(item))
+        if process is not None:
+            progress_bar(layout, process, usd_operators.OCEAN_OT_stop_usd.bl_idname)
+        else:
+            text = translated("Export {} Frames").format(len(scene_frames(context.scene)))
+            layout.operator(usd_operators.OCEAN_OT_export_usd.bl_idname, text=text, icon="EXPORT")
+        layout.operator(usd_operators.OCEAN_OT_verify_usd.bl_idname, icon="CHECKMARK")
+        layout.operator(usd_operators.OCEAN_OT_import_usd.bl_idname, icon="IMPORT")
+
+
+CLASSES = (OCEAN_PT_bake, OCEAN_PT_usd)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The first panel: the few numbers that make a sea, and what they mean right now."""
+"""The sea: the few numbers that make a sea, and what they mean right now."""
 
 import re
 from typing import Any
@@ -10,22 +10,18 @@ from bpy.app.translations import pgettext_iface as translated
 from ...core import WaveLayer, sea_scales
 from ...core.wind_profile import wind_at_10_m
 from ...scene import alarm, refinement
-from ...scene.conversion import ocean_modifier
 from ...scene.image_sequence import shown_frame, unbaked_frames
-from ...scene.settings import OceanSettings, is_ocean, settings_of
+from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
 from .. import (
     bake_operators,
-    operators,
     parameter_properties,
     preset_operators,
-    scene_operators,
     sea_operators,
     sequence_operators,
 )
 from .drawing import (
     OceanPanel,
-    SidebarPanel,
     active_settings,
     length_text,
     message,
@@ -37,35 +33,6 @@ from .drawing import (
 
 #: that are named in the panel
 _MOST_DIFFERENCES = 4
-
-
-class OCEAN_PT_start(SidebarPanel, bpy.types.Panel):
-    """Where to begin when no ocean is active."""
-
-    bl_idname = "OCEAN_PT_start"
-    bl_label = "Ocean Tweak"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Shown when the active object is not an ocean."""
-        return not is_ocean(context.active_object)
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Offer to add one."""
-        layout = self.layout
-        item = context.active_object
-        if item is not None and item.type == "MESH" and settings_of(item).uid:
-            message(layout, context, "This mesh was an ocean: its modifier was applied or removed")
-        else:
-            layout.label(text="No ocean is active")
-        column = layout.column(align=True)
-        column.scale_y = 1.2
-        column.operator(operators.MESH_OT_ocean_tweak_add.bl_idname, text="Add Ocean", icon="MOD_OCEAN")
-        column.operator(
-            scene_operators.OCEAN_OT_add_scene.bl_idname, text="Add Ocean Scene", icon="SCENE_DATA"
-        )
-        if ocean_modifier(context.active_object) is not None:
-            layout.operator(sea_operators.OCEAN_OT_convert.bl_idname, icon="MODIFIER")
 
 
 class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
@@ -271,9 +238,4 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
     return warnings
 
 
-def draw_add_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    """Draw the entry in Add > Mesh."""
-    self.layout.operator(operators.MESH_OT_ocean_tweak_add.bl_idname, icon="MOD_OCEAN")
-
-
-CLASSES = (OCEAN_PT_start, OCEAN_PT_sea)
+CLASSES = (OCEAN_PT_sea,)
