@@ -11,11 +11,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .cascades.patch_seas import PARTS, parts
-from .channels import ADDING, CHANNELS, FOAM, SurfaceFields
+from .channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .frames import Frame
 from .memory import check_memory, memory_need
 from .parameters import OceanParameters
@@ -128,13 +125,13 @@ def bake(
     with_memory = ShotSurfaces(shot)
     own = threading.local()
 
-    def make(frame: Frame, started: float, foam: NDArray[np.floating] | None) -> BakedFrame:
+    def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
         started += time.perf_counter()
         if not hasattr(own, "surfaces"):
             own.surfaces = ShotSurfaces(shot)
-        fields, *others = own.surfaces.frames(frame, sink.outputs - {FOAM})
+        fields, *others = own.surfaces.frames(frame, sink.outputs - OF_MEMORY)
         if foam is not None:
-            fields = fields.including(FOAM, foam)
+            fields = fields.including(foam)
         return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
@@ -144,7 +141,8 @@ def bake(
                 begun = time.perf_counter()
                 if not under_way:  # made once, before the workers ask for it
                     with_memory.prepare(frame)
-                foam = _foam(with_memory, frame, tell) if FOAM in sink.outputs else None
+                wanted = sink.outputs & OF_MEMORY
+                foam = _foam(with_memory, frame, wanted, tell) if wanted else None
                 # the wait for a worker is no work
                 under_way.append(pool.submit(make, frame, begun - time.perf_counter(), foam))
                 if len(under_way) > workers:
@@ -156,12 +154,14 @@ def bake(
                 future.cancel()
 
 
-def _foam(surfaces: ShotSurfaces, frame: Frame, tell: Callable[[Frame, str], None]) -> NDArray[np.floating]:
+def _foam(
+    surfaces: ShotSurfaces, frame: Frame, wanted: frozenset[str], tell: Callable[[Frame, str], None]
+) -> SurfaceFields:
     for sea in surfaces.seas(surfaces.shot.at(frame).parameters):
         sea.foam_history.tell = lambda done, count: tell(
             frame, f"looked back for foam at {done} of {count} moments"
         )
-    return surfaces.frame(frame, {FOAM}).foam
+    return surfaces.frame(frame, wanted)
 
 
 def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:

@@ -83,10 +83,13 @@ def _cells(place: Array, size: float, resolution: int) -> tuple[NDArray[np.intp]
     return cell, part.astype(np.float32)
 
 
-def wrapped(field: RealArray) -> RealArray:
-    """(N+1, N+1) of an (N, N) field that repeats: its last row and column are the first ones again."""
+def wrapped(field: RealArray, dtype: type | None = None) -> RealArray:
+    """(N+1, N+1, …) of an (N, N, …) field that repeats: last row and column are the first ones again.
+
+    dtype : of the result; by default the field's own
+    """
     n = len(field)
-    result = np.empty((n + 1, n + 1), field.dtype)
+    result = np.empty((n + 1, n + 1, *field.shape[2:]), dtype or field.dtype)
     result[:n, :n] = field
     result[n, :n] = field[0]
     result[:, n] = result[:, 0]

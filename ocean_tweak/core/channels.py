@@ -261,7 +261,9 @@ MAPS: dict[str, tuple[str, ...]] = {
 #: what surfaces of one instant are made of
 OF_WAVES = {name: channel for name, channel in CHANNELS.items() if channel.source == WAVES}
 
-#: the channel with a memory, made from others
+#: what is made from earlier moments too, and so in the order of frames
+OF_MEMORY = frozenset(CHANNELS) - OF_WAVES.keys()
+#: the first of those, made from cusp
 FOAM = "foam"
 
 #: those of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
@@ -317,9 +319,9 @@ class SurfaceFields:
         """The field of a channel. Raises KeyError."""
         return self._fields[name]
 
-    def including(self, name: str, field: RealArray) -> SurfaceFields:
-        """The same fields and one more."""
-        return SurfaceFields(self.time, {**self._fields, name: field})
+    def including(self, others: SurfaceFields) -> SurfaceFields:
+        """The same fields and others."""
+        return SurfaceFields(self.time, {**self._fields, **others._fields})
 
     def __getattr__(self, name: str) -> RealArray:
         if name in CHANNELS:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from .cascades.patch_seas import PARTS, joined_bands, parts
-from .channels import ADDING, CHANNELS, FOAM, memory_groups
+from .channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from .machine import usable_memory
 from .parameters import OceanParameters
 from .synthesis import term
@@ -34,13 +34,13 @@ def memory_need(
     n = parameters.resolution
     half_plane = n * (n // 2 + 1)
     real = 4 if precision == "single" else 8
-    wanted = outputs - {FOAM}
+    wanted = outputs - OF_MEMORY
     moving = any(derivative == "t" for name in wanted for _, derivative in CHANNELS[name].needs)
     given = {kind: kind.memory(parameters, real, moving) for kind in KINDS if parameters.active(kind)}
     state = half_plane * (3 * 2 * real + 2 * real + 8) + sum(need.state for need in given.values())
     building = half_plane * 8 * _TEMPORARY_ARRAYS + TABLES
     building += max((given[kind].building for kind in given if Gives.COEFFICIENTS in kind.gives), default=0)
-    fields = _foam_bytes(parameters) if FOAM in outputs else 0
+    fields = _foam_bytes(parameters) if outputs & OF_MEMORY else 0
     fields += sum(int(np.prod(CHANNELS[name].shape(n))) * real for name in wanted)
     gradient = not any(Gives.SHARES in kind.gives for kind in given)
     columns = max((_columns(group, gradient) for group in memory_groups(wanted)), default=0)
@@ -64,18 +64,18 @@ def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], preci
 def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
     """That of all parts, and on one grid of the components that are added up there."""
     apart = joined_bands(parameters) if parameters.joined else parameters
-    needs = [memory_need(part.parameters, outputs - {FOAM}, precision) for part in parts(apart)]
+    needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in parts(apart)]
     surface = sum(need.surface for need in needs)
     if not parameters.is_cascade:
         keys = max(
             (
                 len({key for name in group for key in CHANNELS[name].needs})
-                for group in memory_groups(outputs - {FOAM})
+                for group in memory_groups(outputs - OF_MEMORY)
             ),
             default=0,
         )
         surface += 3 * keys * parameters.resolution**2 * (4 if precision == "single" else 8)
-        surface += _foam_bytes(parameters) if FOAM in outputs else 0
+        surface += _foam_bytes(parameters) if outputs & OF_MEMORY else 0
     return MemoryNeed(sum(need.state for need in needs), max(need.building for need in needs), surface)
 
 

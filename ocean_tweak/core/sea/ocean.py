@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..cascades.patch_seas import joined_bands, parts, patch_parameters
-from ..channels import CHANNELS, FOAM, SurfaceFields, checked_outputs
+from ..channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
 from ..foam import FoamHistory, FoamModel, foam_at
 from ..foam_field import foam_model, resampled
 from ..foam_threshold import Strains, sampled_strains
@@ -130,7 +130,7 @@ class Ocean:
             tile, n = self._tile, self.parameters.resolution
             fields = self._arrays(wanted, (n, n), out or {})
             with self._busy:  # the workspace and the foam's history serve one surface at a time
-                tile.fill(time, wanted - {FOAM}, fields)
+                tile.fill(time, wanted - OF_MEMORY, fields)
                 if FOAM in wanted:
                     fields[FOAM][...] = resampled(self.foam_history.foam(time), n)
         else:
@@ -293,7 +293,7 @@ class Ocean:
         fields: Mapping[str, RealArray],
     ) -> None:
         """Fill arrays whose first axes hold flat x and y."""
-        own = wanted - {FOAM}
+        own = wanted - OF_MEMORY
         needs = frozenset().union(*(CHANNELS[name].needs for name in own))
         sums = self._sums_at(x, y, time, needs, self._components(time, needs))
         for name in own:

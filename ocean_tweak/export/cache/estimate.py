@@ -20,7 +20,7 @@ from typing import NamedTuple
 from ...core import Ocean, OceanParameters
 from ...core.bake import ShotSurfaces
 from ...core.cascades.patch_seas import PARTS, parts
-from ...core.channels import FOAM, SurfaceFields, is_put_together
+from ...core.channels import OF_MEMORY, SurfaceFields, is_put_together
 from ...core.foam import LATTICE_RATE
 from ...core.foam_field import foam_outlook
 from ...core.frames import Frame
@@ -113,7 +113,7 @@ def fitting_workers(job: Job, frames: int) -> int:
 def process_memory(job: Job) -> int:
     """Bytes that a process takes which makes and writes frames of a job."""
     parameters = job.shot.parameters
-    need = Ocean(parameters).memory(job.outputs - {FOAM})
+    need = Ocean(parameters).memory(job.outputs - OF_MEMORY)
     sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
     samples = max([*sides, parameters.resolution]) ** 2
     together = any(is_put_together(name) for name in job.images)
@@ -121,7 +121,7 @@ def process_memory(job: Job) -> int:
     if PARTS in job.outputs:
         writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
     making = need.surface + writing
-    if FOAM in job.outputs:  # made for the next frame meanwhile
+    if job.outputs & OF_MEMORY:  # made for the next frame meanwhile
         own = parameters.foam.resolution or parameters.resolution
         coarse = Ocean(parameters.at_resolution(own)).memory({"cusp"})
         making += coarse.surface + _FOAM * own**2 + 4 * samples
@@ -153,7 +153,7 @@ class _Costs(NamedTuple):
 
 def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> float:
     costs, parameters = _costs(folder, job, frames[0]), job.shot.parameters
-    most = foam_outlook(parameters).memory if FOAM in job.outputs else 0
+    most = foam_outlook(parameters).memory if job.outputs & OF_MEMORY else 0
     moments_a_frame = LATTICE_RATE / float(parameters.timing.fps)
     changes = _changes(job.shot)
     gaps = Counter(float(later - earlier) for earlier, later in pairwise(frames))
@@ -162,7 +162,7 @@ def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> f
         count * (most if changes else min(most, gap * moments_a_frame)) for gap, count in gaps.items()
     ) / max(1, len(frames) - 1)
     alone = math.ceil(len(frames) / workers)
-    foam = costs.moment if FOAM in job.outputs else 0.0
+    foam = costs.moment if job.outputs & OF_MEMORY else 0.0
     first, later = foam * (most + 1), foam * (following + 1)
     seas = costs.sea * (alone if changes else 1)
     # foam is made beside the frame before
@@ -212,7 +212,7 @@ def by_trials(resolution: int, larger: int, timed: Callable[[int], Sequence[floa
 
 def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
     surfaces, parameters = ShotSurfaces(job.shot), job.shot.at(frame).parameters
-    with_foam, moment = FOAM in job.outputs, 0.0
+    with_foam, moment = job.outputs & OF_MEMORY, 0.0
 
     def sea() -> None:
         for grid in surfaces.seas(parameters):
@@ -223,17 +223,17 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
             surfaces.parts(frame)
 
     def made() -> None:
-        fields = surfaces.frames(frame, job.outputs - {FOAM})
+        fields = surfaces.frames(frame, job.outputs - OF_MEMORY)
         if with_foam:
-            foam = fields[0].cusp
-            fields = (fields[0].including(FOAM, foam), *fields[1:])
+            foam = SurfaceFields(fields[0].time, dict.fromkeys(with_foam, fields[0].cusp))
+            fields = (fields[0].including(foam), *fields[1:])
         _encode(folder, job, frame, fields)
 
     making = cpu_seconds(sea)
     if with_foam:
         looks = foam_outlook(parameters).memory + 1
         seas = (surfaces, ShotSurfaces(job.shot))
-        moment = min(cpu_seconds(partial(of.frames, frame, {FOAM})) for of in seas) / looks
+        moment = min(cpu_seconds(partial(of.frames, frame, with_foam)) for of in seas) / looks
     if not parameters.patches:
         made()
     return _Costs(making, moment, min(cpu_seconds(made), cpu_seconds(made)))

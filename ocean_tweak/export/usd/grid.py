@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.bilinear import wrapped
+
 RealArray = NDArray[np.floating]
 
 
@@ -44,13 +46,7 @@ class UsdGrid:
 
     def wrapped(self, field: RealArray) -> RealArray:
         """(N, N, …) samples as (quads + 1, quads + 1, …), the first row and column once more at the end."""
-        inner = field[:: self.step, :: self.step]
-        count = self.quads
-        result = np.empty((count + 1, count + 1, *inner.shape[2:]), np.float32)
-        result[:count, :count] = inner
-        result[count, :count] = inner[0]
-        result[:, count] = result[:, 0]
-        return result
+        return wrapped(field[:: self.step, :: self.step], np.float32)
 
     def turned(self, vectors: RealArray, scale: float = 1.0) -> RealArray:
         """(…, 3) vectors as (vertices, 3) along the layer's axes, times the scale; may change the array."""
