@@ -13,7 +13,7 @@ from ..nodes.sample import SAMPLE
 from ..nodes.versioned import node_group
 from ..nodes.water import WATER
 from . import water_material
-from .user_folder import user_folder
+from .preferences import user_folder
 
 #: what Blender's asset browser calls it
 LIBRARY = "Ocean Tweak"

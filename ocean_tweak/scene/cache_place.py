@@ -15,8 +15,8 @@ from ..export.files import is_link
 from ..export.places import environment_cache
 from . import stored_paths
 from .image_sequence import ImageSequence, find_sequence, folder_of
+from .preferences import user_folder
 from .settings import OceanObjectError, all_oceans, settings_of
-from .user_folder import user_folder
 
 _log = logging.getLogger(__name__)
 

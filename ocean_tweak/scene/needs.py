@@ -14,6 +14,7 @@ import bpy
 
 from ..nodes.modifier_inputs import all_inputs
 from . import floating, patch_objects
+from .cache_place import shown_bake
 from .settings import all_oceans, oceans_in, settings_of, was_ocean
 
 
@@ -38,10 +39,12 @@ class Neighbours(NamedTuple):
 
     needs : objects that only the extension moves
     has_surface : whether a surface around the camera shows it
+    has_bake : whether it reads a bake of ours, which lies on disk
     """
 
     needs: tuple[Need, ...] = ()
     has_surface: bool = False
+    has_bake: bool = False
 
 
 @dataclass
@@ -81,7 +84,8 @@ def look_at(ocean: bpy.types.Object) -> None:
     """Find what goes with an ocean."""
     has_surface = patch_objects.camera_surface_of(ocean) is not None
     _seen.scenes.update(scene.session_uid for scene in ocean.users_scene)
-    _seen.of[ocean.session_uid] = Neighbours(needs_of(ocean), has_surface)
+    has_bake = settings_of(ocean).source == "SEQUENCE" and shown_bake(ocean) is not None
+    _seen.of[ocean.session_uid] = Neighbours(needs_of(ocean), has_surface, has_bake)
 
 
 def look() -> None:

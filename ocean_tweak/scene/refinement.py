@@ -16,33 +16,60 @@ from typing import Any
 
 import bpy
 
-from . import evaluation
-from .refresh import (
-    EXPECTED_ERRORS,
-    Wanted,
-    foam_job,
-    has_statistics,
-    refresh,
-    statistics_job,
-    tell,
-    waves_job,
-)
-from .settings import OceanSettings, all_oceans, scene_of
+from ..core import OceanParameters
+from . import bake_state, evaluation
+from .modifiers import set_changed
+from .plan import plan_of
+from .refresh import EXPECTED_ERRORS, Wanted, refresh, tell
+from .settings import OceanSettings, all_oceans, scene_of, settings_of
 
 # s without a change after which all samples are shown
 PAUSE = 0.15
 # s between two looks at what is to be done
 _INTERVAL = 0.05
 
-#: what follows, and what makes it; none of it touches data of Blender while it is made
-_JOBS: dict[Wanted, Callable[[bpy.types.Object, bpy.types.Scene], Callable[[], object] | None]] = {
-    Wanted.SAMPLES: waves_job,
-    Wanted.HISTORY: foam_job,
-    Wanted.STATISTICS: statistics_job,
-}
 #: what waits for all samples
 _AFTER_SAMPLES = Wanted.SAMPLES | Wanted.PATCHES | Wanted.NEIGHBOURS
 _NOTHING = Wanted(0)
+
+
+def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
+    """What makes the waves of all the viewport's samples, before any surface of them.
+
+    As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
+    OceanObjectError for settings that are no sea.
+    """
+    return evaluation.sea_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
+
+
+def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
+    """What makes the foam that the viewport lacks; raises as `_waves_job`."""
+    plan = plan_of(settings_of(item), scene)
+    maker = evaluation.sea_of(plan.viewport_sea()).foam_of(plan.is_whole)
+    return lambda: maker.at(plan.time)
+
+
+def _statistics_job(
+    item: bpy.types.Object, scene: bpy.types.Scene
+) -> Callable[[], tuple[OceanParameters, str]] | None:
+    """What makes the statistics of the sea that is shown; None, and they are shown, where they are known."""
+    settings = settings_of(item)
+    if settings.error:
+        return None
+    parameters = bake_state.shown_parameters(settings, scene)
+    text = evaluation.known_statistics(parameters)
+    if text is None:
+        return lambda: (parameters, evaluation.computed_statistics(parameters))
+    set_changed(settings, statistics=text)
+    return None
+
+
+#: what follows, and what makes it; none of it touches data of Blender while it is made
+_JOBS: dict[Wanted, Callable[[bpy.types.Object, bpy.types.Scene], Callable[[], object] | None]] = {
+    Wanted.SAMPLES: _waves_job,
+    Wanted.HISTORY: _foam_job,
+    Wanted.STATISTICS: _statistics_job,
+}
 
 
 @dataclass
@@ -134,7 +161,7 @@ def show(
     if Wanted.BY_HAND in wanted:
         _outstanding.due[uid] = time.monotonic() + PAUSE
         _outstanding.note(uid, Wanted.SAMPLES | Wanted.STATISTICS, True)
-    elif not (_is_playing() or has_statistics(item, scene)):
+    elif not (_is_playing() or _has_statistics(item, scene)):
         _outstanding.note(uid, Wanted.STATISTICS, True)
     _outstanding.note(uid, Wanted.HISTORY, Wanted.HISTORY in missing)
     if uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):
@@ -154,6 +181,14 @@ def _show_now(
 
 def _is_playing() -> bool:
     return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
+
+
+def _has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    """Whether the statistics that the ocean shows are those of its sea, or there can be none."""
+    settings = settings_of(item)
+    return bool(settings.error) or (
+        evaluation.known_statistics(bake_state.shown_parameters(settings, scene)) == settings.statistics
+    )
 
 
 def has_window() -> bool:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
 from enum import Flag, auto
 
 import bpy
@@ -221,45 +220,6 @@ def sea_of_settings(item: bpy.types.Object, scene: bpy.types.Scene) -> OceanPara
 def forget_all() -> None:
     """Another file is opened, or the extension is disabled."""
     _seas.clear()
-
-
-def has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
-    """Whether the statistics that the ocean shows are those of its sea, or there can be none."""
-    settings = settings_of(item)
-    return bool(settings.error) or (
-        evaluation.known_statistics(bake_state.shown_parameters(settings, scene)) == settings.statistics
-    )
-
-
-def waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """What makes the waves of all the viewport's samples, before any surface of them.
-
-    As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
-    OceanObjectError for settings that are no sea.
-    """
-    return evaluation.sea_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
-
-
-def foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """What makes the foam that the viewport lacks; raises as `waves_job`."""
-    plan = plan_of(settings_of(item), scene)
-    maker = evaluation.sea_of(plan.viewport_sea()).foam_of(plan.is_whole)
-    return lambda: maker.at(plan.time)
-
-
-def statistics_job(
-    item: bpy.types.Object, scene: bpy.types.Scene
-) -> Callable[[], tuple[OceanParameters, str]] | None:
-    """What makes the statistics of the sea that is shown; None, and they are shown, where they are known."""
-    settings = settings_of(item)
-    if settings.error:
-        return None
-    parameters = bake_state.shown_parameters(settings, scene)
-    text = evaluation.known_statistics(parameters)
-    if text is None:
-        return lambda: (parameters, evaluation.computed_statistics(parameters))
-    set_changed(settings, statistics=text)
-    return None
 
 
 def tell(item: bpy.types.Object, error: BaseException) -> None:

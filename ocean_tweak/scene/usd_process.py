@@ -19,9 +19,9 @@ from ..export.usd.options import OPTIONS, command_arguments
 from . import stored_paths
 from .cache_place import bake_name, shown_bake
 from .command_process import CommandProcess, Running
+from .preferences import user_folder
 from .settings import OceanObjectError, settings_of
 from .units import shortest_decimal
-from .user_folder import user_folder
 
 _FOLDER = "usd"
 
@@ -91,15 +91,10 @@ def choices(item: bpy.types.Object) -> dict[str, Any]:
     }
 
 
-def has_bake(item: bpy.types.Object) -> bool:
-    """Whether the ocean reads a bake whose images could move the grid."""
-    return settings_of(item).source == "SEQUENCE" and shown_bake(item) is not None
-
-
 def used_bake(item: bpy.types.Object) -> Path | None:
     """The bake whose images will move the grid; None where the export makes its own, or needs none."""
-    settings = settings_of(item).usd
-    wanted = settings.form == "displacement" and settings.use_bake and has_bake(item)
+    settings = settings_of(item)
+    wanted = settings.source == "SEQUENCE" and settings.usd.form == "displacement" and settings.usd.use_bake
     return shown_bake(item) if wanted else None
 
 

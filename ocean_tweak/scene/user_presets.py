@@ -10,7 +10,7 @@ from pathlib import Path
 from ..core.parameters import ParameterError
 from ..core.presets import LARGEST, Preset, built_in
 from ..export.files import read_bytes, write_text
-from .user_folder import user_folder
+from .preferences import user_folder
 
 #: a user's preset is told from one that came along by the start of its key
 _OWN = "user:"

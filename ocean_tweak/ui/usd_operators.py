@@ -13,6 +13,7 @@ from ..export.cache.estimate import readable_bytes
 from ..export.usd import library
 from ..export.usd.reading import SUFFIXES
 from ..scene import ocean_object, usd_import, usd_process
+from ..scene.needs import neighbours_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from ..scene.usd_process import UsdCheck, UsdExport
@@ -101,7 +102,7 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
         """Draw the choices of the panel."""
         item = context.active_object
         self.layout.use_property_split = True
-        draw_choices(self.layout, settings_of(item).usd, usd_process.has_bake(item))
+        draw_choices(self.layout, settings_of(item).usd, neighbours_of(item).has_bake)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Note the file in the ocean, and export."""

@@ -2,13 +2,16 @@
 """Panels only draw: how much they do depends neither on the size of the file nor on disks."""
 
 import json
+import os
 import sys
 from collections import Counter
 from contextlib import contextmanager
+from pathlib import Path
 
 import bpy
 import pytest
 
+from .test_bake_state import baked  # noqa: F401
 from .test_panels import draw  # noqa: F401
 
 #: what Python tells its audit hooks of files and folders
@@ -104,6 +107,23 @@ def test_no_folder_is_listed_and_no_file_read(everything, ocean):
     with listening() as heard:
         everything()
     assert heard == []
+
+
+def test_no_disk_is_asked_for_a_baked_ocean(draw, baked, monkeypatch):  # noqa: F811
+    before, asked, stat = draw(baked), [], os.stat
+
+    def noted(path, *arguments, **named):
+        asked.append(str(path))
+        return stat(path, *arguments, **named)
+
+    monkeypatch.setattr(os, "stat", noted)
+    with listening() as heard:
+        assert draw(baked) == before
+        assert Path(baked.ocean_tweak.cache_folder).is_dir()
+    assert (heard, asked) == ([], [baked.ocean_tweak.cache_folder])
+    assert "use_bake" not in before  # the form has no use for it
+    baked.ocean_tweak.usd.form = "displacement"
+    assert "use_bake" in draw(baked)
 
 
 def test_texts_of_the_settings_are_parsed_once(everything, ocean, monkeypatch):

@@ -158,7 +158,7 @@ class OCEAN_PT_usd(OceanPanel, bpy.types.Panel):
         if not library.is_installed():
             message(layout, context, library.MISSING_IN_BLENDER, alert=True)
         layout.prop(settings, "file", placeholder=usd_process.default_file(item))
-        draw_choices(layout, settings, usd_process.has_bake(item))
+        draw_choices(layout, settings, neighbours_of(item).has_bake)
         if process is not None:
             progress_bar(layout, process, usd_operators.OCEAN_OT_stop_usd.bl_idname)
         else:
