@@ -57,19 +57,22 @@ class NewerExrError(ExrError):
 def silenced() -> Iterator[None]:
     """Without what libraries print of files that they cannot read: the error says it in one line.
 
-    In other threads than the main one their messages stay: two at once could not put back what they find.
+    In other threads than the main one their messages stay: what a process prints to is one thing for all
+    threads, and two at once could not put back what they find.
     """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
     with contextlib.ExitStack() as stack:
         # what Python prints may be read by machines
         stack.enter_context(contextlib.redirect_stdout(io.StringIO()))
-        if threading.current_thread() is threading.main_thread():
-            with contextlib.suppress(OSError):  # a program in a window may have no place for messages
-                kept = os.dup(2)
-                stack.callback(os.close, kept)
-                stack.callback(os.dup2, kept, 2)
-                nothing = os.open(os.devnull, os.O_WRONLY)
-                os.dup2(nothing, 2)
-                os.close(nothing)
+        with contextlib.suppress(OSError):  # a program in a window may have no place for messages
+            kept = os.dup(2)
+            stack.callback(os.close, kept)
+            stack.callback(os.dup2, kept, 2)
+            nothing = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nothing, 2)
+            os.close(nothing)
         yield
 
 

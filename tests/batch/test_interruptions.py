@@ -113,10 +113,10 @@ def test_the_workers_of_a_killed_process_end(sea: Path, tmp_path: Path) -> None:
     assert len(workers) == 2
     process.kill()
     end(process)
-    until = time.monotonic() + 20.0
-    while any(Path(f"/proc/{worker}").exists() and not is_zombie(worker) for worker in workers):
-        assert time.monotonic() < until, "workers go on without anybody to tell"
-        time.sleep(0.05)
+    wait_for(
+        lambda: not any(Path(f"/proc/{worker}").exists() and not is_zombie(worker) for worker in workers),
+        "the end of workers without anybody to tell",
+    )
 
 
 def is_zombie(process: int) -> bool:
@@ -164,9 +164,9 @@ sys.exit(main(sys.argv[2:]))
 """
 
 
-@pytest.mark.parametrize(("patience", "signals"), [(0.5, 1), (600.0, 2)])
+@pytest.mark.parametrize(("patience", "again"), [(0.5, False), (600.0, True)])
 def test_a_frame_that_does_not_end_is_given_up(
-    sea: Path, undisturbed: dict[str, str], tmp_path: Path, patience: float, signals: int
+    sea: Path, undisturbed: dict[str, str], tmp_path: Path, patience: float, again: bool
 ) -> None:
     """A while after it was asked to stop, or at once where it is asked again."""
     arguments = map(str, bake(sea, tmp_path, frames=4))
@@ -176,11 +176,12 @@ def test_a_frame_that_does_not_end_is_given_up(
     )  # fmt: skip
     assert "stuck\n" in iter(process.stdout.readline, "")
     asked = time.monotonic()
-    for _ in range(signals):
-        process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
+    while again and process.poll() is None:  # two that come before it looks are one
         time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
     code, _, err = end(process)
-    assert time.monotonic() - asked < 5.0
+    assert time.monotonic() - asked < 60.0  # it would sleep for ten minutes
     folder = only_folder(tmp_path)
     assert (code, err) == (
         1, f"ocean_tweak: stopped; whole frames stay; go on with: resume {folder}\n",
@@ -200,10 +201,12 @@ def test_workers_give_long_frames_up(tmp_path: Path) -> None:
     asked = time.monotonic()
     process.terminate()
     code, _, err = end(process)
-    assert time.monotonic() - asked < 5.0
+    assert time.monotonic() - asked < 60.0
     assert code == 1
     assert "ocean_tweak: stopped; whole frames stay" in err
-    assert leftovers(only_folder(tmp_path / "c")) == []
+    folder = only_folder(tmp_path / "c")
+    assert leftovers(folder) == []
+    assert len(records(folder)) == 0
 
 
 def test_stopped_while_it_looks_at_what_is_there(

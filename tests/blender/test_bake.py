@@ -289,7 +289,7 @@ def is_zombie(process):
 
 
 def wait_for(condition):
-    until = time.monotonic() + 30.0
+    until = time.monotonic() + 60.0
     while not condition():
         assert time.monotonic() < until
         time.sleep(0.05)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, Timing
 from ocean_tweak.core.channels import MAPS
 from ocean_tweak.export import files
-from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, write_image
+from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, silenced, write_image
 
 FPS = Fraction(24000, 1001)
 
@@ -143,3 +144,27 @@ def test_maps_hold_what_they_say(tmp_path: Path) -> None:
         "disp": "m", "foam": "1", "normal": "1", "vel": "m/s", "slope": "1", "strain": "1"
     }  # fmt: skip
     assert images["vel"][1]["map"] == "vel"
+
+
+def test_what_is_printed_is_found_again_after_threads_that_read_at_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    entered, may_leave = [threading.Event(), threading.Event()], [threading.Event(), threading.Event()]
+
+    def read(number: int) -> None:
+        with silenced():
+            entered[number].set()
+            may_leave[number].wait(60.0)
+
+    threads = [threading.Thread(target=read, args=(number,)) for number in range(2)]
+    for thread, inside in zip(threads, entered, strict=True):
+        thread.start()
+        assert inside.wait(60.0)
+    for thread, leave in zip(threads, may_leave, strict=True):  # the first to come is the first to go
+        leave.set()
+        thread.join()
+    print("heard")
+    assert capsys.readouterr().out == "heard\n"
+    with silenced():
+        print("of a library")
+    assert capsys.readouterr().out == ""

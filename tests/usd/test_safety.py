@@ -70,7 +70,7 @@ def test_killed_while_writing(tmp_path, form):
     process = subprocess.Popen(
         command(form, top, "--frames", "1-5000", "--force"), env=ENVIRONMENT, stdout=subprocess.DEVNULL
     )
-    until = time.monotonic() + 30.0
+    until = time.monotonic() + 60.0
     while not list(tmp_path.rglob(".*.part.usdc")) and time.monotonic() < until:
         time.sleep(0.002)
     process.kill()
