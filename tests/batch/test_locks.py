@@ -27,6 +27,7 @@ from tests.batch.bakery import (
     records,
     start,
     times,
+    wait_for,
     write_sea,
 )
 
@@ -240,6 +241,7 @@ def test_clocks_do_not_matter(
     assert main(["resume", str(copy), "--take-over"]) == 1
     assert "is alive" in capsys.readouterr().err
     beating.unlink()
+    wait_for(lambda: HOLDER not in {thread.name for thread in threading.enumerate()}, "the holder's end")
     dead = foreign_lock(copy, process=4712)
     os.utime(dead, (now() + jump, now() + jump))
     assert main(["resume", str(copy), "--take-over"]) == 0
