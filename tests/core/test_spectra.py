@@ -179,3 +179,9 @@ def test_swell_draws_long_waves_together() -> None:
     model = Spreading("DONELAN_BANNER", 0.5)
     once, again = directional_spreading(1.0, [0.3, 0.3 + 2 * np.pi], model)
     assert once == pytest.approx(again)
+
+
+def test_a_band_ends_at_the_wave_numbers_of_its_wavelengths() -> None:
+    ends = spectrum_of(shortest_wavelength=4.0, longest_wavelength=50.0).band_ends
+    assert ends == pytest.approx([0.5 * np.pi, 0.04 * np.pi])
+    assert len(spectrum_of().band_ends) == 0

@@ -8,6 +8,7 @@ import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer, sea_scales
 from ocean_tweak.core.grid import WaveVectorGrid
+from ocean_tweak.core.sea_state import SeaState, together
 from ocean_tweak.core.statistics import field_state, mode_state
 
 
@@ -143,3 +144,18 @@ def test_loops_that_change_speeds_by_more_than_a_tenth_are_warned_about(
     statistics = Ocean(sea).statistics()
     assert statistics.loop_speed_change == pytest.approx(change, abs=1e-4)
     assert any("changes the speed" in warning for warning in statistics.warnings) == (change > 0.1)
+
+
+def test_two_crossing_swells_together() -> None:
+    """As high as each other, to the east and to the north, of one direction each: r = √½."""
+    east = SeaState(1.0, 12.0, 10.0, 225.0, 0.001, 0.0, 0.0)
+    north = SeaState(1.0, 6.0, 5.0, 56.0, 0.004, 0.5 * np.pi, 0.0)
+    both = together([east, north])
+    assert both.m0 == 2.0
+    assert both.mean_square_slope == 0.005
+    assert both.mean_direction == pytest.approx(0.25 * np.pi)
+    assert both.directional_spread == pytest.approx(np.sqrt(2.0 - np.sqrt(2.0)))
+    # as many zero crossings as their mean squares tell: 1/Tz² = ½(1/10² + 1/5²)
+    assert both.zero_crossing_period == pytest.approx(np.sqrt(40.0))
+    wide = together([east, SeaState(1.0, 12.0, 10.0, 225.0, 0.001, 0.0, 0.6)])
+    assert wide.directional_spread == pytest.approx(np.sqrt(0.5 * 0.6**2))
