@@ -55,7 +55,7 @@ def windy(resolution: int) -> OceanParameters:
     layer = WindFieldLayer(keys=(WindKey(0.0, wind),), rows=8, columns=8)
     for cells in range(4, 64):
         layer = replace(layer, rows=cells, columns=cells)
-        parameters = storm.replace(wind_fields=(layer,))
+        parameters = storm.replace(layers=(*storm.layers, layer))
         if len(WindFieldLayer.shares(parameters).particles(TIME).x) >= PARTICLES:
             break
     return parameters

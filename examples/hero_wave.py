@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ocean_tweak.core import Ocean, OceanParameters
+from ocean_tweak.core import HeroWave, Ocean, OceanParameters
 
 from .from_above import GALLERY, save_side_by_side, shaded
 
@@ -41,7 +41,7 @@ def profile(elevation: NDArray[np.floating], row: int, highest: float) -> NDArra
 def main() -> int:
     """Write the sea from above and, below, cut along the red line through the focus."""
     sea = parameters()
-    (wave,) = sea.hero_waves
+    (wave,) = sea.of(HeroWave)
     row, highest = round(wave.y * SIDE / sea.domain_size), 1.3 * wave.crest_height
     columns = []
     for moment in _MOMENTS:

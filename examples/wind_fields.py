@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, WindFieldLayer
 from ocean_tweak.core.waves.wind_field.presets import WIND_FIELDS, wind_field
 from ocean_tweak.core.waves.wind_field.wind import winds_at
 
@@ -24,7 +24,7 @@ SIZE, RESOLUTION = 200.0, 400
 def arrows(parameters: OceanParameters, across: int = 14) -> NDArray[np.uint8]:
     """A picture of the wind: strokes that are longer and thicker where it is stronger."""
     picture = np.full((RESOLUTION, RESOLUTION, 3), 245, np.uint8)
-    (layer,) = parameters.wind_fields
+    (layer,) = parameters.of(WindFieldLayer)
     places = (np.arange(across) + 0.5) * (SIZE / across)
     x, y = (values.ravel() for values in np.meshgrid(places, places))
     _, winds = winds_at(layer, x, y, SIZE)
@@ -46,8 +46,11 @@ def main() -> int:
     columns = []
     for name in WIND_FIELDS:
         parameters = OceanParameters(
-            resolution=RESOLUTION, domain_size=SIZE, layers=(WaveLayer(wind_speed=2.0, fetch=2e3),),
-            wind_fields=(replace(wind_field(name, SIZE, 9.81), steepness=0.16),),
+            resolution=RESOLUTION, domain_size=SIZE,
+            layers=(
+                WaveLayer(wind_speed=2.0, fetch=2e3),
+                replace(wind_field(name, SIZE, 9.81), steepness=0.16),
+            ),
         )  # fmt: skip
         normal = Ocean(parameters).surface(0.0, {"normal"}).normal
         columns.append(np.concatenate([arrows(parameters), shaded(normal)]))

@@ -49,8 +49,8 @@ def parameters() -> OceanParameters:
         seed=4,
         choppiness=1.2,
         water=Water(depth=60.0),
-        layers=(WaveLayer(wind_speed=4.0, wind_direction=-0.5, fetch=40e3, spreading="HASSELMANN"),),
-        wind_fields=(
+        layers=(
+            WaveLayer(wind_speed=4.0, wind_direction=-0.5, fetch=40e3, spreading="HASSELMANN"),
             WindFieldLayer(
                 keys=tuple(keys), start_time=-4.0, calm=3.0, columns=12, rows=20, jitter=0.7,
                 phase_jitter=0.2, particles=7, split_angle=0.1, life=4.0, steepness=0.09,

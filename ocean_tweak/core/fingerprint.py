@@ -9,9 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+from typing import Any
 
 from . import formats
+from .former_json import former
 from .frames import Frame, frame_label
+from .parameters import OceanParameters
 from .shot import Shot, time_text
 
 
@@ -21,9 +24,14 @@ def fingerprint(data: object) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
+def hashed(sea: Shot | OceanParameters) -> dict[str, Any]:
+    """The plain data of which fingerprints are made: as they stood in JSON from the first on."""
+    return former(sea.to_dict())
+
+
 def shot_fingerprint(shot: Shot) -> str:
     """That of a whole shot, whichever of its frames are made."""
-    return fingerprint({"synthesis": formats.SYNTHESIS, "shot": shot.to_dict()})
+    return fingerprint({"synthesis": formats.SYNTHESIS, "shot": hashed(shot)})
 
 
 def frame_fingerprint(shot: Shot, frame: Frame) -> str:
@@ -32,7 +40,7 @@ def frame_fingerprint(shot: Shot, frame: Frame) -> str:
     return fingerprint(
         {
             "synthesis": formats.SYNTHESIS,
-            "parameters": moment.parameters.to_dict(),
+            "parameters": hashed(moment.parameters),
             "frame": frame_label(frame),
             "time": time_text(moment.time),
             "rate": moment.rate,

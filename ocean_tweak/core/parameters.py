@@ -11,11 +11,13 @@ import dataclasses
 import json
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import count
 from typing import Any, TypeVar, overload
 
 from . import formats
 from .cascades.patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
 from .errors import ParameterError
+from .former_json import modern
 from .masks.parameters import Mask
 from .plain_data import from_plain, parse_json, to_plain
 from .raster import check_numbers, numbers_in
@@ -156,15 +158,12 @@ class OceanParameters(Validated):
         "DEEP", ORBITS, "Horizontal motion as in deep water, or wider as linear theory has it in finite depth"
     )
     water: Water = nested(Water)
-    layers: tuple[WaveLayer, ...] = nested(WaveLayer, many=True)
-    pictures: tuple[PictureLayer, ...] = nested(PictureLayer, many=True, empty=True)
-    wind_fields: tuple[WindFieldLayer, ...] = nested(WindFieldLayer, many=True, empty=True)
+    layers: tuple[Contribution, ...] = nested(Contribution, many=True, kinds=KINDS)
     patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
     joined: int = integer(
         0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them apart",
         "as the resolution of a sea", left_out=True,
     )  # fmt: skip
-    hero_waves: tuple[HeroWave, ...] = nested(HeroWave, many=True, empty=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
@@ -174,12 +173,14 @@ class OceanParameters(Validated):
         self._settle_tile()
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
-        object.__setattr__(self, "layers", _identified("layers", self.layers))
-        object.__setattr__(self, "pictures", _identified("pictures", self.pictures))
-        object.__setattr__(self, "wind_fields", _identified("wind_fields", self.wind_fields))
+        object.__setattr__(self, "layers", _identified(self.layers))
         _check_loop(self.loop_duration, self.timing)
         self._check_layers()
-        on_the_first = [name for name in ("pictures", "wind_fields", "hero_waves") if getattr(self, name)]
+        on_the_first = [
+            kind.former_list or kind.names.noun
+            for kind in KINDS
+            if Gives.SPECTRUM not in kind.gives and self.of(kind)
+        ]
         check_patches(self.patches, self.trough_damping, on_the_first)
         if self.is_masked and self.trough_damping > 0.0:
             raise ParameterError(
@@ -228,8 +229,7 @@ class OceanParameters(Validated):
 
     def of(self, kind: type[_Layer]) -> tuple[_Layer, ...]:
         """The layers of a kind, muted ones too."""
-        layers: tuple[_Layer, ...] = getattr(self, kind.former_list or "layers")
-        return layers
+        return tuple(layer for layer in self.layers if isinstance(layer, kind))
 
     @overload
     def active(self) -> tuple[Contribution, ...]: ...
@@ -247,25 +247,23 @@ class OceanParameters(Validated):
 
     def alone(self, layer: Contribution) -> OceanParameters:
         """What of the sea acts on the state of one layer, with that layer."""
-        own: dict[str, Any] = {layer.former_list or "layers": (layer,)}
         return OceanParameters(
             resolution=16, domain_size=self.domain_size, seed=self.seed, water=self.water,
-            dispersion=self.dispersion, **own,
+            dispersion=self.dispersion, layers=(WaveLayer(muted=True), layer),
         )  # fmt: skip
 
     def _check_layers(self) -> None:
         """What is not as the sea needs it; what repeats in no time fits into no loop."""
-        for kind in KINDS:
-            for index, layer in enumerate(self.of(kind)):
-                path = f"{kind.former_list or 'layers'}.{index}"
-                if layer.muted:
-                    continue
-                if self.loop_duration is not None and Gives.LOOPS not in layer.gives:
-                    raise ParameterError(
-                        "loop_duration", to_plain(self.loop_duration),
-                        f"{path} raises waves that do not repeat: mute it, or take away the loop",
-                    )  # fmt: skip
-                layer.check(self, path)
+        for index, layer in enumerate(self.layers):
+            if layer.muted:
+                continue
+            if self.loop_duration is not None and Gives.LOOPS not in layer.gives:
+                raise ParameterError(
+                    "loop_duration", to_plain(self.loop_duration),
+                    f"layers.{index} raises waves that do not repeat: mute it, or take away the loop",
+                )  # fmt: skip
+            layer.check(self, f"layers.{index}")
+        for kind in dict.fromkeys(type(layer) for layer in self.active()):
             kind.check_together(self)
 
     def replace(self, **changes: Any) -> OceanParameters:
@@ -290,18 +288,18 @@ class OceanParameters(Validated):
         return dataclasses.replace(self, **changes)
 
     def at_resolution(self, resolution: int) -> OceanParameters:
-        """The same sea on other samples; hero waves that are too short for them are muted."""
-        return self.replace(resolution=resolution, hero_waves=self._held_by(resolution))
+        """The same sea on other samples; layers that these do not hold, short hero waves, are muted."""
+        return self.replace(resolution=resolution, layers=self._held_by(resolution))
 
     def on_one_grid(self, resolution: int) -> OceanParameters:
         """The same sea on the samples of one grid over the domain, also of several patches."""
         if not self.is_cascade:
             return self.at_resolution(resolution)
-        return self.replace(joined=resolution, patches=self.patches, hero_waves=self._held_by(resolution))
+        return self.replace(joined=resolution, patches=self.patches, layers=self._held_by(resolution))
 
-    def _held_by(self, resolution: int) -> tuple[HeroWave, ...]:
+    def _held_by(self, resolution: int) -> tuple[Contribution, ...]:
         return tuple(
-            wave if wave.is_held(self, resolution) else wave.changed(muted=True) for wave in self.hero_waves
+            layer if layer.is_held(self, resolution) else layer.changed(muted=True) for layer in self.layers
         )
 
     @property
@@ -329,7 +327,7 @@ class OceanParameters(Validated):
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
         check_numbers(numbers_in(data))
-        data = formats.checked_sea(data)
+        data = modern(formats.checked_sea(data))
         if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
             data = {key: value for key, value in data.items() if key not in _TILE}
         return from_plain(cls, data)
@@ -340,15 +338,20 @@ class OceanParameters(Validated):
         return cls.from_dict(parse_json(text))
 
 
-def _identified(name: str, layers: tuple[_Layer, ...]) -> tuple[_Layer, ...]:
-    """Layers with distinct ids; those without one take the first numbers that are free."""
-    taken: set[int] = set()
+def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
+    """Layers with ids that are distinct within a kind; those without one take the first that are free."""
+    taken: dict[str, set[int]] = {kind.kind: set() for kind in KINDS}
     for index, layer in enumerate(layers):
-        if layer.id >= 0 and layer.id in taken:
-            raise ParameterError(f"{name}.{index}.id", layer.id, "is the id of another layer too")
-        taken.add(layer.id)
-    free = (number for number in range(len(layers) + len(taken)) if number not in taken)
-    return tuple(layer if layer.id >= 0 else layer.changed(id=next(free)) for layer in layers)
+        if layer.id >= 0 and layer.id in taken[layer.kind]:
+            raise ParameterError(f"layers.{index}.id", layer.id, "is the id of another layer too")
+        taken[layer.kind].add(layer.id)
+    result = list(layers)
+    for index, layer in enumerate(layers):
+        if layer.id < 0 and layer.has("id"):
+            ids = taken[layer.kind]
+            result[index] = layer.changed(id=next(number for number in count() if number not in ids))
+            ids.add(result[index].id)
+    return tuple(result)
 
 
 def _check_loop(duration: Fraction | None, timing: Timing) -> None:

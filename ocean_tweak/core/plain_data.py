@@ -11,7 +11,7 @@ from typing import Any
 
 from .errors import ParameterError
 from .raster import Raster
-from .validation import check_count
+from .validation import check_count, kind_of
 
 
 def parse_json(text: str) -> Any:
@@ -45,7 +45,7 @@ def to_plain(value: Any, brief: bool = False) -> Any:
     """
     if dataclasses.is_dataclass(value):
         fields = [f for f in dataclasses.fields(value) if not _is_unused(f, getattr(value, f.name))]
-        return {f.name: to_plain(getattr(value, f.name), brief) for f in fields}
+        return {f.name: _field_to_plain(f, getattr(value, f.name), brief) for f in fields}
     if isinstance(value, tuple):
         return [to_plain(item, brief) for item in value]
     if isinstance(value, Raster):
@@ -54,6 +54,14 @@ def to_plain(value: Any, brief: bool = False) -> Any:
         decimal = int(value) if value.denominator == 1 else float(value)
         return decimal if Fraction(str(decimal)) == value else str(value)
     return value
+
+
+def _field_to_plain(field: dataclasses.Field[Any], value: Any, brief: bool) -> Any:
+    plain, kinds = to_plain(value, brief), field.metadata.get("kinds")
+    if not kinds:
+        return plain
+    pairs = zip(value, plain, strict=True)
+    return [data if entry.kind == kinds[0].kind else {"kind": entry.kind, **data} for entry, data in pairs]
 
 
 def _is_unused(field: dataclasses.Field[Any], value: object) -> bool:
@@ -79,7 +87,7 @@ def from_plain(cls: type, data: object) -> Any:
         if key not in fields:
             raise ParameterError(str(key), value, _unknown_key(str(key), list(fields)))
         if isinstance(value, list):
-            check_count(fields[key].name, len(value), fields[key].metadata)
+            check_count(fields[key].name, value, fields[key].metadata)
         try:
             arguments[key] = _nested_value(fields[key], value)
         except ParameterError as error:
@@ -100,10 +108,33 @@ def _nested_value(field: dataclasses.Field[Any], value: object) -> object:
     items = []
     for index, item in enumerate(value):
         try:
-            items.append(from_plain(nested, item))
+            items.append(from_plain(class_of(field.metadata, item), without_kind(field.metadata, item)))
         except ParameterError as error:
             raise error.inside(str(index)) from None
     return tuple(items)
+
+
+def class_of(metadata: Any, entry: object) -> type:
+    """The class of an entry of a field of many, an instance or plain data. Raises ParameterError."""
+    kinds = {kind.kind: kind for kind in metadata["kinds"]}
+    if not kinds:
+        nested: type = metadata["nested"]
+        return nested
+    name = kind_of(entry, next(iter(kinds)))
+    if not isinstance(name, str) or name not in kinds:
+        near = difflib.get_close_matches(str(name)[:40].upper(), kinds, n=1, cutoff=0.0)
+        raise ParameterError(
+            "kind", name, f"unknown kind; did you mean {near[0]}? Known kinds: {', '.join(kinds)}"
+        )
+    found: type = kinds[name]
+    return found
+
+
+def without_kind(metadata: Any, entry: object) -> object:
+    """The plain data of an entry of a field of many without what tells its class."""
+    if not metadata["kinds"] or not isinstance(entry, dict):
+        return entry
+    return {key: value for key, value in entry.items() if key != "kind"}
 
 
 def _unknown_key(key: str, known: list[str]) -> str:

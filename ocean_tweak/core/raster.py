@@ -12,6 +12,7 @@ import binascii
 import hashlib
 import math
 import zlib
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -147,18 +148,25 @@ def check_numbers(count: int) -> None:
 
 def numbers_in(data: object) -> int:
     """How many numbers the rasters hold that stand as text in plain data, without unpacking any."""
-    total, rest = 0, [data]
+    return sum(math.prod(item["shape"]) for item in _rasters_in(data) if "data" in item)
+
+
+def has_brief_rasters(data: object) -> bool:
+    """Whether plain data names rasters without holding their numbers."""
+    return any("sha256" in item for item in _rasters_in(data))
+
+
+def _rasters_in(data: object) -> Iterator[dict[str, Any]]:
+    rest = [data]
     while rest:
         item = rest.pop()
         if isinstance(item, list):
             rest += item
         elif isinstance(item, dict):
-            shape: Any = item.get("shape")
-            if "data" in item and _is_shape(shape):
-                total += math.prod(shape)
+            if ("data" in item or "sha256" in item) and _is_shape(item.get("shape")):
+                yield item
             else:
                 rest += item.values()
-    return total
 
 
 def _is_shape(shape: Any) -> bool:

@@ -13,7 +13,6 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import Any, NamedTuple
 
 from . import formats
@@ -22,14 +21,14 @@ from .frames import LARGEST_FRAME, Frame
 from .parameters import OceanParameters, parse_json
 from .plain_data import to_plain
 from .validation import changing_fields
-from .waves.spectral import WaveLayer
+from .waves.kinds import KINDS
 
 #: seconds on the waves' own clock, where it does not simply follow the frames
 OCEAN_TIME = "ocean_time"
 
 #: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer
 ANIMATED = (
-    *(f"layers.*.{name}" for name in changing_fields(WaveLayer)),
+    *dict.fromkeys(f"layers.*.{name}" for kind in KINDS for name in changing_fields(kind)),
     *changing_fields(OceanParameters),
     OCEAN_TIME,
 )
@@ -45,9 +44,7 @@ _CONSTANT = {
     "seed": "another seed is another sea",
     "amplitudes": "other amplitudes are another sea",
     "patches": "they set which waves there are: " + _ONE_SEA,
-    "pictures": "each keeps its waves; what can change is how fast they move, by ocean_time",
-    "wind_fields": "a wave keeps the wind of its birth; give the wind keys at several times instead",
-    "hero_waves": "a wave that runs freely keeps what it is; place a second one, or animate ocean_time",
+    **{kind.former_list: kind.constant for kind in KINDS if kind.former_list},
     "timing": "frames become seconds in one way; animate ocean_time instead",
 }
 _LAYER = re.compile(r"layers\.[0-9]{1,6}\.")
@@ -178,25 +175,27 @@ class Shot:
             for choose in (min, max):
                 yield {path: choose(values) for path, values in self.animation.samples}
 
-    @cached_property
-    def _plain(self) -> dict[str, Any]:
-        return self.parameters.to_dict()
-
     def _with(self, values: Mapping[str, float]) -> OceanParameters:
-        data = {**self._plain, "layers": [dict(layer) for layer in self._plain["layers"]]}
-        for name in ("pictures", "wind_fields"):  # as they are: their rasters may be large
-            data[name] = list(getattr(self.parameters, name))
+        layers = list(self.parameters.layers)
+        changes: dict[str, Any] = {}
         for path, value in values.items():
-            layer, _, name = path.removeprefix("layers.").partition(".")
+            number, _, name = path.removeprefix("layers.").partition(".")
             if path == OCEAN_TIME:
                 continue
             if not name:
-                data[path] = value
-            elif int(layer) >= len(data["layers"]):
-                raise ParameterError(path, value, f"the sea has only {len(data['layers'])} layers")
-            else:
-                data["layers"][int(layer)][name] = value
-        return OceanParameters.from_dict(data)
+                changes[path] = value
+                continue
+            index = int(number)
+            if index >= len(layers):
+                raise ParameterError(path, value, f"the sea has only {len(layers)} layers")
+            if name not in changing_fields(type(layers[index])):
+                reason = f"is constant over a shot: {layers[index].constant}"
+                raise ParameterError(f"samples.{path}", "animated", reason)
+            try:
+                layers[index] = layers[index].changed(**{name: value})
+            except ParameterError as error:
+                raise error.inside(f"layers.{index}") from None
+        return self.parameters.replace(layers=tuple(layers), **changes)
 
     def at(self, frame: Frame) -> Moment:
         """What determines a frame, which may lie between two.

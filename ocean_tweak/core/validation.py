@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -212,20 +213,28 @@ def _checked_raster(name: str, value: object, meta: Any) -> Raster:
 
 
 def nested(
-    kind: type, many: bool = False, empty: bool = False, most: int = 64, optional: bool = False
+    kind: type,
+    many: bool = False,
+    empty: bool = False,
+    most: int = 64,
+    optional: bool = False,
+    kinds: Sequence[type] = (),
 ) -> Any:
     """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them.
 
     empty : the tuple may be empty, and is by default
-    most : how many it may hold
+    most : how many it may hold, of each kind
     optional : there may be none of it, which is the default
+    kinds : of which the entries may be, each of which says in JSON by its `kind` what it is. The first need
+        not say it; of that there is one by default, and at least
     """
-    default: object = None if optional else kind() if not many else () if empty else (kind(),)
+    one = kinds[0] if kinds else kind
+    default: object = None if optional else one() if not many else () if empty else (one(),)
     return dataclasses.field(
         default=default,
         metadata={
             "nested": kind, "many": many, "empty": empty, "most": most,
-            "optional": optional, "left_out": empty or optional,
+            "optional": optional, "left_out": empty or optional, "kinds": kinds,
         },
     )  # fmt: skip
 
@@ -236,19 +245,35 @@ def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
         if not isinstance(value, kind):
             raise ParameterError(field.name, value, f"must be a {kind.__name__}")
         return value
-    if not isinstance(value, (tuple, list)) or not all(isinstance(v, kind) for v in value):
-        raise ParameterError(field.name, value, f"must be a sequence of {kind.__name__}")
-    check_count(field.name, len(value), field.metadata)
+    known = tuple(field.metadata["kinds"]) or (kind,)
+    if not isinstance(value, (tuple, list)) or not all(isinstance(v, known) for v in value):
+        names = ", ".join(each.__name__ for each in known)
+        raise ParameterError(field.name, value, f"must be a sequence of {names}")
+    check_count(field.name, value, field.metadata)
     return tuple(value)
 
 
-def check_count(name: str, count: int, meta: Any) -> None:
-    """Raise ParameterError where a field of many cannot have so many entries; asked before they are made."""
+def check_count(name: str, entries: Sequence[object], meta: Any) -> None:
+    """Raise ParameterError where a field of many cannot have so many entries; asked before they are made.
+
+    entries : instances, or their plain data
+    """
     if not meta.get("many"):
         return
     fewest, most = 0 if meta["empty"] else 1, meta["most"]
-    if not fewest <= count <= most:
-        raise ParameterError(name, f"{count} entries", f"must have from {fewest} to {most} entries")
+    names = [kind.kind for kind in meta["kinds"]]
+    found = [kind_of(entry, names[0]) if names else "" for entry in entries]
+    for kind in names or [""]:
+        count = found.count(kind)
+        if not fewest <= count <= most:
+            what = f"{count} entries" if count == len(entries) else f"{count} entries of kind {kind}"
+            raise ParameterError(name, what, f"must have from {fewest} to {most} entries")
+        fewest = 0  # of the other kinds
+
+
+def kind_of(entry: object, usual: str) -> object:
+    """The kind of an entry, an instance or plain data; the usual one where it does not say so."""
+    return entry.get("kind", usual) if isinstance(entry, dict) else getattr(entry, "kind", usual)
 
 
 class Validated:

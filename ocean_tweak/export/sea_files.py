@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 from ..core.errors import ParameterError
+from ..core.former_json import modern
 from ..core.parameters import OceanParameters
 from ..core.plain_data import parse_json
 from ..core.shot import Shot
@@ -39,7 +40,7 @@ def sea_of_text(text: str, folder: Path, read: Reader = read_picture) -> Shot:
 
     Raises ParameterError.
     """
-    return Shot.from_dict(with_pictures(OceanParameters, parse_json(text), folder, read))
+    return Shot.from_dict(with_pictures(OceanParameters, modern(parse_json(text)), folder, read))
 
 
 def write_sea(path: str | os.PathLike[str], sea: Shot | OceanParameters) -> None:

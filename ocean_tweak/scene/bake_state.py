@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..core import OceanParameters, ParameterError
+from ..core.former_json import modern
+from ..core.raster import has_brief_rasters
 from ..core.shot import OCEAN_TIME, Moment, Shot
 from ..export.cache.job import JOB_FILE, CacheError, read_job
 from ..export.exr import ExrError, read_header
@@ -46,7 +48,7 @@ def parameters_of(path: Path, frame: int) -> OceanParameters:
     try:
         return OceanParameters.from_dict(told)
     except ParameterError:
-        if not _has_brief_pictures(told):
+        if not has_brief_rasters(told):
             raise
     # images name their pictures and winds, which stand in the job beside them
     try:
@@ -56,13 +58,9 @@ def parameters_of(path: Path, frame: int) -> OceanParameters:
             f"{path} names the pictures or winds of its sea, but does not hold them, and the bake's job does "
             f"not either ({error}): switch off Use Its Parameters"
         ) from None
-    if parameters.to_dict(brief=True) != told:
+    if parameters.to_dict(brief=True) != modern(told):
         raise SequenceError(f"{path} is of another sea than the job beside it: switch off Use Its Parameters")
     return parameters
-
-
-def _has_brief_pictures(told: Any) -> bool:
-    return isinstance(told, dict) and bool(told.get("pictures") or told.get("wind_fields"))
 
 
 def baked_shot(settings: OceanSettings) -> Shot | None:

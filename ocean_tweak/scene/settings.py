@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import bpy
 
@@ -30,37 +30,6 @@ METHODS = {
 SOURCES = {
     "LIVE": ("Live", "Compute the sea on every frame change. Needs no files, but this extension"),
     "SEQUENCE": ("Baked", "Read a baked EXR sequence. Also works where this extension is not installed"),
-}
-
-
-class LayerKind(NamedTuple):
-    """A kind of layer: the list of the parameters that it stands in, and how it looks in the window."""
-
-    parameter: str
-    noun: str
-    label: str
-    description: str
-    icon: str
-
-
-#: in the order in which they stand in an ocean's list
-LAYER_KINDS = {
-    "WAVES": LayerKind(
-        "layers", "wave layer", "Waves", "A wave system: a wind and its fetch, or a swell", "MOD_WAVE"
-    ),
-    "WIND_FIELD": LayerKind(
-        "wind_fields",
-        "wind field",
-        "Wind Field",
-        "Waves that follow a wind that differs from place to place",
-        "FORCE_WIND",
-    ),
-    "PICTURE": LayerKind(
-        "pictures", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
-    ),
-    "HERO_WAVE": LayerKind(
-        "hero_waves", "hero wave", "Hero Wave", "A single group of waves, placed by hand", "SMOOTHCURVE"
-    ),
 }
 
 OUT_OF_RANGE = {

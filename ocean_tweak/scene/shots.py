@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import bpy
 
 from ..core import OceanParameters
 from ..core.frames import Frame
-from ..core.shot import ANIMATED, OCEAN_TIME, Animation, Shot
+from ..core.shot import OCEAN_TIME, Animation, Shot
+from ..core.validation import changing_fields
 from . import handlers
 from .animated import clock_of, is_animated, set_keys, shown_settings
 from .settings import settings_of
@@ -92,11 +92,7 @@ def _sample(
 
 
 def _values(parameters: OceanParameters) -> Iterator[tuple[str, float]]:
-    data = parameters.to_dict(brief=True)
-    for path in ANIMATED:
-        *parents, name = path.split(".")
-        if parents:
-            layers: list[dict[str, Any]] = data["layers"]
-            yield from ((f"layers.{index}.{name}", layer[name]) for index, layer in enumerate(layers))
-        elif path != OCEAN_TIME:
-            yield path, data[name]
+    yield from ((name, getattr(parameters, name)) for name in changing_fields(OceanParameters))
+    for index, layer in enumerate(parameters.layers):
+        own = changing_fields(type(layer))
+        yield from ((f"layers.{index}.{name}", getattr(layer, name)) for name in own)

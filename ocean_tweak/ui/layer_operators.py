@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The list of layers of all kinds: add, remove, duplicate, move, solo."""
 
-import dataclasses
-from typing import Any, NamedTuple
+from collections.abc import Sequence
 
 import bpy
 from bpy.props import EnumProperty
 
-from ..core import OceanParameters, ParameterError, PictureLayer, WaveLayer
-from ..core.waves.hero.presets import hero_wave
+from ..core import OceanParameters, ParameterError
+from ..core.validation import changing_fields
+from ..core.waves.contribution import Contribution
+from ..core.waves.kinds import shown
 from ..core.waves.wind_field.presets import WIND_FIELDS, wind_field
 from ..scene.animated import move_keys
-from ..scene.settings import LAYER_KINDS, OceanObjectError, settings_of
+from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfOwnList, nearest, refuse
 
 _WINDS = {
@@ -19,19 +20,6 @@ _WINDS = {
     "OPPOSED_HALVES": ("Opposed Halves", "Winds that blow apart, to the left and to the right (figure 9 D)"),
     "VARYING_SPEED": ("Varying Speed", "One direction, weak at the lower edge, strong above (figure 9 F)"),
 }
-
-
-class Entry(NamedTuple):
-    """A layer's place: its list in the parameters, and its number there."""
-
-    parameter: str
-    index: int
-
-
-def entries(parameters: OceanParameters) -> list[Entry]:
-    """All layers in the order in which they stand in the list."""
-    names = [kind.parameter for kind in LAYER_KINDS.values()]
-    return [Entry(name, index) for name in names for index in range(len(getattr(parameters, name)))]
 
 
 class _OfLayers(OfOwnList):
@@ -45,23 +33,20 @@ class _OfLayers(OfOwnList):
         settings = settings_of(item)
         try:
             before = settings.to_parameters(context.scene)
-            places = entries(before)
-            after, active = self.changed(before, places[nearest(settings.active_layer, places)])
+            layers, active = self.changed(before, nearest(settings.active_layer, before.layers))
+            after = before.replace(layers=tuple(layers))
             settings.from_parameters(after, context.scene)
         except (ParameterError, OceanObjectError) as error:
             return refuse(self, error)
-        by_id = {layer.id: place for place, layer in enumerate(after.layers)}
-        move_keys(item, {place: by_id.get(layer.id) for place, layer in enumerate(before.layers)})
-        settings.active_layer = entries(after).index(active)
+        there = {(layer.kind, layer.id): place for place, layer in enumerate(after.layers)}
+        own = [place for place, layer in enumerate(before.layers) if changing_fields(type(layer))]
+        move_keys(item, {old: there.get((before.layers[old].kind, before.layers[old].id)) for old in own})
+        settings.active_layer = active
         return {"FINISHED"}
 
-    def changed(self, parameters: OceanParameters, active: Entry) -> tuple[OceanParameters, Entry]:
-        """The sea with another list, and the layer that is active then."""
+    def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
+        """Another list, and the number of the layer that is active then."""
         raise NotImplementedError
-
-
-def _with(parameters: OceanParameters, name: str, layers: Any) -> OceanParameters:
-    return parameters.replace(**{name: tuple(layers)})
 
 
 class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
@@ -74,7 +59,7 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
 
     kind: EnumProperty(
         name="Kind",
-        items=[(key, kind.label, kind.description) for key, kind in LAYER_KINDS.items()],
+        items=[(kind.kind, kind.names.label, kind.names.description) for kind in shown()],
         options={"SKIP_SAVE"},
         description="What makes its waves",
     )
@@ -90,21 +75,20 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
         """What is added."""
         if properties.kind == "WIND_FIELD":
             return _WINDS[properties.wind][1]
-        return LAYER_KINDS[properties.kind].description
+        return _kind(properties.kind).names.description
 
-    def changed(self, parameters: OceanParameters, _active: Entry) -> tuple[OceanParameters, Entry]:
-        """A layer behind those of its kind."""
-        name = LAYER_KINDS[self.kind].parameter
-        layers = getattr(parameters, name)
-        return _with(parameters, name, (*layers, self._new(parameters))), Entry(name, len(layers))
+    def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
+        """A layer behind those of its kind, and of kinds before it in the menu."""
+        new = self._new(parameters)
+        before = [layer.names.number <= new.names.number for layer in parameters.layers]
+        place = max((index + 1 for index, is_before in enumerate(before) if is_before), default=0)
+        return (*parameters.layers[:place], new, *parameters.layers[place:]), place
 
-    def _new(self, parameters: OceanParameters) -> object:
+    def _new(self, parameters: OceanParameters) -> Contribution:
         if self.kind == "WIND_FIELD":
             return wind_field(self.wind, parameters.domain_size, parameters.water.gravity)
-        if self.kind == "HERO_WAVE":
-            time = parameters.timing.time(bpy.context.scene.frame_current)
-            return hero_wave(parameters.domain_size, parameters.resolution, float(time))
-        return WaveLayer() if self.kind == "WAVES" else PictureLayer()
+        time = parameters.timing.time(bpy.context.scene.frame_current)
+        return _kind(self.kind).to_begin_with(parameters, float(time))
 
 
 class OCEAN_OT_layer_duplicate(_OfLayers, bpy.types.Operator):
@@ -115,15 +99,12 @@ class OCEAN_OT_layer_duplicate(_OfLayers, bpy.types.Operator):
     bl_label = "Duplicate Layer"
     bl_options = {"REGISTER", "UNDO"}
 
-    def changed(self, parameters: OceanParameters, active: Entry) -> tuple[OceanParameters, Entry]:
+    def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
         """A copy with another identity behind the active one."""
-        name, index = active
-        layers = getattr(parameters, name)
-        copy = layers[index]
-        if name != "hero_waves":  # these have no random numbers, and so no identity
-            copy = dataclasses.replace(copy, id=-1)
-        with_copy = (*layers[: index + 1], copy, *layers[index + 1 :])
-        return _with(parameters, name, with_copy), Entry(name, index + 1)
+        layers = list(parameters.layers)
+        copy = layers[active]
+        layers.insert(active + 1, copy.changed(id=-1) if copy.has("id") else copy)
+        return layers, active + 1
 
 
 class OCEAN_OT_layer_remove(_OfLayers, bpy.types.Operator):
@@ -146,12 +127,9 @@ class OCEAN_OT_layer_remove(_OfLayers, bpy.types.Operator):
             return False
         return True
 
-    def changed(self, parameters: OceanParameters, active: Entry) -> tuple[OceanParameters, Entry]:
+    def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
         """The others."""
-        name, index = active
-        layers = getattr(parameters, name)
-        after = _with(parameters, name, (*layers[:index], *layers[index + 1 :]))
-        return after, entries(after)[max(entries(parameters).index(active) - 1, 0)]
+        return (*parameters.layers[:active], *parameters.layers[active + 1 :]), max(active - 1, 0)
 
 
 class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
@@ -177,13 +155,12 @@ class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
             return {"CANCELLED"}
         return super().execute(context)
 
-    def changed(self, parameters: OceanParameters, active: Entry) -> tuple[OceanParameters, Entry]:
+    def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
         """The layer and its neighbour the other way round."""
-        name, index = active
-        other = index + (1 if self.direction == "DOWN" else -1)
-        layers = list(getattr(parameters, name))
-        layers[index], layers[other] = layers[other], layers[index]
-        return _with(parameters, name, layers), Entry(name, other)
+        other = active + (1 if self.direction == "DOWN" else -1)
+        layers = list(parameters.layers)
+        layers[active], layers[other] = layers[other], layers[active]
+        return layers, other
 
 
 class OCEAN_OT_layer_solo(_OfLayers, bpy.types.Operator):
@@ -194,20 +171,17 @@ class OCEAN_OT_layer_solo(_OfLayers, bpy.types.Operator):
     bl_label = "Solo Layer"
     bl_options = {"REGISTER", "UNDO"}
 
-    def changed(self, parameters: OceanParameters, active: Entry) -> tuple[OceanParameters, Entry]:
+    def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
         """The active layer alone, or all."""
-        places = entries(parameters)
-        alone = {entry: entry != active for entry in places}
-        now = {entry: getattr(parameters, entry.parameter)[entry.index].muted for entry in places}
-        muted = dict.fromkeys(places, False) if now == alone else alone
-        changes = {
-            kind.parameter: tuple(
-                dataclasses.replace(layer, muted=muted[Entry(kind.parameter, index)])
-                for index, layer in enumerate(getattr(parameters, kind.parameter))
-            )
-            for kind in LAYER_KINDS.values()
-        }
-        return parameters.replace(**changes), active
+        alone = [index != active for index in range(len(parameters.layers))]
+        is_alone = [layer.muted for layer in parameters.layers] == alone
+        muted = [False] * len(alone) if is_alone else alone
+        pairs = zip(parameters.layers, muted, strict=True)
+        return [layer.changed(muted=is_muted) for layer, is_muted in pairs], active
+
+
+def _kind(name: str) -> type[Contribution]:
+    return next(kind for kind in shown() if kind.kind == name)
 
 
 class OCEAN_MT_layer_add(bpy.types.Menu):
@@ -219,12 +193,14 @@ class OCEAN_MT_layer_add(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw an entry a kind; wind fields have several to begin with."""
-        for key, kind in LAYER_KINDS.items():
-            if key == "WIND_FIELD":
-                self.layout.menu(OCEAN_MT_wind_fields.bl_idname, icon=kind.icon)
+        for kind in shown():
+            names = kind.names
+            if kind.kind == "WIND_FIELD":
+                self.layout.menu(OCEAN_MT_wind_fields.bl_idname, icon=names.icon)
             else:
-                text = f"{kind.label}" if key != "PICTURE" else "Picture or Noise"
-                self.layout.operator(OCEAN_OT_layer_add.bl_idname, text=text, icon=kind.icon).kind = key
+                text = names.entry or names.label
+                add = self.layout.operator(OCEAN_OT_layer_add.bl_idname, text=text, icon=names.icon)
+                add.kind = kind.kind
 
 
 class OCEAN_MT_wind_fields(bpy.types.Menu):

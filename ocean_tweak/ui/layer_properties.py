@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The layers of an ocean as properties: waves by a spectrum, of a wind field, out of a picture, by hand.
 
-They stand in one list, wave layers first, so that the number of a wave layer is its number in the parameters
-and in the paths of keys.
+They stand in one list, so that the number of a layer is its number in the parameters and in the paths of
+keys. The settings of a kind follow from the fields of its parameters.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from bpy.props import (
 )
 
 from ..core import (
-    HeroWave,
     OceanParameters,
     ParameterError,
     PictureLayer,
@@ -31,8 +30,10 @@ from ..core import (
 )
 from ..core.plain_data import to_plain
 from ..core.raster import Raster
+from ..core.waves.contribution import Contribution
+from ..core.waves.kinds import shown
 from ..scene import source_images, wind_recording
-from ..scene.settings import LAYER_KINDS, scene_of
+from ..scene.settings import scene_of
 from ..scene.source_images import ImageSource
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties
@@ -63,14 +64,10 @@ def _set_fetch_in_km(layer: bpy.types.PropertyGroup, value: float) -> None:
     layer.fetch = value * 1000.0 / _metres(layer)
 
 
-class OCEAN_PG_wind_field(bpy.types.PropertyGroup):
-    """Waves that follow a wind field, and where its wind comes from.
-
-    recording : keys as JSON; recording_hash : what tells them from others
-    """
-
-    __annotations__ = {
-        **parameter_properties.annotations(WindFieldLayer, changed),
+#: properties of kinds besides those of their parameters: of a wind field where its wind comes from, with the
+#: recorded keys as JSON and what tells them from others, of a picture its image
+_OWN_PROPERTIES: dict[str, dict[str, Any]] = {
+    "WIND_FIELD": {
         "source": EnumProperty(
             name="Source", default="UNIFORM", **_SHOWN,
             items=[(key, *texts) for key, texts in SOURCES.items()],
@@ -96,41 +93,44 @@ class OCEAN_PG_wind_field(bpy.types.PropertyGroup):
             name="Objects", type=bpy.types.Collection, options=set(), **_OVERRIDE,
             description="Collection whose force fields of the type Wind are recorded; none for all",
         ),
-        "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
         "show_vectors": BoolProperty(
             name="Show Wind", options=set(), **_OVERRIDE,
             description="Draw the wind of this frame as arrows over the patch, while the ocean is active",
         ),
-    }  # fmt: skip
-
-
-class OCEAN_PG_picture(bpy.types.PropertyGroup):
-    """Waves out of a picture."""
-
-    __annotations__ = {
-        **parameter_properties.annotations(PictureLayer, changed),
+    },
+    "IMAGE": {
         "image": PointerProperty(
             name="Picture", type=bpy.types.Image, **_SHOWN,
             description="Picture whose trace the waves bear; without one, white noise. "
             "It covers one patch, of a colour picture the luminance",
         ),
         "image_channels": channels_property(),
-        "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
-    }  # fmt: skip
+    },
+}  # fmt: skip
 
 
-class OCEAN_PG_hero_wave(bpy.types.PropertyGroup):
-    """A single group of waves."""
+def _properties(kind: type[Contribution]) -> dict[str, Any]:
+    """All settings of a kind: those of its parameters, what it has besides, and its mask."""
+    mask = {"mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE)} if kind.has("mask") else {}
+    own = _OWN_PROPERTIES.get(kind.kind, {})
+    return {**parameter_properties.annotations(kind, changed), **own, **mask}
 
-    __annotations__ = parameter_properties.annotations(HeroWave, changed)
+
+def _group(kind: type[Contribution]) -> type[bpy.types.PropertyGroup]:
+    """The class of the settings of a kind."""
+    content = {"__annotations__": _properties(kind), "__doc__": kind.__doc__, "__module__": __name__}
+    return type(f"OCEAN_PG_{kind.names.settings}", (bpy.types.PropertyGroup,), content)
+
+
+#: settings by kind; those of waves by a spectrum stand in the layer itself
+GROUPS = {kind.kind: _group(kind) for kind in shown() if kind.names.settings}
 
 
 class OCEAN_PG_layer(bpy.types.PropertyGroup):
     """One layer: a wave system of its own properties, or what its kind says."""
 
     __annotations__ = {
-        **parameter_properties.annotations(WaveLayer, changed),
-        "mask": PointerProperty(type=OCEAN_PG_mask, **_OVERRIDE),
+        **_properties(WaveLayer),
         # Blender has no property that is always shown in kilometres; this is the fetch itself
         "fetch_km": FloatProperty(
             name="Fetch", min=0.0, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
@@ -139,46 +139,59 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
             "Longer fetch: higher and longer waves, until the sea is fully developed",
         ),
         "kind": EnumProperty(
-            name="Kind", default="WAVES", **_HIDDEN,
-            items=[(key, kind.label, kind.description) for key, kind in LAYER_KINDS.items()],
+            name="Kind", default=WaveLayer.kind, **_HIDDEN,
+            items=[
+                (kind.kind, kind.names.label, kind.names.description, kind.names.icon, kind.names.number)
+                for kind in shown()
+            ],
         ),
-        "wind_field": PointerProperty(type=OCEAN_PG_wind_field, **_OVERRIDE),
-        "picture": PointerProperty(type=OCEAN_PG_picture, **_OVERRIDE),
-        "hero_wave": PointerProperty(type=OCEAN_PG_hero_wave, **_OVERRIDE),
+        **{
+            kind.names.settings: PointerProperty(type=GROUPS[kind.kind], **_OVERRIDE)
+            for kind in shown()
+            if kind.kind in GROUPS
+        },
     }  # fmt: skip
 
     @property
     def group(self) -> bpy.types.PropertyGroup:
         """The properties that belong to the layer's kind."""
-        return _GROUPS[kind_of(self)](self)
+        settings = kind_of(self).names.settings
+        return getattr(self, settings) if settings else self
 
 
-def kind_of(layer: bpy.types.PropertyGroup) -> str:
-    """A key of LAYER_KINDS, whatever number is stored."""
-    return layer.kind or "WAVES"
+def kind_of(layer: bpy.types.PropertyGroup) -> type[Contribution]:
+    """The kind of a layer, whatever number is stored."""
+    return next((kind for kind in shown() if kind.kind == layer.kind), WaveLayer)
 
 
-_GROUPS = {
-    "WAVES": lambda layer: layer,
-    "WIND_FIELD": lambda layer: layer.wind_field,
-    "PICTURE": lambda layer: layer.picture,
-    "HERO_WAVE": lambda layer: layer.hero_wave,
-}
+def first_waves(layers: bpy.types.bpy_prop_collection) -> bpy.types.PropertyGroup | None:
+    """The first layer of waves by a spectrum."""
+    return next((layer for layer in layers if kind_of(layer) is WaveLayer), None)
 
 
-def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> dict[str, list[Any]]:
-    """The layers as the parameters' lists, not yet validated but for pictures and winds.
+def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> list[Any]:
+    """The layers as the parameters have them, not yet validated but for pictures and winds.
 
     Raises ParameterError for an image that cannot be used.
     """
-    result: dict[str, list[Any]] = {kind.parameter: [] for kind in LAYER_KINDS.values()}
-    for layer in layers:
-        name = LAYER_KINDS[kind_of(layer)].parameter
+    result = []
+    for index, layer in enumerate(layers):
         try:
-            result[name].append(_READERS[kind_of(layer)](layer, metres))
+            result.append(_read(layer, metres))
         except ParameterError as error:
-            raise error.inside(f"{name}.{len(result[name])}") from None
+            raise error.inside(f"layers.{index}") from None
     return result
+
+
+def _read(layer: bpy.types.PropertyGroup, metres: Fraction) -> object:
+    kind, group = kind_of(layer), layer.group
+    values = parameter_properties.read(group, kind, metres)
+    if kind.has("mask"):
+        values["mask"] = mask_properties.read(group.mask, metres)
+    if kind.kind not in _RASTERS:
+        return {**values, "kind": kind.kind}
+    values.update(_RASTERS[kind.kind](group))
+    return source_images.made_layer(kind, tuple(values.items()))
 
 
 def images(layers: bpy.types.bpy_prop_collection) -> set[ImageSource]:
@@ -204,12 +217,11 @@ def _image_source(layer: bpy.types.PropertyGroup) -> ImageSource | None:
 def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, metres: Fraction) -> None:
     """Take over the parameters' layers; images and recordings that hold the same numbers stay."""
     known_images, known_winds = images(layers), list(_known_winds(layers))
-    wanted = list(_listed(parameters))
-    set_count(layers, len(wanted))
-    for item, (kind, layer) in zip(layers, wanted, strict=True):
-        item.kind = kind
+    set_count(layers, len(parameters.layers))
+    for item, layer in zip(layers, parameters.layers, strict=True):
+        item.kind = layer.kind
         parameter_properties.write(item.group, type(layer), to_plain(layer, brief=True), metres)
-        if hasattr(item.group, "mask"):
+        if layer.has("mask"):
             mask_properties.write(item.group.mask, layer.mask, metres, known_images)
         if isinstance(layer, WindFieldLayer):
             _write_wind(item.wind_field, layer, known_winds, known_images)
@@ -220,20 +232,10 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
                 _choose_image(item.picture, layer.picture, known_images)
 
 
-def kinds(parameters: OceanParameters) -> list[str]:
-    """The kinds of the layers in the order in which they stand in an ocean's list."""
-    return [kind for kind, _ in _listed(parameters)]
-
-
 def set_recording(group: bpy.types.PropertyGroup, keys: tuple[WindKey, ...]) -> None:
     """Keep keys in a wind field's properties, and let it use them."""
     group.recording, group.recording_hash = wind_recording.to_text(keys)
     group.source = "RECORDING"
-
-
-def _listed(parameters: OceanParameters) -> Iterator[tuple[str, Any]]:
-    for key, kind in LAYER_KINDS.items():
-        yield from ((key, layer) for layer in getattr(parameters, kind.parameter))
 
 
 def set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
@@ -245,41 +247,13 @@ def set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
         layers.add()
 
 
-def _read_waves(layer: bpy.types.PropertyGroup, metres: Fraction) -> dict[str, Any]:
-    return {
-        **parameter_properties.read(layer, WaveLayer, metres),
-        "mask": mask_properties.read(layer.mask, metres),
-    }
-
-
-def _read_picture(layer: bpy.types.PropertyGroup, metres: Fraction) -> object:
-    group = layer.picture
-    values = parameter_properties.read(group, PictureLayer, metres)
-    values["mask"] = mask_properties.read(group.mask, metres)
+def _picture(group: bpy.types.PropertyGroup) -> dict[str, Any]:
     source = source_images.source_of(group)
-    if source is not None:
-        values["picture"] = source_images.raster_of(source, 1)
-    return source_images.made_layer(PictureLayer, tuple(values.items()))
+    return {} if source is None else {"picture": source_images.raster_of(source, 1)}
 
 
-def _read_wind_field(layer: bpy.types.PropertyGroup, metres: Fraction) -> object:
-    group = layer.wind_field
-    values = parameter_properties.read(group, WindFieldLayer, metres)
-    values["keys"] = _keys(group)
-    values["mask"] = mask_properties.read(group.mask, metres)
-    return source_images.made_layer(WindFieldLayer, tuple(values.items()))
-
-
-def _read_hero_wave(layer: bpy.types.PropertyGroup, metres: Fraction) -> dict[str, Any]:
-    return parameter_properties.read(layer.hero_wave, HeroWave, metres)
-
-
-_READERS = {
-    "WAVES": _read_waves,
-    "WIND_FIELD": _read_wind_field,
-    "PICTURE": _read_picture,
-    "HERO_WAVE": _read_hero_wave,
-}
+#: what kinds with rasters read besides their parameters
+_RASTERS = {"IMAGE": _picture, "WIND_FIELD": lambda group: {"keys": _keys(group)}}
 
 
 def _keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
@@ -304,12 +278,6 @@ def _recorded_keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:
 
 _KEYS = {"UNIFORM": lambda _group: (), "IMAGE": _image_keys, "RECORDING": _recorded_keys}
 
-#: what a wind field has besides its parameters
-_BESIDES = (
-    "source", "image", "image_channels", "image_values", "image_speed", "recording", "recording_hash",
-    "objects", "show_vectors",
-)  # fmt: skip
-
 
 class _KnownWind(NamedTuple):
     """A wind field as it was: its id, the keys that it gave, None without any, and what it has besides."""
@@ -328,7 +296,9 @@ def _known_winds(layers: bpy.types.bpy_prop_collection) -> Iterator[_KnownWind]:
             keys = _keys(group)
         except ParameterError:
             keys = None
-        yield _KnownWind(group.id, keys, {name: getattr(group, name) for name in _BESIDES})
+        yield _KnownWind(
+            group.id, keys, {name: getattr(group, name) for name in _OWN_PROPERTIES["WIND_FIELD"]}
+        )
 
 
 def _write_wind(
@@ -340,7 +310,7 @@ def _write_wind(
     """Let the wind come from where it came from, as far as that gives the same keys."""
     own = [wind for wind in known if wind.id == layer.id]
     same = [wind for wind in (*own, *known) if wind.keys == layer.keys]
-    for name in _BESIDES:
+    for name in _OWN_PROPERTIES["WIND_FIELD"]:
         group.property_unset(name)
     for wind in (same or own)[:1]:
         for name, value in wind.besides.items():
@@ -366,8 +336,6 @@ def _choose_image(group: bpy.types.PropertyGroup, raster: Raster, known: set[Ima
 
 CLASSES = (
     *mask_properties.CLASSES,
-    OCEAN_PG_wind_field,
-    OCEAN_PG_picture,
-    OCEAN_PG_hero_wave,
+    *GROUPS.values(),
     OCEAN_PG_layer,
 )

@@ -61,7 +61,7 @@ def wind_lines(item: bpy.types.Object, scene: bpy.types.Scene) -> NDArray[np.flo
     size = parameters.domain_size
     parts = [
         arrows(layer, time, size)
-        for layer, is_shown in zip(parameters.wind_fields, shown, strict=True)
+        for layer, is_shown in zip(parameters.of(WindFieldLayer), shown, strict=True)
         if is_shown and not layer.muted
     ]
     metres = float(metres_per_unit(scene))

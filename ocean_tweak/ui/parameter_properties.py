@@ -145,6 +145,11 @@ def _is_text(field: _Field) -> bool:
     return "nested" not in field.metadata and field.metadata.get("kind") is not Raster
 
 
+def names_of(kind: type) -> list[str]:
+    """The properties that a panel shows of a parameter class: not whether it is muted, and no identity."""
+    return [field.name for field in _plain_fields(kind, ("muted", "id"))]
+
+
 def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
     for field in dataclasses.fields(kind):
         if field.metadata.get("kind") in _BUILDERS and field.name not in without:

@@ -18,12 +18,12 @@ from bpy.props import (
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..core.plain_data import to_plain
+from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
 from ..scene import cache_place, ocean_object
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.image_sequence import ImageSequence
 from ..scene.settings import (
-    LAYER_KINDS,
     METHODS,
     OUT_OF_RANGE,
     SOURCES,
@@ -57,7 +57,7 @@ _HIDDEN = {"options": {"HIDDEN"}, **_OVERRIDE}
 
 def _listed(kinds: list[str]) -> str:
     """How many layers of which kinds."""
-    counts = {LAYER_KINDS[kind].noun: kinds.count(kind) for kind in LAYER_KINDS if kind in kinds}
+    counts = {kind.names.noun: kinds.count(kind.kind) for kind in shown() if kind.kind in kinds}
     return ", ".join(f"{count} {noun}{'s' if count > 1 else ''}" for noun, count in counts.items())
 
 
@@ -220,7 +220,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data = parameter_properties.read(self, OceanParameters, metres, _FROM_RESOLUTION)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
-        data.update(layer_properties.read(self.layers, metres))
+        data["layers"] = layer_properties.read(self.layers, metres)
         data["patches"] = patch_properties.read(self.patches, metres)
         data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
@@ -271,7 +271,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
         Raises OceanObjectError for other kinds of layers or another number of patches on a library override.
         """
-        kinds, wanted = [layer.kind for layer in self.layers], layer_properties.kinds(parameters)
+        kinds, wanted = ([layer.kind for layer in own.layers] for own in (self, parameters))
         if self.id_data.override_library and wanted != kinds:
             raise OceanObjectError(
                 f"A library override keeps its {_listed(kinds)}, this sea has {_listed(wanted)}: "

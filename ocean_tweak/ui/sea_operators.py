@@ -8,7 +8,7 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 from mathutils import Matrix
 
-from ..core import Ocean, OceanParameters, ParameterError, layer_for_sea_state
+from ..core import Ocean, OceanParameters, ParameterError, WaveLayer, layer_for_sea_state
 from ..core.presets import built_in
 from ..scene import conversion, ocean_object
 from ..scene.settings import OceanObjectError, settings_of
@@ -78,7 +78,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
     def _matched(self, before: OceanParameters) -> tuple[OceanParameters, str]:
-        first, *rest = before.layers
+        first = before.of(WaveLayer)[0]
         if self.by == "WAVES":
             match = layer_for_sea_state(round(self.height, 4), round(self.period, 4), before.water, first)
             layer, explanation = match.layer, match.explanation
@@ -89,7 +89,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
                 first, definition="WIND", wind_speed=wanted.wind_speed, fetch=wanted.fetch
             )
             explanation = f"{preset.title}: {wanted.wind_speed:g} m/s over {wanted.fetch / 1e3:g} km"
-        matched = before.replace(layers=(layer, *rest))
+        matched = before.replace(layers=tuple(layer if own is first else own for own in before.layers))
         if self.fit_domain:
             length = Ocean(matched.without_patches.at_resolution(16)).statistics().peak_wavelength
             if length > 0.0:

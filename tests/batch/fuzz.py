@@ -37,6 +37,7 @@ from ocean_tweak.export.usd.library import pxr
 from tests.batch import mutations
 from tests.batch.bakery import only_folder, write_sea
 from tests.batch.bakery import run as run_command
+from tests.layers import layers_of
 from tests.picture_files import exr, png, tiff
 
 MEMORY = 2 * 2**30
@@ -197,8 +198,8 @@ class Parameters(Fuzz):
 def _is_small(parameters: OceanParameters) -> bool:
     """Whether a sea is told of in less than seconds."""
     sides = [parameters.resolution, *(patch.resolution for patch in parameters.patches)]
-    sides += [layer.noise_resolution for layer in parameters.pictures]
-    return max(sides) <= 64 and not parameters.wind_fields
+    sides += [layer.noise_resolution for layer in layers_of(parameters, "IMAGE")]
+    return max(sides) <= 64 and not layers_of(parameters, "WIND_FIELD")
 
 
 class Records(Fuzz):

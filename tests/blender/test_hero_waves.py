@@ -7,21 +7,21 @@ import bpy
 import numpy as np
 import pytest
 
+from tests.layers import layers_of, with_layers
+
 from .conftest import sea_of
 
 
 @pytest.fixture
 def placed(core, make_parameters):
     size = make_parameters().domain_size
-    return make_parameters(
-        hero_waves=(
+    return with_layers(make_parameters(), HERO_WAVE=(
             core.HeroWave(
                 x=-0.3 * size, y=0.7 * size, time=0.3, direction=0.7, wavelength=size / 3, crest_height=0.1,
                 group_length=1.5, group_width=0.6 * size, phase=0.1,
             ),
             core.HeroWave(muted=True),
-        )
-    )  # fmt: skip
+        ))  # fmt: skip
 
 
 def test_they_come_back_to_the_last_bit(ocean, placed, empty_scene, tmp_path):
@@ -39,7 +39,7 @@ def test_vertices_are_those_of_the_core(ocean, placed, empty_scene, expected, ev
     for frame in (1, 20):
         empty_scene.frame_set(frame)
         assert np.abs(evaluated(ocean) - expected(placed, frame)).max() < 1e-4
-    assert np.abs(evaluated(ocean) - expected(placed.replace(hero_waves=()), 20)).max() > 0.02
+    assert np.abs(evaluated(ocean) - expected(with_layers(placed, HERO_WAVE=()), 20)).max() > 0.02
 
 
 def test_the_menus_wave_stands_in_the_middle_now(ocean, empty_scene, evaluated):
@@ -49,7 +49,7 @@ def test_the_menus_wave_stands_in_the_middle_now(ocean, empty_scene, evaluated):
     empty_scene.frame_set(13)
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
     assert not settings.error
-    (wave,) = sea_of(ocean).hero_waves
+    (wave,) = layers_of(sea_of(ocean), "HERO_WAVE")
     assert wave.time == 0.5
     heights = evaluated(ocean)[..., 2].ravel()
     places = evaluated(ocean)[np.unravel_index(np.argmax(heights), evaluated(ocean).shape[:-1])]
@@ -70,13 +70,13 @@ def test_the_menus_wave_fits(ocean, resolution):
 def test_duplicate_move_solo_and_remove(ocean, placed, empty_scene):
     settings = ocean.ocean_tweak
     settings.from_parameters(placed, empty_scene)
-    first, second = placed.hero_waves
+    first, second = layers_of(placed, "HERO_WAVE")
     settings.active_layer = 1
     bpy.ops.ocean.layer_duplicate()
-    assert sea_of(ocean).hero_waves == (first, first, second)
+    assert layers_of(sea_of(ocean), "HERO_WAVE") == (first, first, second)
     bpy.ops.ocean.layer_remove()
     bpy.ops.ocean.layer_move(direction="DOWN")
-    assert sea_of(ocean).hero_waves == (second, first)
+    assert layers_of(sea_of(ocean), "HERO_WAVE") == (second, first)
     bpy.ops.ocean.layer_solo()
     assert sea_of(ocean).active() == (first,)
 
@@ -85,8 +85,8 @@ def test_what_does_not_fit_is_told_and_a_coarse_viewport_leaves_it_out(ocean, pl
     settings = ocean.ocean_tweak
     settings.from_parameters(placed, empty_scene)
     settings.layers[1].hero_wave.group_width = 1e4
-    assert "hero_waves.0.group_width" in settings.error
-    settings.layers[1].hero_wave.group_width = placed.hero_waves[0].group_width
+    assert "layers.1.group_width" in settings.error
+    settings.layers[1].hero_wave.group_width = layers_of(placed, "HERO_WAVE")[0].group_width
     assert not settings.error
     settings.layers[0].muted = True
     settings.layers[1].hero_wave.wavelength = placed.domain_size * 5.0 / placed.resolution
@@ -102,5 +102,5 @@ def test_directions_and_phases_are_angles(ocean):
     group = ocean.ocean_tweak.layers[1].hero_wave
     group.direction = math.radians(90.0)
     assert group.bl_rna.properties["direction"].subtype == "ANGLE"
-    assert sea_of(ocean).hero_waves[0].direction == pytest.approx(math.pi / 2.0)
+    assert layers_of(sea_of(ocean), "HERO_WAVE")[0].direction == pytest.approx(math.pi / 2.0)
     assert not group.bl_rna.properties["crest_height"].is_animatable

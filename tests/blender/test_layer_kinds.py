@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 import pytest
 
+from tests.layers import layers_of, with_layers
+
 from .conftest import DOMAIN, positions_of, sea_of
 
 TOLERANCE = 1e-4  # m
@@ -18,16 +20,15 @@ def rich(core, make_parameters):
     chance = np.random.default_rng(5)
     winds = [core.Raster(4.0 + 3.0 * chance.random((5, 3, 2)), name) for name in ("early", "late")]
     return make_parameters(
-        layers=(core.WaveLayer(wind_speed=9.1), core.WaveLayer(wind_speed=4.3, fetch=2e3, id=7)),
-        wind_fields=(
+        layers=(
+            core.WaveLayer(wind_speed=9.1),
+            core.WaveLayer(wind_speed=4.3, fetch=2e3, id=7),
             core.WindFieldLayer(wind_speed=8.2, columns=4, rows=3, start_time=-20.0),
             core.WindFieldLayer(keys=(core.WindKey(vectors=winds[0]),), columns=3, rows=3, life=3.3),
             core.WindFieldLayer(
                 keys=(core.WindKey(time=0.1, vectors=winds[0]), core.WindKey(time=2.3, vectors=winds[1])),
                 columns=2, rows=2, strength=0.9,
             ),
-        ),
-        pictures=(
             core.PictureLayer(wind_speed=7.7, noise_resolution=64),
             core.PictureLayer(
                 picture=core.Raster(chance.normal(size=(7, 5)), "sketch"), filter="FRACTAL", gain=0.3
@@ -41,7 +42,7 @@ def test_all_kinds_come_back_to_the_last_bit(ocean, rich, empty_scene):
     ocean.ocean_tweak.from_parameters(rich, empty_scene)
     assert json.loads(sea_of(ocean).to_json()) == json.loads(rich.to_json())
     kinds = [layer.kind for layer in ocean.ocean_tweak.layers]
-    assert kinds == ["WAVES"] * 2 + ["WIND_FIELD"] * 3 + ["PICTURE"] * 2
+    assert kinds == ["WAVES"] * 2 + ["WIND_FIELD"] * 3 + ["IMAGE"] * 2
     images = [ocean.ocean_tweak.layers[place].group.image for place in (3, 6)]
     assert [image.name for image in images] == ["early", "sketch"]
     assert all(image.is_float and image.packed_file and image.colorspace_settings.is_data for image in images)
@@ -53,7 +54,7 @@ def test_taking_a_sea_over_again_makes_no_more_images(ocean, rich, empty_scene):
     ocean.ocean_tweak.from_parameters(sea_of(ocean), empty_scene)
     bpy.ops.ocean.layer_add()
     assert set(bpy.data.images) == before
-    assert sea_of(ocean).pictures == rich.pictures
+    assert layers_of(sea_of(ocean), "IMAGE") == layers_of(rich, "IMAGE")
 
 
 def test_all_kinds_outlive_saving_and_duplicating(ocean, rich, empty_scene, tmp_path):
@@ -84,7 +85,7 @@ def test_all_kinds_are_linked_and_overridden(ocean, rich, empty_scene, tmp_path)
         ValueError,
         match="2 wave layers, 3 wind fields, 2 pictures, this sea has 2 wave layers, 3 wind fields:",
     ):
-        own.ocean_tweak.from_parameters(rich.replace(pictures=()), bpy.context.scene)
+        own.ocean_tweak.from_parameters(with_layers(rich, IMAGE=()), bpy.context.scene)
 
 
 def test_vertices_are_those_of_the_core(ocean, rich, empty_scene, expected, evaluated):
@@ -92,7 +93,7 @@ def test_vertices_are_those_of_the_core(ocean, rich, empty_scene, expected, eval
     for frame in (1, 30):
         empty_scene.frame_set(frame)
         assert np.abs(evaluated(ocean) - expected(rich, frame)).max() < TOLERANCE
-    without = rich.replace(wind_fields=(), pictures=())
+    without = with_layers(rich, WIND_FIELD=(), IMAGE=())
     assert np.abs(evaluated(ocean) - expected(without, 30)).max() > 0.05
 
 
@@ -107,7 +108,7 @@ def test_the_three_winds_of_the_menu_have_waves(ocean, evaluated):
         bpy.ops.ocean.layer_remove()
         assert abs(evaluated(ocean)[..., 2]).max() == 0.0
     bpy.ops.ocean.layer_add(kind="WIND_FIELD", wind="OPPOSED_HALVES")
-    (layer,) = sea_of(ocean).wind_fields
+    (layer,) = layers_of(sea_of(ocean), "WIND_FIELD")
     assert np.sign(layer.rasters[0].values[3, :, 0]).tolist() == [-1.0] * 8 + [1.0] * 8
 
 
@@ -144,11 +145,11 @@ def test_duplicate_move_solo_and_remove_work_for_every_kind(ocean, rich, empty_s
     bpy.ops.ocean.layer_duplicate()
     assert settings.active_layer == 4
     assert settings.layers[4].wind_field.image == settings.layers[3].wind_field.image
-    fields = sea_of(ocean).wind_fields
+    fields = layers_of(sea_of(ocean), "WIND_FIELD")
     assert fields[1].keys == fields[2].keys
     assert len({field.id for field in fields}) == 4
     bpy.ops.ocean.layer_move(direction="UP")
-    assert [field.id for field in sea_of(ocean).wind_fields] == [0, 3, 1, 2]
+    assert [field.id for field in layers_of(sea_of(ocean), "WIND_FIELD")] == [0, 3, 1, 2]
     assert settings.active_layer == 3
     assert bpy.ops.ocean.layer_move(direction="UP") == {"FINISHED"}
     assert bpy.ops.ocean.layer_move(direction="UP") == {"CANCELLED"}  # wave layers stand above
@@ -163,7 +164,7 @@ def test_duplicate_move_solo_and_remove_work_for_every_kind(ocean, rich, empty_s
 
 
 def test_a_sea_keeps_a_layer_of_waves(ocean):
-    bpy.ops.ocean.layer_add(kind="PICTURE")
+    bpy.ops.ocean.layer_add(kind="IMAGE")
     ocean.ocean_tweak.active_layer = 0
     with pytest.raises(RuntimeError, match="at least one layer of waves"):
         bpy.ops.ocean.layer_remove()
@@ -212,7 +213,7 @@ def test_only_wave_layers_can_be_keyed(ocean):
 
 def test_a_loop_refuses_a_wind_field_by_name(ocean):
     ocean.ocean_tweak.use_loop = True
-    with pytest.raises(RuntimeError, match=r"wind_fields\.0 raises waves that do not repeat"):
+    with pytest.raises(RuntimeError, match=r"layers\.1 raises waves that do not repeat"):
         bpy.ops.ocean.layer_add(kind="WIND_FIELD")
     assert len(ocean.ocean_tweak.layers) == 1
 
@@ -227,7 +228,7 @@ def test_files_and_presets_carry_every_kind(ocean, rich, empty_scene, tmp_path, 
         lambda: bpy.ops.ocean.import_parameters(filepath=str(tmp_path / "sea.json")),
         lambda: bpy.ops.ocean.apply_preset(key="user:rich"),
     ):
-        ocean.ocean_tweak.from_parameters(rich.replace(wind_fields=(), pictures=()), empty_scene)
+        ocean.ocean_tweak.from_parameters(with_layers(rich, WIND_FIELD=(), IMAGE=()), empty_scene)
         take()
         assert sea_of(ocean) == rich
 
@@ -244,7 +245,7 @@ def test_a_bake_of_every_kind_and_its_parameters(ocean, rich, empty_scene, tmp_p
     assert np.abs(evaluated(ocean) - expected(rich, 3)).max() < TOLERANCE
     (image,) = tmp_path.rglob("*_disp.0002.exr")
     bpy.ops.ocean.use_live()
-    settings.from_parameters(rich.replace(wind_fields=(), pictures=()), empty_scene)
+    settings.from_parameters(with_layers(rich, WIND_FIELD=(), IMAGE=()), empty_scene)
     bpy.ops.ocean.use_sequence(filepath=str(image))
     assert sea_of(ocean) == rich
     (image.parent / "bake.json").unlink()

@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 import pytest
 
+from tests.layers import with_layers
+
 from .conftest import DOMAIN, SAMPLES, evaluated_mesh
 from .surfaces import assert_alike, read, wanted
 
@@ -183,13 +185,13 @@ def test_parameters_with_masks_come_back(ocean, core, make_parameters, empty_sce
         core.WaveLayer(mask=core.Mask(x=10.0, y=20.0, near=5.0, far=9.0, inverted=True)),
         core.WaveLayer(mask=image),
     )
-    parameters = make_parameters(layers=layers, pictures=(core.PictureLayer(mask=image),))
+    parameters = with_layers(make_parameters(layers=layers), IMAGE=(core.PictureLayer(mask=image),))
     settings = ocean.ocean_tweak
     settings.from_parameters(parameters, empty_scene)
     assert settings.to_parameters(empty_scene) == parameters
     assert settings.layers[1].mask.image == settings.layers[2].picture.mask.image
     bare = tuple(dataclasses.replace(layer, mask=None) for layer in layers)
-    settings.from_parameters(parameters.replace(layers=bare, pictures=()), empty_scene)
+    settings.from_parameters(with_layers(parameters.replace(layers=bare), IMAGE=()), empty_scene)
     assert {layer.mask.source for layer in settings.layers} == {"NONE"}
 
 

@@ -240,7 +240,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
         wind.source, wind.height = source, height
         drawn.update(draw(item))
     wind.source = "UNIFORM"
-    bpy.ops.ocean.layer_add(kind="PICTURE")
+    bpy.ops.ocean.layer_add(kind="IMAGE")
     picture = settings.layers[settings.active_layer].picture
     for kind in ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE"):
         for animation in ("DISPERSION", "DOMINANT_BAND", "TRANSLATION"):
@@ -257,14 +257,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
     elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "loop_duration", "joined", "mask"}
     elsewhere |= {"fps", "stretch"}  # the scene's
-    in_lists = {
-        "wind_fields",
-        "pictures",
-        "hero_waves",
-        "patches",
-        "keys",
-        "picture",
-    }  # as layers, recordings and images
+    in_lists = {"patches", "keys", "picture"}  # as layers, recordings and images
     assert names - elsewhere - in_lists - drawn == set()
     assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
 

@@ -82,7 +82,7 @@ def test_an_index_beyond_a_list_means_its_nearest_entry(ocean, empty_scene, inde
     nearest = 0 if index < 0 else -1
     settings = ocean.ocean_tweak
     settings.resolution = 48  # which hold a hero wave and its copy
-    kinds = ("WAVES", "WIND_FIELD", "PICTURE", "HERO_WAVE")
+    kinds = ("WAVES", "WIND_FIELD", "IMAGE", "HERO_WAVE")
     for kind in kinds:
         bpy.ops.ocean.layer_add(kind=kind)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests import picture_files
+from tests.layers import layers_of
 
 from .conftest import sea_of
 
@@ -17,7 +18,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 @pytest.fixture
 def picture(ocean):
-    bpy.ops.ocean.layer_add(kind="PICTURE")
+    bpy.ops.ocean.layer_add(kind="IMAGE")
     return ocean.ocean_tweak.layers[1].picture
 
 
@@ -49,7 +50,7 @@ def float_image(values, name="decimal"):
 def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, picture, tmp_path, shape):
     values = np.random.default_rng(2).integers(0, 256, shape)
     picture.image = bpy.data.images.load(str(png(tmp_path / "odd.png", values)))
-    raster = sea_of(ocean).pictures[0].picture
+    raster = layers_of(sea_of(ocean), "IMAGE")[0].picture
     grey = values if len(shape) == 2 else values @ (0.2126, 0.7152, 0.0722)
     assert raster.shape == (*shape[:2], 1)
     assert np.abs(raster.values[..., 0] - grey[::-1] / 255.0).max() < 1e-6
@@ -60,7 +61,7 @@ def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, picture, tmp_pat
 def test_decimals_are_themselves(ocean, picture, wind):
     values = np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32) * 40
     ocean.ocean_tweak.layers[2].picture.image = float_image(values)
-    assert sea_of(ocean).pictures[0].picture.values[..., 0].tolist() == values.tolist()
+    assert layers_of(sea_of(ocean), "IMAGE")[0].picture.values[..., 0].tolist() == values.tolist()
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -95,7 +96,7 @@ def test_pngs_mean_the_same_here_and_outside(ocean, extension, tmp_path, depth, 
 @pytest.mark.parametrize("values", [np.array([[-9, 9]], np.int8), np.array([[0.5, 1.0]], np.float64)])
 def test_tiffs_of_which_blender_loses_numbers_are_refused(ocean, picture, tmp_path, values):
     picture.image = bpy.data.images.load(str(picture_files.tiff(tmp_path / "a.tif", values)))
-    assert "pictures.0.image = 'a.tif': holds " in ocean.ocean_tweak.error
+    assert "layers.1.image = 'a.tif': holds " in ocean.ocean_tweak.error
     assert "which are not read" in ocean.ocean_tweak.error
 
 
@@ -113,12 +114,12 @@ def test_what_an_exr_stores_lies_where_it_was_painted(ocean, picture, tmp_path, 
         bpy.ops.ocean.reload_image()
     expected = np.zeros((4, 4))
     expected[1:3, 2:] = PAINTED[:, :2]
-    assert (sea_of(ocean).pictures[0].picture.values[::-1, :, 0] == expected).all()
+    assert (layers_of(sea_of(ocean), "IMAGE")[0].picture.values[::-1, :, 0] == expected).all()
     image.pixels[0:3] = (9.0, 9.0, 9.0)  # painted, in the lowest row that is stored
     image.update()
     expected[2, 2] = 9.0
     ocean.ocean_tweak.seed += 1
-    assert (sea_of(ocean).pictures[0].picture.values[::-1, :, 0] == expected).all()
+    assert (layers_of(sea_of(ocean), "IMAGE")[0].picture.values[::-1, :, 0] == expected).all()
 
 
 def test_channels_of_an_exr_are_chosen_by_name(ocean, picture, wind, extension, tmp_path):
@@ -130,14 +131,16 @@ def test_channels_of_an_exr_are_chosen_by_name(ocean, picture, wind, extension, 
     wind, picture = (layer.group for layer in ocean.ocean_tweak.layers[1:])
     wind.source, wind.image, wind.image_values, wind.image_speed = "IMAGE", image, "PLAIN", 1.0
     picture.image = image
-    assert "wind_fields.0.image = 'a.exr': must have 2 channels, but has 1" in ocean.ocean_tweak.error
+    assert "layers.1.image = 'a.exr': must have 2 channels, but has 1" in ocean.ocean_tweak.error
     wind.image_channels, picture.image_channels = "gust", "depth.X"
     assert "no channel or layer depth.X; it has R, depth.Z, gust.u, gust.v" in ocean.ocean_tweak.error
     picture.image_channels = "depth.Z"
     assert ocean.ocean_tweak.error == ""
     sea = sea_of(ocean)
-    assert (sea.pictures[0].picture.values[::-1, :, 0] == 2 * PAINTED).all()
-    assert (sea.wind_fields[0].rasters[0].values[::-1] == np.dstack([3 * PAINTED, 4 * PAINTED])).all()
+    assert (layers_of(sea, "IMAGE")[0].picture.values[::-1, :, 0] == 2 * PAINTED).all()
+    assert (
+        layers_of(sea, "WIND_FIELD")[0].rasters[0].values[::-1] == np.dstack([3 * PAINTED, 4 * PAINTED])
+    ).all()
     names = extension("scene.source_images").channel_names(image)
     assert sorted(names) == ["R", "depth.Z", "gust.u", "gust.v"]
     # taking over the same sea changes nothing
@@ -157,7 +160,7 @@ def test_a_choice_of_channels_is_no_matter_to_other_images(ocean, picture):
 def test_pictures_that_hold_no_waves_are_told_by_name(ocean, picture):
     flat = np.ones((4, 4), np.float32)
     picture.image = float_image(flat, "wall")
-    assert "pictures.0.picture (wall) = 1.0: everywhere" in ocean.ocean_tweak.error
+    assert "layers.1.picture (wall) = 1.0: everywhere" in ocean.ocean_tweak.error
     broken = np.arange(12, dtype=np.float32).reshape(3, 4)
     broken[2, 1] = np.nan
     picture.image = float_image(broken, "hole")
@@ -172,7 +175,7 @@ def test_missing_files_and_movies_are_told_by_name(ocean, picture, tmp_path):
     picture.image = bpy.data.images.load(str(file))
     file.unlink()
     bpy.ops.ocean.reload_image()
-    assert "pictures.0.image = 'gone.png': its file cannot be read" in ocean.ocean_tweak.error
+    assert "layers.1.image = 'gone.png': its file cannot be read" in ocean.ocean_tweak.error
     picture.image.source = "SEQUENCE"
     ocean.ocean_tweak.seed += 1
     assert "must be a single picture" in ocean.ocean_tweak.error
@@ -182,9 +185,9 @@ def test_a_changed_file_is_read_again_when_asked(ocean, picture, tmp_path):
     file = png(tmp_path / "drawn.png", np.arange(12).reshape(3, 4))
     picture.image = bpy.data.images.load(str(file))
     png(file, np.arange(12)[::-1].reshape(3, 4))
-    assert sea_of(ocean).pictures[0].picture.values[0, 0, 0] == pytest.approx(8 / 255)
+    assert layers_of(sea_of(ocean), "IMAGE")[0].picture.values[0, 0, 0] == pytest.approx(8 / 255)
     bpy.ops.ocean.reload_image()
-    assert sea_of(ocean).pictures[0].picture.values[0, 0, 0] == pytest.approx(3 / 255)
+    assert layers_of(sea_of(ocean), "IMAGE")[0].picture.values[0, 0, 0] == pytest.approx(3 / 255)
 
 
 def test_painting_shows(ocean, picture, evaluated, empty_scene):
@@ -213,7 +216,7 @@ def test_playback_reads_no_image_again(ocean, picture, empty_scene, extension, m
     for frame in (2, 3):
         empty_scene.frame_set(frame)
     assert ocean.ocean_tweak.error == ""
-    assert sea_of(ocean).pictures[0] is sea_of(ocean).pictures[0]
+    assert layers_of(sea_of(ocean), "IMAGE")[0] is layers_of(sea_of(ocean), "IMAGE")[0]
 
 
 def test_colour_space_of_decimals_is_asked_for(ocean, picture, extension, empty_scene):
@@ -238,13 +241,13 @@ def test_red_and_green_are_the_wind(ocean, wind):
     values = np.zeros((2, 3, 3), np.float32)
     values[0, 1] = (0.25, -0.5, 9.0)
     wind.source = "IMAGE"
-    assert "wind_fields.0.image = '': choose an image" in ocean.ocean_tweak.error
+    assert "layers.1.image = '': choose an image" in ocean.ocean_tweak.error
     wind.image, wind.image_values, wind.image_speed = float_image(values), "PLAIN", 8.0
-    layer = sea_of(ocean).wind_fields[0]
+    layer = layers_of(sea_of(ocean), "WIND_FIELD")[0]
     assert layer.keys[0].vectors.shape == (2, 3, 2)
     assert layer.keys[0].vectors.values[0, 1].tolist() == [2.0, -4.0]
     wind.image_values = "CENTRED"
-    assert sea_of(ocean).wind_fields[0].keys[0].vectors.values[0, 1].tolist() == [-4.0, -16.0]
+    assert layers_of(sea_of(ocean), "WIND_FIELD")[0].keys[0].vectors.values[0, 1].tolist() == [-4.0, -16.0]
     wind.show_vectors = True
     image = wind.image
     bpy.ops.ocean.layer_add()  # through the parameters and back
@@ -255,7 +258,7 @@ def test_red_and_green_are_the_wind(ocean, wind):
 
 def test_a_wind_too_strong_for_the_patch_is_told(ocean, wind):
     wind.wind_speed = 60.0
-    assert "wind_fields.0 = '60 m/s': this wind's waves are 367 m long" in ocean.ocean_tweak.error
+    assert "layers.1 = '60 m/s': this wind's waves are 367 m long" in ocean.ocean_tweak.error
 
 
 def test_a_sea_from_a_file_that_names_its_picture(ocean, tmp_path, expected, evaluated, empty_scene, core):
@@ -274,7 +277,7 @@ def test_a_sea_from_a_file_that_names_its_picture(ocean, tmp_path, expected, eva
     assert layers[1].wind_field.image.name == "wind.npy"
     sea = sea_of(ocean)
     grey = values[::-1] @ (0.2126, 0.7152, 0.0722) / 255.0
-    assert np.abs(sea.pictures[0].picture.values[..., 0] - grey).max() < 1e-6
+    assert np.abs(layers_of(sea, "IMAGE")[0].picture.values[..., 0] - grey).max() < 1e-6
     assert np.abs(evaluated(ocean) - expected(sea, 1)).max() < 1e-4
 
 
@@ -286,4 +289,4 @@ def test_the_examples_come_in(ocean, name, empty_scene):
     bpy.ops.ocean.import_parameters(filepath=str(EXAMPLES / name))
     assert ocean.ocean_tweak.error == ""
     sea = sea_of(ocean)
-    assert sea.pictures or sea.wind_fields
+    assert layers_of(sea, "IMAGE") or layers_of(sea, "WIND_FIELD")

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
+from tests.layers import layers_of
+
 SIZE = 128.0  # m
 RESOLUTION = 64
 
@@ -20,7 +22,7 @@ def ocean(ocean_object, core, empty_scene):
         life=50.0, steepness=0.5,
     )  # fmt: skip
     parameters = core.OceanParameters(
-        resolution=RESOLUTION, domain_size=SIZE, layers=(core.WaveLayer(muted=True),), wind_fields=(field,),
+        resolution=RESOLUTION, domain_size=SIZE, layers=(core.WaveLayer(muted=True), field),
         timing=core.Timing(start_frame=1), choppiness=0.0,
     )  # fmt: skip
     item = ocean_object.add(empty_scene, parameters)
@@ -51,7 +53,7 @@ def record(**given):
 
 
 def wind_of(item):
-    return item.ocean_tweak.to_parameters(bpy.context.scene).wind_fields[0]
+    return layers_of(item.ocean_tweak.to_parameters(bpy.context.scene), "WIND_FIELD")[0]
 
 
 def test_a_steady_wind_is_the_same_everywhere(ocean):
@@ -143,7 +145,7 @@ def test_a_recording_stays_when_the_wind_is_gone(ocean, empty_scene, tmp_path, e
     item.field.keyframe_insert("strength", frame=49)
     record()
     sea = ocean.ocean_tweak.to_parameters(empty_scene)
-    assert len(sea.wind_fields[0].keys) == 13
+    assert len(layers_of(sea, "WIND_FIELD")[0].keys) == 13
     bpy.data.objects.remove(item)
     copy = ocean.copy()
     empty_scene.collection.objects.link(copy)

@@ -38,7 +38,7 @@ def test_a_picture_that_is_missing_is_named(tmp_path: Path, capsys: pytest.Captu
     params.write_text(json.dumps({"pictures": [{"picture": {"file": "nowhere.png"}}]}))
     assert main(["info", "--params", str(params)]) == 2
     error = capsys.readouterr().err
-    assert "pictures.0.picture.file" in error
+    assert "layers.1.picture.file" in error
     assert "nowhere.png" in error
 
 

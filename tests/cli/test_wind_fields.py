@@ -12,6 +12,7 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters
 from tests.cli.commands import EXAMPLES, baked_heights, described
+from tests.layers import layers_of
 
 EXAMPLE = EXAMPLES / "wind-front.json"
 
@@ -25,7 +26,7 @@ def test_the_example_is_what_its_script_makes() -> None:
 def test_info_tells_of_the_winds_waves(capsys: pytest.CaptureFixture[str]) -> None:
     report = described(capsys, "--params", str(EXAMPLE), "--set", "resolution=128")
     assert 10.0 < report["wind_fields"]["longest_wavelength"] < 30.0
-    assert main(["info", "--params", str(EXAMPLE), "--set", "wind_fields.0.strength=0.1"]) == 0
+    assert main(["info", "--params", str(EXAMPLE), "--set", "layers.1.strength=0.1"]) == 0
     text = capsys.readouterr().out
     assert "the heights above are without them" in text
     assert "is calm and raises no waves" in text
@@ -57,10 +58,10 @@ def test_a_picture_beside_the_file_is_the_wind(tmp_path: Path, capsys: pytest.Ca
     (tmp_path / "sea.json").write_text(json.dumps(sea))
     report = described(capsys, "--params", str(tmp_path / "sea.json"))
     parameters = OceanParameters.from_dict(report["parameters"])
-    (raster,) = parameters.wind_fields[0].rasters
+    (raster,) = layers_of(parameters, "WIND_FIELD")[0].rasters
     np.testing.assert_array_equal(raster.values, np.full((1, 2, 2), (8.0, 0.0)))
     assert raster.name == "wind.png"
     assert Ocean(parameters).surface(0.0).displacement[..., 2].max() > 0.05
     (tmp_path / "wind.png").unlink()
     assert main(["info", "--params", str(tmp_path / "sea.json")]) == 2
-    assert "wind_fields.0.keys.0.vectors.file" in capsys.readouterr().err
+    assert "layers.1.keys.0.vectors.file" in capsys.readouterr().err

@@ -183,20 +183,22 @@ def any_seas(draw: st.DrawFn) -> OceanParameters:
     if draw(st.booleans()):
         changes["layers"] = tuple(dataclasses.replace(layer, mask=draw(MASKS)) for layer in sea.layers)
     others = {
-        "pictures": PICTURES,
-        "wind_fields": wind_fields(sea.domain_size, sea.water.gravity),
-        "hero_waves": hero_waves(sea.domain_size),
+        "IMAGE": PICTURES,
+        "WIND_FIELD": wind_fields(sea.domain_size, sea.water.gravity),
+        "HERO_WAVE": hero_waves(sea.domain_size),
     }
-    for name in draw(st.sets(st.sampled_from(sorted(others)))):
-        changes[name] = tuple(draw(st.lists(others[name], min_size=1, max_size=2)))
-    if "wind_fields" in changes:
+    kinds = sorted(draw(st.sets(st.sampled_from(sorted(others)))))
+    for kind in kinds:
+        own = draw(st.lists(others[kind], min_size=1, max_size=2))
+        changes["layers"] = (*changes.get("layers", sea.layers), *own)
+    if "WIND_FIELD" in kinds:
         changes["loop_duration"] = None
-    if "hero_waves" in changes and not sea.patches:
+    if "HERO_WAVE" in kinds and not sea.patches:
         changes["resolution"] = 48
-    elif "hero_waves" in changes:
+    elif "HERO_WAVE" in kinds:
         changes["patches"] = (dataclasses.replace(sea.patches[0], resolution=48), *sea.patches[1:])
         changes["joined"] = sea.joined and 48
-    if sea.patches and changes.keys() & others.keys():
+    if sea.patches and kinds:
         first, *rest = changes.get("patches", sea.patches)
         changes["patches"] = (dataclasses.replace(first, rotation=0.0), *rest)
     try:

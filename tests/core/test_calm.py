@@ -23,6 +23,7 @@ from ocean_tweak.core.spectrum_curves import frequency_curves, polar_density
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ocean_tweak.core.waves.image.parameters import ANIMATIONS, FILTER_GAINS
 from ocean_tweak.core.waves.spectral import SPREADINGS
+from tests.layers import with_layers
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -131,7 +132,7 @@ def test_energy_that_no_wind_gives_stays_in_a_calm() -> None:
 @pytest.mark.parametrize("animation", ANIMATIONS)
 def test_pictures_of_a_calm_are_flat(gain: str, animation: str) -> None:
     layer = PictureLayer(filter_gain=gain, wind_speed=0.0, animation=animation, noise_resolution=16)
-    sea = SEA.replace(layers=(WaveLayer(muted=True),), pictures=(layer,))
+    sea = with_layers(SEA.replace(layers=(WaveLayer(muted=True),)), IMAGE=(layer,))
     fields = Ocean(sea).surface(4.0, ALL)
     assert not fields.displacement.any()
     assert not fields.foam.any()

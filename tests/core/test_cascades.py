@@ -31,6 +31,7 @@ from ocean_tweak.core.memory import memory_need
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.unresolved_slopes import unresolved_slope_variance
 from tests.core.patched_seas import LAYER, SEA, THREE, small
+from tests.layers import layers_of, with_layers
 
 GENERATOR = np.random.default_rng(11)
 
@@ -112,8 +113,8 @@ def wind_field() -> WindFieldLayer:
 
 
 def test_wind_fields_are_on_the_first_patch() -> None:
-    sea = SEA.replace(wind_fields=(wind_field(),))
-    assert [len(patch.wind_fields) for patch in patch_parameters(sea)] == [1, 0, 0]
+    sea = with_layers(SEA, WIND_FIELD=(wind_field(),))
+    assert [len(layers_of(patch, "WIND_FIELD")) for patch in patch_parameters(sea)] == [1, 0, 0]
     turned = (dataclasses.replace(THREE[0], rotation=0.1), *THREE[1:])
     with pytest.raises(
         ParameterError, match=r"patches\.0\.rotation = 0\.1: must be 0 in a sea with wind_fields"

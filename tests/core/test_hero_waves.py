@@ -18,6 +18,7 @@ from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, P
 from ocean_tweak.core.fingerprint import frame_fingerprint
 from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.waves.hero.group import needed_samples
+from tests.layers import layers_of, with_layers
 
 SIZE, SAMPLES = 400.0, 256
 #: deviation of a Gaussian whose width at half its height is 1
@@ -30,7 +31,7 @@ def sea(*waves: HeroWave, **changes: Any) -> OceanParameters:
     """Hero waves alone, on calm and by default deep water without surface tension."""
     values: dict[str, Any] = {
         "resolution": SAMPLES, "domain_size": SIZE, "choppiness": 0.0, "dispersion": "DEEP",
-        "layers": (WaveLayer(muted=True),), "hero_waves": waves,
+        "layers": (WaveLayer(muted=True), *waves),
     }  # fmt: skip
     return OceanParameters(**(values | changes))
 
@@ -190,8 +191,8 @@ def test_energy_is_that_of_the_gaussian() -> None:
 
 def test_displacement_and_velocity_add_to_the_seas(windy: OceanParameters) -> None:
     wave = HeroWave(time=2.0, wavelength=160.0, group_width=300.0, crest_height=6.0, direction=2.0)
-    alone = windy.replace(layers=(WaveLayer(muted=True),), hero_waves=(wave,))
-    both = windy.replace(hero_waves=(wave,))
+    alone = with_layers(windy.replace(layers=(WaveLayer(muted=True),)), HERO_WAVE=(wave,))
+    both = with_layers(windy, HERO_WAVE=(wave,))
     parts = [
         Ocean(parameters, "double").surface(3.0, {"displacement", "velocity"})
         for parameters in (windy, alone, both)
@@ -208,14 +209,16 @@ def test_neither_amplitudes_nor_matched_height_change_a_hero_wave(
 ) -> None:
     wave = HeroWave(wavelength=160.0, group_width=300.0)
     calm = windy.replace(amplitudes=amplitudes, match_height=True)
-    added = height(calm.replace(hero_waves=(wave,)), 1.0) - height(calm, 1.0)
+    added = height(with_layers(calm, HERO_WAVE=(wave,)), 1.0) - height(calm, 1.0)
     np.testing.assert_allclose(
-        added, height(windy.replace(layers=(WaveLayer(muted=True),), hero_waves=(wave,)), 1.0), atol=1e-9
+        added,
+        height(with_layers(windy.replace(layers=(WaveLayer(muted=True),)), HERO_WAVE=(wave,)), 1.0),
+        atol=1e-9,
     )
 
 
 def test_expected_sea_and_its_foam_are_without_the_hero_wave(windy: OceanParameters) -> None:
-    both = windy.replace(hero_waves=(HeroWave(wavelength=160.0, group_width=300.0, crest_height=10.0),))
+    both = with_layers(windy, HERO_WAVE=(HeroWave(wavelength=160.0, group_width=300.0, crest_height=10.0),))
     plain, placed = Ocean(windy), Ocean(both)
     assert placed.statistics().resolved == plain.statistics().resolved
     assert placed.statistics().spectrum == plain.statistics().spectrum
@@ -227,7 +230,7 @@ def test_a_hero_wave_squeezes_its_crest_and_foams(windy: OceanParameters) -> Non
     """Foam lies at the crest of a steep wave, at the focus: sample (32, 16)."""
     windy = windy.replace(resolution=128, foam=dataclasses.replace(windy.foam, half_life=0.5, drift=0.0))
     wave = HeroWave(x=200.0, y=400.0, wavelength=80.0, group_width=300.0, crest_height=8.0)
-    surface = Ocean(windy.replace(hero_waves=(wave,))).surface(0.0, {"cusp", "foam"})
+    surface = Ocean(with_layers(windy, HERO_WAVE=(wave,))).surface(0.0, {"cusp", "foam"})
     assert surface.foam[62:67, 31:34].mean() > 0.5
     assert Ocean(windy).surface(0.0, {"foam"}).foam[62:67, 31:34].mean() < 0.2
     assert np.unravel_index(np.argmax(surface.cusp), surface.cusp.shape)[1] in range(26, 40)
@@ -258,7 +261,7 @@ def test_same_wave_at_any_resolution_that_holds_it() -> None:
 def test_coarser_samples_leave_out_what_they_do_not_hold() -> None:
     long, short = HeroWave(wavelength=80.0), HeroWave(wavelength=20.0)
     coarse = sea(long, short).at_resolution(48)
-    assert [wave.muted for wave in coarse.hero_waves] == [False, True]
+    assert [wave.muted for wave in layers_of(coarse, "HERO_WAVE")] == [False, True]
     np.testing.assert_array_equal(height(coarse, 1.0), height(sea(long, resolution=48), 1.0))
     assert sea(long, short).at_resolution(SAMPLES) == sea(long, short)
     halves = (
@@ -266,7 +269,7 @@ def test_coarser_samples_leave_out_what_they_do_not_hold() -> None:
         Patch(90.0, longest_wavelength=60.0, resolution=SAMPLES),
     )
     of_patches = sea(long, short).replace(patches=halves)
-    assert [wave.muted for wave in of_patches.on_one_grid(48).hero_waves] == [False, True]
+    assert [wave.muted for wave in layers_of(of_patches.on_one_grid(48), "HERO_WAVE")] == [False, True]
 
 
 # as parameters
@@ -306,7 +309,7 @@ def test_what_cannot_be_is_refused_by_name(wave: dict[str, Any], where: str, rea
     data = sea().to_dict()
     with pytest.raises(ParameterError) as caught:
         OceanParameters.from_dict(data | {"hero_waves": [{"muted": True}, wave]})
-    assert caught.value.field == f"hero_waves.1.{where}"
+    assert caught.value.field == f"layers.2.{where}"
     assert reason in str(caught.value)
 
 

@@ -21,6 +21,7 @@ from ocean_tweak.core.waves.wind_field.bounds import bytes_of, most_particles
 from ocean_tweak.core.waves.wind_field.convolution import deposit
 from tests.core.stamping import stamp
 from tests.core.wind_seas import FLAT, LONE, OUTPUTS, G, keyed, particles, random_wind, sea
+from tests.layers import with_layers
 
 Array = NDArray[np.float64]
 
@@ -86,11 +87,13 @@ def test_all_fields_of_many_particles_against_stamping() -> None:
 
 
 def test_the_spectrums_waves_and_the_winds_add() -> None:
-    both = OceanParameters(resolution=128, domain_size=160.0, wind_fields=(WindFieldLayer(**random_wind(4)),))
+    both = with_layers(
+        OceanParameters(resolution=128, domain_size=160.0), WIND_FIELD=(WindFieldLayer(**random_wind(4)),)
+    )
     outputs = {"displacement", "slope", "velocity"}
     together, spectrum, wind = (
         Ocean(p, "double").surface(5.0, outputs)
-        for p in (both, both.replace(wind_fields=()), both.replace(layers=FLAT))
+        for p in (both, with_layers(both, WIND_FIELD=()), with_layers(both, WAVES=FLAT))
     )
     for name in outputs:
         parts = getattr(spectrum, name) + getattr(wind, name)
@@ -133,7 +136,7 @@ def test_any_frame_alone_in_reverse_and_on_any_threads_has_the_same_bytes() -> N
     winds = [(t, np.random.default_rng(t).normal(0.0, 6.0, (4, 4, 2))) for t in (0, 2, 5)]
     parameters = sea(64, 80.0, keys=keyed(*((float(t), w) for t, w in winds)), rows=6, columns=6)
     foam = Foam(half_life=0.05, resolution=16)
-    parameters = parameters.replace(layers=(WaveLayer(),), trough_damping=0.4, foam=foam)
+    parameters = with_layers(parameters, WAVES=(WaveLayer(),)).replace(trough_damping=0.4, foam=foam)
     outputs = {"displacement", "velocity", "foam", "normal"}
 
     def content(fields: Any) -> bytes:
@@ -170,8 +173,8 @@ def test_troughs_of_the_winds_waves_lose_short_waves_too() -> None:
     np.testing.assert_array_equal(
         Ocean(damped).surface(5.0).displacement, Ocean(parameters).surface(5.0).displacement
     )
-    mixed = damped.replace(layers=(WaveLayer(wind_speed=5.0),))
-    calm = mixed.replace(wind_fields=())
+    mixed = with_layers(damped, WAVES=(WaveLayer(wind_speed=5.0),))
+    calm = with_layers(mixed, WIND_FIELD=())
     with_wind, without = (Ocean(p, "double").surface(5.0, {"displacement", "slope"}) for p in (mixed, calm))
     assert np.any(np.abs(with_wind.displacement - without.displacement) > 0.05)
     height = with_wind.displacement[..., 2]
@@ -181,7 +184,7 @@ def test_troughs_of_the_winds_waves_lose_short_waves_too() -> None:
 
 def test_foam_gathers_on_the_crests_of_the_wind() -> None:
     parameters = OceanParameters(resolution=64, domain_size=80.0, layers=(WaveLayer(wind_speed=9.0),))
-    steep = parameters.replace(wind_fields=(WindFieldLayer(**random_wind(2, steepness=1.0)),))
+    steep = with_layers(parameters, WIND_FIELD=(WindFieldLayer(**random_wind(2, steepness=1.0)),))
     assert (
         Ocean(steep).surface(5.0, {"foam"}).foam.mean() > Ocean(parameters).surface(5.0, {"foam"}).foam.mean()
     )
@@ -215,7 +218,7 @@ def test_any_field_works_or_is_refused_by_name(
     layer = {"keys": [{"vectors": {"values": vectors.tolist()}}], "rows": 2, "columns": 2, **more}
     data = {"resolution": 32, "domain_size": 20.0, "layers": [{"muted": True}], "wind_fields": [layer]}
     if not number < 14.5:  # the waves of √(20 g) = 14.0 m/s are as long as the patch
-        with pytest.raises(ParameterError, match=r"wind_fields\.0"):
+        with pytest.raises(ParameterError, match=r"layers\.1"):
             OceanParameters.from_dict(data)
         return
     parameters = OceanParameters.from_dict(data)
@@ -233,7 +236,7 @@ def test_bounds_hold_and_are_refused_beyond() -> None:
             WindFieldLayer(keys=keys),
             WindFieldLayer(keys=keys[:1]),
         ):
-            parameters = OceanParameters(domain_size=200.0, resolution=2048, wind_fields=(layer,))
+            parameters = with_layers(OceanParameters(domain_size=200.0, resolution=2048), WIND_FIELD=(layer,))
             waves = WindFieldLayer.shares(parameters)
             most = max(len(waves.particles(time).x) for time in np.arange(0.0, 60.0, 3.1))
             assert 0 < most <= most_particles(layer)
@@ -262,4 +265,4 @@ def test_memory_is_told_before() -> None:
     tracemalloc.stop()
     need = memory_need(parameters)
     assert peak < 1.4 * need.surface + need.building
-    assert need.surface > memory_need(parameters.replace(wind_fields=())).surface
+    assert need.surface > memory_need(with_layers(parameters, WIND_FIELD=())).surface

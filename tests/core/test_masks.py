@@ -25,6 +25,7 @@ from ocean_tweak.core.cascades.patch_seas import parts
 from ocean_tweak.core.masks.weights import weights, weights_on_grid
 from ocean_tweak.core.sea.part_waves import PartWaves
 from ocean_tweak.core.sea.surfaces import Field, summed_field
+from tests.layers import with_layers
 
 SIZE, SAMPLES = 240.0, 64
 GENERATOR = np.random.default_rng(5)
@@ -199,15 +200,15 @@ def test_a_patch_has_a_mask_of_its_own() -> None:
     np.testing.assert_allclose(found, long + weight * (both - long), atol=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["pictures", "wind_fields"])
+@pytest.mark.parametrize("kind", ["IMAGE", "WIND_FIELD"])
 def test_layers_of_all_kinds_have_masks(kind: str) -> None:
     layer = {
-        "pictures": PictureLayer(mask=HARBOUR, noise_resolution=64, significant_wave_height=1.0),
-        "wind_fields": WindFieldLayer(mask=HARBOUR, wind_speed=14.0),
+        "IMAGE": PictureLayer(mask=HARBOUR, noise_resolution=64, significant_wave_height=1.0),
+        "WIND_FIELD": WindFieldLayer(mask=HARBOUR, wind_speed=14.0),
     }[kind]
     free = dataclasses.replace(layer, mask=None)
     fields = [
-        Ocean(sea(layers=(RIPPLES,)).replace(**{kind: found})).surface(20.0).displacement
+        Ocean(with_layers(sea(layers=(RIPPLES,)), **{kind: found})).surface(20.0).displacement
         for found in ((layer,), (free,), ())
     ]
     weight = weights_on_grid((HARBOUR,), SIZE, SAMPLES).value[..., np.newaxis]
@@ -218,9 +219,10 @@ def test_layers_of_all_kinds_have_masks(kind: str) -> None:
 def test_a_hero_wave_is_there_once_and_under_no_mask() -> None:
     hero = HeroWave(x=60.0, y=90.0, time=2.0, wavelength=40.0, crest_height=2.0)
     with_wave, without = (
-        Ocean(sea(hero_waves=waves), "double").surface(2.0).displacement for waves in ((hero,), ())
+        Ocean(with_layers(sea(), HERO_WAVE=waves), "double").surface(2.0).displacement
+        for waves in ((hero,), ())
     )
-    alone = Ocean(only(sea(), 1).replace(hero_waves=(hero,)), "double").surface(2.0).displacement
+    alone = Ocean(with_layers(only(sea(), 1), HERO_WAVE=(hero,)), "double").surface(2.0).displacement
     plain = Ocean(only(sea(), 1), "double").surface(2.0).displacement
     np.testing.assert_allclose(with_wave - without, alone - plain, atol=1e-9)
     assert np.abs(alone - plain).max() > 1.0

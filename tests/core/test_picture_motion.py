@@ -16,6 +16,7 @@ from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.waves.image import animation
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from tests.core.pictures import DEEP, L, N, drawing, elevation, single_wave, spectrum, state
+from tests.layers import with_layers
 
 
 def phase_advance(layer: PictureLayer, i: int, j: int, time: float) -> float:
@@ -94,7 +95,7 @@ def test_loops_close(animated: str) -> None:
 
 
 def check_loop(layer: PictureLayer, duration: Fraction | None) -> None:
-    OceanParameters(domain_size=L, resolution=N, pictures=(layer,), loop_duration=duration)
+    with_layers(OceanParameters(domain_size=L, resolution=N, loop_duration=duration), IMAGE=(layer,))
 
 
 def test_loops_of_a_translation_close_or_are_refused() -> None:
@@ -111,7 +112,7 @@ def test_loops_of_a_translation_close_or_are_refused() -> None:
     check_loop(other, None)
     check_loop(replace(other, muted=True), Fraction(10))
     with pytest.raises(
-        ParameterError, match=r"pictures\.0\.translation_speed = 21\.0: moves the picture by 1\.05"
+        ParameterError, match=r"layers\.1\.translation_speed = 21\.0: moves the picture by 1\.05"
     ) as info:
         check_loop(other, Fraction(10))
     assert "take 20 m/s towards 0 rad" in str(info.value)

@@ -16,6 +16,7 @@ from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from tests.core.pictures import L, drawing, single_wave
+from tests.layers import layers_of, with_layers
 
 FLAT = WaveLayer(muted=True)
 
@@ -26,10 +27,9 @@ def sea(*pictures: PictureLayer, **changes: object) -> OceanParameters:
         "domain_size": L,
         "seed": 3,
         "layers": (FLAT,),
-        "pictures": pictures,
         **changes,
     }
-    return OceanParameters(**given)
+    return with_layers(OceanParameters(**given), IMAGE=pictures)
 
 
 def test_a_sea_of_pictures_alone() -> None:
@@ -46,9 +46,9 @@ def test_pictures_add_to_the_wave_layers() -> None:
         PictureLayer(filter="FRACTAL", animation="DOMINANT_BAND", fractal_dimension=3.0),
     )
     together = sea(*pictures, layers=(wind,))
-    alone = [together.replace(pictures=()), *(
-        together.replace(layers=(FLAT,), pictures=tuple(replace(p, muted=i != one) for i, p in
-        enumerate(together.pictures))) for one in range(3)
+    alone = [with_layers(together, IMAGE=()), *(
+        with_layers(together.replace(layers=(FLAT,)), IMAGE=tuple(replace(p, muted=i != one) for i, p in
+        enumerate(layers_of(together, "IMAGE")))) for one in range(3)
     )]  # fmt: skip
     for output in ("displacement", "velocity", "slope"):
         total, *parts = (
@@ -59,9 +59,10 @@ def test_pictures_add_to_the_wave_layers() -> None:
 
 def test_several_layers_have_noise_of_their_own() -> None:
     twins = sea(PictureLayer(wind_speed=7.0), PictureLayer(wind_speed=7.0))
-    assert [layer.id for layer in twins.pictures] == [0, 1]
+    assert [layer.id for layer in layers_of(twins, "IMAGE")] == [0, 1]
     first, second = (
-        Ocean(twins.replace(pictures=(layer,))).surface(0.0).displacement[..., 2] for layer in twins.pictures
+        Ocean(with_layers(twins, IMAGE=(layer,))).surface(0.0).displacement[..., 2]
+        for layer in layers_of(twins, "IMAGE")
     )
     assert abs(np.corrcoef(first.ravel(), second.ravel())[0, 1]) < 0.3
     same = sea(PictureLayer(wind_speed=7.0, seed=5), seed=99)
@@ -72,12 +73,12 @@ def test_several_layers_have_noise_of_their_own() -> None:
 def test_json_holds_the_picture() -> None:
     parameters = sea(PictureLayer(picture=Raster(drawing(9, 7), "ring.png"), filter="FRACTAL"))
     assert OceanParameters.from_json(parameters.to_json()) == parameters
-    assert parameters.to_dict(brief=True)["pictures"][0]["picture"]["name"] == "ring.png"
-    with pytest.raises(ParameterError, match=r"pictures\.0\.filter = 'FRACTAL2'"):
+    assert parameters.to_dict(brief=True)["layers"][1]["picture"]["name"] == "ring.png"
+    with pytest.raises(ParameterError, match=r"layers\.1\.filter = 'FRACTAL2'"):
         OceanParameters.from_dict({"pictures": [{"filter": "FRACTAL2"}]})
-    with pytest.raises(ParameterError, match=r"pictures\.1\.id = 3: is the id of another"):
+    with pytest.raises(ParameterError, match=r"layers\.2\.id = 3: is the id of another"):
         sea(PictureLayer(id=3), PictureLayer(id=3))
-    with pytest.raises(ParameterError, match=r"pictures\.0\.translation_speed"):
+    with pytest.raises(ParameterError, match=r"layers\.1\.translation_speed"):
         sea(PictureLayer(animation="TRANSLATION"), loop_duration=10)
 
 
@@ -156,6 +157,6 @@ def test_a_shot_keeps_its_pictures() -> None:
     shot = Shot(parameters, Animation(1, (("layers.0.gain", (0.0, 1.0)),)))
     moved = shot.at(2).parameters
     assert moved.layers[0].gain == 1.0
-    assert moved.pictures[0].picture is parameters.pictures[0].picture
+    assert layers_of(moved, "IMAGE")[0].picture is layers_of(parameters, "IMAGE")[0].picture
     with pytest.raises(ParameterError, match=r"pictures\.0\.gain.*each keeps its waves"):
         Animation(1, (("pictures.0.gain", (0.0, 1.0)),))

@@ -16,6 +16,7 @@ from ocean_tweak.core.waves.wind_field.life import Particles, particles_of
 from ocean_tweak.core.waves.wind_field.origins import layer_origins
 from ocean_tweak.core.waves.wind_field.shape import RadiusClasses, bump, radius_classes
 from tests.core.wind_seas import LENGTH, LONE, OUTPUTS, PERIOD, SPEED, G, particles, sea
+from tests.layers import layers_of
 
 Array = NDArray[np.float64]
 
@@ -108,7 +109,7 @@ def test_speed_length_and_period_follow_the_wind(speed: float) -> None:
     gaps = np.diff(np.sort(now.x))
     np.testing.assert_allclose(gaps, speed**2 / G, rtol=1e-9)
     np.testing.assert_allclose(np.sort(later.x)[-1], np.sort(now.x)[-1] + 0.5 * now.velocity_x[0])
-    radii = radius_classes(parameters.wind_fields, G).radii
+    radii = radius_classes(layers_of(parameters, "WIND_FIELD"), G).radii
     np.testing.assert_allclose(radii, [0.5 * speed**2 / G])
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from fractions import Fraction
 from typing import Any
 
@@ -13,12 +12,13 @@ import pytest
 from ocean_tweak.core import OceanParameters, ParameterError, Raster, WindFieldLayer, WindKey
 from ocean_tweak.core.fingerprint import frame_fingerprint
 from ocean_tweak.core.shot import Animation, Shot
+from tests.layers import layers_of, with_layers
 
 CALM = np.zeros((1, 1, 2))
 
 
 def sea(**layer: Any) -> OceanParameters:
-    return OceanParameters(wind_fields=(WindFieldLayer(**layer),))
+    return with_layers(OceanParameters(), WIND_FIELD=(WindFieldLayer(**layer),))
 
 
 def test_a_keyed_wind_survives_json() -> None:
@@ -26,35 +26,37 @@ def test_a_keyed_wind_survives_json() -> None:
     parameters = sea(keys=(WindKey(0.0, Raster(winds)), WindKey(2.5, Raster(CALM))), front="PARALLEL")
     back = OceanParameters.from_json(parameters.to_json())
     assert back == parameters
-    assert back.wind_fields[0].id == 0
-    np.testing.assert_array_equal(back.wind_fields[0].rasters[0].values, winds.astype(np.float32))
+    assert layers_of(back, "WIND_FIELD")[0].id == 0
+    np.testing.assert_array_equal(
+        layers_of(back, "WIND_FIELD")[0].rasters[0].values, winds.astype(np.float32)
+    )
     written = OceanParameters.from_dict({"wind_fields": [{"keys": [{"vectors": {"values": [[[3, 4]]]}}]}]})
-    assert written.wind_fields[0].greatest_speed == 5.0
-    brief = parameters.to_dict(brief=True)["wind_fields"][0]["keys"][0]["vectors"]
+    assert layers_of(written, "WIND_FIELD")[0].greatest_speed == 5.0
+    brief = parameters.to_dict(brief=True)["layers"][1]["keys"][0]["vectors"]
     assert set(brief) == {"name", "shape", "sha256"}
 
 
 def test_a_sea_without_wind_fields_is_written_as_before_there_were_any() -> None:
     assert "wind_fields" not in OceanParameters().to_dict()
     assert OceanParameters.from_dict({"wind_fields": []}) == OceanParameters()
-    muted = OceanParameters().replace(wind_fields=(WindFieldLayer(muted=True),))
-    assert muted.to_dict()["wind_fields"][0]["muted"] is True
+    muted = with_layers(OceanParameters(), WIND_FIELD=(WindFieldLayer(muted=True),))
+    assert muted.to_dict()["layers"][1]["muted"] is True
     assert not muted.active(WindFieldLayer)
 
 
 @pytest.mark.parametrize(
     ("layer", "where", "reason"),
     [
-        ({"keys": [{"time": 0.0}]}, "wind_fields.0.keys.0.vectors", "must be a Raster"),
-        ({"keys": [{"vectors": {"values": [[1.0]]}}]}, "wind_fields.0.keys.0.vectors", "must have 2"),
-        ({"keys": [{"vectors": {"values": [[[1.0, float("nan")]]]}}]}, "wind_fields.0.keys.0.vectors.raster",
+        ({"keys": [{"time": 0.0}]}, "layers.1.keys.0.vectors", "must be a Raster"),
+        ({"keys": [{"vectors": {"values": [[1.0]]}}]}, "layers.1.keys.0.vectors", "must have 2"),
+        ({"keys": [{"vectors": {"values": [[[1.0, float("nan")]]]}}]}, "layers.1.keys.0.vectors.raster",
          "row 0, column 0"),
-        ({"keys": [{"vectors": {"values": [[[1, 0]]]}}] * 2}, "wind_fields.0.keys.1.time", "above that"),
-        ({"keys": [{"vectors": {"values": [[[1e30, 0]]]}}]}, "wind_fields.0", "at most 62.64 m/s"),
-        ({"wind_speed": 63.0}, "wind_fields.0", "waves are 404"),
-        ({"wind_speed": 50.0, "strength": 2.0}, "wind_fields.0", "100 m/s"),
-        ({"particles": 0}, "wind_fields.0.particles", "from 1 to 99"),
-        ({"front": "ROUND"}, "wind_fields.0.front", "ARC, PARALLEL"),
+        ({"keys": [{"vectors": {"values": [[[1, 0]]]}}] * 2}, "layers.1.keys.1.time", "above that"),
+        ({"keys": [{"vectors": {"values": [[[1e30, 0]]]}}]}, "layers.1", "at most 62.64 m/s"),
+        ({"wind_speed": 63.0}, "layers.1", "waves are 404"),
+        ({"wind_speed": 50.0, "strength": 2.0}, "layers.1", "100 m/s"),
+        ({"particles": 0}, "layers.1.particles", "from 1 to 99"),
+        ({"front": "ROUND"}, "layers.1.front", "ARC, PARALLEL"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_by_name(layer: dict[str, Any], where: str, reason: str) -> None:
@@ -67,15 +69,15 @@ def test_what_cannot_be_is_refused_by_name(layer: dict[str, Any], where: str, re
 def test_a_loop_is_refused_until_the_layer_is_muted() -> None:
     looped = OceanParameters(loop_duration=Fraction(10))
     with pytest.raises(ParameterError, match="do not repeat: mute it"):
-        looped.replace(wind_fields=(WindFieldLayer(),))
-    looped.replace(wind_fields=(WindFieldLayer(muted=True),))
+        with_layers(looped, WIND_FIELD=(WindFieldLayer(),))
+    with_layers(looped, WIND_FIELD=(WindFieldLayer(muted=True),))
 
 
 def test_layers_have_ids_of_their_own() -> None:
-    twice = OceanParameters(wind_fields=(WindFieldLayer(), WindFieldLayer(id=0)))
-    assert [layer.id for layer in twice.wind_fields] == [1, 0]
-    with pytest.raises(ParameterError, match=r"wind_fields\.1\.id"):
-        OceanParameters(wind_fields=(WindFieldLayer(id=4), WindFieldLayer(id=4)))
+    twice = with_layers(OceanParameters(), WIND_FIELD=(WindFieldLayer(), WindFieldLayer(id=0)))
+    assert [layer.id for layer in layers_of(twice, "WIND_FIELD")] == [1, 0]
+    with pytest.raises(ParameterError, match=r"layers\.2\.id"):
+        with_layers(OceanParameters(), WIND_FIELD=(WindFieldLayer(id=4), WindFieldLayer(id=4)))
 
 
 def test_an_animated_shot_keeps_the_wind_and_says_that_it_cannot_be_animated() -> None:
@@ -89,7 +91,7 @@ def test_an_animated_shot_keeps_the_wind_and_says_that_it_cannot_be_animated() -
 
 def test_another_wind_is_another_frame() -> None:
     prints = {
-        frame_fingerprint(Shot(dataclasses.replace(sea(), wind_fields=fields)), 1)
+        frame_fingerprint(Shot(with_layers(sea(), WIND_FIELD=fields)), 1)
         for fields in (
             (),
             (WindFieldLayer(),),

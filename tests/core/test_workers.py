@@ -12,6 +12,7 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer, memory, random
 from ocean_tweak.core.channels import OF_WAVES, memory_groups
 from ocean_tweak.core.memory import memory_need
+from tests.layers import with_layers
 
 SEA = OceanParameters(resolution=258, domain_size=300.0, trough_damping=0.3)
 
@@ -91,8 +92,8 @@ def test_memory_while_a_state_is_made_is_told() -> None:
 def test_memory_while_a_picture_is_filtered_is_told() -> None:
     """Of a picture of many more samples than the sea, beside which all else is small."""
     plain = OceanParameters(resolution=32, seed=4712)
-    fine = plain.replace(pictures=(PictureLayer(noise_resolution=1024),))
-    Ocean(plain.replace(pictures=(PictureLayer(noise_resolution=32),))).prepare()
+    fine = with_layers(plain, IMAGE=(PictureLayer(noise_resolution=1024),))
+    Ocean(with_layers(plain, IMAGE=(PictureLayer(noise_resolution=32),))).prepare()
     tracemalloc.start()
     ocean = Ocean(fine, workers=1)
     ocean.prepare()

@@ -10,6 +10,7 @@ import numpy as np
 
 from ocean_tweak.core import OceanParameters, Raster, WaveLayer, WindFieldLayer, WindKey
 from ocean_tweak.core.waves.wind_field.life import Particles
+from tests.layers import with_layers
 
 G = 9.81
 FLAT = (WaveLayer(muted=True),)
@@ -25,8 +26,9 @@ SPEED = 10.0 / math.sqrt(2.0 * math.pi)
 
 
 def sea(resolution: int = 256, size: float = 160.0, **layer: Any) -> OceanParameters:
-    return OceanParameters(
-        resolution=resolution, domain_size=size, layers=FLAT, wind_fields=(WindFieldLayer(**layer),)
+    return with_layers(
+        OceanParameters(resolution=resolution, domain_size=size, layers=FLAT),
+        WIND_FIELD=(WindFieldLayer(**layer),),
     )
 
 

@@ -80,7 +80,7 @@ def test_pictures_are_read_beside_the_file_and_written_into_it(pictures):
     write_sea(pictures / "other" / "b.json", shot)
     assert read_sea(pictures / "other" / "b.json") == shot
     shutil.copy(pictures / "a.json", pictures / "other" / "a.json")
-    with pytest.raises(ParameterError, match=r"pictures\.0\.picture"):
+    with pytest.raises(ParameterError, match=r"layers\.1\.picture"):
         read_sea(pictures / "other" / "a.json")
 
 

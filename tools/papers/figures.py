@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
-from ocean_tweak.core import OceanParameters, Water, dispersion, spectra
+from ocean_tweak.core import OceanParameters, Water, WindFieldLayer, dispersion, spectra
 from ocean_tweak.core.sea_spectrum import SeaSpectrum
 from ocean_tweak.core.spreading import directional_spreading
 from ocean_tweak.core.waves.image import filters, source
@@ -252,7 +252,7 @@ def li_wang_winds() -> Figure:
     places = li_wang.SIDE / 8 * np.arange(8)
     x, y = (axis.ravel() for axis in np.meshgrid(places, places))
     for (above, below), (kind, sea) in zip(all_axes.T, li_wang.WINDS.items(), strict=True):
-        _, (winds,) = winds_at(sea.wind_fields[0], x, y, li_wang.SIDE)
+        _, (winds,) = winds_at(sea.of(WindFieldLayer)[0], x, y, li_wang.SIDE)
         above.quiver(*winds.T.reshape(2, 8, 8), pivot="middle")
         above.set_title(kind)
         above.set_aspect("equal")

@@ -71,7 +71,7 @@ def crests() -> Table:
     for choppiness in (0.0, 1.0):
         parameters = OceanParameters(
             resolution=64, domain_size=side, dispersion="DEEP", choppiness=choppiness,
-            layers=(WaveLayer(muted=True),), pictures=(picture,),
+            layers=(WaveLayer(muted=True), picture),
         )  # fmt: skip
         ocean = Ocean(parameters, "double")
         height = ocean.height_at(side / 256.0 * np.arange(256), 0.0, 0.0, surface="exact")

@@ -20,7 +20,7 @@ SIDE = 400.0
 def sea(*fields: WindFieldLayer, resolution: int = 256) -> OceanParameters:
     """A sea of wind fields alone."""
     return OceanParameters(
-        resolution=resolution, domain_size=SIDE, seed=2, layers=(WaveLayer(muted=True),), wind_fields=fields
+        resolution=resolution, domain_size=SIDE, seed=2, layers=(WaveLayer(muted=True), *fields)
     )
 
 

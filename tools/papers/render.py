@@ -84,7 +84,10 @@ def build(
     towards : where the waves run, rad counter-clockwise from the view
     """
     moods, stage = extension.module("scene.moods"), extension.module("scene.stage")
-    layers = tuple(dataclasses.replace(layer, wind_direction=moods.VIEW + towards) for layer in sea.layers)
+    layers = tuple(
+        layer.changed(wind_direction=moods.VIEW + towards) if layer.kind == "WAVES" else layer
+        for layer in sea.layers
+    )
     given = extension.module("core").OceanParameters.from_json(sea.replace(layers=layers).to_json())
     half = given.replace(foam=dataclasses.replace(given.foam, resolution=given.resolution // 2))
 

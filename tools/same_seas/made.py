@@ -56,7 +56,8 @@ def _of_grid(package: ModuleType, parameters: Any) -> Iterator[Made]:
     told = sea.statistics().to_dict()
     told.pop("patches", None)  # of joined ones they were not told
     yield "statistics", told
-    yield "parameters", parameters.to_dict()
+    shot = part(package, "core.shot").Shot(parameters)
+    yield "fingerprint", part(package, "core.fingerprint").shot_fingerprint(shot)
 
 
 def _of_patches(package: ModuleType, parameters: Any) -> Iterator[Made]:

@@ -4,19 +4,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ..parameters import Mask, OceanParameters, Patch
+from ..waves.contribution import Contribution, Gives
 
 #: samples along the shortest wave of a patch that is read between its samples for a grid: bilinear, a tenth
 #: of that wave's variance is lost, and less of longer ones
 _SAMPLES_A_WAVE = 8.0
 _FEWEST, _MOST = 16, 8192
-
-#: the fields that hold layers of any kind
-_LAYERS = ("layers", "pictures", "wind_fields")
 
 
 #: among outputs: those of each part of the sea, which add up, behind the sea's own
@@ -34,22 +31,19 @@ def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]
     Masks are left out, and patches are apart even where they are joined. What a patch holds of a layer is for
     the layer to say; the first keeps the random numbers of a sea of one patch.
     """
-    parameters = _without_masks(parameters).apart
+    return tuple(_without_masks(sea) for sea in _patch_seas(parameters.apart))
+
+
+def _patch_seas(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
     if not parameters.patches:
         return (parameters,)
     return tuple(_of_patch(parameters, index, patch) for index, patch in enumerate(parameters.patches))
 
 
 def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanParameters:
-    held = {
-        name: tuple(
-            layer
-            for given in getattr(parameters, name)
-            if (layer := given.in_patch(parameters, index, patch.rotation)) is not None
-        )
-        for name in (*_LAYERS, "hero_waves")
-    }
-    return parameters.replace(patches=(replace(patch, rotation=0.0),), **held)
+    held = (layer.in_patch(parameters, index, patch.rotation) for layer in parameters.layers)
+    layers = tuple(layer for layer in held if layer is not None)
+    return parameters.replace(patches=(replace(patch, rotation=0.0),), layers=layers)
 
 
 @dataclass(frozen=True)
@@ -77,12 +71,15 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
     """The parts of a sea: of each patch, the waves under each mask."""
     found = []
     patches = parameters.patches or (None,)
-    seas = patch_parameters(parameters)
+    seas = _patch_seas(parameters.apart)
+    masks = list(dict.fromkeys(layer.mask for layer in parameters.active() if _is_parted(layer)))
+    if None in masks:  # first come the waves that are everywhere
+        masks.insert(0, masks.pop(masks.index(None)))
     for index, (sea, patch, rotation) in enumerate(zip(seas, patches, rotations(parameters), strict=True)):
         of_patch = (patch.mask,) if patch is not None and patch.mask is not None else ()
         found += [
-            Part(under, rotation, of_patch if mask is None else (*of_patch, mask), index)
-            for mask, under in _by_mask(parameters, sea)
+            Part(_without_masks(under), rotation, of_patch if mask is None else (*of_patch, mask), index)
+            for mask, under in _by_mask(sea, masks)
         ]
     return tuple(found)
 
@@ -112,35 +109,31 @@ def _readable(patch: Patch, end: float) -> Patch:
 
 
 def _by_mask(
-    parameters: OceanParameters, sea: OceanParameters
-) -> Iterable[tuple[Mask | None, OceanParameters]]:
-    """The masks of a sea's layers, and with each a patch of the sea whose other layers are muted."""
-    own = [layer for name in _LAYERS for layer in getattr(parameters, name) if not layer.muted]
-    masks = list(dict.fromkeys(layer.mask for layer in own))
+    sea: OceanParameters, masks: Sequence[Mask | None]
+) -> Iterator[tuple[Mask | None, OceanParameters]]:
+    """Some masks, and with each a patch of the sea whose other layers are muted."""
     if len(masks) < 2:
-        return [(masks[0] if masks else None, sea)]
-    if None in masks:  # with the waves that are everywhere
-        masks.insert(0, masks.pop(masks.index(None)))
-    return [(mask, _only(parameters, sea, mask, index == 0)) for index, mask in enumerate(masks)]
-
-
-def _only(
-    parameters: OceanParameters, sea: OceanParameters, mask: Mask | None, with_hero_waves: bool
-) -> OceanParameters:
-    changes: dict[str, Any] = {} if with_hero_waves else {"hero_waves": ()}
-    for name in _LAYERS:
-        changes[name] = tuple(
-            replace(layer, muted=layer.muted or given.mask != mask)
-            for given, layer in zip(getattr(parameters, name), getattr(sea, name), strict=False)
+        yield (masks[0] if masks else None), sea
+        return
+    for mask in masks:
+        layers = (
+            layer if (layer.mask if _is_parted(layer) else masks[0]) == mask else layer.changed(muted=True)
+            for layer in sea.layers
         )
-    return sea.replace(**changes)
+        yield mask, sea.replace(layers=tuple(layers))
+
+
+def _is_parted(layer: Contribution) -> bool:
+    """Whether a layer's waves are on a grid and may be under a mask; the rest goes with the first part."""
+    return layer.has("mask") and Gives.FIELDS not in layer.gives
 
 
 def _without_masks(parameters: OceanParameters) -> OceanParameters:
     if not parameters.is_masked:
         return parameters
-    changes = {
-        name: tuple(replace(layer, mask=None) for layer in getattr(parameters, name))
-        for name in (*_LAYERS, "patches")
-    }
-    return parameters.replace(**changes)
+    return parameters.replace(
+        layers=tuple(
+            layer if layer.mask is None else layer.changed(mask=None) for layer in parameters.layers
+        ),
+        patches=tuple(replace(patch, mask=None) for patch in parameters.patches),
+    )

@@ -22,6 +22,7 @@ from ..parameters import Foam, OceanParameters, Timing
 from ..sea_spectrum import SeaSpectrum
 from ..synthesis import Rows, Synthesis
 from ..trough_damping import trough_damping
+from ..waves.contribution import Gives
 from ..waves.kinds import KINDS
 from .sampling import Key
 from .surfaces import Field, bilinear, exact, turned_field, weighted_field
@@ -64,8 +65,10 @@ class PartWaves:
         """Shared by all waves whose parameters differ only in what acts after it."""
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
+        kept = Gives.SPECTRUM | Gives.COEFFICIENTS
+        on_grid = tuple(layer for layer in self.parameters.layers if layer.gives & kept)
         shared = self.parameters.replace(
-            choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing, wind_fields=()
+            choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing, layers=on_grid
         )
         return _cached_initial_state(shared, PRECISIONS[self.precision])
 

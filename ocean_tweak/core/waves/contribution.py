@@ -9,7 +9,7 @@ once a sea that has such layers, which act together.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import Flag, auto
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
@@ -65,7 +65,8 @@ class Names(NamedTuple):
     number : what .blend files hold for it, and its place in menus and lists: never that of another kind
     settings : of the property of a layer in .blend files that holds the settings; "" for the layer itself
     noun : in the middle of a sentence
-    label, description, icon : of the entry that adds a layer
+    label, description, icon : of the kind, in lists
+    entry : of the menu that adds a layer; "" for the label
     """
 
     number: int
@@ -74,6 +75,7 @@ class Names(NamedTuple):
     label: str
     description: str
     icon: str
+    entry: str = ""
 
 
 class Wind(NamedTuple):
@@ -156,6 +158,16 @@ class Contribution(Validated):
     muted: bool
     mask: Mask | None = None  # of a kind without such a field
     id: int = -1
+
+    @classmethod
+    def has(cls, field: str) -> bool:
+        """Whether layers of the kind have a field."""
+        return field in {own.name for own in fields(cls)}  # type: ignore[arg-type]  # each is a dataclass
+
+    @classmethod
+    def to_begin_with(cls, sea: OceanParameters, time: float) -> Self:
+        """A new layer that fits a sea at a time in s."""
+        return cls()
 
     def changed(self, **changes: Any) -> Self:
         """A copy with other values of some fields."""

@@ -9,5 +9,11 @@ from .image.parameters import PictureLayer
 from .spectral import WaveLayer
 from .wind_field.parameters import WindFieldLayer
 
-#: in the order in which their waves are added: sums of floats depend on it
-KINDS: tuple[type[Contribution], ...] = (WaveLayer, HeroWave, PictureLayer, WindFieldLayer)
+#: in the order in which their waves are added, on which sums of floats depend; a layer of which JSON does not
+#: say its kind is of the first
+KINDS: list[type[Contribution]] = [WaveLayer, HeroWave, PictureLayer, WindFieldLayer]
+
+
+def shown() -> list[type[Contribution]]:
+    """The kinds in the order of menus and lists."""
+    return sorted(KINDS, key=lambda kind: kind.names.number)

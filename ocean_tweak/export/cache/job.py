@@ -25,7 +25,7 @@ from ...core import formats
 from ...core.cascades.patch_seas import PARTS, parts
 from ...core.channels import ADDING, MAPS, SurfaceFields, channels_of
 from ...core.errors import ParameterError
-from ...core.fingerprint import fingerprint
+from ...core.fingerprint import fingerprint, hashed
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.parameters import OceanParameters
 from ...core.printable import shown
@@ -90,7 +90,7 @@ class Job:
             {
                 "format": formats.JOB,
                 "synthesis": formats.SYNTHESIS,
-                "shot": self.shot.to_dict(),
+                "shot": hashed(self.shot),
                 "maps": list(self.maps),
                 "compression": self.compression,
             }

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import ParameterError
+from ...core.plain_data import class_of
 from ...core.raster import Raster, check_numbers
 from ...core.validation import check_count
 from .arrays import AXES
@@ -53,7 +54,7 @@ class _Resolver:
             if field.name not in data:
                 continue
             if isinstance(data[field.name], list):
-                check_count(field.name, len(data[field.name]), field.metadata)
+                check_count(field.name, data[field.name], field.metadata)
             try:
                 result[field.name] = self._resolved(field.metadata, data[field.name])
             except ParameterError as error:
@@ -73,7 +74,7 @@ class _Resolver:
         items = []
         for index, item in enumerate(value):
             try:
-                items.append(self.inside(nested, item))
+                items.append(self.inside(class_of(metadata, item), item))
             except ParameterError as error:
                 raise error.inside(str(index)) from None
         return items

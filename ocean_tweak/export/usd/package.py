@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core import ParameterError, formats
-from ...core.fingerprint import fingerprint, shot_fingerprint
+from ...core.fingerprint import fingerprint, hashed, shot_fingerprint
 from ...core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
 from ...core.shot import Shot
 from .attributes import ATTRIBUTES
@@ -111,7 +111,7 @@ class Package:
             {
                 "format": formats.LAYER,
                 "synthesis": formats.SYNTHESIS,
-                "shot": self.at(resolution).to_dict(),
+                "shot": hashed(self.at(resolution)),
                 "up_axis": self.up_axis,
                 "metres_per_unit": self.metres_per_unit,
                 "attributes": list(self.attributes),

@@ -7,9 +7,8 @@ from bpy.app.translations import pgettext_iface as translated
 from ...core import HeroWave
 from ...scene import source_images
 from ...scene.refresh import sea_of_settings
-from ...scene.settings import LAYER_KINDS
 from ...scene.units import metres_per_unit
-from .. import layer_operators, wind_operators
+from .. import layer_operators, parameter_properties, wind_operators
 from ..active_ocean import active_layer, nearest
 from ..layer_properties import kind_of
 from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
@@ -29,7 +28,9 @@ class OCEAN_UL_layers(bpy.types.UIList):
         group, kind = layer.group, kind_of(layer)
         line = layout.row(align=True)
         line.active = not group.muted
-        line.label(text=_TITLES[kind](group, context.scene), icon=LAYER_KINDS[kind].icon, translate=False)
+        title = _TITLES.get(kind.kind)
+        text = kind.names.label if title is None else title(group, context.scene)
+        line.label(text=text, icon=kind.names.icon, translate=False)
         line.prop(group, "muted", text="", icon="HIDE_ON" if group.muted else "HIDE_OFF", emboss=False)
 
 
@@ -60,7 +61,7 @@ def _hero_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
 _TITLES = {
     "WAVES": _waves_title,
     "WIND_FIELD": _wind_title,
-    "PICTURE": _picture_title,
+    "IMAGE": _picture_title,
     "HERO_WAVE": _hero_title,
 }
 
@@ -89,7 +90,11 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
         layer = active_layer(settings)
         if layer is not None:
             layout = split(self.layout, animated=True)
-            _DRAWERS[kind_of(layer)](layout, layer.group, context)
+            kind = kind_of(layer)
+            if kind.kind in _DRAWERS:
+                _DRAWERS[kind.kind](layout, layer.group, context)
+            else:
+                _props(layout, layer.group, *parameter_properties.names_of(kind))
             if hasattr(layer.group, "mask"):
                 draw_mask(layout, context, layer.group.mask)
 
@@ -188,7 +193,7 @@ def _draw_hero_wave(
 _DRAWERS = {
     "WAVES": _draw_waves,
     "WIND_FIELD": _draw_wind_field,
-    "PICTURE": _draw_picture,
+    "IMAGE": _draw_picture,
     "HERO_WAVE": _draw_hero_wave,
 }
 _ANIMATION = {

@@ -20,6 +20,7 @@ from .. import (
     sea_operators,
     sequence_operators,
 )
+from ..layer_properties import first_waves
 from .drawing import (
     OceanPanel,
     active_settings,
@@ -50,8 +51,9 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
         if settings.source == "SEQUENCE":
             _bake(layout, context)
         _presets(layout, context)
-        for layer in settings.layers[:1]:
-            _wind(layout, layer)
+        waves = first_waves(settings.layers)
+        if waves is not None:
+            _wind(layout, waves)
         if len(settings.layers) > 1:
             more = len(settings.layers) - 1
             text = "And one more layer" if more == 1 else translated("And {} more layers").format(more)
@@ -157,7 +159,7 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _baked_rows(scene: bpy.types.Scene, baked: dict[str, Any]) -> list[tuple[str, str]]:
     """Label and text of the numbers that the first part of the panel has for the settings."""
-    layer = baked["layers"][0]
+    layer = _baked_waves(baked)[0]
     if layer["definition"] == "WIND":
         first = [
             ("Wind", speed_text(scene, layer["wind_speed"])),
@@ -185,10 +187,15 @@ def _winds(settings: Any, scene: bpy.types.Scene) -> list[float]:
     ]
 
 
+def _baked_waves(baked: dict[str, Any]) -> list[dict[str, Any]]:
+    """The layers of waves by a spectrum, of which JSON does not say the kind."""
+    return [layer for layer in baked["layers"] if layer.get("kind", WaveLayer.kind) == WaveLayer.kind]
+
+
 def _baked_winds(baked: dict[str, Any]) -> list[float]:
     return [
         wind_at_10_m(layer["wind_speed"], layer["wind_height"])
-        for layer in baked["layers"]
+        for layer in _baked_waves(baked)
         if layer["definition"] == "WIND" and not layer["muted"]
     ]
 

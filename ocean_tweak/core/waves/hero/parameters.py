@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from ...errors import ParameterError
 from ...validation import number, switch
@@ -18,6 +18,12 @@ if TYPE_CHECKING:
 
 #: wavelengths that a crest must be wide: a narrower hump is no wave, it runs apart in all directions
 NARROWEST = 0.5
+
+#: of a wave to begin with: wavelengths in a patch; a crest's height and width over the wavelength and patch
+_WAVES, _STEEPNESS, _WIDTH = 6.0, 0.05, 0.4
+
+#: wavelengths that 16 samples hold with a group of two
+_WAVES_OF_16 = 3.5
 
 
 @dataclass(frozen=True)
@@ -94,6 +100,16 @@ class HeroWave(Contribution):
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
         """Add its waves; none of their energy is expected, which no seed changes."""
         add_hero_wave(self, to.grid, to.omega, to.h_plus, to.h_minus)
+
+    @classmethod
+    def to_begin_with(cls, sea: OceanParameters, time: float) -> Self:
+        """A group of two waves along x whose focus is in the middle of the patch."""
+        size = sea.domain_size
+        wavelength = size / min(_WAVES, _WAVES_OF_16 * sea.resolution / 16)
+        return cls(
+            x=0.5 * size, y=0.5 * size, time=time, wavelength=wavelength,
+            crest_height=min(100.0, _STEEPNESS * wavelength), group_width=_WIDTH * size,
+        )  # fmt: skip
 
     @classmethod
     def outlook(cls, sea: OceanParameters) -> HeroWaveOutlooks | None:

@@ -47,8 +47,9 @@ class PictureLayer(Contribution):
     kind = "IMAGE"
     gives = Gives.COEFFICIENTS | Gives.STATE | Gives.LOOPS
     names = Names(
-        2, "picture", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA"
-    )
+        2, "picture", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA",
+        entry="Picture or Noise",
+    )  # fmt: skip
     former_list = "pictures"
     constant = "each keeps its waves; what can change is how fast they move, by ocean_time"
 
