@@ -61,4 +61,4 @@ def start(item: bpy.types.Object, shot: Shot, frames: Sequence[Frame]) -> BakePr
     return bake
 
 
-running, forget, stop_all = _running.of, _running.forget, _running.stop_all
+running, forget = _running.of, _running.forget

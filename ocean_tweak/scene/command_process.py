@@ -126,7 +126,16 @@ def _write(stream: IO[str], text: str) -> None:
 
 
 class Running(dict[int, CommandProcess]):
-    """Processes under way, by the ocean's session uid: they are no data of the file and outlive undo."""
+    """Processes of a kind, by the ocean's session uid: they are no data of the file and outlive undo.
+
+    kinds : all there are
+    """
+
+    kinds: ClassVar[list[Running]] = []
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.kinds.append(self)
 
     def of(self, item: bpy.types.Object) -> CommandProcess | None:
         """The process that works for an ocean."""
@@ -137,8 +146,10 @@ class Running(dict[int, CommandProcess]):
         for uid in [uid for uid, other in self.items() if other is process]:
             del self[uid]
 
-    def stop_all(self) -> None:
-        """Another file is opened, or the extension is disabled."""
-        for process in self.values():
+
+def stop_all() -> None:
+    """Another file is opened, or the extension is disabled."""
+    for running in Running.kinds:
+        for process in running.values():
             process.stop()
-        self.clear()
+        running.clear()

@@ -19,23 +19,22 @@ from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups
 from . import (
     alarm,
-    bake_process,
     bake_state,
     cache_place,
+    command_process,
     live_image,
     needs,
     ocean_object,
     patch_objects,
     refinement,
+    refresh,
     source_images,
     stored_paths,
     stored_values,
-    usd_process,
 )
 from .animated import is_animated, shown_settings
 from .refinement import show
 from .refresh import Wanted, is_live, of_a_frame
-from .refresh import forget_all as forget_seas
 from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, shown_oceans, was_ocean
 
 # scene settings that change an ocean and have no update callback of ours
@@ -181,8 +180,7 @@ def _end_those_without_modifier(items: Iterable[bpy.types.Object]) -> None:
 def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     """Fill the live images of an opened file: generated images are saved without their texels. Its node
     groups may be of another version."""
-    bake_process.stop_all()
-    usd_process.stop_all()
+    command_process.stop_all()
     _forget_all()
     _subscribe()
     stored_values.mend_all()
@@ -313,8 +311,7 @@ def unregister() -> None:
         show_that_it_ends()
     bpy.msgbus.clear_by_owner(_OWNER)
     _detach()
-    bake_process.stop_all()
-    usd_process.stop_all()
+    command_process.stop_all()
     _forget_all()
 
 
@@ -326,7 +323,7 @@ def _has_file() -> bool:
 def _forget_all() -> None:
     alarm.forget_all()
     refinement.forget_all()
-    forget_seas()
+    refresh.forget_all()
     needs.forget_all()
     MEMO.drop()
     live_image.forget_all()

@@ -100,8 +100,11 @@ def look() -> None:
 
 
 def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:
-    """Whether objects came or went, or one changed that reads an ocean or may do so now."""
-    return len(bpy.data.objects) != _seen.objects or any(map(_concerns, updates))
+    """Whether objects came or went, or one changed that reads an ocean or may do so now.
+
+    Where no ocean is known, nothing is: one that comes is looked at when something asks for it.
+    """
+    return bool(_seen.of) and (len(bpy.data.objects) != _seen.objects or any(map(_concerns, updates)))
 
 
 def forget_all() -> None:

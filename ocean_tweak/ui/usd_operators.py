@@ -12,11 +12,11 @@ from ..core.frames import format_frames
 from ..export.cache.estimate import readable_bytes
 from ..export.usd import library
 from ..export.usd.reading import SUFFIXES
-from ..scene import ocean_object, usd_import, usd_process
+from ..scene import ocean_object, usd
 from ..scene.needs import neighbours_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
-from ..scene.usd_process import UsdCheck, UsdExport
+from ..scene.usd import UsdCheck, UsdExport
 from .active_ocean import OfActiveOcean, refuse
 from .adding import InObjectMode, make_active
 from .beside_window import BesideWindow, StopsProcess
@@ -41,7 +41,7 @@ class _NeedsUsd:
 class _UsdBesideWindow(_NeedsUsd, BesideWindow):
     """Operators that export an ocean or check its layers: one at a time."""
 
-    processes = usd_process
+    processes = usd
     busy = "This ocean is being exported or checked: wait, or stop it with Esc"
 
 
@@ -60,7 +60,7 @@ class OCEAN_OT_export_usd(_UsdBesideWindow, bpy.types.Operator):
     def begin(self, context: bpy.types.Context) -> UsdExport:
         """Write the scene's frames."""
         item, frames = context.active_object, scene_frames(context.scene)
-        return usd_process.start_export(item, shot_of(item, context.scene, frames), frames)
+        return usd.start_export(item, shot_of(item, context.scene, frames), frames)
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
         """Say what was written."""
@@ -93,7 +93,7 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Open the browser where the ocean goes already."""
         try:
-            self.filepath = str(usd_process.usd_file(context.active_object))
+            self.filepath = str(usd.usd_file(context.active_object))
         except (OceanObjectError, OSError) as error:
             return refuse(self, error)
         return super().invoke(context, event)
@@ -130,7 +130,7 @@ class OCEAN_OT_verify_usd(_UsdBesideWindow, bpy.types.Operator):
 
     def begin(self, context: bpy.types.Context) -> UsdCheck:
         """Read what the ocean's settings say."""
-        return usd_process.start_check(context.active_object)
+        return usd.start_check(context.active_object)
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
         """Say what is wrong."""
@@ -154,7 +154,7 @@ class OCEAN_OT_stop_usd(StopsProcess, bpy.types.Operator):
     bl_description = "Stop after the frames that are under way. Clips that are written stay, points do not"
     bl_label = "Stop"
     bl_options = {"INTERNAL"}
-    processes = usd_process
+    processes = usd
     idle = "The active object is not being exported"
 
 
@@ -180,7 +180,7 @@ class OCEAN_OT_import_usd(_NeedsUsd, InObjectMode, bpy.types.Operator, ImportHel
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add it, and make it the active object."""
         try:
-            item = usd_import.add_from_layer(
+            item = usd.add_from_layer(
                 context.scene, Path(self.filepath), context.collection, self.use_frame_rate
             )
         except (library.UsdError, OSError, *ocean_object.EXPECTED_ERRORS) as error:

@@ -81,7 +81,7 @@ def test_a_path_is_kept_relative_to_the_file(desk, ocean_object, make_parameters
 
 @pytest.fixture
 def process(extension):
-    return extension("scene.usd_process")
+    return extension("scene.usd")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there it is a path like others")

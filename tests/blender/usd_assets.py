@@ -35,7 +35,7 @@ def add_ocean(scene, ocean_object, parameters, **more):
 
 @pytest.fixture
 def process(extension):
-    return extension("scene.usd_process")
+    return extension("scene.usd")
 
 
 def value(path, attribute, frame=None, mesh="geo/sea/surface"):

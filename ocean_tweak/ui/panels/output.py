@@ -11,7 +11,7 @@ from ...core.frames import format_frames
 from ...export.cache.estimate import Estimate, readable_bytes
 from ...export.usd import library
 from ...nodes.names import MAP_INPUTS
-from ...scene import alarm, bake_process, bake_versions, stored_paths, usd_process
+from ...scene import alarm, bake_process, bake_versions, stored_paths, usd
 from ...scene.image_sequence import baked_frames
 from ...scene.needs import neighbours_of
 from ...scene.settings import OceanSettings
@@ -154,10 +154,10 @@ class OCEAN_PT_usd(OceanPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw where the layers go, what they hold, and the buttons or the progress."""
         layout, item = split(self.layout), context.active_object
-        settings, process = active_settings(context).usd, usd_process.running(item)
+        settings, process = active_settings(context).usd, usd.running(item)
         if not library.is_installed():
             message(layout, context, library.MISSING_IN_BLENDER, alert=True)
-        layout.prop(settings, "file", placeholder=usd_process.default_file(item))
+        layout.prop(settings, "file", placeholder=usd.default_file(item))
         draw_choices(layout, settings, neighbours_of(item).has_bake)
         if process is not None:
             progress_bar(layout, process, usd_operators.OCEAN_OT_stop_usd.bl_idname)

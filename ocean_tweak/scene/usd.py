@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""USD layers of an ocean, written and checked by the command line in a process of its own.
+"""USD layers of an ocean, written and checked by the command line in a process of its own, and read.
 
 They hold the sea of the settings with the patch's corner at the origin, wherever the object stands.
 """
@@ -14,14 +14,16 @@ import bpy
 
 from ..core.frames import Frame, format_frames
 from ..core.shot import Shot
+from ..export.usd.apart import read_package
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import OPTIONS, command_arguments
-from . import stored_paths
+from . import ocean_object, stored_paths
 from .cache_place import bake_name, shown_bake
 from .command_process import CommandProcess, Running
 from .preferences import user_folder
-from .settings import OceanObjectError, settings_of
-from .units import shortest_decimal
+from .settings import VIEWPORT_RESOLUTION, OceanObjectError, settings_of
+from .shots import animate
+from .units import frame_rate, set_frame_rate, set_time_stretch, shortest_decimal, time_stretch
 
 _FOLDER = "usd"
 
@@ -135,4 +137,35 @@ def start_check(item: bpy.types.Object) -> UsdCheck:
     return check
 
 
-running, forget, stop_all = _running.of, _running.forget, _running.stop_all
+running, forget = _running.of, _running.forget
+
+
+def add_from_layer(
+    scene: bpy.types.Scene,
+    path: Path,
+    collection: bpy.types.Collection | None = None,
+    use_frame_rate: bool = True,
+) -> bpy.types.Object:
+    """Add the sea of a layer, where the layer has it, named after its prim and animated as it was.
+
+    use_frame_rate : give the scene the sea's own
+
+    Raises UsdError for a layer that holds none of our seas, and what `ocean_object.add` raises; then nothing
+    is changed.
+    """
+    prim, package = read_package(path)
+    shot, before = package.shot, (frame_rate(scene), time_stretch(scene))
+    if use_frame_rate:
+        set_frame_rate(scene, shot.parameters.timing.fps)
+        set_time_stretch(scene, shot.parameters.timing.stretch)
+    try:
+        item = ocean_object.add(
+            scene, shot.parameters, name=prim.rpartition("/")[2], collection=collection,
+            viewport_resolution=VIEWPORT_RESOLUTION, repeats=package.tiles,
+        )  # fmt: skip
+    except ocean_object.EXPECTED_ERRORS:
+        set_frame_rate(scene, before[0])
+        set_time_stretch(scene, before[1])
+        raise
+    animate(item, scene, shot)
+    return item
