@@ -202,10 +202,11 @@ def measure(parameters: object) -> tuple[float, float]:
     import OpenEXR
 
     from ocean_tweak.core.statistics import field_state
+    from ocean_tweak.export.frame_files import frame_file
 
     variances, periods = [], []
     for frame in range(FIRST, LAST + 1):
-        path = frames_folder() / f"{PARAMETERS.stem}_disp.{frame:04d}.exr"
+        path = frames_folder() / frame_file(PARAMETERS.stem, "disp", frame)
         with OpenEXR.File(str(path), separate_channels=True) as file:
             elevation = np.array(file.channels()["B"].pixels)[::-1]  # an EXR begins with its top row
         variances.append(np.var(elevation, dtype=np.float64))

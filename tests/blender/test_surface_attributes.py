@@ -181,3 +181,22 @@ def test_a_mesh_in_edit_mode_shows_the_sea(add, core, make_parameters, empty_sce
     bpy.ops.object.mode_set(mode="OBJECT")
     empty_scene.frame_set(3)
     assert_alike(read(evaluated_mesh(item), SIDE, SIDE), wanted(core, parameters, 3))
+
+
+@pytest.mark.parametrize(
+    ("switch", "attributes"),
+    [("use_foam", {"foam", "cusp"}), ("use_velocity", {"velocity"}), ("use_normals", {"custom_normal"})],
+)
+def test_a_live_mesh_has_what_its_switches_ask_for_and_nothing_else(add, make_parameters, switch, attributes):
+    item = add(make_parameters(), "nodes, attributes")
+    everything = {"displacement", "velocity", "custom_normal", "foam", "cusp"}
+
+    def of_sea():
+        of_grid = {"position", "sharp_face", "st"}
+        return {each.name for each in item.data.attributes if not each.is_internal} - of_grid
+
+    assert of_sea() == everything
+    setattr(item.ocean_tweak, switch, False)
+    assert of_sea() == everything - attributes
+    setattr(item.ocean_tweak, switch, True)
+    assert of_sea() == everything

@@ -30,6 +30,7 @@ def test_zip_holds_the_extension_and_nothing_else(zip_file):
     expected = {"__init__.py", "blender_manifest.toml", "LICENSE", *wheels}
     code = {name for name in names if name.startswith("ocean_tweak/")}
     assert set(names) - code == expected
+    assert "ocean_tweak/py.typed" in code
     assert {"ocean_tweak/registration.py", "ocean_tweak/core/__init__.py"} <= code
     assert not [name for name in code if "__pycache__" in name or "/." in name]
 

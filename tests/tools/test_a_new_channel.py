@@ -46,6 +46,8 @@ from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.bake import ShotSurfaces
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.exr import read_image
+from ocean_tweak.export.frame_files import BAKED
+from ocean_tweak.export.usd.attributes import ATTRIBUTES
 from ocean_tweak.scene import ocean_object
 from pxr import Usd
 from tools import parameters_doc
@@ -75,6 +77,7 @@ bpy.context.scene.frame_set(2)
 item = ocean_object.add(bpy.context.scene, parameters)
 attribute = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.attributes["speed"]
 found["attribute"] = [attribute.data_type, [number.value for number in attribute.data]]
+found["choices"] = [list(ATTRIBUTES), list(BAKED)]
 found["documented"] = [row for row in parameters_doc.channels().splitlines() if "`speed`" in row]
 (folder / "found.json").write_text(json.dumps(found))
 """
@@ -136,6 +139,13 @@ def test_it_is_an_attribute_of_the_mesh(found, speeds):
     kind, values = found["attribute"]
     assert kind == "FLOAT"
     np.testing.assert_allclose(values, closed(speeds), rtol=1e-5)
+
+
+def test_it_stands_behind_the_others_by_whose_order_files_know_them(found):
+    """Flags in .blend files are counted, and fingerprints of bakes list their maps."""
+    attributes, baked = found["choices"]
+    assert attributes == ["velocities", "normals", "foam", "cusp", "displayColor", "speed"]
+    assert baked == ["disp", "foam", "normal", "vel", "slope", "strain", "speed", "points"]
 
 
 def test_it_is_documented(found):
