@@ -17,7 +17,7 @@ from bpy.props import (
 )
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
-from ..core.plain_data import to_plain
+from ..core.plain_data import from_plain, to_plain
 from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
 from ..scene import cache_place, ocean_object
@@ -222,11 +222,13 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
         data["layers"] = layer_properties.read(self.layers, metres)
         data["patches"] = patch_properties.read(self.patches, metres)
+        if self.patches:  # the first of them tells the tile
+            del data["resolution"], data["domain_size"]
         data["joined"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
-        return OceanParameters.from_dict(data)
+        return from_plain(OceanParameters, data)  # as it is today, and of no size that a file could have
 
     def shown_in(self) -> bpy.types.Scene | None:
         """The scene that shows the ocean; None for what is none. For scripts of farms, as the next two."""
