@@ -7,6 +7,7 @@ import argparse
 from typing import Any
 
 from .. import __version__
+from ..core.channels import MOVING_MAP
 from ..core.presets import built_in
 from ..export.exr import COMPRESSION_ERROR
 from ..export.frame_files import BAKED
@@ -102,8 +103,8 @@ def _add_cache(parser: _Arguments, in_blender: bool, option: str) -> None:
 def _add_files_arguments(parser: _Arguments) -> None:
     """What, beside the sea, decides which files a bake writes."""
     parser.add_argument(
-        "--maps", type=argument_values.maps, metavar="LIST", default=("disp",),
-        help=f"what to write, of {','.join(BAKED)}; disp by default",
+        "--maps", type=argument_values.maps, metavar="LIST", default=(MOVING_MAP,),
+        help=f"what to write, of {','.join(BAKED)}; {MOVING_MAP} by default",
     )  # fmt: skip
     parser.add_argument("--name", help="start of the file names; by default that of the sea")
     parser.add_argument(

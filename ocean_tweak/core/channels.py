@@ -258,6 +258,9 @@ MAPS: dict[str, tuple[str, ...]] = {
     "strain": ("strain",),
 }
 
+#: the map that moves a surface: a sequence has it in every frame
+MOVING_MAP = "disp"
+
 #: what surfaces of one instant are made of
 OF_WAVES = {name: channel for name, channel in CHANNELS.items() if channel.source == WAVES}
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import formats
-from ..core.channels import SurfaceFields, channels_of, image_of, unit_of
+from ..core.channels import MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
 from ..core.errors import ParameterError
 from ..core.frames import Frame
 from ..core.parameters import OceanParameters, Patch
@@ -102,7 +102,7 @@ class ExrSequence:
     name: str
     parameters: OceanParameters
     compression: str = "PXR24"
-    maps: tuple[str, ...] = ("disp",)
+    maps: tuple[str, ...] = (MOVING_MAP,)
     patch: int | None = None
 
     @property
@@ -110,7 +110,7 @@ class ExrSequence:
         """The fields that a frame must have."""
         return channels_of(self.maps)
 
-    def path(self, frame: Frame, map_name: str = "disp") -> Path:
+    def path(self, frame: Frame, map_name: str = MOVING_MAP) -> Path:
         """Where a frame's map goes."""
         patch = None if self.patch is None else self.patch + 1
         return self.directory / frame_file(self.name, map_name, frame, patch)

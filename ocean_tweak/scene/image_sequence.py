@@ -13,6 +13,7 @@ from pathlib import Path
 import bpy
 
 from ..core import ParameterError, Timing
+from ..core.channels import MOVING_MAP
 from ..core.frames import MOST_FRAMES, format_frames, held_frame, parse_frames
 from ..export.exr import ExrError, NewerExrError, read_header, read_size
 from ..export.frame_files import ImageFile, frame_file, image_file_of
@@ -24,8 +25,6 @@ from .units import time_stretch
 
 # Blender's frames, and so those of files, go as far to either side
 _FARTHEST = 1_048_574
-# what moves the mesh: a sequence has it at every frame
-_MOVING = "disp"
 
 
 class SequenceError(OceanObjectError):
@@ -44,7 +43,7 @@ class ImageSequence:
     name: str
     frames: tuple[int, ...]
 
-    def path(self, frame: int, map_name: str = _MOVING) -> Path:
+    def path(self, frame: int, map_name: str = MOVING_MAP) -> Path:
         """Where a map of a frame is."""
         return absolute(self.directory) / frame_file(self.name, map_name, frame)
 
@@ -56,15 +55,17 @@ class ImageSequence:
                 f"Frames {first} and {last} are {last - first} apart: {MOST_FRAMES} is too far"
             )
         available = _frames_by_map(absolute(self.directory))
-        if (self.name, _MOVING) not in available:
-            names = sorted(name for name, map_name in available if map_name == _MOVING)
+        if (self.name, MOVING_MAP) not in available:
+            names = sorted(name for name, map_name in available if map_name == MOVING_MAP)
             hint = f"; it holds {', '.join(names)}" if names else ""
             raise SequenceError(f"No files {self.name}_disp.####.exr in {absolute(self.directory)}{hint}")
         wanted = set(self.frames)
         frames = {name: available[self.name, name] for name in MAP_INPUTS if (self.name, name) in available}
         # a map that was baked for other frames only is none of this sequence
         maps = tuple(
-            name for name in MAP_INPUTS if name == _MOVING or not frames.get(name, set()).isdisjoint(wanted)
+            name
+            for name in MAP_INPUTS
+            if name == MOVING_MAP or not frames.get(name, set()).isdisjoint(wanted)
         )
         for name in maps:
             missing = sorted(wanted - frames[name])
@@ -109,7 +110,7 @@ def find_sequence(path: str | Path) -> ImageSequence:
             raise SequenceError(f"{chosen} is neither a folder nor a file named NAME_disp.####.exr")
         directory, name = chosen.parent, file.name
     available = {
-        name: frames for (name, kind), frames in _frames_by_map(directory).items() if kind == _MOVING
+        name: frames for (name, kind), frames in _frames_by_map(directory).items() if kind == MOVING_MAP
     }
     if name is None:
         if len(available) != 1:
@@ -135,9 +136,9 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
     paths = {name: sequence.path(sequence.frames[0], name) for name in maps}
     sizes = {name: _samples(path) for name, path in paths.items()}
     for name, samples in sizes.items():
-        if samples != sizes[_MOVING]:
+        if samples != sizes[MOVING_MAP]:
             raise SequenceError(
-                f"{paths[name]} is {samples} texels wide, the displacement {sizes[_MOVING]}: "
+                f"{paths[name]} is {samples} texels wide, the displacement {sizes[MOVING_MAP]}: "
                 "bake all maps with one resolution"
             )
     early = [frame for frame in sequence.frames if frame < 0]
@@ -146,7 +147,7 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
     # by the shortest number: Blender writes others with as many digits or more
     images = {name: _image(sequence.path(later[0] if later else early[-1], name)) for name in maps}
     early_images = {name: _image(sequence.path(early[-1], name)) for name in maps if early}
-    return LoadedSequence(images, early_images, sizes[_MOVING], *_timing(paths[_MOVING]))
+    return LoadedSequence(images, early_images, sizes[MOVING_MAP], *_timing(paths[MOVING_MAP]))
 
 
 def baked_frames(settings: OceanSettings) -> tuple[int, ...]:

@@ -13,6 +13,7 @@ from typing import Any
 
 import bpy
 
+from ..core.channels import MOVING_MAP
 from ..nodes.grid import GRID
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import MAP_INPUTS, TEXTURE_COORDINATES
@@ -229,7 +230,7 @@ def _set_group(modifier: bpy.types.NodesModifier, values: dict[str, Any]) -> Non
 def _set_texture(
     modifier: bpy.types.DisplaceModifier, texture: bpy.types.Texture, images: Images, shown: Shown
 ) -> None:
-    image = images["disp"]
+    image = images[MOVING_MAP]
     if texture.image != image:
         # whether the modifier depends on time is found out only when its texture is assigned
         modifier.texture = None

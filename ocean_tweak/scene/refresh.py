@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..core import OceanParameters, ParameterError
-from ..core.channels import CHANNELS, channels_of, image_of
+from ..core.channels import CHANNELS, MOVING_MAP, channels_of, image_of
 from ..core.frames import format_frames
 from . import (
     alarm,
@@ -283,7 +283,7 @@ def _refresh_baked(
         {name: getattr(maps, name) for name in plan.maps if getattr(maps, name) is not None}
         for maps in (settings.sequence_maps, settings.early_maps)
     )
-    if "disp" not in images:
+    if MOVING_MAP not in images:
         raise SequenceError(_NO_SEQUENCE)
     _refresh_mesh(item, plan.viewport)
     vertex_attributes.remove(item.data)

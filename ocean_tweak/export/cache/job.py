@@ -23,7 +23,7 @@ import numpy as np
 
 from ...core import formats
 from ...core.cascades.patch_seas import PARTS, parts
-from ...core.channels import ADDING, MAPS, SurfaceFields, channels_of
+from ...core.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
 from ...core.errors import ParameterError
 from ...core.fingerprint import fingerprint, hashed
 from ...core.frames import Frame, format_frames, frame_label, parse_frames
@@ -71,7 +71,7 @@ class Job:
     name: str
     uid: str
     shot: Shot
-    maps: tuple[str, ...] = ("disp",)
+    maps: tuple[str, ...] = (MOVING_MAP,)
     compression: str = "PXR24"
     frames: tuple[Frame, ...] = field(default=(), compare=False)
 

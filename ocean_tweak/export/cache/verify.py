@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...core import Ocean
 from ...core.bake import ShotSurfaces
-from ...core.channels import unit_of
+from ...core.channels import MOVING_MAP, unit_of
 from ...core.frames import Frame
 from ...core.plain_data import to_plain
 from ...core.printable import printable
@@ -81,7 +81,7 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: Ocean) -> str:
             return f"{path.name} says it is {printable(told, 200)}, not {wanted}"
         if not np.all(np.isfinite(image)):
             return f"{path.name} holds values that are not finite"
-        if name == "disp":
+        if name == MOVING_MAP:
             bounds = DAMPED_WAVE_HEIGHTS if moment.parameters.trough_damping else WAVE_HEIGHTS
             expected = wave_height(sea, moment)
             problem = _wrong_height(image, expected, bounds)

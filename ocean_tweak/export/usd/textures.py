@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.bake import BakedFrame, bake
+from ...core.channels import MOVING_MAP
 from ...core.frames import Frame, format_frames
 from ..cache.job import Job, open_folder, safe_name, uid_of
 from ..cache.locks import claimed
@@ -20,14 +21,15 @@ from .library import UsdError
 from .mesh import Edition
 from .package import Package
 
-MAP = "disp"
 #: where a bake goes that the export makes itself, beside the asset
 FOLDER = "textures"
 
 
 def own_bake(top: Path, package: Package) -> Path:
     """The folder of the bake beside an asset, made where it is missing."""
-    job = Job(safe_name(package.name), uid_of(package.name), package.shot, (MAP,), frames=package.frames)
+    job = Job(
+        safe_name(package.name), uid_of(package.name), package.shot, (MOVING_MAP,), frames=package.frames
+    )
     return open_folder(top.parent / FOLDER, job)
 
 
@@ -40,9 +42,10 @@ def make(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> Itera
 
 def image_paths(folder: Path, job: Job, frames: Sequence[Frame]) -> dict[Frame, Path]:
     """The displacement image of each frame. Raises UsdError naming frames that the bake does not hold."""
-    if MAP not in job.maps:
+    if MOVING_MAP not in job.maps:
         raise UsdError(
-            f"{folder}: this bake holds {', '.join(job.maps)} and no {MAP}: bake it with --maps {MAP}"
+            f"{folder}: this bake holds {', '.join(job.maps)} and no {MOVING_MAP}: "
+            f"bake it with --maps {MOVING_MAP}"
         )
     findings = [inspect(folder, job, frame) for frame in frames]
     broken = [finding for finding in findings if finding.state is not State.WHOLE]
@@ -51,7 +54,7 @@ def image_paths(folder: Path, job: Job, frames: Sequence[Frame]) -> dict[Frame, 
             f"{folder}: frames {format_frames(finding.frame for finding in broken)} are not in this bake "
             f"({broken[0].reason}): bake them, or ask for fewer frames"
         )
-    return {frame: job.sequence(folder, frame).path(frame, MAP) for frame in frames}
+    return {frame: job.sequence(folder, frame).path(frame, MOVING_MAP) for frame in frames}
 
 
 def relative_path(image: Path, layer: Path) -> str:
