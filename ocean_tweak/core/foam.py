@@ -13,12 +13,15 @@ sequence, a chunk of it and a single frame have the same bytes.
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .memo import MEMO
 
 RealArray = NDArray[np.floating]
 Array = NDArray[np.float64]
@@ -93,7 +96,8 @@ def strength_levels(count: int = 8) -> Array:
 class FoamHistory:
     """Births of foam up to a lattice time, on the grid that drifts along.
 
-    It is what a sequence keeps between its frames; without it, a frame makes its own.
+    It is what a sequence keeps between its frames; without it, a frame makes its own. One thread at a time
+    goes on with it, and others wait.
     """
 
     def __init__(self, model: FoamModel, squeeze_at: Callable[[Fraction], RealArray]) -> None:
@@ -102,20 +106,28 @@ class FoamHistory:
         self._squeeze_at = squeeze_at
         self._births: Array | None = None
         self._last = 0
+        self._busy = threading.Lock()
+        MEMO.watch("foam", self)
         #: is told of each moment that was looked at, and of how many
         self.tell: Callable[[int, int], None] = lambda done, count: None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the births."""
+        births = self._births
+        return 0 if births is None else births.nbytes
 
     def foam(self, time: float | Fraction) -> RealArray:
         """(N, N) float32 F in 0…1 at a time."""
         model = self._model
         now = model.reduced(time)
-        present = model.strength(self._squeeze_at(now)).astype(np.float32)
-        if model.memory == 0:
-            return present
-        births = self._births_until(math.floor(now / model.step))
+        with self._busy:
+            present = model.strength(self._squeeze_at(now)).astype(np.float32)
+            if model.memory == 0:
+                return present
+            left = faded(self._births_until(math.floor(now / model.step)), now, model)
         shift_y, shift_x = (-float(now) * v / model.spacing for v in model.drift[::-1])
-        past = _shifted(faded(births, now, model), shift_y, shift_x)
-        result = np.maximum(past, present)
+        result = np.maximum(_shifted(left, shift_y, shift_x), present)
         result[result < FAINTEST] = 0.0
         return result
 

@@ -117,6 +117,11 @@ class Memo:
             self._dropped.pop((kind, key), None)
             return self._kept.pop((kind, key), None)
 
+    def watch(self, kind: str, value: object) -> None:
+        """Count a value that somebody else keeps, for as long as that is."""
+        with self._lock:
+            self._dropped[kind, id(value)] = weakref.ref(value)
+
     def trim(self) -> None:
         """Drop what was not used for longest until the rest fits: a value has grown."""
         budget = self.budget

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import dataclasses
 import hashlib
 import math
 import zlib
@@ -135,6 +136,17 @@ class Raster:
             known = "name, values; or name, shape, encoding, data"
             raise ParameterError("raster", ", ".join(map(str, data)), f"must have the keys {known}")
         return cls(_decoded(data["shape"], data["encoding"], data["data"]), name)
+
+
+def raster_bytes(value: object) -> int:
+    """Bytes of the rasters in parameters, or in a tuple of such."""
+    if isinstance(value, Raster):
+        return value.nbytes
+    if isinstance(value, tuple):
+        return sum(map(raster_bytes, value))
+    if dataclasses.is_dataclass(value):
+        return sum(raster_bytes(getattr(value, field.name)) for field in dataclasses.fields(value))
+    return 0
 
 
 def check_numbers(count: int) -> None:

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .initial_state import InitialState
+from .memo import MEMO
 from .parameters import OceanParameters
 from .propagation import PropagatedState, propagate
 from .trough_damping import TroughDamping
@@ -125,16 +126,15 @@ class Synthesis:
         time: float | Fraction,
         wanted: Iterable[tuple[int, str]],
         write: Callable[[slice, Rows], None],
-        workspace: list[ComplexArray] | None = None,
     ) -> None:
-        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block.
-
-        workspace : arrays of earlier calls, to be used again and added to
-        """
-        arrays = [] if workspace is None else workspace
+        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block."""
         needed = sorted({self.term(*key).column for key in self._with_long_waves(wanted)})
-        while len(arrays) < len(needed):
-            arrays.append(np.empty(self.state.grid.shape, self.dtype))
+        shape = self.state.grid.shape
+        # fresh memory takes time: each thread has arrays that it fills again and again
+        own = (shape, self.dtype, threading.get_ident())
+        arrays: ComplexArray | None = MEMO.take("workspaces", own)
+        if arrays is None or len(arrays) < len(needed):
+            arrays = np.empty((len(needed), *shape), self.dtype)
         first_pass = dict(zip(needed, arrays, strict=False))
         shares = self._shares(time, needed)
 
@@ -147,6 +147,7 @@ class Synthesis:
         n = self.state.grid.resolution
         run_blocks(transform_along_y, self._blocks(n // 2 + 1, len(arrays)), self.workers)
         run_blocks(transform_along_x, self._blocks(n, len(arrays)), self.workers)
+        MEMO.put("workspaces", own, arrays)
 
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
         """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""

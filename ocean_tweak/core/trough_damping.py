@@ -36,6 +36,11 @@ class TroughDamping:
     long_waves: NDArray[np.float64]
     deviation: float
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the filter."""
+        return self.long_waves.nbytes
+
     def weight(self, elevation: Array) -> tuple[Array, Array]:
         """w and dw/dh_L in 1/m, from the long waves' elevation h_L in m."""
         scale = elevation.dtype.type(0.5 / self.deviation)

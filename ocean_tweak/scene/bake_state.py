@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from functools import lru_cache
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,7 +13,8 @@ import bpy
 
 from ..core import OceanParameters, ParameterError
 from ..core.former_json import modern
-from ..core.raster import has_brief_rasters
+from ..core.memo import remembered
+from ..core.raster import has_brief_rasters, raster_bytes
 from ..core.shot import OCEAN_TIME, Moment, Shot
 from ..export.cache.job import JOB_FILE, CacheError, read_job
 from ..export.exr import ExrError, read_header
@@ -72,23 +73,44 @@ def baked_shot(settings: OceanSettings) -> Shot | None:
     path = file_of(settings, frames[0]) if settings.source == "SEQUENCE" else None
     if path is None:
         return None
-    for told in (path.with_name(JOB_FILE), path):
-        try:
-            stamp = told.stat().st_mtime_ns
-        except OSError:
-            continue
-        shot = _read_shot(told, frames[0], stamp)
-        if shot is not None:
-            return shot
-    return None
+    told = (told_by(each, frames[0]).shot for each in (path.with_name(JOB_FILE), path))
+    return next((shot for shot in told if shot is not None), None)
 
 
-@lru_cache(maxsize=16)
-def _read_shot(path: Path, frame: int, _stamp: int) -> Shot | None:
+@dataclass(frozen=True)
+class Told:
+    """What a file of a bake tells.
+
+    shot : None where it tells none
+    maps : that a job has
+    nbytes : of the images in the shot
+    """
+
+    shot: Shot | None = None
+    maps: tuple[str, ...] = ()
+    nbytes: int = 0
+
+
+def told_by(path: Path, frame: int = 0) -> Told:
+    """What a job tells, or the image of a frame; it is read once as long as the file is the same."""
     try:
-        return read_job(path.parent).shot if path.name == JOB_FILE else Shot(parameters_of(path, frame))
+        written = path.stat()
+    except OSError:
+        return Told()
+    return _read(path, frame, (written.st_mtime_ns, written.st_size))
+
+
+@remembered("bakes")
+def _read(path: Path, frame: int, _written: tuple[int, int]) -> Told:
+    try:
+        if path.name != JOB_FILE:
+            shot, maps = Shot(parameters_of(path, frame)), ()
+        else:
+            job = read_job(path.parent)
+            shot, maps = job.shot, job.maps
     except (CacheError, ExrError, ParameterError, SequenceError):
-        return None
+        return Told()
+    return Told(shot, maps, raster_bytes(shot.parameters))
 
 
 def shown_parameters(settings: OceanSettings, scene: bpy.types.Scene) -> OceanParameters:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The seas of the open file's oceans and their latest surfaces, kept from one frame to the next."""
+"""The latest surfaces of the open file's oceans and their statistics, kept from one frame to the next."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from ..core.channels import CHANNELS, FOAM
+from ..core.foam import FoamHistory
+from ..core.foam_field import resampled
 from ..core.memo import MEMO, total_bytes
 from .instant_foam import instant_foam
 
@@ -20,14 +22,15 @@ RealArray = NDArray[np.float32]
 
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
-_MOST_SURFACE_BYTES = 256 * 2**20
+# the part of the memory that the surfaces of a sea may take, but for the last one
+_SHARE = 8
 # s after the foam that was made last, within which the next one is quickly made
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept
 _INSTANT = "instant foam"
 
 
-class Sea:
+class Surfaces:
     """An ocean and its latest surfaces."""
 
     def __init__(self, parameters: OceanParameters) -> None:
@@ -37,13 +40,12 @@ class Sea:
         self._spare: dict[str, RealArray] = {}
         # foam remembers, and looks back anew whenever time goes back. Motion blur goes back and forth, but
         # its whole frames ascend and so do the moments between them: each has a history of its own
-        self._foam = {whole: FoamMaker(parameters) for whole in (True, False)}
+        self._foam = {whole: FoamMaker(self.ocean) for whole in (True, False)}
 
     @property
     def nbytes(self) -> int:
         """Bytes of the surfaces, and of the arrays for the next one."""
-        surfaces = [*self._surfaces.values(), self._spare]
-        return total_bytes(field for surface in surfaces for field in list(surface.values()))
+        return sum(map(_bytes_of, [*self._surfaces.values(), self._spare]))
 
     def fields(
         self, time: Fraction, outputs: frozenset[str], is_whole: bool = True, patient: bool = True
@@ -60,7 +62,6 @@ class Sea:
         """
         kept = self._kept(time)
         self._make(time, kept, outputs - kept.keys() - {FOAM})
-        MEMO.trim()
         result = {name: kept[name] for name in outputs - {FOAM}}
         if FOAM not in outputs:
             return result, True
@@ -84,6 +85,7 @@ class Sea:
         for field in made.values():
             _close(field)
         kept.update(made)
+        MEMO.trim()
 
     def _closed(self, name: str, field: RealArray) -> RealArray:
         """An (N, N) field with its far edges."""
@@ -101,9 +103,9 @@ class Sea:
     def _kept(self, time: Fraction) -> dict[str, RealArray]:
         """What there is of a time; the oldest ones go where there are enough."""
         if time not in self._surfaces:
-            sizes = [sum(field.nbytes for field in kept.values()) for kept in self._surfaces.values()]
+            largest = max(map(_bytes_of, self._surfaces.values()), default=0)
             # a surface that failed for want of memory has none
-            most = min(_MOST_SURFACE_BYTES // max(*sizes, 1, 1), _MOST_SURFACES)
+            most = min(MEMO.budget // _SHARE // max(largest, 1), _MOST_SURFACES)
             while len(self._surfaces) >= max(most, 1):
                 self._spare = self._surfaces.popitem(last=False)[1]
             self._surfaces[time] = {}
@@ -114,8 +116,9 @@ class Sea:
 class FoamMaker:
     """The foam of a sea. It is quickly made where time goes on from the moment before."""
 
-    def __init__(self, parameters: OceanParameters) -> None:
-        self._ocean = Ocean(parameters)
+    def __init__(self, ocean: Ocean) -> None:
+        self._ocean = ocean
+        self._history: FoamHistory | None = None
         self._last: Fraction | None = None
         # the window's thread and the one that makes foam ahead of it
         self._busy = threading.Lock()
@@ -123,8 +126,11 @@ class FoamMaker:
     def at(self, time: Fraction) -> RealArray:
         """(N, N) 0…1. It may be called on any thread, and waits for another one."""
         with self._busy:
-            foam = self._ocean.surface(time, {FOAM}).foam
+            if self._history is None:
+                self._history = self._ocean.new_foam_history()
+            foam = resampled(self._history.foam(time), self._ocean.parameters.resolution)
             self._last = self._reduced(time)
+        MEMO.trim()
         return foam
 
     def is_near(self, time: Fraction) -> bool:
@@ -139,6 +145,10 @@ class FoamMaker:
         return time if loop is None else time % loop
 
 
+def _bytes_of(fields: dict[str, RealArray]) -> int:
+    return total_bytes(list(fields.values()))
+
+
 def _close(field: RealArray) -> None:
     """Make the last row and column the first ones again."""
     field[-1, :-1] = field[0, :-1]
@@ -150,9 +160,9 @@ def _close(field: RealArray) -> None:
 _SURFACES, _STATISTICS = "surfaces", "statistics"
 
 
-def sea_of(parameters: OceanParameters) -> Sea:
-    """The sea with these parameters; oceans that are alike share it."""
-    return MEMO.get(_SURFACES, parameters, lambda: Sea(parameters))
+def surfaces_of(parameters: OceanParameters) -> Surfaces:
+    """The surfaces of the sea with these parameters; oceans that are alike share them."""
+    return MEMO.get(_SURFACES, parameters, lambda: Surfaces(parameters))
 
 
 def known_statistics(parameters: OceanParameters) -> str | None:

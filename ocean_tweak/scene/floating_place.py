@@ -7,18 +7,17 @@ The sea is that of the render, whatever the viewport shows.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 from numpy.typing import NDArray
 
-from ..core import Ocean, OceanParameters
 from ..core.sea.query import find_points
 from ..core.sea.surfaces import bilinear
 from ..core.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
+from . import evaluation
 from .animated import shown_settings
 from .floating import FloatError, Ride
 from .image_sequence import SequenceError, file_of, shown_frame
@@ -70,7 +69,7 @@ def water_at(
     settings = shown_settings(ocean, depsgraph)
     plan = plan_of(settings, scene)
     if settings.source == "LIVE":
-        displacement = _sea(plan.parameters).surface(plan.time).displacement
+        displacement = evaluation.surfaces_of(plan.parameters).ocean.surface(plan.time).displacement
     else:
         displacement = _baked(settings, scene, frame)
     return Water(displacement, plan.parameters.domain_size / len(displacement))
@@ -112,12 +111,6 @@ def _world_normal(ocean: Matrix, normal: Vector) -> Vector:
     """The ocean's normal in the world: an inverse transposed, for an ocean may be scaled."""
     turned = ocean.to_3x3().inverted_safe().transposed() @ normal
     return turned.normalized()
-
-
-# the sea of the frame before is most often that of the next one too
-@lru_cache(maxsize=2)
-def _sea(parameters: OceanParameters) -> Ocean:
-    return Ocean(parameters)
 
 
 def _baked(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> RealArray:

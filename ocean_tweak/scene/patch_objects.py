@@ -179,7 +179,7 @@ def _write(mesh: bpy.types.Mesh, patch: OceanParameters, plan: Plan) -> None:
     if len(mesh.vertices) != grid.vertices:
         mesh.clear_geometry()
         mesh.vertices.add(grid.vertices)
-    fields, _ = evaluation.sea_of(patch).fields(plan.time, ADDING, plan.is_whole)
+    fields, _ = evaluation.surfaces_of(patch).fields(plan.time, ADDING, plan.is_whole)
     values = {name: _in_units(CHANNELS[name], field, plan) for name, field in sorted(fields.items())}
     for name, value in values.items():
         vertex_attributes.put(mesh, CHANNELS[name], value)

@@ -5,20 +5,20 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 import bpy
 
 from ..core import OceanParameters
 from ..core.cascades.patch_seas import Part
-from ..export.cache.job import JOB_FILE, CacheError, read_job
+from ..export.cache.job import JOB_FILE
 from ..export.frame_files import POINTS, SMALL_POINTS, files_start, image_file_of
 from ..export.points import MOST_IN_WINDOW
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
+from .bake_state import told_by
 from .image_sequence import baked_frames, baked_stretch
 from .modifiers import is_of_library, set_changed
 from .plan import Plan, velocity_scale
@@ -126,17 +126,5 @@ def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
 
 def _baked_parameters(folder: Path) -> OceanParameters | None:
     """The sea that a bake with points has; None for another bake, or none."""
-    try:
-        written = (folder / JOB_FILE).stat()
-    except OSError:
-        return None
-    return _read_parameters(folder, (written.st_mtime_ns, written.st_size))
-
-
-@lru_cache(maxsize=16)
-def _read_parameters(folder: Path, _written: object) -> OceanParameters | None:
-    try:
-        job = read_job(folder)
-    except CacheError:
-        return None
-    return job.shot.parameters if POINTS in job.maps else None
+    told = told_by(folder / JOB_FILE)
+    return told.shot.parameters if told.shot is not None and POINTS in told.maps else None

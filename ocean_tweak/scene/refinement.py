@@ -39,13 +39,13 @@ def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], o
     As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
     OceanObjectError for settings that are no sea.
     """
-    return evaluation.sea_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
+    return evaluation.surfaces_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
 
 
 def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
     """What makes the foam that the viewport lacks; raises as `_waves_job`."""
     plan = plan_of(settings_of(item), scene)
-    maker = evaluation.sea_of(plan.viewport_sea()).foam_of(plan.is_whole)
+    maker = evaluation.surfaces_of(plan.viewport_sea()).foam_of(plan.is_whole)
     return lambda: maker.at(plan.time)
 
 

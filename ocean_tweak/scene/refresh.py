@@ -308,7 +308,7 @@ def _refresh_baked(
 def _viewport_fields(plan: Plan, wanted: Wanted) -> tuple[Fields, bool]:
     """(samples+1, samples+1, …) by output, m; and whether they are all that they will be."""
     patient = Wanted.SAMPLES | Wanted.HISTORY in wanted
-    sea = evaluation.sea_of(plan.viewport_sea(coarse=Wanted.SAMPLES not in wanted))
+    sea = evaluation.surfaces_of(plan.viewport_sea(coarse=Wanted.SAMPLES not in wanted))
     fields, is_complete = sea.fields(plan.time, plan.channels, plan.is_whole, patient)
     samples = plan.viewport.samples
     if sea.ocean.parameters.resolution != samples:
@@ -343,7 +343,7 @@ def _write_render(settings: OceanSettings, plan: Plan) -> None:
     ]
     if not stale:
         return
-    made, _ = evaluation.sea_of(plan.parameters).fields(plan.time, channels_of(stale), plan.is_whole)
+    made, _ = evaluation.surfaces_of(plan.parameters).fields(plan.time, channels_of(stale), plan.is_whole)
     fields = _in_scene_time(made, plan)
     for name in stale:
         _write_image(images[name], fields, name, content)

@@ -25,10 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Raster, WindKey
-from ..core.memo import MEMO, total_bytes
+from ..core.memo import MEMO
 from ..core.parameters import ParameterError
 from ..core.plain_data import from_plain, parse_json, to_plain
-from ..core.raster import check_numbers, numbers_in
+from ..core.raster import check_numbers, numbers_in, raster_bytes
 from ..core.waves.wind_field.parameters import MOST_KEYS
 from .animated import clock_of, shown_settings
 from .settings import OceanObjectError
@@ -47,11 +47,7 @@ class _Recording:
     """Keys that were read: they can be read again."""
 
     keys: tuple[WindKey, ...]
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of the rasters."""
-        return total_bytes(key.vectors for key in self.keys)
+    nbytes: int
 
 
 def record(
@@ -184,7 +180,7 @@ def to_text(keys: tuple[WindKey, ...]) -> tuple[str, str]:
     """Keys as JSON, and a hash that tells them from others."""
     text = json.dumps(to_plain(keys), separators=(",", ":"))
     name = hashlib.sha256(text.encode()).hexdigest()
-    MEMO.put(_RECORDINGS, name, _Recording(keys))
+    MEMO.put(_RECORDINGS, name, _Recording(keys, raster_bytes(keys)))
     return text, name
 
 
@@ -202,5 +198,5 @@ def from_text(text: str, name: str) -> tuple[WindKey, ...]:
         keys = tuple(from_plain(WindKey, data) for data in plain)
     except (ValueError, TypeError) as error:
         raise ParameterError("recording", text[:20], f"cannot be read, record anew: {error}") from None
-    MEMO.put(_RECORDINGS, name, _Recording(keys))
+    MEMO.put(_RECORDINGS, name, _Recording(keys, raster_bytes(keys)))
     return keys

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..memo import remembered
 from ..splines import spline_slopes, spline_weights
 from .parameters import Mask
 
@@ -28,6 +29,11 @@ class Weights(NamedTuple):
     value: Array
     by_x: Array
     by_y: Array
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all three."""
+        return self.value.nbytes + self.by_x.nbytes + self.by_y.nbytes
 
 
 def weights(masks: Sequence[Mask], domain_size: float, x: Array, y: Array) -> Weights:
@@ -46,14 +52,17 @@ def weights(masks: Sequence[Mask], domain_size: float, x: Array, y: Array) -> We
     return total
 
 
-def weights_on_grid(masks: Sequence[Mask], domain_size: float, resolution: int) -> Weights:
-    """The same on the (N, N) samples [y, x] of the domain."""
+@remembered("weights of masks")
+def weights_on_grid(
+    masks: tuple[Mask, ...], domain_size: float, resolution: int, dtype: type = np.float64
+) -> Weights:
+    """The same on the (N, N) samples [y, x] of the domain, in float32 or float64."""
     along: Array = domain_size / resolution * np.arange(resolution, dtype=np.float64)
     parts = [
         weights(masks, domain_size, along, along[first : first + _ROWS, np.newaxis])
         for first in range(0, resolution, _ROWS)
     ]
-    return Weights(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    return Weights(*(np.concatenate(columns).astype(dtype) for columns in zip(*parts, strict=True)))
 
 
 def _by_image(mask: Mask, domain_size: float, x: Array, y: Array) -> Weights:

@@ -7,9 +7,8 @@ that is neither, a tile is made as it is; all others are added up on the tile's 
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
@@ -24,6 +23,7 @@ from ..foam_threshold import Strains, sampled_strains
 from ..initial_state import InitialState
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, weights
+from ..memo import MEMO, total_bytes
 from ..memory import check_memory, memory_need
 from ..parameters import OceanParameters
 from ..statistics import Statistics, sea_statistics
@@ -43,9 +43,6 @@ RealArray = NDArray[np.floating]
 
 #: minimum eigenvalue below which several sheets of the surface are looked for
 _NEARLY_FOLDED = 0.1
-
-#: bytes of squeezed surfaces of earlier moments that are kept for the next frame's foam
-_KEPT = 2**28
 
 
 class Ocean:
@@ -74,18 +71,18 @@ class Ocean:
         self.parameters = parameters
         self.precision = precision
         self._workers = workers
-        self._busy = threading.Lock()
-        self._kept_squeezes: OrderedDict[Fraction, list[Components]] = OrderedDict()
 
-    @cached_property
+    @property
     def patches(self) -> tuple[Ocean, ...]:
         """The seas that have a tile each: separate patches, in axes along their sides and without masks.
 
         Displacement, velocity, slope and strain of the sea are the sums of theirs, each turned by the patch's
         rotation; its other fields are not sums. Any other sea is its own only patch.
         """
-        if not self.parameters.is_cascade:
-            return (self,)
+        return self._separate if self.parameters.is_cascade else (self,)
+
+    @cached_property
+    def _separate(self) -> tuple[Ocean, ...]:
         return tuple(
             Ocean(patch, self.precision, self._workers) for patch in patch_parameters(self.parameters)
         )
@@ -129,15 +126,13 @@ class Ocean:
         if isinstance(on, Tile):
             tile, n = self._tile, self.parameters.resolution
             fields = self._arrays(wanted, (n, n), out or {})
-            with self._busy:  # the workspace and the foam's history serve one surface at a time
-                tile.fill(time, wanted - OF_MEMORY, fields)
-                if FOAM in wanted:
-                    fields[FOAM][...] = resampled(self.foam_history.foam(time), n)
+            tile.fill(time, wanted - OF_MEMORY, fields)
+            if FOAM in wanted:
+                fields[FOAM][...] = resampled(self.foam_history.foam(time), n)
         else:
             x, y = on.rest_positions()
             fields = self._arrays(wanted, x.shape, out or {})
-            with self._busy:
-                self._fill_places(x.ravel(), y.ravel(), time, wanted, fields)
+            self._fill_places(x.ravel(), y.ravel(), time, wanted, fields)
         return SurfaceFields(float(time), fields)
 
     def frame(
@@ -209,26 +204,33 @@ class Ocean:
 
     @cached_property
     def foam_history(self) -> FoamHistory:
-        """The births of a tile's foam; it serves ascending times, any other is made from the sea alone.
+        """The births of the tile's foam; it serves ascending times, any other is made from the sea alone.
 
         Raises ValueError for separate patches.
         """
-        sea = self._of_foam
+        return self.new_foam_history()
+
+    def new_foam_history(self) -> FoamHistory:
+        """One more history of the same foam, for times between which others are asked for."""
+        # what it keeps does not hold this ocean, which holds it: both go as soon as nobody has them
+        sea, dtype = self._of_foam, real_type(self.precision)
         tile, n = sea._tile, sea.parameters.resolution
 
         def cusp_at(time: Fraction) -> RealArray:
-            fields = sea._arrays(frozenset({"cusp"}), (n, n), {})
-            tile.fill(time, frozenset(fields), fields)
-            return fields["cusp"]
+            cusp: RealArray = np.empty((n, n), dtype)
+            tile.fill(time, frozenset({"cusp"}), {"cusp": cusp})
+            return cusp
 
         return FoamHistory(sea.foam_model, cusp_at)
 
-    @cached_property
+    @property
     def _of_foam(self) -> Ocean:
         """The sea at the resolution at which foam is made."""
+        return self if self.parameters.foam.resolution in (0, self.parameters.resolution) else self._coarser
+
+    @cached_property
+    def _coarser(self) -> Ocean:
         resolution = self.parameters.foam.resolution
-        if resolution in (0, self.parameters.resolution):
-            return self
         return Ocean(self.parameters.at_resolution(resolution), self.precision, self._workers)
 
     @cached_property
@@ -339,14 +341,13 @@ class Ocean:
         return squeeze
 
     def _squeezed(self, time: Fraction) -> list[Components]:
-        """Strains of each part at a time, of which the last ones are kept: the next frame looks back too."""
-        if time not in self._kept_squeezes:
-            made = self._of_foam._components(time, CHANNELS["cusp"].needs)
-            size = sum(field.nbytes for of_part in made for field in of_part.values())
-            while self._kept_squeezes and (len(self._kept_squeezes) + 1) * size > _KEPT:
-                self._kept_squeezes.popitem(last=False)
-            self._kept_squeezes[time] = made
-        return self._kept_squeezes[time]
+        """Strains of each part at a time; they are remembered, since the next frame looks back too."""
+        sea = self._of_foam
+
+        def make() -> _PartStrains:
+            return _PartStrains(sea._components(time, CHANNELS["cusp"].needs))
+
+        return MEMO.get("strains", (sea.parameters, self.precision, time), make).of_parts
 
     def _strains(self, drift: tuple[float, float]) -> Strains:
         """Of all parts together, as a point with this drift meets them."""
@@ -370,10 +371,7 @@ class Ocean:
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
     ) -> tuple[SurfacePoints, float]:
         """Points of the sum of the parts' bilinear surfaces, and the fewest metres between samples."""
-        with self._busy:
-            fields, reaches = zip(
-                *(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True
-            )
+        fields, reaches = zip(*(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True)
         spacings = [waves.part.spacing for waves in self._parts]
         finest, reach = min(spacings), sum(reaches)
         for waves in self._placed:
@@ -381,6 +379,18 @@ class Ocean:
             moved = waves.at(np.ravel(x), np.ravel(y), time, ((0, ""), (1, "")))
             reach += float(np.max(np.hypot(moved[0, ""], moved[1, ""]), initial=0.0))
         return find_summed_points(x, y, fields, spacings, reach, with_velocity), finest
+
+
+@dataclass(frozen=True)
+class _PartStrains:
+    """Strains of a moment, of each part on its own samples."""
+
+    of_parts: list[Components]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all."""
+        return total_bytes(field for components in self.of_parts for field in components.values())
 
 
 def _check_time(time: float | Fraction) -> None:

@@ -21,7 +21,7 @@ from ..memo import remembered
 from ..parameters import Foam, OceanParameters, Timing
 from ..sea_spectrum import SeaSpectrum
 from ..synthesis import Rows, Synthesis
-from ..trough_damping import trough_damping
+from ..trough_damping import TroughDamping, trough_damping
 from ..waves.contribution import Gives
 from ..waves.kinds import KINDS
 from .sampling import Key
@@ -34,8 +34,14 @@ PRECISIONS = {"single": np.complex64, "double": np.complex128}
 
 
 @remembered("waves")
-def _cached_initial_state(parameters: OceanParameters, dtype: type) -> InitialState:
+def _initial_state(parameters: OceanParameters, dtype: type) -> InitialState:
     return initial_state(parameters, dtype)
+
+
+@remembered("trough filters")
+def _damping(parameters: OceanParameters, dtype: type, strength: float) -> TroughDamping | None:
+    peak = SeaSpectrum(parameters).peak_wave_number
+    return trough_damping(strength, _initial_state(parameters, dtype), peak)
 
 
 class PartWaves:
@@ -43,8 +49,6 @@ class PartWaves:
 
     side : of the sea's domain, m, with which masks repeat
     precision, workers : as for an `Ocean`
-
-    One surface at a time: they share a workspace.
     """
 
     def __init__(self, part: Part, side: float, precision: str, workers: int | None) -> None:
@@ -53,7 +57,6 @@ class PartWaves:
         self.precision = precision
         self._side = side
         self._workers = workers or default_workers(part.parameters.resolution)
-        self._workspace: list[NDArray[np.complexfloating]] = []
 
     @property
     def is_on_tile(self) -> bool:
@@ -63,26 +66,26 @@ class PartWaves:
     @cached_property
     def initial_state(self) -> InitialState:
         """Shared by all waves whose parameters differ only in what acts after it."""
+        return _initial_state(self._before_action, PRECISIONS[self.precision])
+
+    @cached_property
+    def _before_action(self) -> OceanParameters:
         # a loop's frames were checked against the shot's timing: keep that, but not its start
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
         kept = Gives.SPECTRUM | Gives.COEFFICIENTS
         on_grid = tuple(layer for layer in self.parameters.layers if layer.gives & kept)
-        shared = self.parameters.replace(
+        return self.parameters.replace(
             choppiness=0.0, trough_damping=0.0, foam=Foam(), timing=timing, layers=on_grid
         )
-        return _cached_initial_state(shared, PRECISIONS[self.precision])
 
     @cached_property
     def _synthesis(self) -> Synthesis:
-        damping = None
-        if self.parameters.trough_damping > 0.0:
-            peak = SeaSpectrum(self.parameters).peak_wave_number
-            damping = trough_damping(self.parameters.trough_damping, self.initial_state, peak)
+        strength = self.parameters.trough_damping
         given = (kind.shares(self.parameters) for kind in KINDS if self.parameters.active(kind))
         return Synthesis(
             self.initial_state,
             self.parameters,
-            damping,
+            _damping(self._before_action, PRECISIONS[self.precision], strength) if strength > 0.0 else None,
             PRECISIONS[self.precision],
             self._workers,
             tuple(sharing for sharing in given if sharing is not None),
@@ -97,7 +100,7 @@ class PartWaves:
                 for name in group:
                     CHANNELS[name].write(rows, fields[name][block])
 
-            self._synthesis.fill(time, needs, write, self._workspace)
+            self._synthesis.fill(time, needs, write)
 
     def components(self, time: float | Fraction, wanted: Iterable[Key]) -> dict[Key, RealArray]:
         """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t"."""
@@ -109,7 +112,7 @@ class PartWaves:
             for component, derivative in keys:
                 rows.position(component, derivative, out=made[component, derivative][block])
 
-        self._synthesis.fill(time, keys, write, self._workspace)
+        self._synthesis.fill(time, keys, write)
         return made
 
     def exact_field(self, time: float | Fraction) -> Field:

@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 
 from ..cascades.patch_seas import Part
 from ..channels import CHANNELS, memory_groups
-from ..masks.parameters import Mask
 from ..masks.weights import Weights, weights_on_grid
 from ..parameters import OceanParameters
 from .part_waves import PartWaves
@@ -53,7 +52,6 @@ class TileSum:
         self._side = parameters.domain_size
         self._dtype = dtype
         self._workers = workers
-        self._kept_weights: dict[tuple[Mask, ...], Weights] = {}
 
     def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
         """Fill the arrays of all outputs but foam."""
@@ -70,7 +68,9 @@ class TileSum:
         wanted = needs if waves.is_on_tile else unweighted(closed(needs))
         components = waves.components(time, unweighted(wanted) if waves.part.masks else wanted)
         on_tile = components if waves.is_on_tile else self._read(components, waves.part)
-        return weighted(on_tile, self._weights(waves.part.masks))
+        masks = waves.part.masks
+        found = weights_on_grid(masks, self._side, self._samples, self._dtype) if masks else None
+        return weighted(on_tile, found)
 
     def _read(self, components: Components, part: Part) -> dict[Key, RealArray]:
         """A part between its samples, in the sea's axes, made to repeat with the square."""
@@ -95,12 +95,6 @@ class TileSum:
         with ThreadPoolExecutor(self._workers) as pool:
             list(pool.map(lambda area: fill(*area), areas))
         return result
-
-    def _weights(self, masks: tuple[Mask, ...]) -> Weights | None:
-        if masks and masks not in self._kept_weights:
-            made = weights_on_grid(masks, self._side, self._samples)
-            self._kept_weights[masks] = Weights(*(part.astype(self._dtype) for part in made))
-        return self._kept_weights.get(masks)
 
 
 def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> dict[Key, RealArray]:

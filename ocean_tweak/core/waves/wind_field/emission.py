@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .origins import Origins
+from ...memo import remembered, total_bytes
+from .origins import Origins, layer_origins
 from .relations import period
 from .wind import winds_at
 
@@ -55,6 +56,12 @@ class Emission:
         self._nodes = self._node_times()
         self._phases = self._table()
         self._rate_after = self._rate(self._winds[-1])
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the winds at the origins, and of their phases."""
+        own = (self._times, self._winds, self._longest_life, self._nodes, self._phases, self._rate_after)
+        return total_bytes((*own, *self._origins))
 
     def births(self, time: float) -> Births:
         """The waves born before a time in s that are not gone yet; origin after origin, oldest first."""
@@ -147,3 +154,9 @@ class Emission:
         slope = self._slope(low, origin)
         elapsed = np.divide(missing, slope, out=np.zeros(len(number)), where=slope > 0.0)
         return np.asarray(self._nodes[low] + elapsed)
+
+
+@remembered("winds at origins")
+def emission_of(layer: WindFieldLayer, seed: int, domain_size: float, gravity: float) -> Emission:
+    """Where and when a layer's waves are born, in a sea with a seed."""
+    return Emission(layer, layer_origins(layer, seed, domain_size), domain_size, gravity)

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from ...grid import WaveVectorGrid
 from .convolution import Points, along_x, deposit, kernel
-from .emission import Emission
+from .emission import Emission, emission_of
 from .life import Particles, joined, particles_of
-from .origins import layer_origins
 from .shape import RadiusClasses, radius_classes
 
 if TYPE_CHECKING:
@@ -45,9 +44,7 @@ class WindWaves:
     @cached_property
     def _emissions(self) -> list[Emission]:
         size, seed = self._parameters.domain_size, self._parameters.seed
-        return [
-            Emission(layer, layer_origins(layer, seed, size), size, self._gravity) for layer in self._layers
-        ]
+        return [emission_of(layer, seed, size, self._gravity) for layer in self._layers]
 
     def particles(self, time: float) -> Particles:
         """All particles at a time in s, layer after layer."""
