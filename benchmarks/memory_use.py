@@ -7,6 +7,7 @@ import tracemalloc
 from collections.abc import Iterator
 
 from ocean_tweak.core import Ocean
+from ocean_tweak.core.memo import MEMO
 
 from .field_sets import ALL, SIX, THREE, TIME, FieldSet, arrays
 from .plan import Plan, sea
@@ -36,6 +37,7 @@ def peak_bytes(fields: FieldSet, resolution: int, workers: int) -> int:
     ocean = Ocean(sea(resolution), workers=workers)
     ocean.initial_state  # noqa: B018
     out = arrays(fields, resolution)
+    MEMO.drop("workspaces")  # of the surface before
     tracemalloc.start()
     try:
         ocean.surface(TIME, fields.outputs, out=out)

@@ -22,9 +22,9 @@ from ..core.bake import bake as make_frames
 from ..core.frames import Frame, format_frames
 from ..core.machine import usable_cores
 from ..core.memory import check_memory
-from ..core.printable import LONGEST, printable
+from ..core.printable import LONGEST, printable, readable_bytes
 from ..export import logs
-from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory, readable_bytes
+from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory
 from ..export.cache.job import (
     JOB_FILE,
     CacheError,

@@ -10,10 +10,9 @@ from pathlib import Path
 
 from ..core.frames import Frame, format_frames
 from ..core.plain_data import to_plain
-from ..core.printable import printable
+from ..core.printable import printable, readable_bytes
 from ..export.cache.clean import clean as clean_frames
 from ..export.cache.clean import foreign_images, remove_rest
-from ..export.cache.estimate import readable_bytes
 from ..export.cache.job import CacheError, Job, is_bake, read_job
 from ..export.cache.locks import claimed
 from ..export.cache.records import State, asked_frames, recorded_frames

@@ -14,18 +14,23 @@ from pathlib import Path
 from ..core import Ocean, OceanParameters, sea_scales
 from ..core.cascades.patch import NO_LONGEST
 from ..core.foam_field import foam_outlook
-from ..core.memory import check_memory
+from ..core.memo import MEMO
+from ..core.memory import beyond_budget, check_memory
+from ..core.printable import readable_bytes
 from ..core.statistics import SeaState, Statistics
 from ..core.waves.contribution import Contribution, Outlook
 from ..core.waves.kinds import KINDS
 from ..core.waves.spectral import WaveLayer
-from ..export.cache.estimate import readable_bytes, seconds_of_statistics, statistics_memory
+from ..export.cache.estimate import seconds_of_statistics, statistics_memory
 from ..export.sea_files import write_sea
 from .outcome import DONE, UsageError
 from .progress import duration
 from .seas import FileSea
 
 _LOG = logging.getLogger(__name__)
+
+#: kinds of what is kept that are told, the largest
+_KINDS = 3
 
 #: samples times layers above which it is told what they take
 _LARGE = 8 * 2048**2
@@ -44,7 +49,11 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
             name: {
                 "parameters": seas[name].shot.to_dict(),
                 "statistics": _plain(statistics),
-                "memory": dataclasses.asdict(Ocean(parameters[name]).memory()),
+                "memory": {
+                    **dataclasses.asdict(Ocean(parameters[name]).memory()),
+                    "budget": MEMO.budget,
+                    "kept": MEMO.report(),
+                },
                 **{kind.former_list: found.to_plain() for kind, found in _outlooks(parameters[name])},
             }
             for name, statistics in results.items()
@@ -53,7 +62,16 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
         return DONE
     for name, statistics in results.items():
         print("\n".join(_report(name, parameters[name], statistics)))
+    print(_kept())
     return DONE
+
+
+def _kept() -> str:
+    """What of all seas is kept, and of how much."""
+    sizes = MEMO.report()
+    kinds = ", ".join(f"{kind} {readable_bytes(size)}" for kind, size in list(sizes.items())[:_KINDS])
+    total = readable_bytes(sum(sizes.values()))
+    return f"memory for all seas: {total} of {readable_bytes(MEMO.budget)} is used: {kinds}"
 
 
 def _foretell(name: str, parameters: OceanParameters) -> None:
@@ -128,6 +146,8 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
     for _, outlook in _outlooks(parameters):
         lines += [f"  {line}" for line in outlook.lines()]
         warnings += outlook.warnings
+    over = beyond_budget(parameters)
+    warnings += [] if over is None else [over]
     return lines + [f"  warning: {warning}" for warning in warnings]
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from ..core.frames import Frame, format_frames
 from ..core.plain_data import to_plain
+from ..core.printable import readable_bytes
 from ..core.shot import Shot
-from ..export.cache.estimate import readable_bytes
 from ..export.cache.job import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.apart import problems_of

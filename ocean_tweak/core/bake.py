@@ -14,6 +14,7 @@ from typing import NamedTuple, Protocol
 from .cascades.patch_seas import PARTS, parts
 from .channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .frames import Frame
+from .memo import MEMO
 from .memory import check_memory, memory_need
 from .parameters import OceanParameters
 from .sea.ocean import Ocean
@@ -135,7 +136,9 @@ def bake(
         return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
-    with ThreadPoolExecutor(workers) as pool:
+    # frames go forward: what they share stays, and no seas of frames gone by
+    need = memory_need(shot.parameters, sink.outputs).peak(workers)
+    with MEMO.at_most(need), ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
                 begun = time.perf_counter()

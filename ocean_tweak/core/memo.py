@@ -14,7 +14,7 @@ import re
 import threading
 import weakref
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any, ParamSpec, TypeVar, cast
 
 from .errors import ParameterError
@@ -67,7 +67,17 @@ class Memo:
     @budget.setter
     def budget(self, size: int | None) -> None:
         self._budget = size
-        self.trim()
+        if size is not None:
+            self.trim()
+
+    @contextlib.contextmanager
+    def at_most(self, size: int) -> Iterator[None]:
+        """While this is open, the budget is no larger than some bytes."""
+        before, self.budget = self._budget, min(self.budget, size)
+        try:
+            yield
+        finally:
+            self._budget = before
 
     def get(self, kind: str, key: Hashable, make: Callable[[], _Value]) -> _Value:
         """The value of a key, which is made where it is not there.

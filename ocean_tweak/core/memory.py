@@ -10,7 +10,9 @@ import numpy as np
 from .cascades.patch_seas import PARTS, joined_bands, parts
 from .channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from .machine import usable_memory
+from .memo import MEMO, VARIABLE
 from .parameters import OceanParameters
+from .printable import readable_bytes
 from .synthesis import term
 from .waves.contribution import Gives, MemoryNeed
 from .waves.kinds import KINDS
@@ -97,3 +99,18 @@ def check_memory(need: int, what: str) -> None:
             f"{what} needs {need / 2**30:.1f} GB of memory and this machine has {available / 2**30:.1f} GB: "
             "lower the resolution or the number of workers"
         )
+
+
+def beyond_budget(parameters: OceanParameters) -> str | None:
+    """What to say, with a remedy, of a sea whose waves take more than the memory of this process may keep.
+
+    None where they fit. Such a sea is shown all the same: whoever has it keeps its waves.
+    """
+    need, budget = memory_need(parameters).state, MEMO.budget
+    if need <= budget:
+        return None
+    return (
+        f"This sea keeps {readable_bytes(need)} and the memory for all seas is {readable_bytes(budget)}: with "
+        "others beside it, each frame makes it anew. Lower the resolution, or raise Memory in the extension's "
+        f"preferences, outside of Blender {VARIABLE}, to {readable_bytes(1.5 * need)}"
+    )

@@ -42,3 +42,12 @@ class _Writer(reprlib.Repr):
 
 
 _WRITER = _Writer()
+
+
+def readable_bytes(size: float) -> str:
+    """The size as an artist reads it: `1.5 GB`."""
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if size < 1000.0 or unit == "GB":
+            return f"{size:.0f} {unit}" if unit == "bytes" else f"{size:.3g} {unit}"
+        size /= 1000.0
+    raise AssertionError

@@ -2,10 +2,15 @@
 """The extension's own preferences."""
 
 import logging
+import os
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty
+from bpy.app.translations import pgettext_rpt as translated
+from bpy.props import BoolProperty, EnumProperty, IntProperty
 
+from ..core import ParameterError
+from ..core.memo import MEMO, UNITS, VARIABLE
+from ..core.printable import readable_bytes
 from ..export import logs
 from ..scene.preferences import preferences
 
@@ -18,9 +23,11 @@ _LEVELS = (
 
 
 def apply() -> None:
-    """Let the console hear as much as the user chose."""
+    """Let the console hear, and seas keep, as much as the user chose."""
     chosen = preferences()
     logs.to_console(logging.WARNING if chosen is None else getattr(logging, chosen.log_level))
+    is_automatic = chosen is None or chosen.memory_is_automatic or VARIABLE in os.environ
+    MEMO.budget = None if is_automatic else chosen.memory * UNITS["mb"]
 
 
 class OCEAN_AP_preferences(bpy.types.AddonPreferences):
@@ -40,12 +47,45 @@ class OCEAN_AP_preferences(bpy.types.AddonPreferences):
         description="Write what happens in a bake, with times, into a file beside its folder, vNNN-hash8.log",
     )
 
+    memory_is_automatic: BoolProperty(
+        name="Automatic Memory",
+        description="Keep seas and their latest surfaces in up to a quarter of the machine's memory, so that "
+        "they need not be made again",
+        default=True,
+        update=lambda _self, _context: apply(),
+    )
+    memory: IntProperty(
+        name="Memory (MB)",
+        description="Up to so much is kept of all seas together, of what was used last. A sea that is shown "
+        "is kept even where it takes more",
+        default=4000, min=10, max=10_000_000, soft_min=500, soft_max=64_000, step=100,
+        update=lambda _self, _context: apply(),
+    )  # fmt: skip
+
     def draw(self, _context: bpy.types.Context) -> None:
         """The choices, below each other."""
         column = self.layout.column()
         column.use_property_split = True
         column.prop(self, "log_level")
         column.prop(self, "write_log")
+        column.prop(self, "memory_is_automatic")
+        own = column.column()
+        own.active = not self.memory_is_automatic and VARIABLE not in os.environ
+        own.prop(self, "memory")
+        for text in _memory_texts():
+            column.label(text=text)
+
+
+def _memory_texts() -> list[str]:
+    """How much of the memory is used, and what sets it where that is not the preference."""
+    try:
+        used, budget = readable_bytes(sum(MEMO.report().values())), readable_bytes(MEMO.budget)
+    except ParameterError as error:
+        return [str(error)]
+    texts = [translated("{} of {} is used").format(used, budget)]
+    if VARIABLE in os.environ:
+        texts.append(translated("The environment variable {} sets it").format(VARIABLE))
+    return texts
 
 
 CLASSES = (OCEAN_AP_preferences,)

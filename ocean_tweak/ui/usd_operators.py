@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core.frames import format_frames
-from ..export.cache.estimate import readable_bytes
+from ..core.printable import readable_bytes
 from ..export.usd import library
 from ..export.usd.reading import SUFFIXES
 from ..scene import ocean_object, usd

@@ -11,6 +11,7 @@ import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer, memory, random
 from ocean_tweak.core.channels import OF_WAVES, memory_groups
+from ocean_tweak.core.memo import MEMO
 from ocean_tweak.core.memory import memory_need
 from tests.layers import with_layers
 
@@ -65,6 +66,7 @@ def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
     parameters = OceanParameters(resolution=1024)
     ocean = Ocean(parameters, workers=1)
     assert np.any(ocean.initial_state.h_plus)
+    MEMO.drop("workspaces")
     tracemalloc.start()
     fields = ocean.surface(1.0, outputs)
     _, peak = tracemalloc.get_traced_memory()
@@ -107,6 +109,7 @@ def test_memory_with_trough_damping_is_told_too() -> None:
     parameters = OceanParameters(resolution=1024, trough_damping=0.5)
     ocean = Ocean(parameters, workers=1)
     Ocean(parameters, workers=1).surface(0.0)  # the state, which both share
+    MEMO.drop("workspaces")
     tracemalloc.start()
     ocean.surface(1.0)
     _, peak = tracemalloc.get_traced_memory()

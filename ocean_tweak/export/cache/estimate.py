@@ -26,6 +26,7 @@ from ...core.foam_field import foam_outlook
 from ...core.frames import Frame
 from ...core.machine import usable_cores, usable_memory
 from ...core.memory import TABLES
+from ...core.printable import readable_bytes
 from ...core.shot import OCEAN_TIME, Shot
 from .job import CacheError, Job
 
@@ -291,12 +292,3 @@ def _new_seed() -> int:
 
 def _room(size: float) -> int:
     return -int(-size // _BLOCK) * _BLOCK
-
-
-def readable_bytes(size: float) -> str:
-    """The size as an artist reads it: `1.5 GB`."""
-    for unit in ("bytes", "kB", "MB", "GB"):
-        if size < 1000.0 or unit == "GB":
-            return f"{size:.0f} {unit}" if unit == "bytes" else f"{size:.3g} {unit}"
-        size /= 1000.0
-    raise AssertionError

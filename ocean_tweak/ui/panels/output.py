@@ -8,7 +8,8 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...core.frames import format_frames
-from ...export.cache.estimate import Estimate, readable_bytes
+from ...core.printable import readable_bytes
+from ...export.cache.estimate import Estimate
 from ...export.usd import library
 from ...nodes.names import MAP_INPUTS
 from ...scene import alarm, bake_process, bake_versions, stored_paths, usd

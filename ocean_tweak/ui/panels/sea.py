@@ -8,6 +8,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...core import WaveLayer, sea_scales
+from ...core.memory import beyond_budget
 from ...core.wind_profile import wind_at_10_m
 from ...scene import alarm, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
@@ -240,6 +241,9 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
             shown = (speed_text if name == "wind_speed" else length_text)(scene, length)
             where = f"Layer {index + 1}: " if index else ""
             warnings.append(f"{where}{name.replace('_', ' ')} is out of its range and counts as {shown}")
+    over = beyond_budget(settings.to_parameters(scene)) if settings.source == "LIVE" else None
+    if over is not None:
+        warnings.append(over)
     if settings.bake_is_elsewhere:
         warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
     return warnings
