@@ -41,7 +41,8 @@ _Name = tuple[str, Hashable]
 
 
 class Memo:
-    """Values by their kind and key; those that were used last, as many as the budget holds.
+    """Values by their kind and key; those that were used last, as many as the budget holds, and in any case
+    the last of each kind: it is in use.
 
     A value's `nbytes` are the bytes of its own arrays, without those of other values that it holds.
 
@@ -174,11 +175,16 @@ class Memo:
     def _trim(self, budget: int) -> None:
         sizes = self._sizes()
         total = sum(sizes.values())
-        while total > budget and len(self._kept) > 1:  # the last one is in use
-            self._drop(next(iter(self._kept)))
+        if total <= budget:
+            return
+        in_use = dict(self._kept.keys())  # the last key of each kind
+        for kind, key in [name for name in self._kept if in_use[name[0]] != name[1]]:
+            self._drop((kind, key))
             # it may be held, or have held others
             total = sum(sizes[name] for name in self._kept)
             total += sum(sizes[name] for name, dropped in self._dropped.items() if dropped() is not None)
+            if total <= budget:
+                return
 
     def _drop(self, name: _Name) -> None:
         with contextlib.suppress(TypeError):  # numbers cannot be referred to weakly

@@ -110,7 +110,7 @@ def beyond_budget(parameters: OceanParameters) -> str | None:
     if need <= budget:
         return None
     return (
-        f"This sea keeps {readable_bytes(need)} and the memory for all seas is {readable_bytes(budget)}: with "
-        "others beside it, each frame makes it anew. Lower the resolution, or raise Memory in the extension's "
-        f"preferences, outside of Blender {VARIABLE}, to {readable_bytes(1.5 * need)}"
+        f"This sea keeps {readable_bytes(need)} and the memory for all seas is {readable_bytes(budget)}: "
+        "beside others it is made anew for each frame. Lower the resolution, or raise Memory in the "
+        f"extension's preferences, outside of Blender {VARIABLE}, to {readable_bytes(1.5 * need)}"
     )

@@ -14,6 +14,7 @@ import pytest
 
 from ocean_tweak.cli import FileSea, info, main
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, memory
+from ocean_tweak.core.memo import MEMO
 from ocean_tweak.core.shot import Shot
 from ocean_tweak.export.exr import read_image
 
@@ -263,3 +264,44 @@ def test_as_a_program(params: Path) -> None:
     good = run("info", "--params", str(params))
     assert (good.returncode, good.stderr) == (0, "")
     assert run("info", "--set", "seed=-1").returncode == 2
+
+
+def test_info_tells_what_is_kept_and_of_how_much(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(MEMO, "_budget", None)
+    monkeypatch.setenv("OCEAN_TWEAK_MEMORY", "3GB")
+    MEMO.drop()
+    arguments = ["info", "--set", "resolution=512"]
+    assert main([*arguments, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["ocean"]["memory"]
+    assert told["budget"] == 3_000_000_000
+    # 512 x 257 waves of 40 bytes: four coefficients and two frequencies
+    assert told["kept"]["waves"] == 512 * 257 * 40
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"\nmemory for all seas: .* MB of 3 GB is used: waves 5\.26 MB, ", said)
+
+
+def test_a_budget_below_one_sea_is_a_warning(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(MEMO, "_budget", None)
+    monkeypatch.setenv("OCEAN_TWEAK_MEMORY", "1MB")
+    assert main(["info", "--set", "resolution=512"]) == 0
+    said = capsys.readouterr().out
+    # 512 x 257 waves of 40 bytes, and the 16 of their random phases
+    assert "  warning: This sea keeps 7.37 MB and the memory for all seas is 1 MB: " in said
+    assert "OCEAN_TWEAK_MEMORY, to 11.1 MB" in said
+
+
+def test_a_budget_that_is_none_is_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(MEMO, "_budget", None)
+    monkeypatch.setenv("OCEAN_TWEAK_MEMORY", "8 bananas")
+    for arguments in (["info"], ["bake", "--frames", "1", "--set", "resolution=16", "--out", str(tmp_path)]):
+        assert main(arguments) == 2
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1
+        assert "OCEAN_TWEAK_MEMORY = '8 bananas': must be a size" in said

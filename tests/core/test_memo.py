@@ -72,13 +72,12 @@ def test_a_value_over_half_the_budget_is_kept_by_those_who_have_it_alone() -> No
 def test_what_a_value_holds_counts_until_the_value_goes() -> None:
     store = Memo(100 * KB)
 
-    def holder() -> Holder:
-        return Holder(store.get("held", 0, lambda: kilobytes(40)), 10 * KB)
+    def holder(number: int) -> Holder:
+        return Holder(store.get("held", number, lambda: kilobytes(30)), 5 * KB)
 
-    store.get("holders", 0, holder)
-    store.get("new", 0, lambda: kilobytes(30))
-    store.get("new", 1, lambda: kilobytes(30))  # the one held goes, and then its holder with it
-    assert store.report() == {"new": 60 * KB}
+    for number in range(3):  # the first one held goes, and then its holder with it
+        store.get("holders", number, lambda number=number: holder(number))
+    assert store.report() == {"held": 60 * KB, "holders": 10 * KB}
     assert sum(store.report().values()) <= store.budget
 
 
@@ -86,8 +85,8 @@ def test_a_value_in_use_stays_where_the_budget_is_below_it() -> None:
     store = Memo(10 * KB)
     for _ in range(3):
         in_use = store.get("holders", 0, lambda: Holder(store.get("held", 0, lambda: kilobytes(40)), 1))
-        store.trim()
-    assert store.get("holders", 0, lambda: pytest.fail("it is the last one")) is in_use
+        store.get("small", 0, lambda: kilobytes(1))
+    assert store.get("holders", 0, lambda: pytest.fail("it is the last of its kind")) is in_use
     assert store.get("held", 0, lambda: pytest.fail("the last one holds it")) is in_use.held
     assert store.report()["held"] == 40 * KB
 
@@ -95,11 +94,11 @@ def test_a_value_in_use_stays_where_the_budget_is_below_it() -> None:
 def test_a_value_that_grows() -> None:
     store = Memo(100 * KB)
     grown = store.get("grown", 0, lambda: Holder(kilobytes(0), 10 * KB))
-    store.get("other", 0, lambda: kilobytes(40))
-    store.get("grown", 0, lambda: pytest.fail("it is there"))
+    for number in range(2):
+        store.get("other", number, lambda: kilobytes(20))
     grown.nbytes = 70 * KB
     store.trim()
-    assert store.report() == {"grown": 70 * KB}
+    assert store.report() == {"grown": 70 * KB, "other": 20 * KB}
 
 
 def test_a_smaller_budget_takes_hold_at_once() -> None:
