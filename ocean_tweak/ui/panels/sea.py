@@ -12,6 +12,7 @@ from ...core.memory import beyond_budget
 from ...core.wind_profile import wind_at_10_m
 from ...scene import alarm, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
+from ...scene.refresh import sea_of_settings
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
 from .. import (
@@ -241,7 +242,8 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
             shown = (speed_text if name == "wind_speed" else length_text)(scene, length)
             where = f"Layer {index + 1}: " if index else ""
             warnings.append(f"{where}{name.replace('_', ' ')} is out of its range and counts as {shown}")
-    over = beyond_budget(settings.to_parameters(scene)) if settings.source == "LIVE" else None
+    sea = sea_of_settings(item, scene) if settings.source == "LIVE" else None
+    over = None if sea is None else beyond_budget(sea)
     if over is not None:
         warnings.append(over)
     if settings.bake_is_elsewhere:
