@@ -83,7 +83,7 @@ def test_a_wind_that_changes_over_many_frames(small_budget: int, no_collector: N
         {},
         {"foam": Foam(half_life=0.2)},
         {"trough_damping": 0.5},
-        {"wind_fields": (WindFieldLayer(wind_speed=6.0),)},
+        {"layers": (WaveLayer(wind_speed=8.0), WindFieldLayer(wind_speed=6.0))},
         {"joined": 128, "patches": PATCHES},
         {"layers": (WaveLayer(wind_speed=9.0, mask=Mask(source="DISTANCE", near=10.0, far=60.0)),)},
     ],
