@@ -252,7 +252,7 @@ class Ocean:
 
     @cached_property
     def _tile(self) -> PartWaves | TileSum:
-        """What fills the samples of the tile. Raises ValueError for separate patches and placed waves."""
+        """What fills the samples of the tile. Raises ValueError for what has none."""
         check_repeats(self.parameters)
         if self.parameters.is_cascade:
             raise ValueError(

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import ParameterError
 from ..masks.weights import weights
 from ..parameters import OceanParameters
 from ..synthesis import X, Y, Z
@@ -57,13 +58,14 @@ def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
 
 
 def check_repeats(sea: OceanParameters) -> None:
-    """Raise ValueError, with the remedy, for a sea with waves that do not repeat, and which has no tile."""
-    for layer in sea.active():
-        if Gives.FIELDS in layer.gives:
-            raise ValueError(
-                f"on = Tile(): the waves of a {layer.names.noun} do not repeat with the domain: ask for an "
-                "Area or Places, or mute the layer"
-            )
+    """Raise ParameterError, with the remedy, for a sea with waves that do not repeat, which has no tile."""
+    for index, layer in enumerate(sea.layers):
+        if Gives.FIELDS in layer.gives and not layer.muted:
+            raise ParameterError(
+                f"layers.{index}", layer.kind,
+                "its waves do not repeat with the domain, as all on a Tile do: ask for an Area or Places, or "
+                "mute the layer",
+            )  # fmt: skip
 
 
 def strain_covariances(sea: OceanParameters, drift: tuple[float, float]) -> list[tuple[Array, Array]]:

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A kind of waves is a class and a line in the table, from which all else follows, as for these two here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.core import (
+    Area,
+    Mask,
+    Ocean,
+    OceanParameters,
+    ParameterError,
+    Patch,
+    Places,
+    Timing,
+    WaveLayer,
+)
+from ocean_tweak.core.dispersion import angular_frequency
+from ocean_tweak.core.fingerprint import shot_fingerprint
+from ocean_tweak.core.masks.weights import weights
+from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.waves.contribution import Contribution, Gives, Names, muted
+from ocean_tweak.core.waves.kinds import KINDS, shown
+from ocean_tweak.export.exr import read_image
+from tests.new_kinds import Hump, Ripple, registered
+
+SIZE, SAMPLES, TIME = 100.0, 32, 1.5
+HARBOUR = Mask(x=40.0, y=50.0, near=10.0, far=40.0)
+X, Y = np.array([3.0, 31.0, 47.2, 77.7]), np.array([9.0, 22.0, 55.5, 93.0])
+
+
+@pytest.fixture(autouse=True)
+def kinds() -> Iterator[None]:
+    with registered(Ripple, Hump):
+        yield
+
+
+def sea(*layers: Contribution, **changes: object) -> OceanParameters:
+    values = {"resolution": SAMPLES, "domain_size": SIZE, "choppiness": 0.0, "timing": Timing(start_frame=0)}
+    return OceanParameters(layers=(WaveLayer(muted=True), *layers), **(values | changes))
+
+
+def ripple_at(x: np.ndarray, time: float, parameters: OceanParameters, layer: Ripple) -> np.ndarray:
+    k = 2.0 * np.pi * layer.waves / SIZE
+    omega = angular_frequency(k, parameters.dispersion, parameters.water)
+    return layer.amplitude * np.cos(k * x - omega * time)
+
+
+def test_json_both_ways_and_fingerprint() -> None:
+    given = sea(Ripple(amplitude=0.7, mask=HARBOUR), Hump(), Ripple())
+    data = given.to_dict()
+    assert [layer.get("kind") for layer in data["layers"]] == [None, "RIPPLE", "HUMP", "RIPPLE"]
+    assert [layer.get("id") for layer in data["layers"]] == [0, 0, None, 1]
+    assert OceanParameters.from_json(given.to_json()) == given
+    others = (sea(Ripple(amplitude=0.8, mask=HARBOUR), Hump(), Ripple()), sea(Hump()), sea())
+    prints = {shot_fingerprint(Shot(each)) for each in (given, *others, OceanParameters.from_dict(data))}
+    assert len(prints) == 4
+
+
+def test_what_is_no_kind_names_the_nearest() -> None:
+    for kind, near in (("RIPLE", "RIPPLE"), ("hump", "HUMP"), ("waves", "WAVES"), (3, "WAVES")):
+        with pytest.raises(ParameterError) as caught:
+            OceanParameters.from_dict({"layers": [{}, {"kind": kind}]})
+        assert caught.value.field == "layers.1.kind"
+        assert "Known kinds: WAVES, HERO_WAVE, IMAGE, WIND_FIELD, RIPPLE, HUMP" in str(caught.value)
+        assert near == "WAVES" or f"did you mean {near}?" in str(caught.value)
+        assert "\n" not in str(caught.value)
+    with pytest.raises(ParameterError, match=r"layers\.1\.waves = 0: must be from 1 to 1000"):
+        OceanParameters.from_dict({"layers": [{}, {"kind": "RIPPLE", "waves": 0}]})
+    with pytest.raises(ParameterError, match="layers = '0 entries of kind WAVES'"):
+        OceanParameters.from_dict({"layers": [{"kind": "RIPPLE"}]})
+
+
+@pytest.mark.parametrize("surface", ["mesh", "exact"])
+@pytest.mark.parametrize("patches", [(), (Patch(SIZE, resolution=64),)])
+def test_height_queries_under_a_mask(surface: str, patches: tuple[Patch, ...]) -> None:
+    layers = Ripple(mask=HARBOUR), Hump(mask=HARBOUR), Hump(x=70.0, height=0.5)
+    parameters = sea(*layers, resolution=64, patches=patches)
+    height = Ocean(parameters, "double").height_at(X, Y, TIME, surface)
+    under = weights((HARBOUR,), SIZE, X, Y).value
+    bells = [
+        hump.height * TIME * np.exp(-0.5 * ((X - hump.x) ** 2 + (Y - hump.y) ** 2) / hump.width**2)
+        for hump in layers[1:]
+    ]
+    expected = under * (ripple_at(X, TIME, parameters, layers[0]) + bells[0]) + bells[1]
+    np.testing.assert_allclose(height, expected, atol=3e-3 if surface == "mesh" else 1e-9)
+    assert np.abs(expected).max() > 0.5
+
+
+def test_what_does_not_repeat_is_refused_on_a_tile_and_made_elsewhere() -> None:
+    ocean = Ocean(sea(Hump()), "double")
+    with pytest.raises(ParameterError, match=r"layers\.1 = 'HUMP': .* do not repeat .* an Area or Places"):
+        ocean.surface(TIME)
+    area = ocean.surface(TIME, ("displacement", "slope", "velocity"), Area(60.0, 12, (5.0, -10.0)))
+    x, y = np.meshgrid(5.0 + 5.0 * np.arange(12), -10.0 + 5.0 * np.arange(12))
+    bell = 2.0 * np.exp(-0.5 * ((x - 30.0) ** 2 + (y - 20.0) ** 2) / 100.0)
+    np.testing.assert_allclose(area.displacement[..., 2], TIME * bell, atol=1e-12)
+    np.testing.assert_allclose(area.slope[..., 0], -TIME * bell * (x - 30.0) / 100.0, atol=1e-12)
+    np.testing.assert_allclose(area.velocity[..., 2], bell, atol=1e-12)
+    far = ocean.surface(TIME, on=Places(30.0 + SIZE, 20.0)).displacement
+    np.testing.assert_allclose(far, 0.0, atol=1e-12)
+    with pytest.raises(
+        ParameterError, match=r"loop_duration = 10: layers\.1 raises waves that do not repeat"
+    ):
+        sea(Hump(), loop_duration=10)
+
+
+def test_statistics_know_their_height() -> None:
+    wind = WaveLayer(wind_speed=6.0)
+    plain = Ocean(sea().replace(layers=(wind,))).statistics()
+    with_ripple = Ocean(sea().replace(layers=(wind, Ripple(amplitude=0.4)))).statistics()
+    for name in ("spectrum", "resolved", "seed"):
+        own, other = (getattr(told, name).m0 for told in (with_ripple, plain))
+        # one seed's wave of that length is in its way
+        assert own - other == pytest.approx(0.5 * 0.4**2, rel=0.1 if name == "seed" else 1e-6)
+        assert own > 1.5 * other
+    with_hump = Ocean(sea().replace(layers=(wind, Hump(height=0.3)))).statistics()
+    for name in ("spectrum", "resolved", "seed"):
+        own, other = (getattr(told, name).m0 for told in (with_hump, plain))
+        assert own - other == pytest.approx(0.3**2, rel=1e-6)
+
+
+def test_foam_knows_their_strains_and_wind() -> None:
+    wind = WaveLayer(wind_speed=12.0)
+    layers = ((wind,), (wind, Ripple(amplitude=1.0, waves=6)), (wind, Hump()))
+    plain, rippled, humped = (Ocean(sea(choppiness=1.0).replace(layers=own)).foam_model for own in layers)
+    assert rippled.drift[0] > 2.0 * plain.drift[0]
+    assert rippled.drift == pytest.approx((0.6 * np.cos(0.5), 0.6 * np.sin(0.5)))
+    assert humped.drift == plain.drift
+    assert humped.threshold > 1.05 * plain.threshold
+    calm = Ocean(sea(Ripple(amplitude=1.0, waves=6), choppiness=1.0)).foam_model.threshold
+    assert 0.05 < calm < 1.0
+    foam = Ocean(sea(*layers[2], choppiness=1.0)).surface(TIME, ("foam",), Area(SIZE, 8)).foam
+    assert foam.shape == (8, 8)
+
+
+def test_of_waves_that_nobody_tells_of_statistics_warn() -> None:
+    @dataclass(frozen=True)
+    class Silent(Contribution):
+        kind = "SILENT"
+        gives = Gives.COEFFICIENTS
+        names = Names(92, "silent", "silent wave", "Silent", "Nobody knows", "NONE")
+        muted: bool = muted()
+
+    with registered(Silent):
+        assert "Silent: nothing tells how high" in Ocean(sea(Silent())).statistics().warnings[0]
+        assert not any("Silent" in text for text in Ocean(sea(Silent(muted=True))).statistics().warnings)
+    assert not any("nothing tells" in text for text in Ocean(sea(Ripple())).statistics().warnings)
+
+
+def test_images_and_layers_of_usd_hold_them(tmp_path, capsys: pytest.CaptureFixture[str]) -> None:
+    Usd = pytest.importorskip("pxr.Usd")
+    parameters = sea(Ripple(mask=HARBOUR))
+    params = tmp_path / "sea.json"
+    params.write_text(parameters.to_json())
+    own = ["--params", str(params), "--frames", "36", "--out"]
+    assert main(["bake", *own, str(tmp_path), "--maps", "disp", "--compression", "ZIP"]) == 0
+    (image,) = tmp_path.glob("*/*/*_disp.0036.exr")
+    pixels, header = read_image(image)
+    assert header["parameters"]["layers"][1]["kind"] == "RIPPLE"
+    assert main(["usd", *own, str(tmp_path / "sea.usd"), "--form", "points"]) == 0
+    along = SIZE / SAMPLES * np.arange(SAMPLES)
+    x, y = np.meshgrid(along, along)
+    expected = weights((HARBOUR,), SIZE, x, y).value * ripple_at(x, TIME, parameters, Ripple())
+    np.testing.assert_allclose(pixels[..., 2], expected, atol=1e-4)
+    stage = Usd.Stage.Open(str(tmp_path / "sea.usd"))
+    points = next(
+        found
+        for prim in stage.Traverse()
+        if (attribute := prim.GetAttribute("points")) and (found := attribute.Get(36)) is not None
+    )
+    heights = np.array(points).reshape(SAMPLES + 1, SAMPLES + 1, 3)[:-1, :-1, 2]
+    np.testing.assert_allclose(heights, expected, atol=1e-4)
+
+
+def test_what_does_not_change_during_a_shot_says_why() -> None:
+    animation = Animation(1, (("layers.1.wind_speed", (1.0, 2.0)),))
+    with pytest.raises(ParameterError, match=r"layers\.1\.wind_speed.*is constant over a shot"):
+        Shot(sea(Ripple()), animation)
+
+
+def test_kinds_have_numbers_and_names_of_their_own() -> None:
+    assert [kind.names.number for kind in shown()] == [0, 1, 2, 3, 90, 91]  # what files of Blender hold
+    assert [kind.kind for kind in shown()[:4]] == ["WAVES", "WIND_FIELD", "IMAGE", "HERO_WAVE"]
+    for name in ("kind", "former_list"):
+        told = [getattr(kind, name) for kind in KINDS if getattr(kind, name)]
+        assert len(set(told)) == len(told)
