@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of the program as it was when each kind of layers had a list of its own: read, and not made again."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.core import HeroWave, OceanParameters, PictureLayer, WaveLayer, WindFieldLayer
+from ocean_tweak.core.fingerprint import frame_fingerprint
+from ocean_tweak.core.former_json import former, modern
+from ocean_tweak.core.shot import Shot
+from ocean_tweak.export.sea_files import read_sea, write_sea
+
+FORMER = Path(__file__).parents[1] / "former"
+
+
+@pytest.fixture
+def shot() -> Shot:
+    return read_sea(FORMER / "sea.json")
+
+
+@pytest.fixture
+def version(tmp_path: Path) -> Path:
+    """A copy of the bake."""
+    return Path(shutil.copytree(FORMER / "sea-61248de5", tmp_path / "sea-61248de5")) / "v001-4597cf95"
+
+
+def test_lists_of_kinds_become_one(shot: Shot) -> None:
+    data = json.loads((FORMER / "sea.json").read_text())
+    layers = shot.parameters.layers
+    kinds = (WaveLayer, WaveLayer, WindFieldLayer, PictureLayer, PictureLayer, HeroWave)
+    assert tuple(map(type, layers)) == kinds
+    assert [layer.id for layer in layers] == [0, 4, 0, 0, 1, -1]
+    assert (layers[0].fetch, layers[1].mask.far, layers[5].crest_height) == (30e3, 30.0, 0.8)
+    assert [key.time for key in layers[2].keys] == [0.0, 2.0]
+    assert layers[4].picture.values[1, 3, 0] == 7.0
+    assert shot.animation is not None
+    assert {*data["animation"]["samples"]} == {path for path, _ in shot.animation.samples}
+    assert OceanParameters.from_dict({"pictures": [{"gain": 2.0}]}).layers[0] == WaveLayer(id=0)
+    assert Shot.from_json(shot.to_json()) == shot
+
+
+def test_former_and_modern_are_inverse(shot: Shot) -> None:
+    data = shot.to_dict()
+    before = former(data)
+    assert [len(before[name]) for name in ("layers", "wind_fields", "pictures", "hero_waves")] == [2, 1, 2, 1]
+    assert modern(before) == data
+    mixed = Shot(shot.parameters.replace(layers=shot.parameters.layers[::-1]))
+    assert [len(former(mixed.to_dict())[name]) for name in ("layers", "hero_waves")] == [2, 1]
+
+
+def test_a_bake_is_known_as_that_sea(shot: Shot, version: Path, tmp_path: Path) -> None:
+    told = json.loads((version / "records" / "0002.json").read_text())["fingerprint"]
+    assert frame_fingerprint(shot, 2) == told
+    images = sorted(version.glob("*.exr"))
+    before = [image.stat().st_mtime_ns for image in images]
+    assert len(before) == 2
+    write_sea(tmp_path / "sea.json", shot)
+    for params in (FORMER / "sea.json", tmp_path / "sea.json"):
+        own = ["--params", str(params), "--maps", "disp", "--compression", "ZIP", "--frames", "1-2"]
+        assert main(["bake", *own, "--out", str(tmp_path)]) == 0
+        assert main(["verify", *own, "--out", str(tmp_path)]) == 0
+    assert [path.name for path in version.parent.glob("v*")] == [version.name]
+    assert [image.stat().st_mtime_ns for image in images] == before
+
+
+def test_layers_of_usd_hold_that_sea(shot: Shot, tmp_path: Path) -> None:
+    pytest.importorskip("pxr")
+    asset = Path(shutil.copytree(FORMER / "usd", tmp_path / "usd")) / "sea.usda"
+    assert read_sea(asset) == shot
+    assert main(["usd-verify", str(asset)]) == 0
