@@ -160,3 +160,10 @@ def test_a_shot_keeps_its_pictures() -> None:
     assert layers_of(moved, "IMAGE")[0].picture is layers_of(parameters, "IMAGE")[0].picture
     with pytest.raises(ParameterError, match=r"pictures\.0\.gain.*each keeps its waves"):
         Animation(1, (("pictures.0.gain", (0.0, 1.0)),))
+
+
+def test_a_picture_of_two_samples_holds_no_waves_and_says_so() -> None:
+    picture = Raster(np.array([[0.0, 1.0], [2.0, 5.0]]))
+    told = Ocean(sea(PictureLayer(filter="FRACTAL", picture=picture))).statistics()
+    assert told.spectrum.m0 == 0.0
+    assert "Picture 0: its filter leaves nothing of it" in told.warnings[0]
