@@ -12,19 +12,16 @@ from typing import Any
 from ocean_tweak.core.channels import CHANNELS, MAPS, Channel
 from ocean_tweak.core.parameters import (
     Foam,
-    HeroWave,
     Mask,
     OceanParameters,
     Patch,
-    PictureLayer,
     Timing,
     Water,
-    WaveLayer,
-    WindFieldLayer,
     WindKey,
 )
 from ocean_tweak.core.raster import Raster
 from ocean_tweak.core.validation import default_of
+from ocean_tweak.core.waves.kinds import shown
 
 from .project import ROOT
 
@@ -35,12 +32,9 @@ END = "<!-- end of tables -->"
 CLASSES = {
     OceanParameters: "at the top",
     Water: "in `water`",
-    WaveLayer: "in each entry of the list `layers`",
-    PictureLayer: "in each entry of the list `pictures`",
-    WindFieldLayer: "in each entry of the list `wind_fields`",
+    **{kind: f"in each layer of the kind `{kind.kind}`" for kind in shown()},
     WindKey: "in each entry of a wind field's list `keys`",
     Patch: "in each entry of the list `patches`",
-    HeroWave: "in each entry of the list `hero_waves`",
     Mask: "in the `mask` of a layer of any kind but hero waves, or of a patch",
     Foam: "in `foam`",
     Timing: "in `timing`",

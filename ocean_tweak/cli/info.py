@@ -54,7 +54,10 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
                     "budget": MEMO.budget,
                     "kept": MEMO.report(),
                 },
-                **{kind.former_list: found.to_plain() for kind, found in _outlooks(parameters[name])},
+                **{
+                    kind.former_list or kind.kind.lower(): found.to_plain()
+                    for kind, found in _outlooks(parameters[name])
+                },
             }
             for name, statistics in results.items()
         }
