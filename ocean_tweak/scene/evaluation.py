@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from ..core.channels import CHANNELS, FOAM
-from ..core.foam import FoamHistory
-from ..core.foam_field import resampled
+from ..core.foam import FoamHistory, FoamModel
+from ..core.foam_field import foam_outlook, resampled
+from ..core.foam_threshold import LEAST_SQUEEZE
 from ..core.memo import MEMO, total_bytes
-from .instant_foam import instant_foam
 
 RealArray = NDArray[np.float32]
 
@@ -28,6 +28,8 @@ _SHARE = 8
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept
 _INSTANT = "instant foam"
+# squeeze over the threshold at which foam has half its strength: the middle of the model's rise
+_HALF_STRENGTH = 1.125
 
 
 class Surfaces:
@@ -69,7 +71,7 @@ class Surfaces:
         if FOAM not in kept and (patient or maker.is_near(time)):
             kept[FOAM] = self._closed(FOAM, maker.at(time))
         if FOAM not in kept and _INSTANT not in kept:
-            foam = instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
+            foam = _instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
             kept[_INSTANT] = self._closed(_INSTANT, foam)
         return {**result, FOAM: kept.get(FOAM, kept.get(_INSTANT))}, FOAM in kept
 
@@ -143,6 +145,23 @@ class FoamMaker:
     def _reduced(self, time: Fraction) -> Fraction:
         loop = self._ocean.parameters.loop_duration
         return time if loop is None else time % loop
+
+
+def _instant_foam(parameters: OceanParameters, cusp: RealArray) -> RealArray:
+    """(N, N) 0…1: foam where the (N, N) squeeze is largest, on as much of the sea as foam will cover.
+
+    The threshold is read off this one field: the model's own, from the sea's statistics, takes longer to
+    find than a surface takes to make.
+    """
+    coverage = foam_outlook(parameters).coverage
+    covered = round(coverage * cusp.size)
+    if covered == 0:
+        return np.zeros_like(cusp)
+    least = np.partition(cusp, cusp.size - covered, axis=None)[cusp.size - covered]
+    if least <= LEAST_SQUEEZE:
+        return np.zeros_like(cusp)
+    model = FoamModel(float(least) / _HALF_STRENGTH, 0.0, (0.0, 0.0), 1.0)
+    return model.strength(cusp).astype(np.float32)
 
 
 def _bytes_of(fields: dict[str, RealArray]) -> int:
