@@ -35,7 +35,7 @@ class NewerFormatError(ParameterError):
         )  # fmt: skip
 
 
-def checked_sea(data: object) -> object:
+def checked_sea(data: Any) -> Any:
     """A sea's plain data without its number. Raises as `check_format`."""
     if not isinstance(data, dict) or "format" not in data:
         return data

@@ -10,6 +10,7 @@ import re
 from typing import Any
 
 from .errors import ParameterError
+from .formats import checked_sea
 from .waves.contribution import Contribution
 from .waves.kinds import KINDS, shown
 
@@ -22,7 +23,11 @@ def _with_lists() -> dict[str, type[Contribution]]:
 
 
 def modern(data: Any) -> Any:
-    """Plain data of a sea with one list of layers. Raises ParameterError for a list that is none."""
+    """Plain data of a sea of any version with one list of layers, and without the number of the version.
+
+    Raises NewerFormatError for one that is newer than this program, ParameterError for a list that is none.
+    """
+    data = checked_sea(data)
     if not isinstance(data, dict) or data.keys().isdisjoint(_with_lists()):
         return data
     result = {key: value for key, value in data.items() if key not in _with_lists()}

@@ -327,7 +327,7 @@ class OceanParameters(Validated):
     def from_dict(cls, data: object) -> OceanParameters:
         """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
         check_numbers(numbers_in(data))
-        data = modern(formats.checked_sea(data))
+        data = modern(data)
         if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
             data = {key: value for key, value in data.items() if key not in _TILE}
         return from_plain(cls, data)

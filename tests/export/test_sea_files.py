@@ -117,6 +117,9 @@ def test_what_cannot_be_read_or_written_is_told(tmp_path):
     (tmp_path / "sea.json").write_text('{"choppines": 1}')
     with pytest.raises(ParameterError, match="choppines = 1: unknown key; did you mean choppiness"):
         read_sea(tmp_path / "sea.json")
+    (tmp_path / "newer.json").write_text('{"pictures": [{"picture": {"file": "none.png"}}], "format": 7}')
+    with pytest.raises(ParameterError, match=r"format = 7: .* update the extension"):
+        read_sea(tmp_path / "newer.json")
     with pytest.raises(ParameterError, match="must be that of a JSON file"):
         write_sea(tmp_path / "sea.usda", SHOT)
 
