@@ -18,6 +18,7 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from . import mutants
@@ -60,6 +61,9 @@ EQUIVALENT = {
 #: said of a change with which the core cannot even be imported: no test had to notice it
 BROKEN = "cannot be imported"
 
+#: a change may make the core wait for what never comes: longer than this many times what all tests take
+PATIENCE = 10.0
+
 FAILED_TEST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 
 
@@ -99,13 +103,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _try_all(asked: Sequence[Mutant]) -> int:
+    begin = time.monotonic()
     failed = first_failure(None)
     if failed:
         raise ToolError(f"{failed} fails with nothing changed: mend that first")
+    limit = PATIENCE * (time.monotonic() - begin)
     print(f"all tests pass unchanged; now {len(asked)} changes", flush=True)
     verdicts = []
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        for verdict in pool.map(_judge, asked):
+        for verdict in pool.map(partial(_judge, limit=limit), asked):
             print(verdict, flush=True)
             verdicts.append(verdict)
     tried = [verdict for verdict in verdicts if verdict.noticed_by != BROKEN]
@@ -119,13 +125,15 @@ def _try_all(asked: Sequence[Mutant]) -> int:
     return 1 if too_many or not all(name.startswith("structure ") for name in missed) else 0
 
 
-def _judge(mutant: Mutant) -> Verdict:
+def _judge(mutant: Mutant, limit: float) -> Verdict:
     begin = time.monotonic()
-    return Verdict(mutant, first_failure(mutant), time.monotonic() - begin)
+    return Verdict(mutant, first_failure(mutant, limit), time.monotonic() - begin)
 
 
-def first_failure(mutant: Mutant | None) -> str | None:
+def first_failure(mutant: Mutant | None, limit: float | None = None) -> str | None:
     """Return the core's first failing test with this change, BROKEN if none can run, None if all pass.
+
+    limit : s; tests that take longer have noticed the change
 
     Raises `ToolError` if the tests could not be run.
     """
@@ -141,7 +149,14 @@ def first_failure(mutant: Mutant | None) -> str | None:
         files = sorted(path.name for path in (copy / TESTS).glob("test_*.py") if path.name not in LEFT_OUT)
         first = [file for file in FIRST if file in files]
         rest = [file for file in files if file not in FIRST]
-        return _first_failure_of(own, copy) or _first_failure_of(first, copy) or _first_failure_of(rest, copy)
+        try:
+            for tests in (own, first, rest):
+                failed = _first_failure_of(tests, copy, limit)
+                if failed:
+                    return failed
+        except subprocess.TimeoutExpired:
+            return f"no end within {limit:.0f} s"
+        return None
 
 
 def _copy(source: Path, target: Path) -> None:
@@ -152,7 +167,7 @@ def _copy(source: Path, target: Path) -> None:
         shutil.copy(source, target)
 
 
-def _first_failure_of(tests: Sequence[str], copy: Path) -> str | None:
+def _first_failure_of(tests: Sequence[str], copy: Path, limit: float | None = None) -> str | None:
     if not tests:
         return None
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=no"]
@@ -165,6 +180,7 @@ def _first_failure_of(tests: Sequence[str], copy: Path) -> str | None:
         stderr=subprocess.STDOUT,
         text=True,
         errors="replace",
+        timeout=limit,
     )
     if answer.returncode == 0:
         return None

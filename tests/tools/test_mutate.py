@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -102,3 +103,11 @@ def test_what_cannot_be_imported_says_nothing_of_the_tests(tmp_path: Path) -> No
     (folder / "test_two.py").write_text("def test_a(): assert False\n")
     assert mutate._first_failure_of(["test_one.py"], tmp_path) == mutate.BROKEN
     assert mutate._first_failure_of(["test_two.py"], tmp_path) == "tests/core/test_two.py::test_a"
+
+
+def test_a_change_without_end_is_noticed(tmp_path: Path) -> None:
+    folder = tmp_path / mutate.TESTS
+    folder.mkdir(parents=True)
+    (folder / "test_one.py").write_text("import time\ndef test_a(): time.sleep(60.0)\n")
+    with pytest.raises(subprocess.TimeoutExpired):
+        mutate._first_failure_of(["test_one.py"], tmp_path, limit=1.0)
