@@ -238,7 +238,7 @@ NAMED = (
     ("layer_scales.py", "PM_ALPHA, omega_p, 1.0, U", "PM_ALPHA, omega_p, 1.0, 1.1 * U"),
     ("layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA, omega_p, 1.0, 1.1 * U"),
     ("layer_scales.py", "/ g**2, omega_p, 1.0, U", "/ g**2, omega_p, 1.0, 1.1 * U"),
-    ("foam_threshold.py", "wind_at_10_m(layer.wind_speed, layer.wind_height)", "layer.wind_speed"),
+    ("waves/spectral.py", "Wind(wind_at_10_m(self.wind_speed, self.wind_height)", "Wind(self.wind_speed"),
     ("spectra.py", "_over(constants.DEVELOPMENT**-0.25 * g", "_over(1.05 * constants.DEVELOPMENT**-0.25 * g"),
     ("statistics.py", "_LARGEST_SPEED_CHANGE = 0.1", "_LARGEST_SPEED_CHANGE = 0.105"),
     ("sea/query.py", "_STEPS = 40", "_STEPS = 8"),
