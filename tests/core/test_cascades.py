@@ -197,7 +197,7 @@ def test_statistics_warn_of_patches_that_are_too_small_or_too_coarse() -> None:
     coarse = Ocean(SEA.replace(patches=(first, second, dataclasses.replace(third, resolution=64))))
     (warning,) = coarse.statistics().warnings
     assert "Patch 3: its shortest wave, 0.9 m, has only 1.7 samples. Give it 148 samples" in warning
-    assert "or end its band at 2.08 m" in warning  # four samples of 33.3 m / 64
+    assert "or end its band at 2.06 m" in warning  # four samples of 33 m / 64
     near = Ocean(SEA.replace(patches=(first, dataclasses.replace(second, domain_size=80.0), third)))
     assert any("Patch 2: its longest wave, 20 m, goes only 4 times" in w for w in near.statistics().warnings)
     early = (
