@@ -226,7 +226,7 @@ def go_on() -> float | None:
         for part in parts:
             _start(oceans[uid], part)
     if made:
-        _redraw_panels()
+        redraw_views()
     return _INTERVAL if _outstanding.uids else None
 
 
@@ -277,7 +277,8 @@ def _fail(item: bpy.types.Object, part: Wanted, error: BaseException) -> None:
     tell(item, error)
 
 
-def _redraw_panels() -> None:
+def redraw_views() -> None:
+    """Let the 3D views and their panels show what is new."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":

@@ -9,6 +9,7 @@ import bpy
 
 from ..core import ParameterError
 from ..scene.command_process import CommandProcess
+from ..scene.refinement import redraw_views
 from ..scene.settings import OceanObjectError
 from .active_ocean import OfActiveOcean, refuse
 
@@ -91,7 +92,7 @@ class BesideWindow(OfActiveOcean):
 
     def _end(self, context: bpy.types.Context) -> set[str]:
         self.processes.forget(self._process)
-        _redraw(context)
+        redraw_views()
         return self.conclude(context)
 
     def _tell(self, context: bpy.types.Context) -> None:
@@ -99,7 +100,7 @@ class BesideWindow(OfActiveOcean):
         doing = "Finishing the frame" if process.is_stopped else f"{self.doing} {process.name}"
         count = f": {process.done} of {process.left}" if process.left else "…"
         context.workspace.status_text_set(f"{doing}{count}   |   Esc: stop")
-        _redraw(context)
+        redraw_views()
 
 
 class StopsProcess:
@@ -125,10 +126,3 @@ class StopsProcess:
         """Ask for the end; the running operator sees it."""
         self.processes.running(context.active_object).stop()
         return {"FINISHED"}
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()

@@ -6,6 +6,7 @@ The choice is a property of the window, not of any file.
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import bpy.utils.previews
@@ -13,11 +14,14 @@ import numpy as np
 
 from ..core import OceanParameters
 from ..scene import user_presets
+from ..scene.refinement import has_window, redraw_views
 from ..scene.settings import is_ocean, settings_of
 from .spectrum_picture import SIZE, spectrum_picture
 
 _THUMBNAILS = Path(__file__).parent / "thumbnails"
 _SPECTRUM = "spectrum"
+# s after another sea was asked for: what is dragged asks for many
+_PAUSE = 0.1
 
 
 class Previews:
@@ -36,33 +40,50 @@ class Previews:
         return self._collection
 
     def spectrum(self, parameters: OceanParameters) -> int:
-        """Icon of a sea's spectrum; drawn anew where it shows another sea."""
+        """Icon of a sea's spectrum; where it shows another sea, it is drawn in a moment."""
         if _SPECTRUM not in self.collection:
             self.collection.new(_SPECTRUM)
-        picture = self.collection[_SPECTRUM]
-        if parameters is self._asked:
-            return int(picture.icon_id)
-        self._asked, shown = parameters, _spectral(parameters)
+        if parameters is not self._asked:
+            self._asked = parameters
+            if not has_window():
+                draw_spectrum()
+            elif not bpy.app.timers.is_registered(draw_spectrum):
+                bpy.app.timers.register(draw_spectrum, first_interval=_PAUSE)
+        return int(self.collection[_SPECTRUM].icon_id)
+
+    def draw_spectrum(self) -> None:
+        """Draw the spectrum of the sea that was asked for last, unless that is there."""
+        if self._asked is None:
+            return
+        shown = _spectral(self._asked)
         if self._drawn != shown:
+            picture = self.collection[_SPECTRUM]
             picture.image_size = (SIZE, SIZE)
             picture.image_pixels_float.foreach_set(np.ascontiguousarray(spectrum_picture(shown)).reshape(-1))
             self._drawn = shown
-        return int(picture.icon_id)
+            redraw_views()
 
     def thumbnail(self, key: str) -> int:
         """Icon of a preset; 0, which is none, where it has no picture."""
-        path = _THUMBNAILS / f"{key}.jpg"
+        if key not in _thumbnails():
+            return 0
         if key not in self.collection:
-            if not path.is_file():
-                return 0
-            self.collection.load(key, str(path), "IMAGE")
+            self.collection.load(key, str(_thumbnails()[key]), "IMAGE")
         return int(self.collection[key].icon_id)
 
     def close(self) -> None:
         """Give the pictures back to Blender."""
+        if bpy.app.timers.is_registered(draw_spectrum):
+            bpy.app.timers.unregister(draw_spectrum)
         if self._collection is not None:
             bpy.utils.previews.remove(self._collection)
         self._collection, self._drawn, self._asked = None, None, None
+
+
+@cache
+def _thumbnails() -> dict[str, Path]:
+    """The pictures that came along, by the preset's key."""
+    return {path.stem: path for path in _THUMBNAILS.glob("*.jpg")}
 
 
 def _spectral(parameters: OceanParameters) -> OceanParameters:
@@ -76,6 +97,12 @@ def _spectral(parameters: OceanParameters) -> OceanParameters:
 
 #: what panels show; `close` it when the extension is disabled
 PREVIEWS = Previews()
+
+
+def draw_spectrum() -> None:
+    """The timer: panels themselves only draw."""
+    PREVIEWS.draw_spectrum()
+
 
 _NONE = ("NONE", "Custom", "The settings are those of no preset")
 

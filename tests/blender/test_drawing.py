@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 
 from .test_bake_state import baked  # noqa: F401
@@ -126,6 +127,21 @@ def test_no_disk_is_asked_for_a_baked_ocean(draw, baked, monkeypatch):  # noqa: 
     assert "use_bake" not in before  # the form has no use for it
     baked.ocean_tweak.usd.form = "displacement"
     assert "use_bake" in draw(baked)
+
+
+def test_a_spectrum_is_drawn_beside_the_panel_and_the_last_one_only(extension, core, monkeypatch):
+    previews, drawn = extension("ui.previews"), []
+    pixels = np.zeros((previews.SIZE, previews.SIZE, 4), np.float32)
+    monkeypatch.setattr(previews, "has_window", lambda: True)
+    monkeypatch.setattr(previews, "spectrum_picture", lambda sea: drawn.append(sea.layers[0]) or pixels)
+    layers = [core.WaveLayer(wind_speed=speed) for speed in (9.0, 9.5)]
+    for layer in layers:
+        previews.PREVIEWS.spectrum(core.OceanParameters(layers=(layer,)))
+    assert drawn == []
+    assert bpy.app.timers.is_registered(previews.draw_spectrum)
+    previews.draw_spectrum()
+    assert [layer.wind_speed for layer in drawn] == [9.5]
+    bpy.app.timers.unregister(previews.draw_spectrum)
 
 
 def test_texts_of_the_settings_are_parsed_once(everything, ocean, monkeypatch):

@@ -208,7 +208,8 @@ def ocean():
 
 def is_refining():
     """Whether the extension has something left to do when there is time."""
-    return bpy.app.timers.is_registered(extension("scene.refinement").go_on)
+    timers = extension("scene.refinement").go_on, extension("ui.previews").draw_spectrum
+    return any(map(bpy.app.timers.is_registered, timers))
 
 
 def evaluated_ocean():
