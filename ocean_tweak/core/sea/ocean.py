@@ -7,8 +7,7 @@ that is neither, a tile is made as it is; all others are added up on the tile's 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import cached_property
 
@@ -21,21 +20,17 @@ from ..foam import FoamHistory, FoamModel, foam_at
 from ..foam_field import foam_model, resampled
 from ..foam_threshold import Strains, sampled_strains
 from ..initial_state import InitialState
-from ..masks.parameters import Mask
-from ..masks.weights import Weights, weights
-from ..memo import MEMO, total_bytes
 from ..memory import check_memory, memory_need
 from ..parameters import OceanParameters
 from ..statistics import Statistics, sea_statistics
 from ..waves.contribution import MemoryNeed
+from .anywhere import AnywhereSum
 from .on import Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves
 from .placed_waves import strain_covariances as placed_strain_covariances
-from .query import SurfacePoints, find_points, find_summed_points, refine_points
-from .sampling import Components, Grid, Key, Summed, closed, unweighted
+from .query import SurfacePoints, find_points, refine_points
 from .statistics import statistics_of_patches
-from .surfaces import summed_field
 from .tile import TileSum
 
 Array = NDArray[np.float64]
@@ -43,6 +38,9 @@ RealArray = NDArray[np.floating]
 
 #: minimum eigenvalue below which several sheets of the surface are looked for
 _NEARLY_FOLDED = 0.1
+
+
+_WHOLE_TILE = Tile()
 
 
 class Ocean:
@@ -100,14 +98,17 @@ class Ocean:
     def initial_state(self) -> InitialState:
         """The coefficients of a sea that is one sum of waves. Raises ValueError for another."""
         if self.parameters.is_sum:
-            raise ValueError("initial_state: this sea's waves are not one sum but several, or under masks")
+            raise ValueError(
+                "initial_state: this sea's waves are not one sum but several, or under masks: ask each of "
+                "`patches` where they are separate, or a sea without masks"
+            )
         return self._parts[0].initial_state
 
     def surface(
         self,
         time: float | Fraction,
         outputs: Iterable[str] = ("displacement",),
-        on: Tile | Area | Places = Tile(),  # noqa: B008
+        on: Tile | Area | Places = _WHOLE_TILE,
         out: Mapping[str, RealArray] | None = None,
     ) -> SurfaceFields:
         """Fields at a time in s; only the outputs asked for are computed.
@@ -132,14 +133,18 @@ class Ocean:
         else:
             x, y = on.rest_positions()
             fields = self._arrays(wanted, x.shape, out or {})
-            self._fill_places(x.ravel(), y.ravel(), time, wanted, fields)
+            self._anywhere.fill(x.ravel(), y.ravel(), time, wanted - OF_MEMORY, fields)
+            if FOAM in wanted:
+                sea = self._of_foam
+                foam = foam_at(sea.foam_model, sea._anywhere.squeeze_at, x.ravel(), y.ravel(), time)
+                fields[FOAM][...] = foam.reshape(x.shape)
         return SurfaceFields(float(time), fields)
 
     def frame(
         self,
         frame: float | Fraction,
         outputs: Iterable[str] = ("displacement",),
-        on: Tile | Area | Places = Tile(),  # noqa: B008
+        on: Tile | Area | Places = _WHOLE_TILE,
     ) -> SurfaceFields:
         """Fields at a frame of the shot, which may hold a sub-frame."""
         return self.surface(self.parameters.timing.time(frame), outputs, on)
@@ -166,12 +171,9 @@ class Ocean:
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
         _check_time(time)
         x, y = Places(x, y).rest_positions()
-        exact = None
-        if surface == "exact":
-            placed = [waves.field(time) for waves in self._placed]
-            exact = summed_field([*(waves.exact_field(time) for waves in self._parts), *placed])
+        exact = self._anywhere.exact_field(time) if surface == "exact" else None
         if self.parameters.is_cascade or self._placed:
-            points, spacing = self._points_of_sum(x, y, time, velocity)
+            points, spacing = self._anywhere.points_above(x, y, time, velocity)
         else:
             points, spacing = self._points_of_tile(x, y, time, velocity)
         return points if exact is None else refine_points(x, y, exact, points, spacing, velocity)
@@ -265,6 +267,10 @@ class Ocean:
         workers = self._workers or default_workers(self.parameters.resolution)
         return TileSum(self.parameters, self._parts, real_type(self.precision), workers)
 
+    @cached_property
+    def _anywhere(self) -> AnywhereSum:
+        return AnywhereSum(self.parameters, self._parts, self._placed, self.precision)
+
     @property
     def _spacing(self) -> float:
         return self.parameters.domain_size / self.parameters.resolution
@@ -286,69 +292,6 @@ class Ocean:
             fields[name] = array
         return fields
 
-    def _fill_places(
-        self,
-        x: Array,
-        y: Array,
-        time: float | Fraction,
-        wanted: frozenset[str],
-        fields: Mapping[str, RealArray],
-    ) -> None:
-        """Fill arrays whose first axes hold flat x and y."""
-        own = wanted - OF_MEMORY
-        needs = frozenset().union(*(CHANNELS[name].needs for name in own))
-        sums = self._sums_at(x, y, time, needs, self._components(time, needs))
-        for name in own:
-            components = CHANNELS[name].components
-            made: RealArray = np.empty((x.size, components) if components else x.size, fields[name].dtype)
-            CHANNELS[name].write(sums, made)
-            fields[name][...] = made.reshape(fields[name].shape)
-        if FOAM in wanted:
-            foam = foam_at(self._of_foam.foam_model, self._squeeze_at, x, y, time)
-            fields[FOAM][...] = foam.reshape(fields[FOAM].shape)
-
-    def _components(self, time: float | Fraction, needs: Iterable[Key]) -> list[Components]:
-        """Of each part on its own samples, what places need."""
-        wanted = closed(needs)
-        if not wanted:
-            return [{} for _ in self._parts]
-        return [
-            waves.components(time, unweighted(wanted) if waves.part.masks else wanted)
-            for waves in self._parts
-        ]
-
-    def _sums_at(
-        self,
-        x: Array,
-        y: Array,
-        time: float | Fraction,
-        needs: Iterable[Key],
-        components: Sequence[Components],
-    ) -> Summed:
-        known: dict[tuple[Mask, ...], Weights] = {}
-        found = []
-        for waves, of_part in zip(self._parts, components, strict=True):
-            part = waves.part
-            if part.masks and part.masks not in known:
-                known[part.masks] = weights(part.masks, self.parameters.domain_size, x, y)
-            grid = Grid(of_part, part.parameters.domain_size, part.rotation)
-            found.append(grid.read(x, y, known.get(part.masks)))
-        return Summed([*found, *(waves.at(x, y, time, needs) for waves in self._placed)])
-
-    def _squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
-        squeeze, cusp = np.empty(x.shape, np.float32), CHANNELS["cusp"]
-        cusp.write(self._of_foam._sums_at(x, y, time, cusp.needs, self._squeezed(time)), squeeze)
-        return squeeze
-
-    def _squeezed(self, time: Fraction) -> list[Components]:
-        """Strains of each part at a time; they are remembered, since the next frame looks back too."""
-        sea = self._of_foam
-
-        def make() -> _PartStrains:
-            return _PartStrains(sea._components(time, CHANNELS["cusp"].needs))
-
-        return MEMO.get("strains", (sea.parameters, self.precision, time), make).of_parts
-
     def _strains(self, drift: tuple[float, float]) -> Strains:
         """Of all parts together, as a point with this drift meets them."""
         between_samples = self.parameters.is_cascade or bool(self._placed)
@@ -366,31 +309,6 @@ class Ocean:
         folded = fields.min_eigenvalue < _NEARLY_FOLDED
         moving = fields.velocity if with_velocity else None
         return find_points(x, y, fields.displacement, moving, self._spacing, folded), self._spacing
-
-    def _points_of_sum(
-        self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
-    ) -> tuple[SurfacePoints, float]:
-        """Points of the sum of the parts' bilinear surfaces, and the fewest metres between samples."""
-        fields, reaches = zip(*(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True)
-        spacings = [waves.part.spacing for waves in self._parts]
-        finest, reach = min(spacings), sum(reaches)
-        for waves in self._placed:
-            fields, spacings = (*fields, waves.field(time)), [*spacings, finest]
-            moved = waves.at(np.ravel(x), np.ravel(y), time, ((0, ""), (1, "")))
-            reach += float(np.max(np.hypot(moved[0, ""], moved[1, ""]), initial=0.0))
-        return find_summed_points(x, y, fields, spacings, reach, with_velocity), finest
-
-
-@dataclass(frozen=True)
-class _PartStrains:
-    """Strains of a moment, of each part on its own samples."""
-
-    of_parts: list[Components]
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all."""
-        return total_bytes(field for components in self.of_parts for field in components.values())
 
 
 def _check_time(time: float | Fraction) -> None:
