@@ -11,7 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from .cascades.patch_seas import PARTS, parts
+from .cascades.patch_seas import PARTS
 from .channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .frames import Frame
 from .memo import MEMO
@@ -48,42 +48,28 @@ class ShotSurfaces:
 
     def __init__(self, shot: Shot) -> None:
         self.shot = shot
-        self._parameters: OceanParameters | None = None
-        self._seas: tuple[Ocean, ...] = ()
-        self._parameters_of_parts: OceanParameters | None = None
-        self._parts: tuple[Ocean, ...] = ()
+        self._sea: Ocean | None = None
 
-    def seas(self, parameters: OceanParameters) -> tuple[Ocean, ...]:
-        """The grids of the sea of a moment: the last ones where its parameters are the same.
-
-        They are its patches, or all of it on one grid.
-        """
-        if self._parameters != parameters:
-            self._seas = Ocean(parameters, workers=1).patches
-            self._parameters = parameters
-        return self._seas
+    def sea(self, frame: Frame) -> Ocean:
+        """The sea of a frame: the last one where its parameters are the same."""
+        parameters = self.shot.at(frame).parameters
+        if self._sea is None or self._sea.parameters != parameters:
+            self._sea = Ocean(parameters, workers=1)
+        return self._sea
 
     def prepare(self, frame: Frame) -> None:
         """Make the waves of a frame, which its surfaces share."""
-        for sea in self.seas(self.shot.at(frame).parameters):
-            sea.prepare()
+        for patch in self.sea(frame).patches:
+            patch.prepare()
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each grid in a frame, and of each part where PARTS is asked for.
+        """Fields of each patch in a frame, on its tile, and ADDING of each part where PARTS is asked for.
 
         Velocity is per second of the shot.
         """
-        own = frozenset(outputs) - {PARTS}
-        made = self._made(frame, self.seas(self.shot.at(frame).parameters), own)
-        return (*made, *self.parts(frame)) if PARTS in outputs else made
-
-    def parts(self, frame: Frame) -> tuple[SurfaceFields, ...]:
-        """Fields of each part of the sea in a frame: ADDING."""
-        parameters = self.shot.at(frame).parameters
-        if self._parameters_of_parts != parameters:
-            self._parts = tuple(Ocean(part.parameters, workers=1) for part in parts(parameters))
-            self._parameters_of_parts = parameters
-        return self._made(frame, self._parts, ADDING)
+        sea = self.sea(frame)
+        made = self._made(frame, sea.patches, frozenset(outputs) - {PARTS})
+        return (*made, *self._made(frame, sea.parts, ADDING)) if PARTS in outputs else made
 
     def _made(
         self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str]
@@ -160,8 +146,8 @@ def bake(
 def _foam(
     surfaces: ShotSurfaces, frame: Frame, wanted: frozenset[str], tell: Callable[[Frame, str], None]
 ) -> SurfaceFields:
-    for sea in surfaces.seas(surfaces.shot.at(frame).parameters):
-        sea.foam_history.tell = lambda done, count: tell(
+    for patch in surfaces.sea(frame).patches:
+        patch.foam_history.tell = lambda done, count: tell(
             frame, f"looked back for foam at {done} of {count} moments"
         )
     return surfaces.frame(frame, wanted)

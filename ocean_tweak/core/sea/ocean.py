@@ -85,6 +85,13 @@ class Ocean:
             Ocean(patch, self.precision, self._workers) for patch in patch_parameters(self.parameters)
         )
 
+    @cached_property
+    def parts(self) -> tuple[Ocean, ...]:
+        """The waves of each patch and under each mask as seas of their own, without that mask and in axes
+        along the patch's sides: turned and weighted, they add up. Joined patches are apart here.
+        """
+        return tuple(Ocean(part.parameters, self.precision, self._workers) for part in parts(self.parameters))
+
     def memory(self, outputs: Iterable[str] = ("displacement",)) -> MemoryNeed:
         """Bytes that the sea takes, and each surface with these outputs."""
         return memory_need(self.parameters, outputs, self.precision)

@@ -216,12 +216,12 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
     with_foam, moment = job.outputs & OF_MEMORY, 0.0
 
     def sea() -> None:
-        for grid in surfaces.seas(parameters):
+        for grid in surfaces.sea(frame).patches:
             grid.prepare()
             if with_foam:
                 grid.foam_history  # noqa: B018
         if PARTS in job.outputs:
-            surfaces.parts(frame)
+            surfaces.frames(frame, {PARTS})
 
     def made() -> None:
         fields = surfaces.frames(frame, job.outputs - OF_MEMORY)

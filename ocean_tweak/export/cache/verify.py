@@ -37,7 +37,7 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
-            grids = seas.seas(job.shot.at(frame).parameters)
+            grids = seas.sea(frame).patches
             for sequence, sea in zip(job.sequences(folder, frame), grids, strict=True):
                 problem = _problem(job, sequence, frame, sea)
                 if problem:
