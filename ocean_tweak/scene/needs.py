@@ -68,16 +68,18 @@ _seen = _Seen()
 
 def neighbours_of(ocean: bpy.types.Object) -> Neighbours:
     """What goes with an ocean, as it was found last; it is looked for again where objects came or went."""
-    if len(bpy.data.objects) != _seen.objects:
-        look()
-    return _seen.of.get(ocean.session_uid, Neighbours())
+    return _found().of.get(ocean.session_uid, Neighbours())
 
 
 def has_ocean(scene: bpy.types.Scene) -> bool:
     """Whether a scene has an ocean; as `neighbours_of`."""
+    return scene.session_uid in _found().scenes
+
+
+def _found() -> _Seen:
     if len(bpy.data.objects) != _seen.objects:
         look()
-    return scene.session_uid in _seen.scenes
+    return _seen
 
 
 def look_at(ocean: bpy.types.Object) -> None:

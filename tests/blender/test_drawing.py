@@ -103,6 +103,29 @@ def test_a_large_scene_takes_no_more_lines_than_a_small_one(everything):
     assert few.total() > 1000
 
 
+def test_what_panels_know_of_other_objects_follows_them(ocean, ocean_object, make_parameters, extension):
+    needs, floating, scene = extension("scene.needs"), extension("scene.floating"), bpy.context.scene
+    other = ocean_object.add(scene, make_parameters(seed=2), name="Lake")
+    boat = bpy.data.objects.new("Boat", None)
+    scene.collection.objects.link(boat)
+
+    def names(item):
+        bpy.context.view_layer.update()
+        return {need.name for need in needs.neighbours_of(item).needs}
+
+    assert names(ocean) == {ocean.name}
+    carrier = floating.float_on(boat, ocean, scene)
+    assert names(ocean) == {ocean.name, "Boat"}
+    floating.let_ride(carrier, other, floating.Ride())  # no object comes or goes
+    assert (names(ocean), names(other)) == ({ocean.name}, {"Lake", "Boat"})
+    floating.sink(boat)
+    assert names(other) == {"Lake"}
+    assert needs.has_ocean(scene)
+    for item in (ocean, other):
+        bpy.data.objects.remove(item)
+    assert not needs.has_ocean(scene)
+
+
 def test_no_folder_is_listed_and_no_file_read(everything, ocean):
     everything()
     with listening() as heard:
