@@ -140,3 +140,17 @@ def test_the_farm_renders_no_ocean_that_was_changed_after_its_bake(baked, extens
         script.use_sequence(baked, of_job, [1, 2, 3])
     baked.ocean_tweak.uid = "of a file that has another sea, whose bake was given"
     script.use_sequence(baked, of_job, [1, 2, 3])
+
+
+def test_another_frame_of_a_bake_makes_no_sea(baked, extension, empty_scene, monkeypatch):
+    refresh, planned = extension("scene.refresh"), []
+    plan_of = refresh.plan_of
+    monkeypatch.setattr(refresh, "plan_of", lambda *given: planned.append(given) or plan_of(*given))
+    empty_scene.frame_set(2)
+    assert planned == []
+    baked.ocean_tweak.choppiness = 0.5  # a setting may change the mesh and what moves it
+    assert len(planned) == 1
+    bpy.ops.ocean.use_live()
+    planned.clear()
+    empty_scene.frame_set(3)
+    assert len(planned) == 1
