@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import itertools
+import math
 import os
 import re
 import threading
 import weakref
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Iterator
+from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar, cast
 
 from .errors import ParameterError
@@ -32,7 +35,7 @@ _UNKNOWN_MACHINE = 8 * 10**9
 #: bytes of the least budget
 _LEAST = 10**6
 
-#: bytes that a value counts which has no arrays: a few numbers, and the parameters that are their key
+#: bytes that a value counts at least: those of the parameters that are its key
 _SMALL = 10**4
 
 _Parameters = ParamSpec("_Parameters")
@@ -52,9 +55,13 @@ class Memo:
 
     def __init__(self, budget: int | None = None) -> None:
         self._budget = budget
+        self._parts: dict[str, int] = {}
         self._lock = threading.Lock()
-        # those that are kept, the one used last at the end, and those that others may still have
-        self._kept: OrderedDict[_Name, Any] = OrderedDict()
+        self._clock = itertools.count()
+        # those that are kept, by kind and key, the one used last at the end; bytes of each kind; and those
+        # that others may still have
+        self._kept: dict[str, OrderedDict[Hashable, _Entry]] = {}
+        self._bytes: dict[str, int] = {}
         self._dropped: dict[_Name, weakref.ref[Any]] = {}
         self._making: dict[_Name, _Making] = {}
 
@@ -80,6 +87,10 @@ class Memo:
         finally:
             self._budget = before
 
+    def limit(self, kind: str, part: int) -> None:
+        """Let what is quickly made again have no more than one of so many parts of the budget."""
+        self._parts[kind] = part
+
     def get(self, kind: str, key: Hashable, make: Callable[[], _Value]) -> _Value:
         """The value of a key, which is made where it is not there.
 
@@ -100,7 +111,7 @@ class Memo:
             making.wait(kind)
         try:
             value = make()
-            self.put(kind, key, value)
+            self._keep(name, value, most=self.budget // 2)
             return value
         finally:
             with self._lock:
@@ -108,12 +119,17 @@ class Memo:
             making.done.set()
 
     def put(self, kind: str, key: Hashable, value: object) -> None:
-        """Keep a value, instead of that which the key had."""
-        name, budget = (kind, key), self.budget
+        """Keep a value whatever its size, instead of that which the key had; or count one that has grown."""
+        self._keep((kind, key), value)
+
+    def _keep(self, name: _Name, value: object, most: float = math.inf) -> None:
+        budget, (kind, key) = self.budget, name
         with self._lock:
-            self._kept.pop(name, None)
-            self._kept[name] = value
-            if 2 * _size(value) > budget:
+            self._remove(name)
+            entry = _Entry(value, _size(value), next(self._clock))
+            self._kept.setdefault(kind, OrderedDict())[key] = entry
+            self._bytes[kind] = self._bytes.get(kind, 0) + entry.size
+            if entry.size > most:
                 self._drop(name)
             self._trim(budget)
 
@@ -125,8 +141,7 @@ class Memo:
     def take(self, kind: str, key: Hashable) -> Any:
         """The value of a key, for the caller alone until it is put back; None where there is none."""
         with self._lock:
-            self._dropped.pop((kind, key), None)
-            return self._kept.pop((kind, key), None)
+            return self._remove((kind, key))
 
     def watch(self, kind: str, value: object) -> None:
         """Count a value that somebody else keeps, for as long as that is."""
@@ -134,7 +149,7 @@ class Memo:
             self._dropped[kind, id(value)] = weakref.ref(value)
 
     def trim(self) -> None:
-        """Drop what was not used for longest until the rest fits: a value has grown."""
+        """Drop what was used least lately until the rest fits: a value that is watched has grown."""
         budget = self.budget
         with self._lock:
             self._trim(budget)
@@ -142,58 +157,84 @@ class Memo:
     def drop(self, kind: str | None = None) -> None:
         """Forget all values, or those of a kind."""
         with self._lock:
-            for names in (self._kept, self._dropped):
-                for name in [name for name in names if kind in (None, name[0])]:
-                    del names[name]
+            for each in [kind] if kind is not None else [*self._kept]:
+                self._kept.pop(each, None)
+                self._bytes.pop(each, None)
+            for name in [name for name in self._dropped if kind in (None, name[0])]:
+                del self._dropped[name]
 
     def report(self) -> dict[str, int]:
         """Bytes by kind, the largest first."""
-        total: dict[str, int] = {}
         with self._lock:
-            for name, size in self._sizes().items():
-                total[name[0]] = total.get(name[0], 0) + size
-        return dict(sorted(total.items(), key=lambda entry: -entry[1]))
+            total = self._held()
+            for kind, size in self._bytes.items():
+                total[kind] = total.get(kind, 0) + size
+        return {kind: size for kind, size in sorted(total.items(), key=lambda entry: -entry[1]) if size}
 
     def _found(self, name: _Name) -> Any:
-        if name in self._kept:
-            self._kept.move_to_end(name)
-            return self._kept[name]
+        entries = self._kept.get(name[0])
+        if entries is not None and name[1] in entries:
+            entries.move_to_end(name[1])
+            entries[name[1]].used = next(self._clock)
+            return entries[name[1]].value
         dropped = self._dropped.get(name)
         return None if dropped is None else dropped()
 
-    def _sizes(self) -> dict[_Name, int]:
-        """Bytes of all that is kept, and of what others still have."""
-        sizes = {name: _size(value) for name, value in self._kept.items()}
+    def _held(self) -> dict[str, int]:
+        """Bytes by kind of what is not kept, but others have."""
+        total: dict[str, int] = {}
         for name, dropped in list(self._dropped.items()):
             value = dropped()
-            if value is None or name in sizes:
+            if value is None:
                 del self._dropped[name]
             else:
-                sizes[name] = _size(value)
-        return sizes
+                total[name[0]] = total.get(name[0], 0) + _size(value)
+        return total
 
     def _trim(self, budget: int) -> None:
-        sizes = self._sizes()
-        total = sum(sizes.values())
-        if total <= budget:
-            return
-        in_use = dict(self._kept.keys())  # the last key of each kind
-        for kind, key in [name for name in self._kept if in_use[name[0]] != name[1]]:
-            self._drop((kind, key))
-            # it may be held, or have held others
-            total = sum(sizes[name] for name in self._kept)
-            total += sum(sizes[name] for name, dropped in self._dropped.items() if dropped() is not None)
-            if total <= budget:
+        for kind, part in self._parts.items():
+            self._fit(budget // part, kind)
+        self._fit(budget)
+
+    def _fit(self, most: int, kind: str | None = None) -> None:
+        """Drop what was used least lately, of a kind or of all, until what is alive of it takes no more."""
+        while self._total(kind) > most:
+            kinds = [each for each in self._kept if kind in (None, each) and len(self._kept[each]) > 1]
+            if not kinds:
                 return
+            oldest = min(kinds, key=lambda each: next(iter(self._kept[each].values())).used)
+            self._drop((oldest, next(iter(self._kept[oldest]))))
+
+    def _total(self, kind: str | None) -> int:
+        parts = (self._bytes, self._held())
+        return sum(size for part in parts for each, size in part.items() if kind in (None, each))
 
     def _drop(self, name: _Name) -> None:
+        value = self._remove(name)
         with contextlib.suppress(TypeError):  # numbers cannot be referred to weakly
-            self._dropped[name] = weakref.ref(self._kept[name])
-        del self._kept[name]
+            self._dropped[name] = weakref.ref(value)
+
+    def _remove(self, name: _Name) -> Any:
+        """Forget a value; returns it."""
+        self._dropped.pop(name, None)
+        entry = self._kept.get(name[0], OrderedDict()).pop(name[1], None)
+        if entry is None:
+            return None
+        self._bytes[name[0]] -= entry.size
+        return entry.value
+
+
+@dataclass
+class _Entry:
+    """A value that is kept, its bytes, and when it was used last."""
+
+    value: Any
+    size: int
+    used: int
 
 
 def _size(value: object) -> int:
-    return int(getattr(value, "nbytes", _SMALL))
+    return max(int(getattr(value, "nbytes", 0)), _SMALL)
 
 
 class _Making:

@@ -22,8 +22,8 @@ RealArray = NDArray[np.float32]
 
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
-# the part of the memory that the surfaces of a sea may take, but for the last one
-_SHARE = 8
+# what is quickly made again, of waves that are there, takes no more than this part of the memory
+_PART = 8
 # s after the foam that was made last, within which the next one is quickly made
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept
@@ -65,15 +65,20 @@ class Surfaces:
         kept = self._kept(time)
         self._make(time, kept, outputs - kept.keys() - {FOAM})
         result = {name: kept[name] for name in outputs - {FOAM}}
-        if FOAM not in outputs:
-            return result, True
-        maker = self.foam_of(is_whole)
+        if FOAM in outputs:
+            result[FOAM] = self._foam_at(time, kept, self.foam_of(is_whole), patient)
+        MEMO.put(_SURFACES, self.ocean.parameters, self)  # it has grown
+        return result, FOAM not in outputs or FOAM in kept
+
+    def _foam_at(
+        self, time: Fraction, kept: dict[str, RealArray], maker: FoamMaker, patient: bool
+    ) -> RealArray:
         if FOAM not in kept and (patient or maker.is_near(time)):
             kept[FOAM] = self._closed(FOAM, maker.at(time))
         if FOAM not in kept and _INSTANT not in kept:
             foam = _instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
             kept[_INSTANT] = self._closed(_INSTANT, foam)
-        return {**result, FOAM: kept.get(FOAM, kept.get(_INSTANT))}, FOAM in kept
+        return kept[FOAM if FOAM in kept else _INSTANT]
 
     def foam_of(self, is_whole: bool) -> FoamMaker:
         """What makes the foam of whole frames, or of those between."""
@@ -87,7 +92,6 @@ class Surfaces:
         for field in made.values():
             _close(field)
         kept.update(made)
-        MEMO.trim()
 
     def _closed(self, name: str, field: RealArray) -> RealArray:
         """An (N, N) field with its far edges."""
@@ -107,7 +111,7 @@ class Surfaces:
         if time not in self._surfaces:
             largest = max(map(_bytes_of, self._surfaces.values()), default=0)
             # a surface that failed for want of memory has none
-            most = min(MEMO.budget // _SHARE // max(largest, 1), _MOST_SURFACES)
+            most = min(MEMO.budget // _PART // max(largest, 1), _MOST_SURFACES)
             while len(self._surfaces) >= max(most, 1):
                 self._spare = self._surfaces.popitem(last=False)[1]
             self._surfaces[time] = {}
@@ -177,6 +181,7 @@ def _close(field: RealArray) -> None:
 # Kinds of what is kept, so that playback neither makes waves again nor, where the same frame is asked for
 # several times, its surface.
 _SURFACES, _STATISTICS = "surfaces", "statistics"
+MEMO.limit(_SURFACES, _PART)
 
 
 def surfaces_of(parameters: OceanParameters) -> Surfaces:

@@ -14,7 +14,7 @@ import pytest
 from ocean_tweak.core import ParameterError, memo
 from ocean_tweak.core.memo import Memo
 
-KB = 1000
+KB = 100_000
 
 
 def kilobytes(count: int) -> np.ndarray:
@@ -84,7 +84,7 @@ def test_what_a_value_holds_counts_until_the_value_goes() -> None:
 def test_a_value_in_use_stays_where_the_budget_is_below_it() -> None:
     store = Memo(10 * KB)
     for _ in range(3):
-        in_use = store.get("holders", 0, lambda: Holder(store.get("held", 0, lambda: kilobytes(40)), 1))
+        in_use = store.get("holders", 0, lambda: Holder(store.get("held", 0, lambda: kilobytes(40)), KB))
         store.get("small", 0, lambda: kilobytes(1))
     assert store.get("holders", 0, lambda: pytest.fail("it is the last of its kind")) is in_use
     assert store.get("held", 0, lambda: pytest.fail("the last one holds it")) is in_use.held
@@ -97,7 +97,7 @@ def test_a_value_that_grows() -> None:
     for number in range(2):
         store.get("other", number, lambda: kilobytes(20))
     grown.nbytes = 70 * KB
-    store.trim()
+    store.put("grown", 0, grown)
     assert store.report() == {"grown": 70 * KB, "other": 20 * KB}
 
 
@@ -181,11 +181,11 @@ def test_a_thread_that_waited_for_a_failure_makes_it() -> None:
 
 
 def test_numbers_count_with_their_keys() -> None:
-    store = Memo(100 * KB)
+    store = Memo(KB)
     for number in range(1000):
         store.get("numbers", number, lambda number=number: 0.5 * number)
     assert store.get("numbers", 999, lambda: pytest.fail("it is there")) == 499.5
-    assert 10 * KB < sum(store.report().values()) <= 100 * KB
+    assert 0.5 * KB < sum(store.report().values()) <= KB
     assert store.find("numbers", 0) is None
 
 
@@ -198,6 +198,28 @@ def test_what_is_taken_is_its_taker_s_alone() -> None:
     assert store.report() == {}
     store.put("workspace", 0, array)
     assert store.report() == {"workspace": 5 * KB}
+
+
+def test_a_kind_that_is_quickly_made_has_a_part_of_the_budget() -> None:
+    store = Memo(80 * KB)
+    store.limit("surfaces", 4)
+    for number in range(6):
+        store.get("waves", number, lambda: kilobytes(5))
+        store.get("surfaces", number, lambda: kilobytes(5))
+    assert store.report() == {"waves": 30 * KB, "surfaces": 20 * KB}
+
+
+def test_a_value_that_others_keep_counts_as_long_as_they_do() -> None:
+    store = Memo(50 * KB)
+    for number in range(4):
+        store.get("waves", number, lambda: kilobytes(10))
+    watched = Holder(kilobytes(0), 5 * KB)
+    store.watch("foam", watched)
+    watched.nbytes = 25 * KB
+    store.trim()
+    assert store.report() == {"foam": 25 * KB, "waves": 20 * KB}
+    del watched
+    assert store.report() == {"waves": 20 * KB}
 
 
 def test_one_call_forgets_a_kind_or_all() -> None:
