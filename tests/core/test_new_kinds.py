@@ -191,3 +191,13 @@ def test_kinds_have_numbers_and_names_of_their_own() -> None:
     for name in ("kind", "former_list"):
         told = [getattr(kind, name) for kind in KINDS if getattr(kind, name)]
         assert len(set(told)) == len(told)
+
+
+def test_a_bake_of_what_does_not_repeat_is_refused_with_the_remedy(tmp_path, capsys) -> None:
+    params = tmp_path / "sea.json"
+    params.write_text(sea(Hump()).to_json())
+    assert main(["bake", "--params", str(params), "--frames", "1", "--out", str(tmp_path)]) == 2
+    (line,) = (line for line in capsys.readouterr().err.splitlines() if "HUMP" in line)
+    assert "layers.1 = 'HUMP': its waves do not repeat" in line
+    assert "mute the layer" in line
+    assert not list(tmp_path.glob("**/*.exr"))
