@@ -11,7 +11,7 @@ from ocean_tweak.cli import main
 from ocean_tweak.core import HeroWave, OceanParameters, PictureLayer, WaveLayer, WindFieldLayer
 from ocean_tweak.core.fingerprint import frame_fingerprint
 from ocean_tweak.core.former_json import former, modern
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.shot import Animation, Shot
 from ocean_tweak.export.sea_files import read_sea, write_sea
 
 FORMER = Path(__file__).parents[1] / "former"
@@ -48,8 +48,12 @@ def test_former_and_modern_are_inverse(shot: Shot) -> None:
     before = former(data)
     assert [len(before[name]) for name in ("layers", "wind_fields", "pictures", "hero_waves")] == [2, 1, 2, 1]
     assert modern(before) == data
-    mixed = Shot(shot.parameters.replace(layers=shot.parameters.layers[::-1]))
-    assert [len(former(mixed.to_dict())[name]) for name in ("layers", "hero_waves")] == [2, 1]
+    # in whatever order the kinds stand, the second of the waves is the second of the former list
+    changing = Animation(1, (("layers.5.wind_speed", (1.0, 2.0)),))
+    mixed = former(Shot(shot.parameters.replace(layers=shot.parameters.layers[::-1]), changing).to_dict())
+    assert [len(mixed[name]) for name in ("layers", "hero_waves")] == [2, 1]
+    assert mixed["layers"][1]["fetch"] == 30e3
+    assert [*mixed["animation"]["samples"]] == ["layers.1.wind_speed"]
 
 
 def test_a_bake_is_known_as_that_sea(shot: Shot, version: Path, tmp_path: Path) -> None:
