@@ -123,8 +123,8 @@ def bake(
 
     under_way: deque[Future[BakedFrame]] = deque()
     # frames go forward: what they share stays, and no seas of frames gone by
-    need = memory_need(shot.parameters, sink.outputs).peak(workers)
-    with MEMO.at_most(need), ThreadPoolExecutor(workers) as pool:
+    need = memory_need(shot.parameters, sink.outputs)
+    with MEMO.at_most(need.state + workers * need.surface), ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
                 begun = time.perf_counter()

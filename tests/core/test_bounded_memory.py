@@ -8,12 +8,13 @@ import tracemalloc
 import weakref
 from collections.abc import Iterator
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ocean_tweak.core import Foam, Mask, Ocean, OceanParameters, Patch, Timing, WaveLayer, WindFieldLayer
-from ocean_tweak.core.bake import ShotSurfaces
+from ocean_tweak.core.bake import ShotSurfaces, bake
 from ocean_tweak.core.memo import MEMO
 from ocean_tweak.core.sea.on import Places
 from ocean_tweak.core.shot import Animation, Shot
@@ -75,6 +76,32 @@ def test_a_wind_that_changes_over_many_frames(small_budget: int, no_collector: N
     # forty seas of 128² take forty times 0.5 MB; what Python holds beside arrays is little
     assert grown < small_budget + MB // 2
     assert MEMO.report()["waves"] > MB // 2, "some are kept"
+
+
+class Counting:
+    """Keeps no frame, but the bytes that seas keep while it would be written."""
+
+    outputs = frozenset({"displacement"})
+
+    def __init__(self) -> None:
+        self.kept: list[int] = []
+
+    def write(self, _frame: object, _fields: object, *_others: object) -> tuple[Path, ...]:
+        self.kept.append(kept())
+        return ()
+
+
+def test_a_bake_keeps_no_seas_of_frames_gone_by() -> None:
+    MEMO.drop()
+    parameters = sea(resolution=256, timing=Timing(fps=24, start_frame=1))
+    animation = Animation(1, (("layers.0.wind_speed", tuple(np.linspace(5.0, 15.0, 12).tolist())),))
+    budget, sink = MEMO.budget, Counting()
+    frames = list(bake(Shot(parameters, animation), range(1, 13), sink))
+    assert len(frames) == len(sink.kept) == 12
+    # the present sea and those beside it that are made ahead, not twelve
+    one = 256 * 129 * 40
+    assert max(sink.kept) < 6 * one
+    assert MEMO.budget == budget
 
 
 @pytest.mark.parametrize(
