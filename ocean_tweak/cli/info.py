@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ..core import Ocean, OceanParameters, sea_scales
 from ..core.cascades.patch import NO_LONGEST
-from ..core.foam_field import foam_outlook
+from ..core.foam_threshold import foam_outlook
 from ..core.memo import MEMO
 from ..core.memory import beyond_budget, check_memory
 from ..core.printable import readable_bytes

@@ -107,3 +107,11 @@ def stretched(field: RealArray, axis: int, samples: int) -> RealArray:
     step *= share.reshape([-1 if each == axis else 1 for each in range(field.ndim)])
     result += step
     return result
+
+
+def resampled(field: RealArray, resolution: int) -> RealArray:
+    """A periodic (M, M) field on (N, N) samples, bilinear; the first sample is the same."""
+    size = field.shape[0]
+    if size == resolution:
+        return field
+    return stretched(stretched(wrapped(field), 0, resolution), 1, resolution)[:-1, :-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where whitecaps begin: the squeeze of the surface beyond which it is foam.
+"""How much foam a sea has, and where whitecaps begin: the squeeze of the surface beyond which it is foam.
 
 With true wave heights hardly anything folds, so foam cannot wait for folding. Instead the threshold follows
 from the sea's own strains, so that the share of the surface under foam is the one that winds leave at sea.
@@ -7,12 +7,16 @@ from the sea's own strains, so that the share of the surface under foam is the o
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import constants, random
+from .foam import FoamModel, strength_levels
 from .initial_state import InitialState
 from .parameters import OceanParameters
 from .waves.contribution import Wind
@@ -37,6 +41,29 @@ def whitecap_coverage(wind_speed: float) -> float:
     Monahan & O'Muircheartaigh (1980).
     """
     return min(1.0, constants.WHITECAP_FACTOR * wind_speed**constants.WHITECAP_EXPONENT)
+
+
+class FoamOutlook(NamedTuple):
+    """What foam a sea will have, and what it costs.
+
+    coverage : share of the sea under foam, 0…1
+    memory : earlier surfaces that a frame alone must look at
+    """
+
+    coverage: float
+    memory: int
+
+
+def foam_outlook(parameters: OceanParameters) -> FoamOutlook:
+    """Coverage and cost of the foam, without making any."""
+    coverage = _coverage(parameters)
+    model = FoamModel(1.0 if coverage > 0.0 else math.inf, parameters.foam.half_life, (0.0, 0.0), 1.0)
+    return FoamOutlook(coverage, model.memory)
+
+
+def _coverage(parameters: OceanParameters) -> float:
+    wind = foam_wind(parameters)
+    return min(1.0, parameters.foam.coverage * whitecap_coverage(wind.speed)) if wind is not None else 0.0
 
 
 @dataclass(frozen=True)
@@ -134,3 +161,29 @@ def _correlated(covariance: Array, stream: int) -> Array:
     key = np.arange(_SAMPLES, dtype=np.uint64)
     independent = np.stack([random.normal(key, stream + 2 * i) for i in range(3)])
     return vectors @ (np.sqrt(np.maximum(values, 0.0))[:, np.newaxis] * independent)
+
+
+def foam_model(
+    parameters: OceanParameters, strains_of: Callable[[tuple[float, float]], Strains], spacing: float
+) -> FoamModel:
+    """How the foam of a sea is born and lives.
+
+    strains_of : gives the strains that a point with this drift in m/s meets, of the waves that the samples
+        hold on which foam is made: so foam made coarser covers as much
+    spacing : of those samples, m
+    """
+    foam, wind = parameters.foam, foam_wind(parameters)
+    drift, threshold = (0.0, 0.0), math.inf
+    if wind is not None:
+        speed = foam.drift * wind.speed
+        drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
+    coverage = _coverage(parameters)
+    if coverage > 0.0:
+        threshold = strains_of(drift).threshold(coverage, foam.half_life, strength_levels())
+    return FoamModel(
+        threshold=threshold,
+        half_life=foam.half_life,
+        drift=drift,
+        spacing=spacing,
+        loop_duration=parameters.loop_duration,
+    )

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
+from ..core.bilinear import resampled
 from ..core.channels import CHANNELS, FOAM
 from ..core.foam import FoamHistory, FoamModel
-from ..core.foam_field import foam_outlook, resampled
-from ..core.foam_threshold import LEAST_SQUEEZE
+from ..core.foam_threshold import LEAST_SQUEEZE, foam_outlook
 from ..core.memo import MEMO, total_bytes
 
 RealArray = NDArray[np.float32]

@@ -214,7 +214,7 @@ def test_foam_after_a_jump_is_that_of_the_moment_then_all(item, refinement, core
     assert refinement.is_outstanding(item)
     instant = foam_of(item)
     # as much of the sea as foam covers, where it is squeezed most
-    covered = round(core.foam_field.foam_outlook(parameters).coverage * SAMPLES**2)
+    covered = round(core.foam_threshold.foam_outlook(parameters).coverage * SAMPLES**2)
     assert covered > 3
     assert np.count_nonzero(instant >= 0.5) == covered
     assert whole.cusp[instant >= 0.5].min() > whole.cusp[instant < 0.5].max()

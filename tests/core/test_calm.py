@@ -14,7 +14,7 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, Patch, PictureLayer, WaveLayer, spectra
 from ocean_tweak.core.channels import FOAM, OF_WAVES
 from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.foam_field import foam_outlook
+from ocean_tweak.core.foam_threshold import foam_outlook
 from ocean_tweak.core.initial_state import initial_state
 from ocean_tweak.core.layer_scales import layer_scales
 from ocean_tweak.core.sea_scales import beaufort_number

@@ -14,11 +14,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..bilinear import resampled
 from ..cascades.patch_seas import joined_bands, parts, patch_parameters
 from ..channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
 from ..foam import FoamHistory, FoamModel, foam_at
-from ..foam_field import foam_model, resampled
-from ..foam_threshold import Strains, sampled_strains
+from ..foam_threshold import Strains, foam_model, sampled_strains
 from ..initial_state import InitialState
 from ..memory import check_memory, memory_need
 from ..parameters import OceanParameters

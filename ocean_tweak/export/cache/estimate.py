@@ -22,7 +22,7 @@ from ...core.bake import ShotSurfaces
 from ...core.cascades.patch_seas import PARTS, parts
 from ...core.channels import OF_MEMORY, SurfaceFields, is_put_together
 from ...core.foam import LATTICE_RATE
-from ...core.foam_field import foam_outlook
+from ...core.foam_threshold import foam_outlook
 from ...core.frames import Frame
 from ...core.machine import usable_cores, usable_memory
 from ...core.memory import TABLES
