@@ -24,6 +24,10 @@ from .surfaces import Field, summed_field
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
+#: what the foam of places looks back at: with more than a quarter of the memory it would push out all else
+_STRAINS = "strains"
+MEMO.limit(_STRAINS, 4)
+
 
 class AnywhereSum:
     """The sum of a sea's waves at any rest positions: parts are read between their samples.
@@ -67,7 +71,7 @@ class AnywhereSum:
         """
         needs = CHANNELS["cusp"].needs
         key = (self._parameters, self._precision, time)
-        strains = MEMO.get("strains", key, lambda: _Strains(self._components(time, needs)))
+        strains = MEMO.get(_STRAINS, key, lambda: _Strains(self._components(time, needs)))
         squeeze = np.empty(x.shape, np.float32)
         CHANNELS["cusp"].write(self._sums(x, y, time, needs, strains.of_parts), squeeze)
         return squeeze
