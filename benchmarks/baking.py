@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ocean_tweak.core import Ocean
-from ocean_tweak.core.bake import bake
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.bake import bake
 from ocean_tweak.export.exr import ExrSequence
 
 from .measure import Timings, interleaved

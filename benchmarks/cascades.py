@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from ocean_tweak.core import Ocean, OceanParameters
-from ocean_tweak.core.cascades.patch import NO_LONGEST, Patch
+from ocean_tweak.core.parameters.patch import NO_LONGEST, Patch
 
 from .field_sets import SIX, TIME, arrays, surface_maker
 from .measure import interleaved

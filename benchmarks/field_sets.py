@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean
-from ocean_tweak.core.channels import OF_WAVES
-from ocean_tweak.core.synthesis import term
+from ocean_tweak.core.synthesis.channels import OF_WAVES
+from ocean_tweak.core.synthesis.transforms import term
 
 from .plan import sea
 

@@ -7,7 +7,7 @@ import tracemalloc
 from collections.abc import Iterator
 
 from ocean_tweak.core import Ocean
-from ocean_tweak.core.memo import MEMO
+from ocean_tweak.core.numerics.memo import MEMO
 
 from .field_sets import ALL, SIX, THREE, TIME, FieldSet, arrays
 from .plan import Plan, sea

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean
-from ocean_tweak.core.channels import OF_WAVES
+from ocean_tweak.core.synthesis.channels import OF_WAVES
 
 from .plan import Plan, sea
 from .rows import Row

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.channels import SurfaceFields
-from ocean_tweak.core.frames import Frame
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.data.frames import Frame
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.synthesis.channels import SurfaceFields
 from ocean_tweak.export.usd.attributes import mesh_values, outputs_of
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.library import pxr

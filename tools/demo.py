@@ -201,7 +201,7 @@ def measure(parameters: object) -> tuple[float, float]:
     import numpy as np
     import OpenEXR
 
-    from ocean_tweak.core.statistics import field_state
+    from ocean_tweak.core.statistics.sea_statistics import field_state
     from ocean_tweak.export.frame_files import frame_file
 
     variances, periods = [], []

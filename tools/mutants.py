@@ -17,7 +17,7 @@ from pathlib import Path
 from .project import ToolError
 
 CORE = Path("ocean_tweak/core")
-CONSTANTS = CORE / "constants.py"
+CONSTANTS = CORE / "spectral" / "constants.py"
 LARGER = CORE / "larger_by_five_percent.py"
 FACTOR = 1.02
 
@@ -231,18 +231,18 @@ def _between(
 
 #: file, what stands there, what takes its place: each of them went unnoticed once
 NAMED = (
-    ("layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA * 1.05, omega_p, 1.0, U"),
-    ("layer_scales.py", "layer.generalized_a / g**2", "1.05 * layer.generalized_a / g**2"),
-    ("layer_scales.py", "(layer.generalized_b /", "(1.05 * layer.generalized_b /"),
-    ("layer_scales.py", "layer.peak_enhancement, U * omega_p", "layer.peak_enhancement, 1.1 * U * omega_p"),
-    ("layer_scales.py", "PM_ALPHA, omega_p, 1.0, U", "PM_ALPHA, omega_p, 1.0, 1.1 * U"),
-    ("layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA, omega_p, 1.0, 1.1 * U"),
-    ("layer_scales.py", "/ g**2, omega_p, 1.0, U", "/ g**2, omega_p, 1.0, 1.1 * U"),
+    ("spectral/layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA * 1.05, omega_p, 1.0, U"),
+    ("spectral/layer_scales.py", "layer.generalized_a / g**2", "1.05 * layer.generalized_a / g**2"),
+    ("spectral/layer_scales.py", "(layer.generalized_b /", "(1.05 * layer.generalized_b /"),
+    ("spectral/layer_scales.py", "peak_enhancement, U * omega_p", "peak_enhancement, 1.1 * U * omega_p"),
+    ("spectral/layer_scales.py", "PM_ALPHA, omega_p, 1.0, U", "PM_ALPHA, omega_p, 1.0, 1.1 * U"),
+    ("spectral/layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA, omega_p, 1.0, 1.1 * U"),
+    ("spectral/layer_scales.py", "/ g**2, omega_p, 1.0, U", "/ g**2, omega_p, 1.0, 1.1 * U"),
     ("waves/spectral.py", "Wind(wind_at_10_m(self.wind_speed, self.wind_height)", "Wind(self.wind_speed"),
-    ("spectra.py", "_over(constants.DEVELOPMENT**-0.25 * g", "_over(1.05 * constants.DEVELOPMENT**-0.25 * g"),
-    ("statistics.py", "_LARGEST_SPEED_CHANGE = 0.1", "_LARGEST_SPEED_CHANGE = 0.105"),
+    ("spectral/spectra.py", "_over(constants.DEVELOPMENT**-", "_over(1.05 * constants.DEVELOPMENT**-"),
+    ("statistics/sea_statistics.py", "_LARGEST_SPEED_CHANGE = 0.1", "_LARGEST_SPEED_CHANGE = 0.105"),
     ("sea/query.py", "_STEPS = 40", "_STEPS = 8"),
-    ("memory.py", "_TEMPORARY_ARRAYS = 5", "_TEMPORARY_ARRAYS = 1"),
+    ("sea/memory.py", "_TEMPORARY_ARRAYS = 5", "_TEMPORARY_ARRAYS = 1"),
 )
 
 

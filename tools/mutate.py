@@ -48,11 +48,11 @@ FIRST = (
 
 #: changes after which the program does the same → why
 EQUIVALENT = {
-    "formula spreading.Shape.density x 1.05": "D is divided by its integral, which this makes too",
-    "formula spreading.cosine_power x 1.05": "D is divided by its integral, which this makes too",
-    "formula spreading.squared_sech x 1.05": "D is divided by its integral, which this makes too",
-    "formula random.hash_wave_vectors x 1.05": "whole numbers, which are left as they are",
-    "formula synthesis.term x 1.05": "whole numbers, which are left as they are",
+    "formula spectral.spreading.Shape.density x 1.05": "D is divided by its integral, which this makes too",
+    "formula spectral.spreading.cosine_power x 1.05": "D is divided by its integral, which this makes too",
+    "formula spectral.spreading.squared_sech x 1.05": "D is divided by its integral, which this makes too",
+    "formula numerics.random.hash_wave_vectors x 1.05": "whole numbers, which are left as they are",
+    "formula synthesis.transforms.term x 1.05": "whole numbers, which are left as they are",
     "formula waves.image.animation.dominant_band x 1.05": "truth values, which are left as they are",
     "formula waves.wind_field.life.divisions x 1.05": "whole numbers, which are left as they are",
     "formula waves.wind_field.wind_waves.WindWaves.shares x 1.05": "no numbers: they are made by the block",

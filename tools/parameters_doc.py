@@ -9,8 +9,9 @@ import sys
 from fractions import Fraction
 from typing import Any
 
-from ocean_tweak.core.channels import CHANNELS, MAPS, Channel
-from ocean_tweak.core.parameters import (
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.data.validation import default_of
+from ocean_tweak.core.parameters.ocean_parameters import (
     Foam,
     Mask,
     OceanParameters,
@@ -19,8 +20,7 @@ from ocean_tweak.core.parameters import (
     Water,
     WindKey,
 )
-from ocean_tweak.core.raster import Raster
-from ocean_tweak.core.validation import default_of
+from ocean_tweak.core.synthesis.channels import CHANNELS, MAPS, Channel
 from ocean_tweak.core.waves.kinds import shown
 
 from .project import ROOT

@@ -7,9 +7,9 @@ import argparse
 import re
 from pathlib import Path
 
-from ..core.cascades.plan import Wish
-from ..core.errors import ParameterError
-from ..core.frames import Frame, parse_frames
+from ..core.data.errors import ParameterError
+from ..core.data.frames import Frame, parse_frames
+from ..core.sea.patch_plan import Wish
 from ..export.cache.job import UID
 from ..export.frame_files import BAKED
 from ..export.places import path_of

@@ -7,8 +7,8 @@ import argparse
 from typing import Any
 
 from .. import __version__
-from ..core.channels import MOVING_MAP
-from ..core.presets import built_in
+from ..core.parameters.presets import built_in
+from ..core.synthesis.channels import MOVING_MAP
 from ..export.exr import COMPRESSION_ERROR
 from ..export.frame_files import BAKED
 from ..export.places import CACHE_VARIABLE

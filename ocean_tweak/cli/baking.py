@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import NoReturn
 
 from .. import __version__
-from ..core.bake import BakedFrame
-from ..core.bake import bake as make_frames
-from ..core.frames import Frame, format_frames
-from ..core.machine import usable_cores
-from ..core.memory import check_memory
-from ..core.printable import LONGEST, printable, readable_bytes
+from ..core.data.frames import Frame, format_frames
+from ..core.data.printable import LONGEST, printable, readable_bytes
+from ..core.numerics.machine import usable_cores
+from ..core.sea.bake import BakedFrame
+from ..core.sea.bake import bake as make_frames
+from ..core.sea.memory import check_memory
 from ..export import logs
 from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory
 from ..export.cache.job import (

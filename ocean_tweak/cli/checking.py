@@ -8,9 +8,9 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..core.frames import Frame, format_frames
-from ..core.plain_data import to_plain
-from ..core.printable import printable, readable_bytes
+from ..core.data.frames import Frame, format_frames
+from ..core.data.plain_data import to_plain
+from ..core.data.printable import printable, readable_bytes
 from ..export.cache.clean import clean as clean_frames
 from ..export.cache.clean import foreign_images, remove_rest
 from ..export.cache.job import CacheError, Job, is_bake, read_job

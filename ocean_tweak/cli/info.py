@@ -11,13 +11,14 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..core import Ocean, OceanParameters, sea_scales
-from ..core.cascades.patch import NO_LONGEST
-from ..core.foam_threshold import foam_outlook
-from ..core.memo import MEMO
-from ..core.memory import beyond_budget, check_memory
-from ..core.printable import readable_bytes
-from ..core.statistics import SeaState, Statistics
+from ..core import Ocean, OceanParameters
+from ..core.data.printable import readable_bytes
+from ..core.foam.threshold import foam_outlook
+from ..core.numerics.memo import MEMO
+from ..core.parameters.patch import NO_LONGEST
+from ..core.sea.memory import beyond_budget, check_memory
+from ..core.statistics import sea_scales
+from ..core.statistics.sea_statistics import SeaState, Statistics
 from ..core.waves.contribution import Contribution, Outlook
 from ..core.waves.kinds import KINDS
 from ..core.waves.spectral import WaveLayer

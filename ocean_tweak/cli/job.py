@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from ..core.frames import Frame, format_frames
+from ..core.data.frames import Frame, format_frames
 from ..export.cache.job import Job
 from ..export.farm import flamenco, openjd
 from ..export.farm.shot_job import BAKERS, Render, ShotJob

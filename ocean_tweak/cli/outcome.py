@@ -7,7 +7,7 @@ import errno
 import shlex
 from pathlib import Path
 
-from ..core.printable import LONGEST, printable
+from ..core.data.printable import LONGEST, printable
 
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
 

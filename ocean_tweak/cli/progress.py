@@ -11,10 +11,10 @@ import time
 from collections.abc import Callable
 from typing import Any, TextIO
 
-from ..core.bake import BakedFrame
-from ..core.frames import Frame, format_frames
-from ..core.plain_data import to_plain
-from ..core.printable import LONGEST, printable
+from ..core.data.frames import Frame, format_frames
+from ..core.data.plain_data import to_plain
+from ..core.data.printable import LONGEST, printable
+from ..core.sea.bake import BakedFrame
 from ..export.logs import PRINTED
 
 _LOG = logging.getLogger(__name__)

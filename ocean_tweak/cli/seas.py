@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core import OceanParameters, ParameterError
-from ..core.cascades.plan import planned
-from ..core.frames import Frame
-from ..core.parameters import parse_json
-from ..core.presets import built_in
-from ..core.printable import printable
-from ..core.shot import Shot
+from ..core.data.frames import Frame
+from ..core.data.printable import printable
+from ..core.parameters.ocean_parameters import parse_json
+from ..core.parameters.presets import built_in
+from ..core.parameters.shot import Shot
+from ..core.sea.patch_plan import planned
 from ..export.files import LARGEST_JSON
 from ..export.sea_files import read_sea, sea_of_text
 from .outcome import UsageError

@@ -10,10 +10,10 @@ from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
-from ..core.frames import Frame, format_frames
-from ..core.plain_data import to_plain
-from ..core.printable import readable_bytes
-from ..core.shot import Shot
+from ..core.data.frames import Frame, format_frames
+from ..core.data.plain_data import to_plain
+from ..core.data.printable import readable_bytes
+from ..core.parameters.shot import Shot
 from ..export.cache.job import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.apart import problems_of

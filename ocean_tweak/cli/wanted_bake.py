@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..core.frames import Frame, format_frames
+from ..core.data.frames import Frame, format_frames
 from ..export.cache.job import CacheError, Job, bakes_in, find_folder, safe_name, uid_of
 from ..export.cache.records import recorded_frames
 from ..export.places import CACHE_VARIABLE, environment_cache

@@ -30,9 +30,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
-from ..core.bake import BakedFrame
-from ..core.bake import bake as make_frames
-from ..core.frames import Frame, format_frames, parse_frames
+from ..core.data.frames import Frame, format_frames, parse_frames
+from ..core.sea.bake import BakedFrame
+from ..core.sea.bake import bake as make_frames
 from ..export import logs
 from ..export.cache.job import CacheError, Job, read_job
 from ..export.cache.records import CacheSink, give_up_writing

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sea itself: NumPy and the standard library, nothing else."""
 
-from .parameters import (
+from .data.raster import Raster
+from .parameters.ocean_parameters import (
     Foam,
     HeroWave,
     Mask,
@@ -15,10 +16,9 @@ from .parameters import (
     WindFieldLayer,
     WindKey,
 )
-from .raster import Raster
 from .sea.ocean import Ocean
 from .sea.on import Area, Places, Tile
-from .sea_state_match import layer_for_sea_state
+from .statistics.sea_state_match import layer_for_sea_state
 
 __all__ = [
     "Area",

@@ -20,13 +20,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import formats
-from ..core.channels import MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
-from ..core.errors import ParameterError
-from ..core.frames import Frame
-from ..core.parameters import OceanParameters, Patch
-from ..core.plain_data import to_plain
-from ..core.printable import printable
+from ..core.data import formats
+from ..core.data.errors import ParameterError
+from ..core.data.frames import Frame
+from ..core.data.plain_data import to_plain
+from ..core.data.printable import printable
+from ..core.parameters.ocean_parameters import OceanParameters, Patch
+from ..core.synthesis.channels import MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
 from .files import open_file, whole_file
 from .frame_files import frame_file
 

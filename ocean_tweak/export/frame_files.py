@@ -6,8 +6,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from ..core.channels import MAPS
-from ..core.frames import Frame, frame_label
+from ..core.data.frames import Frame, frame_label
+from ..core.synthesis.channels import MAPS
 
 #: what stands in the place of a map's name in files of points: all samples, and means for windows
 POINTS, SMALL_POINTS = "points", "small_points"

@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ..core.printable import LONGEST, printable
+from ..core.data.printable import LONGEST, printable
 
 #: of the record of a line that a command has printed itself: it goes to the file alone
 PRINTED = {"printed": True}

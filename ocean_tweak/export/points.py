@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.cascades.patch_seas import Part
-from ..core.channels import CHANNELS, SurfaceFields
-from ..core.frames import Frame
+from ..core.data.frames import Frame
+from ..core.parameters.patch_seas import Part
+from ..core.synthesis.channels import CHANNELS, SurfaceFields
 from .exr import ExrError
 from .files import open_file, whole_file
 from .frame_files import POINTS, SMALL_POINTS, frame_file

@@ -6,11 +6,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..core.errors import ParameterError
-from ..core.former_json import modern
-from ..core.parameters import OceanParameters
-from ..core.plain_data import parse_json
-from ..core.shot import Shot
+from ..core.data.errors import ParameterError
+from ..core.data.plain_data import parse_json
+from ..core.parameters.former_json import modern
+from ..core.parameters.ocean_parameters import OceanParameters
+from ..core.parameters.shot import Shot
 from .files import LARGEST_JSON, read_bytes, write_text
 from .pictures import read_picture, with_pictures
 from .pictures.references import Reader

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..core.cascades.patch import MOST_PATCHES
+from ..core.parameters.patch import MOST_PATCHES
 from .averaged import AVERAGED
 from .averages import OTHERS, SLOPES, ocean_carried
 from .building import Builder, Plug, Socket, output

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.surface_detail import foam_lace, gusts, ripple_slopes
+from .surface_detail import foam_lace, gusts, ripple_slopes
 
 _KEY = "ocean_tweak_image"
 _RESOLUTION = 512

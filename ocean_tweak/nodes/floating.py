@@ -11,7 +11,7 @@ import math
 
 import bpy
 
-from ..core.waterline import POINTS
+from ..core.sea.waterline import POINTS
 from .building import Builder, Input, Plug, Socket, output
 from .fields import alone, combined, connect, coordinates, sample_index, whole_number
 from .sample import OCEAN_INPUT, Spaces

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..core.channels import CHANNELS
+from ..core.synthesis.channels import CHANNELS
 
 #: point attributes of the evaluated mesh: Blender units, Blender units per second of scene time, 0…1, and
 #: how far the surface is squeezed; NORMAL is the one that Blender takes for the mesh's free custom normals

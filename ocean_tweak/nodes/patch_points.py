@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..core.channels import CHANNELS
+from ..core.synthesis.channels import CHANNELS
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, named_attribute, sample_index, whole_number
 from .names import DISPLACEMENT, SLOPE, SLOPE_VARIANCE, STRAIN, VELOCITY

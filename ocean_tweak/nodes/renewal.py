@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from ..core.formats import NewerFormatError
+from ..core.data.formats import NewerFormatError
 from .modifier_inputs import all_inputs, input_sockets, set_inputs
 from .versioned import GroupKind, check_not_newer, is_stale, node_group
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..core.formats import NewerFormatError
+from ..core.data.formats import NewerFormatError
 
 _KEY = "ocean_tweak_group"
 

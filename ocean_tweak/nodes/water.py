@@ -19,10 +19,10 @@ from typing import NamedTuple
 
 import bpy
 
-from ..core.surface_detail import FEWEST_WAVES, MOST_WAVES
 from .building import Panel, Plug, Socket
 from .names import CUSP, FOAM, SHORTEST_WAVE, SLOPE_VARIANCE
 from .shading import Shading
+from .surface_detail import FEWEST_WAVES, MOST_WAVES
 from .versioned import GroupKind
 from .water_foam import foam_cover, foam_shader
 from .water_pattern import DEPTH, SLOPES, Place, gust, place, slopes, tile

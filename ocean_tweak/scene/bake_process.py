@@ -13,8 +13,8 @@ from typing import Any
 
 import bpy
 
-from ..core.frames import Frame, format_frames
-from ..core.shot import Shot
+from ..core.data.frames import Frame, format_frames
+from ..core.parameters.shot import Shot
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
 from .maps import maps_of, wanted_channels

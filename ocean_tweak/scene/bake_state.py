@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..core import OceanParameters, ParameterError
-from ..core.former_json import modern
-from ..core.memo import remembered
-from ..core.raster import has_brief_rasters, raster_bytes
-from ..core.shot import OCEAN_TIME, Moment, Shot
+from ..core.data.raster import has_brief_rasters, raster_bytes
+from ..core.numerics.memo import remembered
+from ..core.parameters.former_json import modern
+from ..core.parameters.shot import OCEAN_TIME, Moment, Shot
 from ..export.cache.job import JOB_FILE, CacheError, read_job
 from ..export.exr import ExrError, read_header
 from . import alarm

@@ -14,7 +14,7 @@ from typing import IO, Any, ClassVar
 
 import bpy
 
-from ..core.shot import Shot
+from ..core.parameters.shot import Shot
 from ..export import logs
 from ..export.python_process import environment
 

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
-from ..core.bilinear import resampled
-from ..core.channels import CHANNELS, FOAM
-from ..core.foam import FoamHistory, FoamModel
-from ..core.foam_threshold import LEAST_SQUEEZE, foam_outlook
-from ..core.memo import MEMO, total_bytes
+from ..core.foam.model import FoamHistory, FoamModel
+from ..core.foam.threshold import LEAST_SQUEEZE, foam_outlook
+from ..core.numerics.bilinear import resampled
+from ..core.numerics.memo import MEMO, total_bytes
+from ..core.synthesis.channels import CHANNELS, FOAM
 
 RealArray = NDArray[np.float32]
 

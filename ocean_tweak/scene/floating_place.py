@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..core.sea.query import find_points
 from ..core.sea.surfaces import bilinear
-from ..core.waterline import fitted_plane, stencil
+from ..core.sea.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
 from . import evaluation
 from .animated import shown_settings

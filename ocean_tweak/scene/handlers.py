@@ -13,7 +13,7 @@ from functools import wraps
 import bpy
 from bpy.app.handlers import persistent
 
-from ..core.memo import MEMO
+from ..core.numerics.memo import MEMO
 from ..nodes.absence import show_that_it_ends, show_that_it_runs
 from ..nodes.kinds import ALL_KINDS
 from ..nodes.renewal import renew_groups

@@ -13,8 +13,8 @@ from pathlib import Path
 import bpy
 
 from ..core import ParameterError, Timing
-from ..core.channels import MOVING_MAP
-from ..core.frames import MOST_FRAMES, format_frames, held_frame, parse_frames
+from ..core.data.frames import MOST_FRAMES, format_frames, held_frame, parse_frames
+from ..core.synthesis.channels import MOVING_MAP
 from ..export.exr import ExrError, NewerExrError, read_header, read_size
 from ..export.frame_files import ImageFile, frame_file, image_file_of
 from ..nodes.names import MAP_INPUTS

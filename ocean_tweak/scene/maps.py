@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from ..core.channels import CHANNELS, MAPS
+from ..core.synthesis.channels import CHANNELS, MAPS
 from ..nodes.names import MAP_INPUTS
 from .settings import OceanSettings
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 
-from ..core.channels import MOVING_MAP
+from ..core.synthesis.channels import MOVING_MAP
 from ..nodes.grid import GRID
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import MAP_INPUTS, TEXTURE_COORDINATES

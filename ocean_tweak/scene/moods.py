@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..core import Foam, OceanParameters, Timing, WaveLayer
-from ..core.presets import built_in
+from ..core.parameters.presets import built_in
 from .sky import Sky
 
 #: where the camera looks, rad counter-clockwise from +x: along +y, as Blender's front view does

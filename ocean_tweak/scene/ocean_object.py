@@ -8,7 +8,7 @@ import logging
 import bpy
 
 from ..core import OceanParameters
-from ..core.frames import format_frames
+from ..core.data.frames import format_frames
 from ..nodes.names import MAP_INPUTS
 from . import grid_mesh, modifiers, patch_objects, vertex_attributes
 from .cache_place import new_uid

@@ -16,12 +16,12 @@ import bpy
 import numpy as np
 
 from ..core import OceanParameters
-from ..core.cascades.patch_seas import Part, parts
-from ..core.channels import ADDING, CHANNELS, Channel
-from ..core.fingerprint import fingerprint
+from ..core.data.plain_data import to_plain
 from ..core.masks.parameters import Mask
 from ..core.masks.weights import weights
-from ..core.plain_data import to_plain
+from ..core.parameters.fingerprint import fingerprint
+from ..core.parameters.patch_seas import Part, parts
+from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
 from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
 from ..nodes.modifier_inputs import set_inputs

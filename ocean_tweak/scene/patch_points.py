@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 
 from ..core import OceanParameters
-from ..core.cascades.patch_seas import Part
+from ..core.parameters.patch_seas import Part
 from ..export.cache.job import JOB_FILE
 from ..export.frame_files import POINTS, SMALL_POINTS, files_start, image_file_of
 from ..export.points import MOST_IN_WINDOW

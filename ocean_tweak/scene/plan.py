@@ -10,7 +10,7 @@ from fractions import Fraction
 import bpy
 
 from ..core import OceanParameters
-from ..core.machine import usable_memory
+from ..core.numerics.machine import usable_memory
 from .animated import clock_of
 from .grid_mesh import Grid
 from .image_sequence import baked_stretch

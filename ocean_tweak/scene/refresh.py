@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 
 from ..core import OceanParameters, ParameterError
-from ..core.channels import CHANNELS, MOVING_MAP, channels_of, image_of
-from ..core.frames import format_frames
+from ..core.data.frames import format_frames
+from ..core.synthesis.channels import CHANNELS, MOVING_MAP, channels_of, image_of
 from . import (
     alarm,
     bake_state,

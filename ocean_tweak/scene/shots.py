@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator
 import bpy
 
 from ..core import OceanParameters
-from ..core.frames import Frame
-from ..core.shot import OCEAN_TIME, Animation, Shot
-from ..core.validation import changing_fields
+from ..core.data.frames import Frame
+from ..core.data.validation import changing_fields
+from ..core.parameters.shot import OCEAN_TIME, Animation, Shot
 from . import handlers
 from .animated import clock_of, is_animated, set_keys, shown_settings
 from .settings import settings_of

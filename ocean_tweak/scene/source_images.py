@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import ParameterError, Raster
-from ..core.memo import MEMO, remembered
-from ..core.raster import LARGEST_SIDE
+from ..core.data.raster import LARGEST_SIDE
+from ..core.numerics.memo import MEMO, remembered
 from ..export.pictures import exr_pictures, read_picture, tiff
 from ..export.pictures.checks import UnusableError, opened
 from ..export.pictures.reading import raster_in

@@ -12,8 +12,8 @@ from typing import Any
 
 import bpy
 
-from ..core.frames import Frame, format_frames
-from ..core.shot import Shot
+from ..core.data.frames import Frame, format_frames
+from ..core.parameters.shot import Shot
 from ..export.usd.apart import read_package
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import OPTIONS, command_arguments

@@ -7,8 +7,8 @@ import re
 from functools import lru_cache
 from pathlib import Path
 
-from ..core.parameters import ParameterError
-from ..core.presets import LARGEST, Preset, built_in
+from ..core.parameters.ocean_parameters import ParameterError
+from ..core.parameters.presets import LARGEST, Preset, built_in
 from ..export.files import read_bytes, write_text
 from .preferences import user_folder
 

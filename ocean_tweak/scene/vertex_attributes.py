@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.bilinear import stretched
-from ..core.channels import CHANNELS, Channel
+from ..core.numerics.bilinear import stretched
+from ..core.synthesis.channels import CHANNELS, Channel
 from .grid_mesh import Grid
 
 RealArray = NDArray[np.float32]

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 import bpy
 
 from ..core import OceanParameters
-from ..core.foam_threshold import foam_wind
-from ..core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ..core.foam.threshold import foam_wind
+from ..core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ..nodes.shading import Shading
 from ..nodes.versioned import is_stale, node_group
 from ..nodes.water import WATER

@@ -25,10 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Raster, WindKey
-from ..core.memo import MEMO
-from ..core.parameters import ParameterError
-from ..core.plain_data import from_plain, parse_json, to_plain
-from ..core.raster import check_numbers, numbers_in, raster_bytes
+from ..core.data.plain_data import from_plain, parse_json, to_plain
+from ..core.data.raster import check_numbers, numbers_in, raster_bytes
+from ..core.numerics.memo import MEMO
+from ..core.parameters.ocean_parameters import ParameterError
 from ..core.waves.wind_field.parameters import MOST_KEYS
 from .animated import clock_of, shown_settings
 from .settings import OceanObjectError

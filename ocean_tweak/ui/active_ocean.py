@@ -5,7 +5,7 @@ from collections.abc import Sized
 
 import bpy
 
-from ..core.printable import LONGEST, printable
+from ..core.data.printable import LONGEST, printable
 from ..scene.settings import OceanSettings, is_ocean
 
 

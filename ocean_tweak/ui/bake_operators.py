@@ -7,7 +7,7 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, StringProperty
 
-from ..core.printable import readable_bytes
+from ..core.data.printable import readable_bytes
 from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..scene import bake_process, bake_versions, cache_place, ocean_object

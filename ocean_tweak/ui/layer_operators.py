@@ -7,7 +7,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..core import OceanParameters, ParameterError
-from ..core.validation import changing_fields
+from ..core.data.validation import changing_fields
 from ..core.waves.contribution import Contribution
 from ..core.waves.kinds import shown
 from ..core.waves.wind_field.presets import WIND_FIELDS, wind_field

@@ -28,8 +28,8 @@ from ..core import (
     WindFieldLayer,
     WindKey,
 )
-from ..core.plain_data import to_plain
-from ..core.raster import Raster
+from ..core.data.plain_data import to_plain
+from ..core.data.raster import Raster
 from ..core.waves.contribution import Contribution
 from ..core.waves.kinds import shown
 from ..scene import source_images, wind_recording

@@ -9,7 +9,7 @@ import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ..core import Mask, ParameterError
-from ..core.plain_data import to_plain
+from ..core.data.plain_data import to_plain
 from ..scene import source_images
 from ..scene.source_images import ImageSource
 from . import parameter_properties

@@ -18,9 +18,9 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..core.errors import ParameterError
-from ..core.raster import Raster
-from ..core.validation import default_of
+from ..core.data.errors import ParameterError
+from ..core.data.raster import Raster
+from ..core.data.validation import default_of
 from ..scene import bake_versions, stored_paths
 from ..scene.refinement import show
 from ..scene.refresh import Wanted

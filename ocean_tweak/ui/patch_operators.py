@@ -5,9 +5,9 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 
 from ..core import OceanParameters, ParameterError
-from ..core.cascades.editing import with_another_patch, without_patch
-from ..core.cascades.patch import MOST_PATCHES
-from ..core.cascades.plan import planned
+from ..core.parameters.patch import MOST_PATCHES
+from ..core.sea.patch_editing import with_another_patch, without_patch
+from ..core.sea.patch_plan import planned
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfOwnList, nearest, refuse
 from .patch_properties import wish_of

@@ -16,8 +16,8 @@ import bpy
 from bpy.props import FloatProperty, IntProperty, PointerProperty
 
 from ..core import OceanParameters, ParameterError, Patch
-from ..core.cascades.plan import WISHES, Wish
-from ..core.plain_data import to_plain
+from ..core.data.plain_data import to_plain
+from ..core.sea.patch_plan import WISHES, Wish
 from ..scene.settings import OceanObjectError
 from ..scene.units import metres_per_unit, shortest_decimal
 from . import mask_properties, parameter_properties

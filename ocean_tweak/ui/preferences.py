@@ -9,8 +9,8 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 from ..core import ParameterError
-from ..core.memo import MEMO, UNITS, VARIABLE
-from ..core.printable import readable_bytes
+from ..core.data.printable import readable_bytes
+from ..core.numerics.memo import MEMO, UNITS, VARIABLE
 from ..export import logs
 from ..scene.preferences import preferences
 

@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..core import ParameterError
-from ..core.presets import Preset
+from ..core.parameters.presets import Preset
 from ..export.files import write_text
 from ..scene import user_presets
 from ..scene.settings import OceanObjectError, settings_of

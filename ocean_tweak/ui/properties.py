@@ -17,7 +17,7 @@ from bpy.props import (
 )
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
-from ..core.plain_data import from_plain, to_plain
+from ..core.data.plain_data import from_plain, to_plain
 from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
 from ..scene import cache_place, ocean_object

@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty
 from mathutils import Matrix
 
 from ..core import Ocean, OceanParameters, ParameterError, WaveLayer, layer_for_sea_state
-from ..core.presets import built_in
+from ..core.parameters.presets import built_in
 from ..scene import conversion, ocean_object
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfActiveOcean, refuse

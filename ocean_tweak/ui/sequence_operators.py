@@ -6,7 +6,7 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..core.frames import format_frames
+from ..core.data.frames import format_frames
 from ..export.exr import ExrError
 from ..scene import bake_state, ocean_object
 from ..scene.image_sequence import find_sequence

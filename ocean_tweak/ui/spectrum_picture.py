@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import OceanParameters
-from ..core.bilinear import between
-from ..core.spectrum_curves import FrequencyCurves, PolarDensity, frequency_curves, polar_density
+from ..core.numerics.bilinear import between
+from ..core.statistics.spectrum_curves import FrequencyCurves, PolarDensity, frequency_curves, polar_density
 
 Pixels = NDArray[np.float32]
 

@@ -8,8 +8,8 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..core.frames import format_frames
-from ..core.printable import readable_bytes
+from ..core.data.frames import format_frames
+from ..core.data.printable import readable_bytes
 from ..export.usd import library
 from ..export.usd.reading import SUFFIXES
 from ..scene import ocean_object, usd

@@ -25,9 +25,9 @@ import numpy as np
 
 from ocean_tweak.cli import main
 from ocean_tweak.core import OceanParameters, ParameterError
-from ocean_tweak.core.plain_data import parse_json
-from ocean_tweak.core.raster import Raster
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.data.plain_data import parse_json
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.cache.job import sealed
 from ocean_tweak.export.cache.records import file_hash
 from ocean_tweak.export.exr import ExrError, read_header, read_image

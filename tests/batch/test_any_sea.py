@@ -13,8 +13,8 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.bake import bake
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.bake import bake
 from ocean_tweak.export.cache.job import Job, maps_for
 from ocean_tweak.export.cache.records import CacheSink
 from ocean_tweak.export.exr import read_image

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.cache.job import read_job, sealed
 from ocean_tweak.export.cache.records import CacheSink, file_hash, read_record
 from ocean_tweak.export.exr import read_image, write_image
@@ -147,7 +147,7 @@ def seal_record(folder: Path, frame: int) -> None:
 
 
 def write_frame(folder: Path, job, frame: int) -> None:
-    from ocean_tweak.core.bake import ShotSurfaces
+    from ocean_tweak.core.sea.bake import ShotSurfaces
 
     CacheSink(folder, job).write(frame, ShotSurfaces(job.shot).frame(frame, job.outputs))
 

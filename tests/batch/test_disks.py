@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import memory
+from ocean_tweak.core.sea import memory
 from ocean_tweak.export import files
 from ocean_tweak.export.cache import estimate as cache_estimate
 from tests.batch.bakery import (

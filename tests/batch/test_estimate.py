@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.cache import estimate as cache_estimate
 from ocean_tweak.export.cache.estimate import estimate, process_memory
 from ocean_tweak.export.cache.job import Job

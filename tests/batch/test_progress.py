@@ -19,8 +19,8 @@ import pytest
 
 from ocean_tweak.cli import main, progress
 from ocean_tweak.cli.progress import Progress
-from ocean_tweak.core.bake import BakedFrame
-from ocean_tweak.core.foam import FoamModel
+from ocean_tweak.core.foam.model import FoamModel
+from ocean_tweak.core.sea.bake import BakedFrame
 from ocean_tweak.export import logs
 from tests.batch.bakery import ROOT, SOON, command, each_json_line, images, only_folder, run, write_sea
 
@@ -296,7 +296,7 @@ def test_several_seas_one_after_the_other(tmp_path: Path, capsys: pytest.Capture
     """Where one fails, the next is not begun as if nothing had been."""
     from ocean_tweak.cli import FileSea
     from ocean_tweak.core import OceanParameters
-    from ocean_tweak.core.shot import Shot
+    from ocean_tweak.core.parameters.shot import Shot
 
     oceans = {name: FileSea(Shot(OceanParameters(resolution=16, seed=len(name)))) for name in ("A", "BB")}
     bad = tmp_path / "bad"

@@ -247,7 +247,7 @@ import bpy, sys, time
 sys.path.insert(0, sys.argv[1])
 import ocean_tweak.registration as registration
 registration.register()
-from ocean_tweak.core.parameters import OceanParameters
+from ocean_tweak.core.parameters.ocean_parameters import OceanParameters
 from ocean_tweak.scene import bake_process, ocean_object, shots
 scene = bpy.context.scene
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])

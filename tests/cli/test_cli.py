@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import FileSea, info, main
-from ocean_tweak.core import Ocean, OceanParameters, WaveLayer, memory
-from ocean_tweak.core.memo import MEMO
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.core.numerics.memo import MEMO
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea import memory
 from ocean_tweak.export.exr import read_image
 
 ROOT = Path(__file__).parents[2]

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.channels import OF_WAVES
-from ocean_tweak.core.initial_state import InitialState
-from ocean_tweak.core.synthesis import Rows, Synthesis
+from ocean_tweak.core.synthesis.channels import OF_WAVES
+from ocean_tweak.core.synthesis.initial_state import InitialState
+from ocean_tweak.core.synthesis.transforms import Rows, Synthesis
 
 Wave = tuple[float, float, float, float, float]
 

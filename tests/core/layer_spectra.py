@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ocean_tweak.core import Water, WaveLayer
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
 
 DEEP = Water(depth=11e3)
 

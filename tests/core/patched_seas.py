@@ -8,7 +8,7 @@ import dataclasses
 import numpy as np
 
 from ocean_tweak.core import Ocean, OceanParameters, Patch, WaveLayer
-from ocean_tweak.core.cascades.patch_seas import patch_parameters
+from ocean_tweak.core.parameters.patch_seas import patch_parameters
 from tests.core import direct_sum
 
 LAYER = WaveLayer(wind_speed=10.0, wind_direction=0.4, fetch=100e3)

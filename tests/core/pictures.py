@@ -8,10 +8,10 @@ from fractions import Fraction
 import numpy as np
 
 from ocean_tweak.core import OceanParameters, Water
-from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.initial_state import InitialState
-from ocean_tweak.core.raster import Raster
-from ocean_tweak.core.synthesis import Synthesis, Z
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
+from ocean_tweak.core.synthesis.initial_state import InitialState
+from ocean_tweak.core.synthesis.transforms import Synthesis, Z
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from ocean_tweak.core.waves.image.state import picture_waves
 

@@ -27,7 +27,7 @@ from ocean_tweak.core import (
     WindFieldLayer,
     WindKey,
 )
-from ocean_tweak.core.validation import OPEN
+from ocean_tweak.core.data.validation import OPEN
 
 
 def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:

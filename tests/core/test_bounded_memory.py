@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Foam, Mask, Ocean, OceanParameters, Patch, Timing, WaveLayer, WindFieldLayer
-from ocean_tweak.core.bake import ShotSurfaces, bake
-from ocean_tweak.core.memo import MEMO
+from ocean_tweak.core.numerics.memo import MEMO
+from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.sea.bake import ShotSurfaces, bake
 from ocean_tweak.core.sea.on import Places
-from ocean_tweak.core.shot import Animation, Shot
 
 MB = 10**6
 PATCHES = (

@@ -11,16 +11,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, Patch, PictureLayer, WaveLayer, spectra
-from ocean_tweak.core.channels import FOAM, OF_WAVES
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.foam_threshold import foam_outlook
-from ocean_tweak.core.initial_state import initial_state
-from ocean_tweak.core.layer_scales import layer_scales
-from ocean_tweak.core.sea_scales import beaufort_number
-from ocean_tweak.core.shot import Animation, Shot
-from ocean_tweak.core.spectrum_curves import frequency_curves, polar_density
-from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ocean_tweak.core import Ocean, OceanParameters, Patch, PictureLayer, WaveLayer
+from ocean_tweak.core.foam.threshold import foam_outlook
+from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.spectral import spectra
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.layer_scales import layer_scales
+from ocean_tweak.core.statistics.sea_scales import beaufort_number
+from ocean_tweak.core.statistics.spectrum_curves import frequency_curves, polar_density
+from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ocean_tweak.core.synthesis.channels import FOAM, OF_WAVES
+from ocean_tweak.core.synthesis.initial_state import initial_state
 from ocean_tweak.core.waves.image.parameters import ANIMATIONS, FILTER_GAINS
 from ocean_tweak.core.waves.spectral import SPREADINGS
 from tests.layers import with_layers

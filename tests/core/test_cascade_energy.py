@@ -10,10 +10,10 @@ import pytest
 from scipy import integrate
 
 from ocean_tweak.core import Ocean, OceanParameters, Patch, Places, Water, WaveLayer
-from ocean_tweak.core.cascades.patch_seas import patch_parameters
-from ocean_tweak.core.channels import OF_WAVES
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.dispersion import angular_frequency
+from ocean_tweak.core.parameters.patch_seas import patch_parameters
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.dispersion import angular_frequency
+from ocean_tweak.core.synthesis.channels import OF_WAVES
 from tests.core.patched_seas import LAYER, SEA, THREE
 
 GENERATOR = np.random.default_rng(11)

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Area, Foam, Ocean, OceanParameters, Patch, Places
-from ocean_tweak.core.channels import OF_WAVES
-from ocean_tweak.core.foam import FoamModel, foam_at
-from ocean_tweak.core.foam_threshold import whitecap_coverage
+from ocean_tweak.core.foam.model import FoamModel, foam_at
+from ocean_tweak.core.foam.threshold import whitecap_coverage
+from ocean_tweak.core.synthesis.channels import OF_WAVES
 from tests.core.patched_seas import LAYER, SEA, THREE, small, summed
 from tests.core.test_fields import outputs_from
 

@@ -13,8 +13,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ocean_tweak.core import Area, Ocean, OceanParameters, ParameterError, Patch, WaveLayer
-from ocean_tweak.core.cascades.plan import SPARE, Wish, odd_side, planned
-from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core.sea.memory import memory_need
+from ocean_tweak.core.sea.patch_plan import SPARE, Wish, odd_side, planned
 
 QUICK = settings(
     max_examples=120, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]

@@ -24,12 +24,12 @@ from ocean_tweak.core import (
     WindFieldLayer,
     WindKey,
 )
-from ocean_tweak.core.cascades.patch_seas import patch_parameters
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.dispersion import angular_frequency
-from ocean_tweak.core.memory import memory_need
-from ocean_tweak.core.shot import Animation, Shot
-from ocean_tweak.core.unresolved_slopes import unresolved_slope_variance
+from ocean_tweak.core.parameters.patch_seas import patch_parameters
+from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.sea.memory import memory_need
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.dispersion import angular_frequency
+from ocean_tweak.core.statistics.unresolved_slopes import unresolved_slope_variance
 from tests.core.patched_seas import LAYER, SEA, THREE, small
 from tests.layers import layers_of, with_layers
 

@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
-from ocean_tweak.core.channels import CHANNELS, MAPS, channels_of, image_of, is_put_together, unit_of
+from ocean_tweak.core.synthesis.channels import (
+    CHANNELS,
+    MAPS,
+    channels_of,
+    image_of,
+    is_put_together,
+    unit_of,
+)
 
 SEA = OceanParameters(resolution=16, domain_size=60.0, layers=(WaveLayer(wind_speed=12.0, fetch=20e3),))
 #: on a flat sea all directions are squeezed alike

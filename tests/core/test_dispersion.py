@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Water, dispersion
+from ocean_tweak.core import Water
+from ocean_tweak.core.spectral import dispersion
 
 K = np.geomspace(1e-4, 1e4, 400)
 WATERS = [

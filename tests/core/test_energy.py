@@ -10,12 +10,12 @@ import pytest
 from scipy import integrate
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.dispersion import angular_frequency
-from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.initial_state import initial_state
-from ocean_tweak.core.propagation import propagate
-from ocean_tweak.core.statistics import field_state
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.dispersion import angular_frequency
+from ocean_tweak.core.statistics.sea_statistics import field_state
+from ocean_tweak.core.synthesis.initial_state import initial_state
+from ocean_tweak.core.synthesis.propagation import propagate
 
 
 def test_parseval(windy: OceanParameters) -> None:

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Area, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer
-from ocean_tweak.core.bilinear import resampled
-from ocean_tweak.core.foam import FoamHistory, FoamModel, strength_levels
-from ocean_tweak.core.foam_threshold import (
+from ocean_tweak.core.foam.model import FoamHistory, FoamModel, strength_levels
+from ocean_tweak.core.foam.threshold import (
     foam_outlook,
     foam_wind,
     sampled_strains,
     strain_covariances,
     whitecap_coverage,
 )
+from ocean_tweak.core.numerics.bilinear import resampled
 
 SEA = OceanParameters(
     resolution=64, domain_size=200.0, seed=2, layers=(WaveLayer(wind_speed=15.0, wind_direction=0.7),)

@@ -10,14 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ocean_tweak.core import ParameterError
-from ocean_tweak.core.frames import (
-    Frame,
-    as_frame,
-    format_frames,
-    frame_label,
-    held_frame,
-    parse_frames,
-)
+from ocean_tweak.core.data.frames import Frame, as_frame, format_frames, frame_label, held_frame, parse_frames
 
 frames = st.one_of(
     st.integers(-20_000, 20_000),
@@ -72,7 +65,7 @@ def test_frames_of_all_parts_are_counted_before_any_is_made(monkeypatch: pytest.
     def made(*_: object) -> None:
         raise AssertionError("frames were made")
 
-    monkeypatch.setattr("ocean_tweak.core.frames._series", made)
+    monkeypatch.setattr("ocean_tweak.core.data.frames._series", made)
     with pytest.raises(ParameterError, match="at most 1000000 frames"):
         parse_frames("1-600000,1-600000")
 

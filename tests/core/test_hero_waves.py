@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ocean_tweak.core import HeroWave, Ocean, OceanParameters, ParameterError, Patch, Water, WaveLayer
-from ocean_tweak.core.fingerprint import frame_fingerprint
-from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.parameters.fingerprint import frame_fingerprint
+from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.waves.hero.group import needed_samples
 from tests.layers import layers_of, with_layers
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Places, WaveLayer
-from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.cascades.patch_seas import joined_bands, parts
-from ocean_tweak.core.foam_threshold import whitecap_coverage
-from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core.foam.threshold import whitecap_coverage
+from ocean_tweak.core.parameters.patch_seas import joined_bands, parts
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.sea.part_waves import PartWaves, strain_covariances
 from ocean_tweak.core.sea.tile import border_shares
-from ocean_tweak.core.shot import Shot
-from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from tests.core.patched_seas import LAYER, SEA, THREE, summed
 
 PATCHES, APART = THREE, SEA

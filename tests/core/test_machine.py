@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ocean_tweak.core import machine
+from ocean_tweak.core.numerics import machine
 
 GB = 2**30
 

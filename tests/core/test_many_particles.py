@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, WaveLayer, WindFieldLayer
-from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
+from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.waves.wind_field.bounds import bytes_of, most_particles
 from ocean_tweak.core.waves.wind_field.convolution import deposit
 from tests.core.stamping import stamp

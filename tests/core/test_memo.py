@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from ocean_tweak.core import ParameterError, memo
-from ocean_tweak.core.memo import Memo
+from ocean_tweak.core import ParameterError
+from ocean_tweak.core.numerics import memo
+from ocean_tweak.core.numerics.memo import Memo
 
 KB = 100_000
 

@@ -21,10 +21,10 @@ from ocean_tweak.core import (
     Timing,
     WaveLayer,
 )
-from ocean_tweak.core.dispersion import angular_frequency
-from ocean_tweak.core.fingerprint import shot_fingerprint
 from ocean_tweak.core.masks.weights import weights
-from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
+from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.spectral.dispersion import angular_frequency
 from ocean_tweak.core.waves.contribution import Contribution, Gives, Names, muted
 from ocean_tweak.core.waves.kinds import KINDS, shown
 from ocean_tweak.export.exr import read_image

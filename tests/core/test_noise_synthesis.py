@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy import integrate, special
 
-from ocean_tweak.core.errors import ParameterError
-from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.data.errors import ParameterError
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.waves.image import animation, filters, source
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from ocean_tweak.core.waves.image.state import filtered

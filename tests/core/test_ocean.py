@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Area, Mask, Ocean, OceanParameters, Patch, Places, Tile, WaveLayer
-from ocean_tweak.core.channels import CHANNELS
-from ocean_tweak.core.foam import FoamModel
-from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core.foam.model import FoamModel
+from ocean_tweak.core.sea.memory import memory_need
+from ocean_tweak.core.synthesis.channels import CHANNELS
 
 SIDE, SAMPLES = 120.0, 32
 WIND = WaveLayer(wind_speed=9.0, fetch=50e3)

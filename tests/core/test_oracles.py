@@ -11,7 +11,7 @@ from scipy import integrate, signal
 from wavespectra.construct import frequency
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
 from tests.core.layer_spectra import jonswap_scales, spectrum_of
 
 HERTZ = np.geomspace(0.03, 2.0, 400)

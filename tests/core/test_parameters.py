@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import OceanParameters, ParameterError, Timing, Water, WaveLayer
-from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.data.raster import Raster
 
 
 def test_json_round_trip_keeps_every_field() -> None:
@@ -110,7 +110,7 @@ def test_entries_of_lists_are_counted_before_they_are_made(monkeypatch: pytest.M
 
 def test_rasters_of_a_sea_are_counted_before_they_are_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
     plain = Raster(np.zeros((10, 10))).to_plain()
-    monkeypatch.setattr("ocean_tweak.core.raster.MOST_NUMBERS", 350)
+    monkeypatch.setattr("ocean_tweak.core.data.raster.MOST_NUMBERS", 350)
 
     def unpacked(_: object) -> None:
         raise AssertionError("a raster was made")

@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, WaveLayer
-from ocean_tweak.core.cascades.editing import with_another_patch, without_patch
+from ocean_tweak.core.sea.patch_editing import with_another_patch, without_patch
 
 LAYER = WaveLayer(wind_speed=11.0, fetch=80e3)
 ONE = OceanParameters(domain_size=300.0, resolution=128, layers=(LAYER,))

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.errors import ParameterError
-from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.data.errors import ParameterError
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.waves.image import animation
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from tests.core.pictures import DEEP, L, N, drawing, elevation, single_wave, spectrum, state

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
-from ocean_tweak.core.channels import OF_WAVES
-from ocean_tweak.core.errors import ParameterError
-from ocean_tweak.core.raster import Raster
-from ocean_tweak.core.shot import Animation, Shot
-from ocean_tweak.core.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ocean_tweak.core.data.errors import ParameterError
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
+from ocean_tweak.core.synthesis.channels import OF_WAVES
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from tests.core.pictures import L, drawing, single_wave
 from tests.layers import layers_of, with_layers

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Timing
-from ocean_tweak.core.presets import Preset, built_in
+from ocean_tweak.core.parameters.presets import Preset, built_in
 
 from ..reference import rows
 

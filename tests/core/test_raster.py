@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from ocean_tweak.core.errors import ParameterError
-from ocean_tweak.core.raster import Raster
+from ocean_tweak.core.data.errors import ParameterError
+from ocean_tweak.core.data.raster import Raster
 
 RAMP = np.arange(12.0).reshape(3, 4)
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, Timing, WaveLayer
-from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.fingerprint import frame_fingerprint, shot_fingerprint
-from ocean_tweak.core.shot import ANIMATED, Animation, Shot
+from ocean_tweak.core.parameters.fingerprint import frame_fingerprint, shot_fingerprint
+from ocean_tweak.core.parameters.shot import ANIMATED, Animation, Shot
+from ocean_tweak.core.sea.bake import ShotSurfaces
 
 SEA = OceanParameters(
     resolution=32, domain_size=120.0, layers=(WaveLayer(wind_speed=9.0), WaveLayer(wind_speed=4.0)),

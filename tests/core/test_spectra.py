@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scipy import integrate, special
 
-from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, spectra
-from ocean_tweak.core.spreading import Spreading, directional_spreading, donelan_banner_beta
+from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
+from ocean_tweak.core.spectral import spectra
+from ocean_tweak.core.spectral.spreading import Spreading, directional_spreading, donelan_banner_beta
 from tests import reference
 from tests.core.layer_spectra import jonswap_scales, spectrum_of
 

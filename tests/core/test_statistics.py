@@ -6,10 +6,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer, sea_scales
-from ocean_tweak.core.grid import WaveVectorGrid
-from ocean_tweak.core.sea_state import SeaState, together
-from ocean_tweak.core.statistics import field_state, mode_state
+from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
+from ocean_tweak.core.spectral.sea_state import SeaState, together
+from ocean_tweak.core.statistics import sea_scales
+from ocean_tweak.core.statistics.sea_statistics import field_state, mode_state
 
 
 @pytest.fixture

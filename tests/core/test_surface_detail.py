@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ocean_tweak.core.surface_detail import foam_lace, gusts, ripple_slopes
+from ocean_tweak.nodes.surface_detail import foam_lace, gusts, ripple_slopes
 
 
 def test_ripples_have_unit_slopes_mostly_along_the_wind():

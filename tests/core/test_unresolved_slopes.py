@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
-from ocean_tweak.core.unresolved_slopes import (
+from ocean_tweak.core.statistics.unresolved_slopes import (
     capillary_limit,
     total_slope_variance,
     unresolved_slope_variance,

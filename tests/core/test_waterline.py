@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.special import j1
 
-from ocean_tweak.core import waterline
+from ocean_tweak.core.sea import waterline
 
 
 def test_the_stencil_is_an_even_disc():

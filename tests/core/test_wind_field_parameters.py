@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import OceanParameters, ParameterError, Raster, WindFieldLayer, WindKey
-from ocean_tweak.core.fingerprint import frame_fingerprint
-from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.parameters.fingerprint import frame_fingerprint
+from ocean_tweak.core.parameters.shot import Animation, Shot
 from tests.layers import layers_of, with_layers
 
 CALM = np.zeros((1, 1, 2))

@@ -9,10 +9,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer, memory, random
-from ocean_tweak.core.channels import OF_WAVES, memory_groups
-from ocean_tweak.core.memo import MEMO
-from ocean_tweak.core.memory import memory_need
+from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer
+from ocean_tweak.core.numerics import random
+from ocean_tweak.core.numerics.memo import MEMO
+from ocean_tweak.core.sea import memory
+from ocean_tweak.core.sea.memory import memory_need
+from ocean_tweak.core.synthesis.channels import OF_WAVES, memory_groups
 from tests.layers import with_layers
 
 SEA = OceanParameters(resolution=258, domain_size=300.0, trough_damping=0.3)

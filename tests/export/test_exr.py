@@ -12,7 +12,7 @@ import OpenEXR
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing
-from ocean_tweak.core.channels import MAPS
+from ocean_tweak.core.synthesis.channels import MAPS
 from ocean_tweak.export import files
 from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, silenced, write_image
 

@@ -10,7 +10,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from ocean_tweak.core.errors import ParameterError
+from ocean_tweak.core.data.errors import ParameterError
 from ocean_tweak.export.pictures import read_picture
 from tests.picture_files import exr as exr_by_hand
 

@@ -9,9 +9,9 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.core import HeroWave, OceanParameters, PictureLayer, WaveLayer, WindFieldLayer
-from ocean_tweak.core.fingerprint import frame_fingerprint
-from ocean_tweak.core.former_json import former, modern
-from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.parameters.fingerprint import frame_fingerprint
+from ocean_tweak.core.parameters.former_json import former, modern
+from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.export.sea_files import read_sea, write_sea
 
 FORMER = Path(__file__).parents[1] / "former"

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from ocean_tweak.core.channels import MAPS
+from ocean_tweak.core.synthesis.channels import MAPS
 from ocean_tweak.export.frame_files import POINTS, SMALL_POINTS, files_start, frame_file, image_file_of
 
 

@@ -14,9 +14,9 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from ocean_tweak.core.errors import ParameterError
-from ocean_tweak.core.raster import Raster
-from ocean_tweak.core.validation import Validated, nested, raster
+from ocean_tweak.core.data.errors import ParameterError
+from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.data.validation import Validated, nested, raster
 from ocean_tweak.export.pictures import read_picture, with_pictures
 from tests.picture_files import exr as exr_by_hand
 from tests.picture_files import png, tiff
@@ -332,7 +332,7 @@ def test_files_are_counted_before_they_are_read(tmp_path: Path, monkeypatch: pyt
     with pytest.raises(ParameterError, match="65 entries"):
         with_pictures(Film, {"frames": [{"vectors": {"file": "a.npy"}}] * 65}, tmp_path, reader)
     assert not read
-    monkeypatch.setattr("ocean_tweak.core.raster.MOST_NUMBERS", 500)
+    monkeypatch.setattr("ocean_tweak.core.data.raster.MOST_NUMBERS", 500)
     with pytest.raises(ParameterError, match=r"frames\.2\.vectors.*at most 500 together"):
         with_pictures(Film, {"frames": [{"vectors": {"file": "a.npy"}}] * 9}, tmp_path, reader)
     assert len(read) == 3

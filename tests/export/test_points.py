@@ -11,7 +11,7 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters, Patch, Places, WaveLayer
-from ocean_tweak.core.cascades.patch_seas import parts
+from ocean_tweak.core.parameters.patch_seas import parts
 from ocean_tweak.export.points import PointSequence, PointsError, read_points
 
 LARGE, SMALL = 384, 48

@@ -16,7 +16,7 @@ from PIL import Image
 import ocean_tweak
 from ocean_tweak import cli, read_sea, write_sea
 from ocean_tweak.core import OceanParameters, ParameterError, WaveLayer
-from ocean_tweak.core.shot import Animation, Shot
+from ocean_tweak.core.parameters.shot import Animation, Shot
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])

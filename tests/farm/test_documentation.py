@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core.shot import Shot as SeaOfShot
+from ocean_tweak.core.parameters.shot import Shot as SeaOfShot
 from tools import environments
 
 from .conftest import ROOT, SEA, Run, Shot

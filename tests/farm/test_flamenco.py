@@ -13,7 +13,7 @@ import pytest
 
 from ocean_tweak.cli import FileSea, main
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.shot import Shot as SeaOfShot
+from ocean_tweak.core.parameters.shot import Shot as SeaOfShot
 from tools import environments
 
 from .conftest import HERE, Run, Shot

@@ -13,7 +13,7 @@ import pytest
 
 from tools.project import ROOT
 
-TABLE = Path("ocean_tweak/core/channels.py")
+TABLE = Path("ocean_tweak/core/synthesis/channels.py")
 FORMULA = '''def speed(rows: PositionRows, out: RealArray) -> None:
     """(N, N) m/s: how fast the water moves."""
     np.square(rows.position(X, "t"), out=out)
@@ -43,8 +43,8 @@ import bpy
 import numpy as np
 from ocean_tweak import cli, registration
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.frame_files import BAKED
 from ocean_tweak.export.usd.attributes import ATTRIBUTES

@@ -59,7 +59,7 @@ def test_unknown_names_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
 def test_formulas_are_those_of_the_document_and_return_more() -> None:
     found = {mutant.name: mutant for mutant in mutants.of_formulas(ROOT)}
     assert len(found) > 60
-    mutant = found["formula spectra.jonswap x 1.05"]
+    mutant = found["formula spectral.spectra.jonswap x 1.05"]
     assert "test_spectra.py::test_jonswap_parameters" in mutant.tests
     source = (ROOT / mutant.path).read_text(encoding="utf-8").splitlines()
     added = [line for line in mutant.source.splitlines() if line not in source]

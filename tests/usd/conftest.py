@@ -14,9 +14,9 @@ import pytest
 from pxr import Usd
 
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.bake import ShotSurfaces
-from ocean_tweak.core.frames import parse_frames
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.data.frames import parse_frames
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.bake import ShotSurfaces
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.package import Package
 

@@ -13,7 +13,7 @@ import pytest
 from pxr import Sdf, Usd, Vt
 
 from ocean_tweak.cli import FileSea, main
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.usd.package import with_samples_between
 from ocean_tweak.export.usd.verify import verify
 

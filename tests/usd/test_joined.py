@@ -11,7 +11,7 @@ from pxr import Usd
 
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters
-from ocean_tweak.core.shot import Shot
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.package import Package
 

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer, spectra, wave_number_spectra
+from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
+from ocean_tweak.core.spectral import spectra, wave_number_spectra
 
 from .measures import bound, direct_sum
 from .pages import Table

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ocean_tweak.core import Foam, Ocean, OceanParameters, Water, WaveLayer, constants, dispersion, spectra
-from ocean_tweak.core.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.spreading import Spreading, directional_spreading
-from ocean_tweak.core.statistics import Statistics
+from ocean_tweak.core import Foam, Ocean, OceanParameters, Water, WaveLayer
+from ocean_tweak.core.spectral import constants, dispersion, spectra
+from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.spreading import Spreading, directional_spreading
+from ocean_tweak.core.statistics.sea_statistics import Statistics
 
 from .pages import Table
 

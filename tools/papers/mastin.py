@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import PictureLayer, Water
-from ocean_tweak.core.grid import WaveVectorGrid
+from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.waves.image import animation, filters, source
 from ocean_tweak.core.waves.image.state import filtered
 

@@ -20,16 +20,19 @@ X, Y = np.array([1.0, 37.3, -8.0, 222.0, 90.5]), np.array([2.0, 81.9, 44.0, -3.0
 Made = tuple[str, Any]
 
 
-def part(package: ModuleType, name: str) -> Any:
-    """Return a module of a copy of the package."""
-    return importlib.import_module(f"{package.__name__}.{name}")
+def part(package: ModuleType, *names: str) -> Any:
+    """Return a module of a copy of the package: the first of these that it has, for rooms were moved."""
+    for name in names:
+        path = Path(package.__path__[0], *name.split("."))
+        if path.with_suffix(".py").exists() or (path / "__init__.py").exists():
+            return importlib.import_module(f"{package.__name__}.{name}")
+    raise ModuleNotFoundError(f"{package.__name__} has none of {', '.join(names)}")
 
 
 def channels(package: ModuleType) -> tuple[str, ...]:
     """Return the names of all fields; their table was another one once."""
-    if Path(package.__path__[0], "core", "channels.py").exists():
-        return tuple(part(package, "core.channels").CHANNELS)
-    return tuple(part(package, "core.fields").KNOWN)
+    table = part(package, "core.synthesis.channels", "core.channels", "core.fields")
+    return tuple(table.CHANNELS if hasattr(table, "CHANNELS") else table.KNOWN)
 
 
 def of_sea(package: ModuleType, data: dict[str, Any]) -> Iterator[Made]:
@@ -56,8 +59,11 @@ def _of_grid(package: ModuleType, parameters: Any) -> Iterator[Made]:
     told = sea.statistics().to_dict()
     told.pop("patches", None)  # of joined ones they were not told
     yield "statistics", told
-    shot = part(package, "core.shot").Shot(parameters)
-    yield "fingerprint", part(package, "core.fingerprint").shot_fingerprint(shot)
+    shot = part(package, "core.parameters.shot", "core.shot").Shot(parameters)
+    yield (
+        "fingerprint",
+        part(package, "core.parameters.fingerprint", "core.fingerprint").shot_fingerprint(shot),
+    )
 
 
 def _of_patches(package: ModuleType, parameters: Any) -> Iterator[Made]:
@@ -91,7 +97,9 @@ def of_usd(package: ModuleType, data: dict[str, Any]) -> Iterator[Made]:
     from pxr import Sdf, Usd
 
     core, export = part(package, "core"), part(package, "export.usd.export")
-    shot = part(package, "core.shot").Shot(core.OceanParameters.from_dict({**data, "resolution": 16}))
+    shot = part(package, "core.parameters.shot", "core.shot").Shot(
+        core.OceanParameters.from_dict({**data, "resolution": 16})
+    )
     for form in ("points", "clips", "displacement"):
         with tempfile.TemporaryDirectory(prefix="same-seas-") as folder:
             wanted = part(package, "export.usd.package").Package("sea", shot, (1, 2), form=form, proxy=0)

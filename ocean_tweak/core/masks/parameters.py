@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import ParameterError
-from ..raster import Raster
-from ..validation import Validated, choice, number, raster, switch
+from ..data.errors import ParameterError
+from ..data.raster import Raster
+from ..data.validation import Validated, choice, number, raster, switch
 
 MASK_SOURCES = ("IMAGE", "DISTANCE")
 

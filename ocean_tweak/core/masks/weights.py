@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..memo import remembered
-from ..splines import spline_slopes, spline_weights
+from ..numerics.memo import remembered
+from ..numerics.splines import spline_slopes, spline_weights
 from .parameters import Mask
 
 Array = NDArray[np.float64]

@@ -10,11 +10,11 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..channels import CHANNELS
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, weights
-from ..memo import MEMO, total_bytes
-from ..parameters import OceanParameters
+from ..numerics.memo import MEMO, total_bytes
+from ..parameters.ocean_parameters import OceanParameters
+from ..synthesis.channels import CHANNELS
 from .part_waves import PartWaves
 from .placed_waves import PlacedWaves
 from .query import SurfacePoints, find_summed_points

@@ -14,17 +14,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..bilinear import resampled
-from ..cascades.patch_seas import joined_bands, parts, patch_parameters
-from ..channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
-from ..foam import FoamHistory, FoamModel, foam_at
-from ..foam_threshold import Strains, foam_model, sampled_strains
-from ..initial_state import InitialState
-from ..memory import check_memory, memory_need
-from ..parameters import OceanParameters
-from ..statistics import Statistics, sea_statistics
+from ..foam.model import FoamHistory, FoamModel, foam_at
+from ..foam.threshold import Strains, foam_model, sampled_strains
+from ..numerics.bilinear import resampled
+from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.patch_seas import joined_bands, parts, patch_parameters
+from ..statistics.sea_statistics import Statistics, sea_statistics
+from ..synthesis.channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
+from ..synthesis.initial_state import InitialState
 from ..waves.contribution import MemoryNeed
 from .anywhere import AnywhereSum
+from .memory import check_memory, memory_need
 from .on import Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves

@@ -12,16 +12,16 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import foam_threshold
-from ..cascades.patch_seas import Part
-from ..channels import CHANNELS, memory_groups
-from ..initial_state import InitialState, initial_state
+from ..foam import threshold as foam_threshold
 from ..masks.weights import weights
-from ..memo import remembered
-from ..parameters import Foam, OceanParameters, Timing
-from ..sea_spectrum import SeaSpectrum
-from ..synthesis import Rows, Synthesis
-from ..trough_damping import TroughDamping, trough_damping
+from ..numerics.memo import remembered
+from ..parameters.ocean_parameters import Foam, OceanParameters, Timing
+from ..parameters.patch_seas import Part
+from ..synthesis.channels import CHANNELS, memory_groups
+from ..synthesis.initial_state import InitialState, initial_state
+from ..synthesis.sea_spectrum import SeaSpectrum
+from ..synthesis.transforms import Rows, Synthesis
+from ..synthesis.trough_damping import TroughDamping, trough_damping
 from ..waves.contribution import Gives
 from ..waves.kinds import KINDS
 from .sampling import Key

@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
+from ..data.errors import ParameterError
 from ..masks.weights import weights
-from ..parameters import OceanParameters
-from ..synthesis import X, Y, Z
+from ..parameters.ocean_parameters import OceanParameters
+from ..synthesis.transforms import X, Y, Z
 from ..waves.contribution import Contribution, Gives
 from .sampling import Key, unweighted, weighted
 from .surfaces import Field, Values

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bilinear import Reader, wrapped
 from ..masks.weights import Weights
-from ..synthesis import X, Y, Z
+from ..numerics.bilinear import Reader, wrapped
+from ..synthesis.transforms import X, Y, Z
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

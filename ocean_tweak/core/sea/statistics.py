@@ -9,12 +9,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..cascades.patch import LEAST_CELLS, LEAST_SAMPLES, NO_LONGEST, REPEATING_SHARE
-from ..cascades.patch_seas import patch_parameters
-from ..parameters import OceanParameters
-from ..sea_spectrum import SeaSpectrum
-from ..sea_state import SeaState, together
-from ..statistics import (
+from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, NO_LONGEST, REPEATING_SHARE
+from ..parameters.patch_seas import patch_parameters
+from ..spectral.sea_state import SeaState, together
+from ..statistics.sea_statistics import (
     FLAT,
     LEAST_RESOLVED_SHARE,
     PatchStatistics,
@@ -26,6 +25,7 @@ from ..statistics import (
     layer_warnings,
     loop_warnings,
 )
+from ..synthesis.sea_spectrum import SeaSpectrum
 
 
 def statistics_of_patches(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> Statistics:

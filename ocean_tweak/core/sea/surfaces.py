@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bilinear import between
 from ..masks.weights import Weights
-from ..synthesis import Column, Synthesis, X, Y, Z
+from ..numerics.bilinear import between
+from ..synthesis.transforms import Column, Synthesis, X, Y, Z
 from .sampling import into_patch
 
 Array = NDArray[np.float64]

@@ -18,10 +18,10 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cascades.patch_seas import Part
-from ..channels import CHANNELS, memory_groups
 from ..masks.weights import Weights, weights_on_grid
-from ..parameters import OceanParameters
+from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.patch_seas import Part
+from ..synthesis.channels import CHANNELS, memory_groups
 from .part_waves import PartWaves
 from .sampling import Components, Grid, Key, Summed, closed, unweighted, weighted
 

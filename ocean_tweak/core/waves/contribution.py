@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..validation import Validated, integer, number, switch
+from ..data.validation import Validated, integer, number, switch
 
 if TYPE_CHECKING:
-    from ..directional_spectrum import DirectionalSpectrum
-    from ..grid import WaveVectorGrid
-    from ..initial_state import Coefficients
     from ..masks.parameters import Mask
-    from ..parameters import OceanParameters
-    from ..sea_state import SeaState
+    from ..numerics.grid import WaveVectorGrid
+    from ..parameters.ocean_parameters import OceanParameters
+    from ..spectral.directional_spectrum import DirectionalSpectrum
+    from ..spectral.sea_state import SeaState
+    from ..synthesis.initial_state import Coefficients
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

@@ -7,16 +7,17 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
-from .. import constants, random
-from ..directional_spectrum import DirectionalSpectrum
-from ..errors import ParameterError
+from ..data.errors import ParameterError
+from ..data.validation import choice, nested, number, switch
 from ..masks.parameters import Mask
-from ..validation import choice, nested, number, switch
-from ..wind_profile import wind_at_10_m
+from ..numerics import random
+from ..spectral import constants
+from ..spectral.directional_spectrum import DirectionalSpectrum
+from ..spectral.wind_profile import wind_at_10_m
 from .contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
 
 if TYPE_CHECKING:
-    from ..parameters import OceanParameters
+    from ..parameters.ocean_parameters import OceanParameters
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ...core.frames import Frame
+from ...core.data.frames import Frame
 from ..files import PART, is_link
 from ..frame_files import BAKED, POINTS, frame_file
 from .job import (

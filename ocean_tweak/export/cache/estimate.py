@@ -18,16 +18,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...core import Ocean, OceanParameters
-from ...core.bake import ShotSurfaces
-from ...core.cascades.patch_seas import PARTS, parts
-from ...core.channels import OF_MEMORY, SurfaceFields, is_put_together
-from ...core.foam import LATTICE_RATE
-from ...core.foam_threshold import foam_outlook
-from ...core.frames import Frame
-from ...core.machine import usable_cores, usable_memory
-from ...core.memory import TABLES
-from ...core.printable import readable_bytes
-from ...core.shot import OCEAN_TIME, Shot
+from ...core.data.frames import Frame
+from ...core.data.printable import readable_bytes
+from ...core.foam.model import LATTICE_RATE
+from ...core.foam.threshold import foam_outlook
+from ...core.numerics.machine import usable_cores, usable_memory
+from ...core.parameters.patch_seas import PARTS, parts
+from ...core.parameters.shot import OCEAN_TIME, Shot
+from ...core.sea.bake import ShotSurfaces
+from ...core.sea.memory import TABLES
+from ...core.synthesis.channels import OF_MEMORY, SurfaceFields, is_put_together
 from .job import CacheError, Job
 
 #: the trial frame's samples along each side: few enough to take a moment. Images of more are smoother and

@@ -21,15 +21,15 @@ from typing import Any
 
 import numpy as np
 
-from ...core import formats
-from ...core.cascades.patch_seas import PARTS, parts
-from ...core.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
-from ...core.errors import ParameterError
-from ...core.fingerprint import fingerprint, hashed
-from ...core.frames import Frame, format_frames, frame_label, parse_frames
-from ...core.parameters import OceanParameters
-from ...core.printable import shown
-from ...core.shot import Shot
+from ...core.data import formats
+from ...core.data.errors import ParameterError
+from ...core.data.frames import Frame, format_frames, frame_label, parse_frames
+from ...core.data.printable import shown
+from ...core.parameters.fingerprint import fingerprint, hashed
+from ...core.parameters.ocean_parameters import OceanParameters
+from ...core.parameters.patch_seas import PARTS, parts
+from ...core.parameters.shot import Shot
+from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
 from ..exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
 from ..frame_files import BAKED, POINTS

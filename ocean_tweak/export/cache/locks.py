@@ -27,8 +27,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...core.frames import Frame, format_frames, parse_frames
-from ...core.printable import printable
+from ...core.data.frames import Frame, format_frames, parse_frames
+from ...core.data.printable import printable
 from ..files import alone, read_bytes, write_text
 from .job import ENTRY, LOCKS, refuse_links
 from .processes import boot, hardware, process_start, this_machine

@@ -16,12 +16,12 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...core import formats
-from ...core.channels import SurfaceFields
-from ...core.errors import ParameterError
-from ...core.fingerprint import frame_fingerprint
-from ...core.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
-from ...core.printable import shown
+from ...core.data import formats
+from ...core.data.errors import ParameterError
+from ...core.data.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
+from ...core.data.printable import shown
+from ...core.parameters.fingerprint import frame_fingerprint
+from ...core.synthesis.channels import SurfaceFields
 from ..files import PART, begun_file, open_file, read_bytes, remove_begun, sync_folder, write_text
 from .job import LOCKS, RECORDS, Job, NewerBakeError, check_seal, made_with, record_path, sealed
 

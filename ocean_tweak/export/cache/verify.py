@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core import Ocean
-from ...core.bake import ShotSurfaces
-from ...core.channels import MOVING_MAP, unit_of
-from ...core.frames import Frame
-from ...core.plain_data import to_plain
-from ...core.printable import printable
-from ...core.propagation import propagate
-from ...core.shot import Moment
+from ...core.data.frames import Frame
+from ...core.data.plain_data import to_plain
+from ...core.data.printable import printable
+from ...core.parameters.shot import Moment
+from ...core.sea.bake import ShotSurfaces
+from ...core.synthesis.channels import MOVING_MAP, unit_of
+from ...core.synthesis.propagation import propagate
 from ..exr import ExrError, ExrSequence, read_image
 from ..points import PointsError
 from .job import Job

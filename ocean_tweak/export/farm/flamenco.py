@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from ...core.frames import format_frames
+from ...core.data.frames import format_frames
 from ..cache.job import uid_of
 from ..files import write_texts
 from .shot_job import (

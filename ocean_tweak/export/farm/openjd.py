@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ... import __version__
-from ...core.frames import format_frames
+from ...core.data.frames import format_frames
 from ..cache.job import Job
 from ..files import write_texts
 from .shot_job import (

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...core.frames import Frame, format_frames
+from ...core.data.frames import Frame, format_frames
 from ..cache.job import Job
 
 #: the Python script that renders, in a Blender with or without this extension

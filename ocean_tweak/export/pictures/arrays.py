@@ -10,8 +10,8 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.printable import printable
-from ...core.raster import MOST_CHANNELS
+from ...core.data.printable import printable
+from ...core.data.raster import MOST_CHANNELS
 from .checks import UnusableError, check_size
 
 _MAGIC = b"\x93NUMPY"

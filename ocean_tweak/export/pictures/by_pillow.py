@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.printable import printable
+from ...core.data.printable import printable
 from ..exr import silenced
 from . import tiff
 from .checks import UnusableError, check_size

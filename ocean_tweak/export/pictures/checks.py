@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import BinaryIO
 
-from ...core.printable import printable
-from ...core.raster import LARGEST_SIDE
+from ...core.data.printable import printable
+from ...core.data.raster import LARGEST_SIDE
 from ..files import open_file
 
 

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.printable import printable
+from ...core.data.printable import printable
 from ..exr import MOST_NUMBERS, ExrError, load_openexr, silenced
 from .checks import UnusableError, check_size, listed
 

@@ -9,8 +9,8 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.errors import ParameterError
-from ...core.raster import LUMINANCE, Raster
+from ...core.data.errors import ParameterError
+from ...core.data.raster import LUMINANCE, Raster
 from . import arrays, exr_pictures
 from .by_pillow import read_by_pillow
 from .checks import UnusableError, opened

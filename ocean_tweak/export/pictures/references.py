@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ...core.errors import ParameterError
-from ...core.plain_data import class_of
-from ...core.raster import Raster, check_numbers
-from ...core.validation import check_count
+from ...core.data.errors import ParameterError
+from ...core.data.plain_data import class_of
+from ...core.data.raster import Raster, check_numbers
+from ...core.data.validation import check_count
 from .arrays import AXES
 from .reading import read_picture
 

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...core.frames import Frame, format_frames, parse_frames
+from ...core.data.frames import Frame, format_frames, parse_frames
 from .. import logs
 from ..python_process import environment, module_command
 from . import reading

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.channels import CHANNELS, VECTOR, Channel, SurfaceFields
+from ...core.synthesis.channels import CHANNELS, VECTOR, Channel, SurfaceFields
 from .grid import UsdGrid
 
 RealArray = NDArray[np.floating]

@@ -12,8 +12,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...core.channels import SurfaceFields
-from ...core.frames import Frame, format_frames, frame_label
+from ...core.data.frames import Frame, format_frames, frame_label
+from ...core.synthesis.channels import SurfaceFields
 from ..files import sync_folder
 from .attributes import outputs_of
 from .layers import mark_of, whole_layer, write_header

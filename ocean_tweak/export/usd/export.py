@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ...core import ParameterError
-from ...core.bake import BakedFrame, bake
-from ...core.frames import Frame, format_frames
+from ...core.data.frames import Frame, format_frames
+from ...core.sea.bake import BakedFrame, bake
 from ..cache.job import Job, read_job
 from ..cache.records import unfinished
 from ..files import sync_folder, writable_folder

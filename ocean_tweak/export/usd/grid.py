@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.bilinear import wrapped
+from ...core.numerics.bilinear import wrapped
 
 RealArray = NDArray[np.floating]
 

@@ -9,9 +9,9 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
-from ...core import formats
-from ...core.frames import Frame
-from ...core.printable import printable, shown
+from ...core.data import formats
+from ...core.data.frames import Frame
+from ...core.data.printable import printable, shown
 from ..files import PART, begun_file, whole_file
 from .library import UsdError, pxr
 from .package import Package

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...core.frames import Frame
+from ...core.data.frames import Frame
 from .attributes import WATER_COLOUR
 from .layers import whole_layer, write_header
 from .library import pxr

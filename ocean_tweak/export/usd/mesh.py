@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core.channels import SurfaceFields
-from ...core.frames import Frame
+from ...core.data.frames import Frame
+from ...core.synthesis.channels import SurfaceFields
 from .attributes import EXTENT, Attribute, chosen, mesh_values, to_vt, type_name
 from .grid import UsdGrid, proxy_step
 from .library import pxr

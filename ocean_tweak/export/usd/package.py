@@ -12,10 +12,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ...core import ParameterError, formats
-from ...core.fingerprint import fingerprint, hashed, shot_fingerprint
-from ...core.frames import Frame, as_frame, format_frames, frame_label, parse_frames
-from ...core.shot import Shot
+from ...core import ParameterError
+from ...core.data import formats
+from ...core.data.frames import Frame, as_frame, format_frames, frame_label, parse_frames
+from ...core.parameters.fingerprint import fingerprint, hashed, shot_fingerprint
+from ...core.parameters.shot import Shot
 from .attributes import ATTRIBUTES
 
 FORMS = ("points", "clips", "displacement")

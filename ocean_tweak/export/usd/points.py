@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ...core.channels import SurfaceFields
-from ...core.frames import Frame
+from ...core.data.frames import Frame
+from ...core.synthesis.channels import SurfaceFields
 from .attributes import outputs_of
 from .layers import save, whole_layer, write_header
 from .library import UsdError

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core import ParameterError
-from ...core.printable import printable
+from ...core.data.printable import printable
 from .layers import MARK, UNREADABLE, named_errors
 from .library import UsdError, pxr
 from .package import Package

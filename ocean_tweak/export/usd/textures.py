@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.bake import BakedFrame, bake
-from ...core.channels import MOVING_MAP
-from ...core.frames import Frame, format_frames
+from ...core.data.frames import Frame, format_frames
+from ...core.sea.bake import BakedFrame, bake
+from ...core.synthesis.channels import MOVING_MAP
 from ..cache.job import Job, open_folder, safe_name, uid_of
 from ..cache.locks import claimed
 from ..cache.records import CacheSink, State, inspect, unfinished

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.bake import ShotSurfaces
-from ...core.frames import Frame, format_frames
+from ...core.data.frames import Frame, format_frames
+from ...core.sea.bake import ShotSurfaces
 from ..exr import COMPRESSION_ERROR, ExrError, read_image
 from .asset import VARIANT_SET, sea_path
 from .attributes import POINTS, Attribute

@@ -7,8 +7,8 @@ from datetime import datetime
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core.frames import format_frames
-from ...core.printable import readable_bytes
+from ...core.data.frames import format_frames
+from ...core.data.printable import readable_bytes
 from ...export.cache.estimate import Estimate
 from ...export.usd import library
 from ...nodes.names import MAP_INPUTS

@@ -7,9 +7,10 @@ from typing import Any
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core import WaveLayer, sea_scales
-from ...core.memory import beyond_budget
-from ...core.wind_profile import wind_at_10_m
+from ...core import WaveLayer
+from ...core.sea.memory import beyond_budget
+from ...core.spectral.wind_profile import wind_at_10_m
+from ...core.statistics import sea_scales
 from ...scene import alarm, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
 from ...scene.refresh import sea_of_settings

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...core.parameters import WaveLayer
+from ...core.parameters.ocean_parameters import WaveLayer
 from ...scene.refresh import sea_of_settings
 from ..previews import PREVIEWS
 from .drawing import SubPanel, active_settings, active_waves, split

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import ParameterError
-from ...grid import WaveVectorGrid
+from ...data.errors import ParameterError
+from ...numerics.grid import WaveVectorGrid
 
 if TYPE_CHECKING:
     from .parameters import HeroWave

@@ -7,11 +7,11 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ... import constants, dispersion
+from ...spectral import constants, dispersion
 from .group import wave_number
 
 if TYPE_CHECKING:
-    from ...parameters import OceanParameters
+    from ...parameters.ocean_parameters import OceanParameters
     from .parameters import HeroWave
 
 

@@ -6,15 +6,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
-from ...errors import ParameterError
-from ...validation import number, switch
+from ...data.errors import ParameterError
+from ...data.validation import number, switch
 from ..contribution import Contribution, Gives, Names
 from .group import add_hero_wave, check_hero_wave, needed_samples
 from .outlook import HeroWaveOutlooks, hero_wave_outlooks
 
 if TYPE_CHECKING:
-    from ...initial_state import Coefficients
-    from ...parameters import OceanParameters
+    from ...parameters.ocean_parameters import OceanParameters
+    from ...synthesis.initial_state import Coefficients
 
 #: wavelengths that a crest must be wide: a narrower hump is no wave, it runs apart in all directions
 NARROWEST = 0.5

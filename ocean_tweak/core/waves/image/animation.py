@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import constants, dispersion
-from ...grid import WaveVectorGrid
-from ...water import Water
+from ...numerics.grid import WaveVectorGrid
+from ...spectral import constants, dispersion
+from ...spectral.water import Water
 from .filters import POWERS, peak_frequency, pierson_moskowitz
 
 if TYPE_CHECKING:

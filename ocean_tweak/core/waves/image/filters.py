@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ... import constants, dispersion
-from ...grid import WaveVectorGrid
-from ...water import Water
+from ...numerics.grid import WaveVectorGrid
+from ...spectral import constants, dispersion
+from ...spectral.water import Water
 
 if TYPE_CHECKING:
     from .parameters import PictureLayer

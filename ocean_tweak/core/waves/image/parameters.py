@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import ParameterError
+from ...data.errors import ParameterError
+from ...data.raster import Raster
+from ...data.validation import choice, integer, nested, number, raster
 from ...masks.parameters import Mask
-from ...raster import Raster
-from ...validation import choice, integer, nested, number, raster
 from ..contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
 from . import statistics
 from .animation import angular_frequency
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...grid import WaveVectorGrid
-    from ...initial_state import Coefficients
-    from ...parameters import OceanParameters
-    from ...sea_state import SeaState
+    from ...numerics.grid import WaveVectorGrid
+    from ...parameters.ocean_parameters import OceanParameters
+    from ...spectral.sea_state import SeaState
+    from ...synthesis.initial_state import Coefficients
 
 FILTERS = ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE")
 FILTER_GAINS = ("PHYSICAL", "PAPER")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import random
-from ...memo import remembered
-from ...raster import Raster
+from ...data.raster import Raster
+from ...numerics import random
+from ...numerics.memo import remembered
 
 if TYPE_CHECKING:
     from .parameters import PictureLayer

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import random
-from ...grid import WaveVectorGrid
-from ...water import Water
+from ...numerics import random
+from ...numerics.grid import WaveVectorGrid
+from ...spectral.water import Water
 from .animation import angular_frequency, runs_along
 from .filters import filter_power, total_energy
 from .source import fitted, noise_coefficients, picture_coefficients

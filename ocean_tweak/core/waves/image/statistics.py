@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ... import dispersion
-from ...memo import remembered
-from ...sea_state import Modes, SeaState, modes_state
-from ...water import Water
+from ...numerics.memo import remembered
+from ...spectral import dispersion
+from ...spectral.sea_state import Modes, SeaState, modes_state
+from ...spectral.water import Water
 from .animation import angular_frequency, runs_along
 from .filters import peak_frequency
 from .state import filtered, wanted_variance
 
 if TYPE_CHECKING:
-    from ...parameters import OceanParameters
+    from ...parameters.ocean_parameters import OceanParameters
     from .parameters import PictureLayer
 
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ...errors import ParameterError
+from ...data.errors import ParameterError
 from .relations import period
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...grid import WaveVectorGrid
-from ...memo import remembered
-from ...splines import spline_weights
+from ...numerics.grid import WaveVectorGrid
+from ...numerics.memo import remembered
+from ...numerics.splines import spline_weights
 from .shape import bump
 
 Array = NDArray[np.float64]

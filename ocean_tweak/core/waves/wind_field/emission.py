@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...memo import remembered, total_bytes
+from ...numerics.memo import remembered, total_bytes
 from .origins import Origins, layer_origins
 from .relations import period
 from .wind import winds_at

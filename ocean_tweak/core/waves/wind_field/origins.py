@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import random
+from ...numerics import random
 
 if TYPE_CHECKING:
     from .parameters import WindFieldLayer

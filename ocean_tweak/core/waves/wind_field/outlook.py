@@ -11,7 +11,7 @@ from .relations import wavelength
 from .wind_waves import SHORTEST
 
 if TYPE_CHECKING:
-    from ...parameters import OceanParameters
+    from ...parameters.ocean_parameters import OceanParameters
     from .parameters import WindFieldLayer
 
 

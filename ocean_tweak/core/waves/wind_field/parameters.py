@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import ParameterError
+from ...data.errors import ParameterError
+from ...data.raster import Raster
+from ...data.validation import Validated, choice, integer, nested, number, raster, switch
 from ...masks.parameters import Mask
-from ...raster import Raster
-from ...validation import Validated, choice, integer, nested, number, raster, switch
 from ..contribution import Contribution, Gives, MemoryNeed, Names, direction, identity, muted, own_seed
 from .bounds import bytes_of, check_bounds
 from .outlook import WindWaveOutlook, wind_wave_outlook
@@ -20,7 +20,7 @@ from .shape import MOST_CLASSES
 from .wind_waves import WindWaves
 
 if TYPE_CHECKING:
-    from ...parameters import OceanParameters
+    from ...parameters.ocean_parameters import OceanParameters
 
 FRONTS = ("ARC", "PARALLEL")
 HEIGHTS = ("STEEPNESS", "WIND_SPEED")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ...raster import Raster
+from ...data.raster import Raster
 from .parameters import WindFieldLayer, WindKey
 
 #: vectors along each side

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...bilinear import between
-from ...raster import Raster
+from ...data.raster import Raster
+from ...numerics.bilinear import between
 
 if TYPE_CHECKING:
     from .parameters import WindFieldLayer

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...grid import WaveVectorGrid
+from ...numerics.grid import WaveVectorGrid
 from .convolution import Points, along_x, deposit, kernel
 from .emission import Emission, emission_of
 from .life import Particles, joined, particles_of
 from .shape import RadiusClasses, radius_classes
 
 if TYPE_CHECKING:
-    from ...parameters import OceanParameters
+    from ...parameters.ocean_parameters import OceanParameters
     from .parameters import WindFieldLayer
 
 ComplexArray = NDArray[np.complexfloating]

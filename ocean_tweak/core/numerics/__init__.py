@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Grids, random numbers, interpolation, and the memory that keeps arrays."""

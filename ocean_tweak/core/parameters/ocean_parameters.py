@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a sea is: frozen, validated, hashable parameters in SI units and radians, JSON both ways.
+
+Every field carries its unit, its range and its description in the field's metadata, which is the one
+table that validation, tooltips, the command line and the documentation read.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import count
+from typing import Any, TypeVar, overload
+
+from ..data import formats
+from ..data.errors import ParameterError
+from ..data.plain_data import from_plain, parse_json, to_plain
+from ..data.raster import check_numbers, numbers_in
+from ..data.validation import OPEN, Validated, choice, default_of, integer, nested, number, rational, switch
+from ..masks.parameters import Mask
+from ..spectral.water import Water
+from ..waves.contribution import Contribution, Gives
+from ..waves.hero.parameters import HeroWave
+from ..waves.image.parameters import PictureLayer
+from ..waves.kinds import KINDS
+from ..waves.spectral import WaveLayer
+from ..waves.wind_field.parameters import WindFieldLayer, WindKey
+from .former_json import modern
+from .patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
+
+__all__ = [
+    "Foam",
+    "HeroWave",
+    "Mask",
+    "OceanParameters",
+    "ParameterError",
+    "Patch",
+    "PictureLayer",
+    "Timing",
+    "Water",
+    "WaveLayer",
+    "WindFieldLayer",
+    "WindKey",
+    "parse_json",
+]
+
+DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
+AMPLITUDES = ("GAUSSIAN", "FIXED")
+ORBITS = ("DEEP", "FINITE_DEPTH")
+
+#: fields that patches tell, where there are any
+_TILE = ("resolution", "domain_size")
+
+_Layer = TypeVar("_Layer", bound=Contribution)
+
+
+@dataclass(frozen=True)
+class Foam(Validated):
+    """How whitecaps cover the sea and how long they last."""
+
+    coverage: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the share of the sea under foam; 1 is what the wind leaves at sea",
+        "from none to all of a light breeze's sea",
+    )  # fmt: skip
+    half_life: float = number(
+        2.5, 0.0, 60.0, "s", "Time in which foam fades to a half; 0 keeps it where it is born",
+        "whitecaps fade in seconds, patches in a minute",
+    )  # fmt: skip
+    drift: float = number(
+        0.02, 0.0, 0.2, "", "Speed of the foam along the wind, as a share of the wind's",
+        "the surface drifts with 2 to 3 % of the wind",
+    )  # fmt: skip
+    resolution: int = integer(
+        0, 0, 8192, "Samples along each side at which foam is made, even; 0 for those of the sea",
+        "as the resolution of the sea",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.resolution % 2 or 0 < self.resolution < 16:
+            raise ParameterError("resolution", self.resolution, "must be 0 or an even number from 16 to 8192")
+
+
+@dataclass(frozen=True)
+class Timing(Validated):
+    """How frames of the shot become seconds: ocean time 0 is at ``start_frame``.
+
+    ``fps`` is kept as an exact fraction, so that 24000/1001 is what it says.
+    """
+
+    fps: Fraction = rational(
+        Fraction(24), 0.01, 1000.0, "frames per second", "Frames per second of the shot",
+        "from time-lapse to high speed",
+    )  # fmt: skip
+    start_frame: int = integer(
+        1,
+        -1_000_000,
+        10_000_000,
+        "Frame at which the ocean's time is zero",
+        "more than Blender's frame range",
+    )
+    stretch: Fraction = rational(
+        Fraction(1), 0.001, 1000.0, "", "Frames of the shot in a frame of its animation: 2 is half the speed."
+        " In Blender the scene's Time Stretching",
+        "more than Blender's 1/900 to 900", left_out=True,
+    )  # fmt: skip
+
+    def time(self, frame: float | Fraction) -> Fraction:
+        """Ocean time in seconds at a frame, which may hold a sub-frame; exact."""
+        return (Fraction(frame) / self.stretch - self.start_frame) / self.fps
+
+    def frame(self, time: float) -> float:
+        """The frame at an ocean time in seconds."""
+        return float(self.stretch) * (self.start_frame + time * float(self.fps))
+
+
+@dataclass(frozen=True)
+class OceanParameters(Validated):
+    """Everything that determines a sea. Equal parameters give equal fields.
+
+    Raises ParameterError (a ValueError) naming the field, its value and what is allowed.
+    """
+
+    resolution: int = integer(
+        512, 16, 8192, "Samples along each side of the domain, an even number",
+        "below 16 there is no sea, above 8192 no memory", may_be_told=True,
+    )  # fmt: skip
+    domain_size: float = number(
+        400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
+        "a wave vector is told apart from its neighbours up to 100 km", may_be_told=True,
+    )  # fmt: skip
+    seed: int = integer(
+        0,
+        0,
+        2**31 - 1,
+        "Number of this particular sea among all with these parameters",
+        "Blender's whole numbers",
+    )
+    choppiness: float = number(
+        1.0, 0.0, 4.0, "", "Horizontal displacement that sharpens crests; 1 is linear wave theory",
+        "far beyond 1 the surface folds", useful=(0.0, 1.5), changes=True,
+    )  # fmt: skip
+    dispersion: str = choice("CAPILLARY", DISPERSIONS, "How fast a wave of a given length travels")
+    loop_duration: Fraction | None = rational(
+        None, 0.01, 1e6, "s", "Time after which the sea repeats itself exactly; none if it never does",
+        "from a frame to days", optional=True,
+    )  # fmt: skip
+    amplitudes: str = choice(
+        "GAUSSIAN", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
+    )
+    match_height: bool = switch(False, "Scale this seed to the wave height that the spectrum expects")
+    trough_damping: float = number(
+        0.0, 0.0, 1.0, "", "Takes short waves out of the troughs of the long ones", "a share"
+    )
+    orbits: str = choice(
+        "DEEP", ORBITS, "Horizontal motion as in deep water, or wider as linear theory has it in finite depth"
+    )
+    water: Water = nested(Water)
+    layers: tuple[Contribution, ...] = nested(Contribution, many=True, kinds=KINDS)
+    patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
+    joined: int = integer(
+        0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them apart",
+        "as the resolution of a sea", left_out=True,
+    )  # fmt: skip
+    foam: Foam = nested(Foam)
+    timing: Timing = nested(Timing)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_joined(self.joined, self.patches)
+        self._settle_tile()
+        if self.resolution % 2:
+            raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
+        object.__setattr__(self, "layers", _identified(self.layers))
+        _check_loop(self.loop_duration, self.timing)
+        self._check_layers()
+        on_the_first = [
+            kind.former_list or kind.names.noun
+            for kind in KINDS
+            if Gives.SPECTRUM not in kind.gives and self.of(kind)
+        ]
+        check_patches(self.patches, self.trough_damping, on_the_first)
+        if self.is_masked and self.trough_damping > 0.0:
+            raise ParameterError(
+                "trough_damping", self.trough_damping,
+                "must be 0 in a sea with masks, whose waves do not know the troughs of the others",
+            )  # fmt: skip
+
+    def _settle_tile(self) -> None:
+        """Fill in size and samples of the tile where they are left open: patches tell those of the first, on
+        which pictures and wind fields are. Raises ParameterError where others are given too.
+        """
+        told: dict[str, float] = {}
+        if self.patches:
+            first = self.patches[0]
+            told = {"resolution": self.joined or first.resolution, "domain_size": first.domain_size}
+        for field in dataclasses.fields(self):
+            if field.name not in _TILE:
+                continue
+            given = getattr(self, field.name)
+            if given is OPEN:
+                object.__setattr__(self, field.name, told.get(field.name, default_of(field)))
+            elif given != told.get(field.name, given):
+                reason = f"must be {told[field.name]:g}, which the patches tell: leave it out, or change them"
+                raise ParameterError(field.name, given, reason)
+
+    @property
+    def is_cascade(self) -> bool:
+        """Whether it has several grids: more than one patch, or one that is turned, and not joined."""
+        return not self.joined and (len(self.patches) > 1 or any(patch.rotation for patch in self.patches))
+
+    @property
+    def is_masked(self) -> bool:
+        """Whether a mask lies over some of its waves."""
+        own: tuple[Contribution | Patch, ...] = (*self.active(), *self.patches)
+        return any(layer.mask is not None for layer in own)
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether its waves are added up in places, not as coefficients: those of patches, or under masks."""
+        return bool(self.joined) or self.is_cascade or self.is_masked
+
+    @property
+    def band(self) -> tuple[float, float] | None:
+        """Shortest and longest wavelength in m of a sea that is one patch of several; None for all waves."""
+        return self.patches[0].band if len(self.patches) == 1 else None
+
+    def of(self, kind: type[_Layer]) -> tuple[_Layer, ...]:
+        """The layers of a kind, muted ones too."""
+        return tuple(layer for layer in self.layers if isinstance(layer, kind))
+
+    @overload
+    def active(self) -> tuple[Contribution, ...]: ...
+    @overload
+    def active(self, kind: type[_Layer]) -> tuple[_Layer, ...]: ...
+    def active(self, kind: type[Contribution] | None = None) -> tuple[Contribution, ...]:
+        """The layers, or those of a kind, that are not muted, in the order in which their waves are added."""
+        kinds = KINDS if kind is None else (kind,)
+        return tuple(layer for known in kinds for layer in self.of(known) if not layer.muted)
+
+    @property
+    def has_states(self) -> bool:
+        """Whether it is told how high waves are that are no spectrum's."""
+        return any(Gives.STATE in layer.gives for layer in self.active())
+
+    def alone(self, layer: Contribution) -> OceanParameters:
+        """What of the sea acts on the state of one layer, with that layer."""
+        return OceanParameters(
+            resolution=16, domain_size=self.domain_size, seed=self.seed, water=self.water,
+            dispersion=self.dispersion, layers=(WaveLayer(muted=True), layer),
+        )  # fmt: skip
+
+    def _check_layers(self) -> None:
+        """What is not as the sea needs it; what repeats in no time fits into no loop."""
+        for index, layer in enumerate(self.layers):
+            if layer.muted:
+                continue
+            if self.loop_duration is not None and Gives.LOOPS not in layer.gives:
+                raise ParameterError(
+                    "loop_duration", to_plain(self.loop_duration),
+                    f"layers.{index} raises waves that do not repeat: mute it, or take away the loop",
+                )  # fmt: skip
+            layer.check(self, f"layers.{index}")
+        for kind in dict.fromkeys(type(layer) for layer in self.active()):
+            kind.check_together(self)
+
+    def replace(self, **changes: Any) -> OceanParameters:
+        """A copy with some fields changed, validated anew.
+
+        Of a sea of patches, another resolution is that of the first, and the others keep their ratio to it;
+        of joined ones, it is that of their one grid.
+        """
+        if self.patches and "patches" not in changes:
+            if "resolution" in changes and self.joined:
+                changes["joined"] = changes["resolution"]
+            elif "resolution" in changes:
+                changes["patches"] = resampled(self.patches, changes["resolution"])
+            if changes.get("domain_size", self.domain_size) != self.domain_size:
+                raise ParameterError(
+                    "domain_size",
+                    changes["domain_size"],
+                    "is that of the first of the patches: change it there",
+                )
+        if changes.get("patches", self.patches):  # they tell it anew
+            changes = {**dict.fromkeys(_TILE, OPEN), **changes}
+        return dataclasses.replace(self, **changes)
+
+    def at_resolution(self, resolution: int) -> OceanParameters:
+        """The same sea on other samples; layers that these do not hold, short hero waves, are muted."""
+        return self.replace(resolution=resolution, layers=self._held_by(resolution))
+
+    def on_one_grid(self, resolution: int) -> OceanParameters:
+        """The same sea on the samples of one grid over the domain, also of several patches."""
+        if not self.is_cascade:
+            return self.at_resolution(resolution)
+        return self.replace(joined=resolution, patches=self.patches, layers=self._held_by(resolution))
+
+    def _held_by(self, resolution: int) -> tuple[Contribution, ...]:
+        return tuple(
+            layer if layer.is_held(self, resolution) else layer.changed(muted=True) for layer in self.layers
+        )
+
+    @property
+    def apart(self) -> OceanParameters:
+        """The sea with its patches on grids of their own, where they are joined."""
+        return self.replace(joined=0, patches=self.patches) if self.joined else self
+
+    @property
+    def without_patches(self) -> OceanParameters:
+        """The sea of one patch, as large and with as many samples, that has the same spectrum."""
+        return self.replace(patches=(), joined=0)
+
+    def to_dict(self, brief: bool = False) -> dict[str, Any]:
+        """Plain dictionaries, lists and numbers, as they stand in a JSON file.
+
+        brief : of pictures only name, shape and hash: for headers; they cannot be read back
+        """
+        return to_plain(self, brief)
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """JSON text that `from_json` reads back to equal parameters."""
+        return json.dumps({"format": formats.SEA, **self.to_dict()}, indent=indent, ensure_ascii=False)
+
+    @classmethod
+    def from_dict(cls, data: object) -> OceanParameters:
+        """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
+        check_numbers(numbers_in(data))
+        data = modern(data)
+        if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
+            data = {key: value for key, value in data.items() if key not in _TILE}
+        return from_plain(cls, data)
+
+    @classmethod
+    def from_json(cls, text: str) -> OceanParameters:
+        """Parameters from JSON text. Raises ParameterError for what is not valid JSON or not valid."""
+        return cls.from_dict(parse_json(text))
+
+
+def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
+    """Layers with ids that are distinct within a kind; those without one take the first that are free."""
+    taken: dict[str, set[int]] = {kind.kind: set() for kind in KINDS}
+    for index, layer in enumerate(layers):
+        if layer.id >= 0 and layer.id in taken[layer.kind]:
+            raise ParameterError(f"layers.{index}.id", layer.id, "is the id of another layer too")
+        taken[layer.kind].add(layer.id)
+    result = list(layers)
+    for index, layer in enumerate(layers):
+        if layer.id < 0 and layer.has("id"):
+            ids = taken[layer.kind]
+            result[index] = layer.changed(id=next(number for number in count() if number not in ids))
+            ids.add(result[index].id)
+    return tuple(result)
+
+
+def _check_loop(duration: Fraction | None, timing: Timing) -> None:
+    if duration is None:
+        return
+    frames = duration * timing.fps
+    if frames.denominator != 1:
+        nearest = max(1, round(frames))
+        raise ParameterError(
+            "loop_duration", str(duration),
+            f"is {float(frames):.6g} frames at {timing.fps} frames per second, not a whole number; "
+            f"the nearest that is: {to_plain(nearest / timing.fps)} s, {nearest} frames",
+        )  # fmt: skip

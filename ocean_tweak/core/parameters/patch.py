@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A patch of a sea of several: how large, how turned, and which wavelengths it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from ..data.errors import ParameterError
+from ..data.validation import Validated, integer, nested, number
+from ..masks.parameters import Mask
+
+#: of a sea
+MOST_PATCHES = 4
+
+#: the ends of a band that ends nowhere, m
+NO_SHORTEST, NO_LONGEST = 0.0, 1e6
+
+#: a patch samples its shortest wave at least so often, and its longest goes at least so often into a side
+LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
+
+#: share of the variance that patches which repeat within the wanted area may hold: as much as the
+#: autocorrelation of the sea has a domain away
+REPEATING_SHARE = 0.1
+
+
+@dataclass(frozen=True)
+class Patch(Validated):
+    """One of a sea's patches, which repeats in its own axes. Its band's ends are sharp."""
+
+    domain_size: float = number(
+        400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
+        "as the domain of a sea of one patch",
+    )  # fmt: skip
+    rotation: float = number(
+        0.0, -1e6, 1e6, "rad",
+        "Turn of the patch's sides, counter-clockwise from +x, while its waves run on as before",
+        "any number of turns that a float tells apart",
+    )  # fmt: skip
+    shortest_wavelength: float = number(
+        NO_SHORTEST, 0.0, 1e6, "m", "The band's short end; the next patch's waves are shorter than that",
+        "0 keeps all short waves",
+    )  # fmt: skip
+    longest_wavelength: float = number(
+        NO_LONGEST, 1e-3, 1e6, "m", "The band's long end; the waves of the patch before are longer than that",
+        "1000 km keeps all long waves",
+    )  # fmt: skip
+    resolution: int = integer(
+        512, 16, 8192, "Samples along each side of the patch, an even number", "as the resolution of a sea"
+    )
+    mask: Mask | None = nested(Mask, optional=True)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.resolution % 2:
+            raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
+        if self.shortest_wavelength >= self.longest_wavelength:
+            raise ParameterError(
+                "shortest_wavelength", self.shortest_wavelength,
+                f"must be below longest_wavelength = {self.longest_wavelength:g} m",
+            )  # fmt: skip
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Shortest and longest wavelength, m."""
+        return self.shortest_wavelength, self.longest_wavelength
+
+    @property
+    def spacing(self) -> float:
+        """Between samples, m."""
+        return self.domain_size / self.resolution
+
+    @property
+    def samples_a_wave(self) -> float:
+        """Samples along the shortest wave of the band; 0 for a band without a short end."""
+        return self.shortest_wavelength / self.spacing
+
+    @property
+    def longest_waves_a_side(self) -> float:
+        """How often the longest wave of the band goes into a side."""
+        return self.domain_size / self.longest_wavelength
+
+
+def check_bands(patches: Sequence[Patch]) -> None:
+    """Raise ParameterError unless each patch's waves begin where those of the patch before end."""
+    for index, (longer, shorter) in enumerate(pairwise(patches)):
+        end, begin = longer.shortest_wavelength, shorter.longest_wavelength
+        if end == begin:
+            continue
+        if shorter.shortest_wavelength >= longer.longest_wavelength:
+            fault = "holds longer waves than the patch before it: order the patches from long waves to short"
+        elif begin > end:
+            fault = "waves in between would be there twice"
+        else:
+            fault = "waves in between would be lost"
+        raise ParameterError(
+            f"patches.{index + 1}.longest_wavelength", begin,
+            f"patches.{index} ends at {end:g} m and patches.{index + 1} begins at {begin:g} m: {fault}. "
+            f"Give patches.{index}.shortest_wavelength and patches.{index + 1}.longest_wavelength one value",
+        )  # fmt: skip
+
+
+def check_joined(joined: int, patches: Sequence[Patch]) -> None:
+    """Raise ParameterError for samples of one grid that are not those of a sum of patches."""
+    if joined % 2 or 0 < joined < 16:
+        raise ParameterError("joined", joined, "must be 0 or an even number from 16 to 8192")
+    if joined and not patches:
+        raise ParameterError("joined", joined, "must be 0 in a sea without patches, which is on one grid")
+
+
+def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first: Sequence[str]) -> None:
+    """Raise ParameterError for bands that do not join, and for what patches cannot have.
+
+    on_the_first : what else the sea has that is on the first patch
+    """
+    if not patches:
+        return
+    check_bands(patches)
+    if trough_damping > 0.0:
+        raise ParameterError(
+            "trough_damping", trough_damping,
+            "must be 0 in a sea of patches, none of which knows the troughs of the others: damp a sea of one",
+        )  # fmt: skip
+    if on_the_first and patches[0].rotation:
+        raise ParameterError(
+            "patches.0.rotation", patches[0].rotation,
+            f"must be 0 in a sea with {' and '.join(on_the_first)}, held by the first patch: turn the others",
+        )  # fmt: skip
+
+
+def resampled(patches: Sequence[Patch], resolution: int) -> tuple[Patch, ...]:
+    """The patches with so many samples in the first, and in the others in proportion, 16 at least."""
+    ratio = resolution / patches[0].resolution
+    others = (
+        replace(patch, resolution=max(16, 2 * round(0.5 * patch.resolution * ratio))) for patch in patches[1:]
+    )
+    return replace(patches[0], resolution=resolution), *others

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sea of patches as seas of one patch each, in their own axes: their sum is the sea."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from ..waves.contribution import Contribution, Gives
+from .ocean_parameters import Mask, OceanParameters, Patch
+
+#: samples along the shortest wave of a patch that is read between its samples for a grid: bilinear, a tenth
+#: of that wave's variance is lost, and less of longer ones
+_SAMPLES_A_WAVE = 8.0
+_FEWEST, _MOST = 16, 8192
+
+
+#: among outputs: those of each part of the sea, which add up, behind the sea's own
+PARTS = "parts"
+
+
+def rotations(parameters: OceanParameters) -> tuple[float, ...]:
+    """By how much each patch is turned, rad counter-clockwise."""
+    return tuple(patch.rotation for patch in parameters.patches) or (0.0,)
+
+
+def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
+    """The parameters of each patch, in axes that lie along its sides; a sea without patches is its only one.
+
+    Masks are left out, and patches are apart even where they are joined. What a patch holds of a layer is for
+    the layer to say; the first keeps the random numbers of a sea of one patch.
+    """
+    return tuple(_without_masks(sea) for sea in _patch_seas(parameters.apart))
+
+
+def _patch_seas(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
+    if not parameters.patches:
+        return (parameters,)
+    return tuple(_of_patch(parameters, index, patch) for index, patch in enumerate(parameters.patches))
+
+
+def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanParameters:
+    held = (layer.in_patch(parameters, index, patch.rotation) for layer in parameters.layers)
+    layers = tuple(layer for layer in held if layer is not None)
+    return parameters.replace(patches=(replace(patch, rotation=0.0),), layers=layers)
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some waves of a sea, which have a grid and a weight of their own. The sea is the sum of its parts.
+
+    parameters : of a sea of one patch, in axes along the patch's sides
+    rotation : by which those are turned, rad counter-clockwise
+    masks : whose product is the weight, in the sea's axes
+    patch : the number of the patch
+    """
+
+    parameters: OceanParameters
+    rotation: float
+    masks: tuple[Mask, ...]
+    patch: int
+
+    @property
+    def spacing(self) -> float:
+        """Between its samples, m."""
+        return self.parameters.domain_size / self.parameters.resolution
+
+
+def parts(parameters: OceanParameters) -> tuple[Part, ...]:
+    """The parts of a sea: of each patch, the waves under each mask."""
+    found = []
+    patches = parameters.patches or (None,)
+    seas = _patch_seas(parameters.apart)
+    masks = list(dict.fromkeys(layer.mask for layer in parameters.active() if _is_parted(layer)))
+    if None in masks:  # first come the waves that are everywhere
+        masks.insert(0, masks.pop(masks.index(None)))
+    for index, (sea, patch, rotation) in enumerate(zip(seas, patches, rotations(parameters), strict=True)):
+        of_patch = (patch.mask,) if patch is not None and patch.mask is not None else ()
+        found += [
+            Part(_without_masks(under), rotation, of_patch if mask is None else (*of_patch, mask), index)
+            for mask, under in _by_mask(sea, masks)
+        ]
+    return tuple(found)
+
+
+def joined_bands(parameters: OceanParameters) -> OceanParameters:
+    """A joined sea's patches apart, without the waves shorter than two samples of its one grid.
+
+    The first has the grid's samples, the others as many as reading between them takes. The last that is left
+    holds no waves shorter than two of its own samples either; where another follows, bands must meet.
+    """
+    shortest = 2.0 * parameters.domain_size / parameters.resolution
+    first, *others = parameters.patches
+    kept = [first, *(patch for patch in others if patch.longest_wavelength > shortest)]
+    if len(kept) > 1 and kept[-1].longest_wavelength <= 2.0 * kept[-1].spacing:
+        kept.pop()
+    ends = [patch.shortest_wavelength for patch in kept]
+    ends[-1] = max(ends[-1], shortest, 2.0 * kept[-1].spacing)
+    bands = [_readable(patch, end) for patch, end in zip(kept, ends, strict=True)]
+    if not first.rotation:
+        bands[0] = replace(first, resolution=parameters.resolution)
+    return parameters.replace(joined=0, patches=tuple(bands))
+
+
+def _readable(patch: Patch, end: float) -> Patch:
+    wanted = 2 * math.ceil(0.5 * _SAMPLES_A_WAVE * patch.domain_size / end)
+    return replace(patch, shortest_wavelength=end, resolution=min(max(wanted, _FEWEST), _MOST))
+
+
+def _by_mask(
+    sea: OceanParameters, masks: Sequence[Mask | None]
+) -> Iterator[tuple[Mask | None, OceanParameters]]:
+    """Some masks, and with each a patch of the sea whose other layers are muted."""
+    if len(masks) < 2:
+        yield (masks[0] if masks else None), sea
+        return
+    for mask in masks:
+        layers = (
+            layer if (layer.mask if _is_parted(layer) else masks[0]) == mask else layer.changed(muted=True)
+            for layer in sea.layers
+        )
+        yield mask, sea.replace(layers=tuple(layers))
+
+
+def _is_parted(layer: Contribution) -> bool:
+    """Whether a layer's waves are on a grid and may be under a mask; the rest goes with the first part."""
+    return layer.has("mask") and Gives.FIELDS not in layer.gives
+
+
+def _without_masks(parameters: OceanParameters) -> OceanParameters:
+    if not parameters.is_masked:
+        return parameters
+    return parameters.replace(
+        layers=tuple(
+            layer if layer.mask is None else layer.changed(mask=None) for layer in parameters.layers
+        ),
+        patches=tuple(replace(patch, mask=None) for patch in parameters.patches),
+    )

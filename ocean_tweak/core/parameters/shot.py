@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A shot: a sea, and what of it changes from frame to frame.
+
+Each frame is the sea of that frame's parameters at that frame's ocean time, made from its number alone.
+The samples are given a frame apart; between them values are linear.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..data import formats
+from ..data.errors import ParameterError
+from ..data.frames import LARGEST_FRAME, Frame
+from ..data.plain_data import to_plain
+from ..data.validation import changing_fields
+from ..waves.kinds import KINDS
+from .ocean_parameters import OceanParameters, parse_json
+
+#: seconds on the waves' own clock, where it does not simply follow the frames
+OCEAN_TIME = "ocean_time"
+
+#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer
+ANIMATED = (
+    *dict.fromkeys(f"layers.*.{name}" for kind in KINDS for name in changing_fields(kind)),
+    *changing_fields(OceanParameters),
+    OCEAN_TIME,
+)
+
+_ONE_SEA = "waves of one frame would not be those of the next, later"
+#: why the rest cannot: first part of the path → reason
+_CONSTANT = {
+    "water": "depth, gravity and the liquid set the speed of every wave: " + _ONE_SEA,
+    "dispersion": "it is the speed of every wave: " + _ONE_SEA,
+    "loop_duration": "it sets the speed of every wave: " + _ONE_SEA,
+    "domain_size": "it sets which waves there are: " + _ONE_SEA,
+    "resolution": "a sequence of images has one size",
+    "seed": "another seed is another sea",
+    "amplitudes": "other amplitudes are another sea",
+    "patches": "they set which waves there are: " + _ONE_SEA,
+    **{kind.former_list: kind.constant for kind in KINDS if kind.former_list},
+    "timing": "frames become seconds in one way; animate ocean_time instead",
+}
+_LAYER = re.compile(r"layers\.[0-9]{1,6}\.")
+_MOST_SAMPLES = 1_000_000
+_KEY = "animation"
+
+
+class Moment(NamedTuple):
+    """What determines one frame.
+
+    parameters : the sea of this frame
+    time : ocean time, s, exact
+    rate : seconds of ocean time in a second of the shot
+    """
+
+    parameters: OceanParameters
+    time: Fraction
+    rate: float
+
+
+@dataclass(frozen=True)
+class Animation:
+    """Samples a frame apart.
+
+    first_frame : that of the first sample
+    samples : path (see ANIMATED) and values, all of one length, SI units and radians
+
+    Raises ParameterError for a path that cannot be animated and for values that are no finite numbers.
+    """
+
+    first_frame: int
+    samples: tuple[tuple[str, tuple[float, ...]], ...]
+
+    def __post_init__(self) -> None:
+        if isinstance(self.first_frame, bool) or not isinstance(self.first_frame, int):
+            raise ParameterError("first_frame", self.first_frame, "must be a whole number")
+        if abs(self.first_frame) > LARGEST_FRAME:
+            raise ParameterError("first_frame", self.first_frame, f"must be at most {LARGEST_FRAME} from 0")
+        if not self.samples:
+            raise ParameterError("samples", {}, f"must hold at least one of {', '.join(ANIMATED)}")
+        for path, values in self.samples:
+            _check_path(path)
+            _check_values(path, values)
+        lengths = {path: len(values) for path, values in self.samples}
+        if len(set(lengths.values())) > 1:
+            raise ParameterError("samples", lengths, "must all have as many samples")
+        object.__setattr__(
+            self,
+            "samples",
+            tuple(sorted((path, tuple(float(value) for value in values)) for path, values in self.samples)),
+        )
+
+    @property
+    def last_frame(self) -> int:
+        """That of the last sample."""
+        return self.first_frame + len(self.samples[0][1]) - 1
+
+    def at(self, frame: Frame) -> dict[str, float]:
+        """Values by path at a frame, linear between samples. Raises ParameterError where there are none."""
+        if not self.first_frame <= frame <= self.last_frame:
+            raise ParameterError(
+                "frame", float(frame),
+                f"lies outside the animation's samples, frames {self.first_frame} to {self.last_frame}: "
+                "export the animation with the whole range of the shot",
+            )  # fmt: skip
+        index = math.floor(frame) - self.first_frame
+        share = float(frame - math.floor(frame))
+        return {
+            path: values[index] + share * (values[index + 1] - values[index]) if share else values[index]
+            for path, values in self.samples
+        }
+
+    def rate(self, path: str, frame: Frame) -> float | None:
+        """Change a frame of a value: that of the line between samples, at a sample the mean of both sides."""
+        values = dict(self.samples).get(path)
+        if values is None:
+            return None
+        position = Fraction(frame) - self.first_frame
+        last = len(values) - 1
+        sides = {math.ceil(position) - 1, math.floor(position)}
+        slopes = [values[side + 1] - values[side] for side in sides if 0 <= side < last]
+        return sum(slopes) / len(slopes) if slopes else 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as it stands in a JSON file."""
+        return {
+            "first_frame": self.first_frame,
+            "samples": {path: list(values) for path, values in self.samples},
+        }
+
+    @classmethod
+    def from_dict(cls, data: object) -> Animation:
+        """An animation from plain data. Raises ParameterError naming what is wrong."""
+        if not isinstance(data, dict) or set(data) != {"first_frame", "samples"}:
+            raise ParameterError(_KEY, data, "must be an object with first_frame and samples")
+        samples = data["samples"]
+        if not isinstance(samples, dict):
+            raise ParameterError(f"{_KEY}.samples", samples, "must be an object of lists")
+        for path, values in samples.items():
+            if not isinstance(values, list):
+                raise ParameterError(f"{_KEY}.samples.{path}", values, "must be a list, a number a frame")
+        try:
+            return cls(data["first_frame"], tuple((path, tuple(v)) for path, v in samples.items()))
+        except ParameterError as error:
+            raise error.inside(_KEY) from None
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A sea, and what of it changes.
+
+    Raises ParameterError for an animation that does not fit the sea.
+    """
+
+    parameters: OceanParameters
+    animation: Animation | None = None
+
+    def __post_init__(self) -> None:
+        for values in self._extremes():
+            try:
+                self._with(values)
+            except ParameterError as error:
+                raise error.inside(_KEY) from None
+
+    def _extremes(self) -> Iterator[dict[str, float]]:
+        """The least and the greatest of each value: allowed ranges have no holes."""
+        if self.animation is not None:
+            for choose in (min, max):
+                yield {path: choose(values) for path, values in self.animation.samples}
+
+    def _with(self, values: Mapping[str, float]) -> OceanParameters:
+        layers = list(self.parameters.layers)
+        changes: dict[str, Any] = {}
+        for path, value in values.items():
+            number, _, name = path.removeprefix("layers.").partition(".")
+            if path == OCEAN_TIME:
+                continue
+            if not name:
+                changes[path] = value
+                continue
+            index = int(number)
+            if index >= len(layers):
+                raise ParameterError(path, value, f"the sea has only {len(layers)} layers")
+            if name not in changing_fields(type(layers[index])):
+                reason = f"is constant over a shot: {layers[index].constant}"
+                raise ParameterError(f"samples.{path}", "animated", reason)
+            try:
+                layers[index] = layers[index].changed(**{name: value})
+            except ParameterError as error:
+                raise error.inside(f"layers.{index}") from None
+        return self.parameters.replace(layers=tuple(layers), **changes)
+
+    def at(self, frame: Frame) -> Moment:
+        """What determines a frame, which may lie between two.
+
+        Raises ParameterError for a frame beyond an animation's samples.
+        """
+        timing = self.parameters.timing
+        if self.animation is None:
+            return Moment(self.parameters, timing.time(frame), float(1 / timing.stretch))
+        values = self.animation.at(frame)
+        time, rate = timing.time(frame), float(1 / timing.stretch)
+        change = self.animation.rate(OCEAN_TIME, frame)
+        if change is not None:
+            time, rate = Fraction(repr(values[OCEAN_TIME])), change * float(timing.fps)
+        return Moment(self._with(values), time, rate)
+
+    def check(self, frames: tuple[Frame, ...]) -> None:
+        """Raise ParameterError where a frame cannot be made."""
+        for frame in (frames[0], frames[-1]):
+            self.at(frame)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters' plain data, with the animation where there is one."""
+        animated = {_KEY: self.animation.to_dict()} if self.animation is not None else {}
+        return {**self.parameters.to_dict(), **animated}
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """JSON text that `from_json` reads back to an equal shot."""
+        return json.dumps({"format": formats.SEA, **self.to_dict()}, indent=indent, ensure_ascii=False)
+
+    @classmethod
+    def from_dict(cls, data: object) -> Shot:
+        """A shot from plain data. Raises ParameterError naming what is wrong."""
+        if not isinstance(data, dict) or _KEY not in data:
+            return cls(OceanParameters.from_dict(data))
+        sea = {key: value for key, value in data.items() if key != _KEY}
+        return cls(OceanParameters.from_dict(sea), Animation.from_dict(data[_KEY]))
+
+    @classmethod
+    def from_json(cls, text: str) -> Shot:
+        """A shot from JSON text. Raises ParameterError for what is not valid JSON or not valid."""
+        return cls.from_dict(parse_json(text))
+
+
+def time_text(time: Fraction) -> Any:
+    """An exact time as it stands in JSON."""
+    return to_plain(time)
+
+
+def _check_path(path: str) -> None:
+    if _LAYER.sub("layers.*.", path) in ANIMATED:
+        return
+    reason = _CONSTANT.get(path.partition(".")[0], f"only {', '.join(ANIMATED)} can change during a shot")
+    raise ParameterError(f"samples.{path}", "animated", f"is constant over a shot: {reason}")
+
+
+def _check_values(path: str, values: tuple[object, ...]) -> None:
+    if not 1 <= len(values) <= _MOST_SAMPLES:
+        raise ParameterError(f"samples.{path}", f"{len(values)} values", f"must be from 1 to {_MOST_SAMPLES}")
+    for index, value in enumerate(values):
+        if not _is_finite(value):
+            raise ParameterError(f"samples.{path}.{index}", value, "must be a finite number")
+
+
+def _is_finite(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond every float
+        return False

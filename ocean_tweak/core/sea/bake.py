@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The frame loop: each frame is made from the parameters and its number alone."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from ..data.frames import Frame
+from ..numerics.memo import MEMO
+from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.patch_seas import PARTS
+from ..parameters.shot import Moment, Shot
+from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
+from .memory import check_memory, memory_need
+from .ocean import Ocean
+
+
+class FrameSink(Protocol):
+    """Whatever keeps frames; called from several threads at once."""
+
+    @property
+    def outputs(self) -> frozenset[str]:
+        """The fields that a frame must have; with PARTS among them, of each part those that add up."""
+
+    def write(self, frame: Frame, fields: SurfaceFields, *others: SurfaceFields) -> tuple[Path, ...]:
+        """Keep a frame's fields, those of the first patch, of the others and of the parts; returns where."""
+
+
+class BakedFrame(NamedTuple):
+    """A frame that has been kept.
+
+    seconds : that it took, with its foam
+    """
+
+    frame: Frame
+    paths: tuple[Path, ...]
+    seconds: float
+
+
+class ShotSurfaces:
+    """Surfaces of a shot's frames, on one thread; quickest where frames follow each other."""
+
+    def __init__(self, shot: Shot) -> None:
+        self.shot = shot
+        self._sea: Ocean | None = None
+
+    def sea(self, frame: Frame) -> Ocean:
+        """The sea of a frame: the last one where its parameters are the same."""
+        parameters = self.shot.at(frame).parameters
+        if self._sea is None or self._sea.parameters != parameters:
+            self._sea = Ocean(parameters, workers=1)
+        return self._sea
+
+    def prepare(self, frame: Frame) -> None:
+        """Make the waves of a frame, which its surfaces share."""
+        for patch in self.sea(frame).patches:
+            patch.prepare()
+
+    def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
+        """Fields of each patch in a frame, on its tile, and ADDING of each part where PARTS is asked for.
+
+        Velocity is per second of the shot.
+        """
+        sea = self.sea(frame)
+        made = self._made(frame, sea.patches, frozenset(outputs) - {PARTS})
+        return (*made, *self._made(frame, sea.parts, ADDING)) if PARTS in outputs else made
+
+    def _made(
+        self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str]
+    ) -> tuple[SurfaceFields, ...]:
+        moment: Moment = self.shot.at(frame)
+        made = tuple(sea.surface(moment.time, outputs) for sea in seas)
+        for name in outputs if moment.rate != 1.0 else ():
+            if CHANNELS[name].is_rate:
+                for fields in made:
+                    fields[name][...] *= moment.rate
+        return made
+
+    def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:
+        """Fields of a frame of a sea on one grid. Raises ValueError for another."""
+        if self.shot.parameters.is_cascade:
+            raise ValueError("this sea has several patches: their fields are those of frames()")
+        (fields,) = self.frames(frame, outputs)
+        return fields
+
+
+def bake(
+    shot: Shot,
+    frames: Iterable[Frame],
+    sink: FrameSink,
+    workers: int = 1,
+    tell: Callable[[Frame, str], None] = lambda frame, doing: None,
+) -> Iterator[BakedFrame]:
+    """Make and keep each frame, several at once; yields each in order when it is kept.
+
+    A worker makes a whole frame on one thread: while one encodes, another computes. Only foam, which has a
+    memory, is made here, in the order of the frames. What a frame holds does not depend on the number of
+    workers. When the caller stops, frames under way are finished and no more begun.
+
+    tell : is told again and again what is being done for a frame
+
+    Raises MemoryError before the first frame where the machine is too small, and ValueError for fields of
+    several patches that are not sums of theirs.
+    """
+    _check(shot.parameters, sink, workers)
+    with_memory = ShotSurfaces(shot)
+    own = threading.local()
+
+    def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
+        started += time.perf_counter()
+        if not hasattr(own, "surfaces"):
+            own.surfaces = ShotSurfaces(shot)
+        fields, *others = own.surfaces.frames(frame, sink.outputs - OF_MEMORY)
+        if foam is not None:
+            fields = fields.including(foam)
+        return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
+
+    under_way: deque[Future[BakedFrame]] = deque()
+    # frames go forward: what they share stays, and no seas of frames gone by
+    need = memory_need(shot.parameters, sink.outputs)
+    with MEMO.at_most(need.state + workers * need.surface), ThreadPoolExecutor(workers) as pool:
+        try:
+            for frame in frames:
+                begun = time.perf_counter()
+                if not under_way:  # made once, before the workers ask for it
+                    with_memory.prepare(frame)
+                wanted = sink.outputs & OF_MEMORY
+                foam = _foam(with_memory, frame, wanted, tell) if wanted else None
+                # the wait for a worker is no work
+                under_way.append(pool.submit(make, frame, begun - time.perf_counter(), foam))
+                if len(under_way) > workers:
+                    yield under_way.popleft().result()
+            while under_way:
+                yield under_way.popleft().result()
+        finally:
+            for future in under_way:
+                future.cancel()
+
+
+def _foam(
+    surfaces: ShotSurfaces, frame: Frame, wanted: frozenset[str], tell: Callable[[Frame, str], None]
+) -> SurfaceFields:
+    for patch in surfaces.sea(frame).patches:
+        patch.foam_history.tell = lambda done, count: tell(
+            frame, f"looked back for foam at {done} of {count} moments"
+        )
+    return surfaces.frame(frame, wanted)
+
+
+def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:
+    """Raise for what cannot be baked, or not on this machine."""
+    if parameters.is_cascade and parameters.is_masked:
+        raise ValueError("masks: lie over the sea and not over its patches, which repeat; join the patches")
+    if parameters.is_cascade and not sink.outputs <= {*ADDING, PARTS}:
+        others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS}))
+        raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")
+    need = memory_need(parameters, sink.outputs).peak(workers)
+    check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")

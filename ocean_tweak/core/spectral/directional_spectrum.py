@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The spectrum of one wave layer over wave vectors, Ψ(kx, ky) in m⁴, and its mean over grid cells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..numerics.grid import WaveVectorGrid
+from . import dispersion
+from .layer_scales import LayerScales, layer_scales, scaled_spectrum
+from .radial_table import RadialTable
+from .spreading import WIND_MODELS, Shape, Spreading, directional_spreading, spreading_shape, wrap_angle
+from .water import Water
+
+if TYPE_CHECKING:
+    from ..waves.spectral import WaveLayer
+
+Array = NDArray[np.float64]
+
+#: cells nearer to the origin than this many cells are averaged over sub-cells: at radius r over
+#: n x n with n the power of two that is at least _FINEST_RADIUS / r
+_FINEST_RADIUS = 32.0
+
+#: sub-cells along a side where the end of a band cuts a cell
+_BAND_SUBCELLS = 8
+
+
+@dataclass(frozen=True)
+class DirectionalSpectrum:
+    """S(ω)·D(ω, θ) of one layer, and its form over wave vectors.
+
+    Horvath (2015), eq. 16 and 61.
+
+    patch_band : shortest and longest wavelength in m of the patch that holds it, sharp, beside the layer's
+        own band; None for all waves
+    """
+
+    layer: WaveLayer
+    water: Water
+    dispersion: str
+    patch_band: tuple[float, float] | None = None
+
+    @cached_property
+    def scales(self) -> LayerScales:
+        """α, ω_p, γ and the fetch that acts."""
+        return layer_scales(self.layer, self.water)
+
+    @property
+    def fetch_is_limited(self) -> bool:
+        """Whether the sea is fully developed before its fetch ends."""
+        return self.scales.fetch < self.layer.fetch
+
+    @property
+    def peak_frequency(self) -> float:
+        """ω_p in rad/s, the peak frequency that wind and fetch set before the depth acts."""
+        return self.scales.peak_frequency
+
+    @cached_property
+    def spreading(self) -> Spreading:
+        """The layer's spreading model."""
+        layer = self.layer
+        model = Spreading(
+            layer.spreading,
+            swell=layer.swell,
+            second=layer.second_spreading,
+            mix=layer.spreading_mix,
+            exponent=layer.spreading_exponent,
+        )
+        if WIND_MODELS.isdisjoint((model.model, model.second)):
+            return model  # its tables serve every wind
+        return replace(model, wind_frequency=self.scales.wind_frequency)
+
+    def frequency_spectrum(self, omega: ArrayLike) -> Array:
+        """S(ω) in m²·s/rad, any shape, with the layer's gain, band and short-wave cut-off."""
+        spectrum = self.layer.gain**2 * scaled_spectrum(omega, self.layer, self.scales, self.water)
+        if not (self.has_band or self.layer.short_wave_cutoff > 0.0):
+            return spectrum
+        return self.energy_weight(dispersion.wave_number(omega, self.dispersion, self.water)) * spectrum
+
+    def energy_weight(self, k: Array) -> Array:
+        """Share of the energy that the band and the short-wave cut-off leave, 0…1, over k in rad/m.
+
+        The cut-off is Tessendorf's exp(-k²l²) (Horvath 2015, § 5.1.3). A band and its inverse add to 1.
+        """
+        layer = self.layer
+        weight = self._band_weight(k) if self._layer_has_band else np.ones_like(k)
+        if self.patch_band is not None:
+            shortest, longest = self.patch_band
+            wavelength = 2.0 * np.pi / np.maximum(k, 1e-300)
+            weight = weight * ((wavelength > shortest) & (wavelength <= longest))
+        if layer.short_wave_cutoff > 0.0:
+            weight = weight * np.exp(-((k * layer.short_wave_cutoff) ** 2))
+        return weight
+
+    @property
+    def has_band(self) -> bool:
+        """Whether the layer or its patch leaves wavelengths out."""
+        return self._layer_has_band or self.patch_band is not None
+
+    @property
+    def _layer_has_band(self) -> bool:
+        return self.layer.band_inverted or bool(len(self.band_ends))
+
+    @property
+    def sharp_ends(self) -> Array:
+        """Wave numbers in rad/m at which energy begins or ends at once."""
+        of_layer = self.band_ends if self.layer.band_softness == 0.0 else self.band_ends[:0]
+        ends = [end for end in self.patch_band or () if 0.0 < end < 1e6]
+        return np.concatenate([of_layer, 2.0 * np.pi / np.array(ends)]) if ends else of_layer
+
+    @cached_property
+    def band_ends(self) -> Array:
+        """Wave numbers in rad/m at which a band of the layer ends."""
+        layer = self.layer
+        ends = [layer.shortest_wavelength if layer.shortest_wavelength > 0.0 else None]
+        ends.append(layer.longest_wavelength if layer.longest_wavelength < 1e6 else None)
+        return np.array([2.0 * np.pi / wavelength for wavelength in ends if wavelength])
+
+    def _band_weight(self, k: Array) -> Array:
+        layer = self.layer
+        octaves = np.log2(2.0 * np.pi / np.maximum(k, 1e-300))
+        weight = np.ones_like(k)
+        if layer.shortest_wavelength > 0.0:
+            weight = weight * _rise(octaves - np.log2(layer.shortest_wavelength), layer.band_softness)
+        if layer.longest_wavelength < 1e6:
+            weight = weight * (1.0 - _rise(octaves - np.log2(layer.longest_wavelength), layer.band_softness))
+        return 1.0 - weight if layer.band_inverted else weight
+
+    def directional_spreading(self, omega: ArrayLike, theta: ArrayLike) -> Array:
+        """D(ω, θ) in 1/rad; θ counter-clockwise from +x, not from the wind. Horvath (2015), eq. 41."""
+        relative = np.asarray(theta, np.float64) - self.layer.wind_direction
+        return directional_spreading(np.asarray(omega) / self.peak_frequency, relative, self.spreading)
+
+    def density(self, kx: ArrayLike, ky: ArrayLike) -> Array:
+        """Ψ(kx, ky) = S·D·(dω/dk)/k in m⁴, sampled at wave vectors other than 0. Horvath (2015), eq. 61."""
+        k = np.hypot(kx, ky)
+        omega = dispersion.angular_frequency(k, self.dispersion, self.water)
+        spreading = self.directional_spreading(omega, np.arctan2(ky, kx))
+        return self.energy_weight(k) * self._radial_energy(k, omega) * spreading
+
+    def _radial_energy(self, k: Array, omega: Array) -> Array:
+        """S·(dω/dk)/k in m⁴·rad, before band and cut-off."""
+        rate = dispersion.group_velocity(k, self.dispersion, self.water)
+        spectrum = scaled_spectrum(omega, self.layer, self.scales, self.water)
+        return self.layer.gain**2 * spectrum * rate / k
+
+    def cell_means(self, grid: WaveVectorGrid) -> tuple[Array, Array]:
+        """Ψ averaged over each wave-vector cell, in m⁴, for k and for -k.
+
+        Returns two (N, N//2+1) arrays; modes that are no waves hold 0. Sampling at the cell's centre
+        instead (Horvath 2015, eq. 46; Chen 2014, eq. 17) loses or doubles the energy of a narrow peak.
+        """
+        return CellMeans(self, grid).both()
+
+
+class CellMeans:
+    """Means of a spectrum over the cells of a grid.
+
+    Arrays inside are [kx, ky], as the transforms want them in memory.
+    """
+
+    def __init__(self, spectrum: DirectionalSpectrum, grid: WaveVectorGrid) -> None:
+        self._spectrum = spectrum
+        self._grid = grid
+        # sub-cells reach half a cell inside of the first mode and beyond the last
+        self._table = RadialTable(0.25 * grid.spacing, 0.75 * grid.resolution * grid.spacing)
+        k = self._table.k
+        omega = dispersion.angular_frequency(k, spectrum.dispersion, spectrum.water)
+        shape = spreading_shape(omega / spectrum.peak_frequency, spectrum.spreading)
+        self._table.fill(spectrum._radial_energy(k, omega), shape)
+
+    def both(self) -> tuple[Array, Array]:
+        """Means for k and for -k, two (N, N//2+1) arrays in m⁴."""
+        grid = self._grid
+        forward, backward = (np.empty(grid.shape[::-1]) for _ in range(2))
+        for columns in grid.column_blocks():
+            forward[columns], backward[columns] = self._samples(columns)
+        self._refine(forward, backward)
+        for means in (forward, backward):
+            means[~grid.usable.T] = 0.0
+        return forward.T, backward.T
+
+    def _samples(self, columns: slice) -> tuple[Array, Array]:
+        """Ψ at the centres of some columns' cells, (columns, N) each. The radial part is even in ky."""
+        grid = self._grid
+        kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
+        half = np.maximum(np.hypot(kx, ky[: grid.resolution // 2 + 1]), 0.5 * grid.spacing)
+        shape = self._weighted_shape(half)
+        return self._both_ways(shape.map(grid.mirror), kx, ky)
+
+    def _weighted_shape(self, k: Array) -> Shape:
+        shape = self._table.shape(self._table.nodes(k))
+        weight = self._spectrum.energy_weight(k)
+        second = None if shape.second_weight is None else weight * shape.second_weight
+        return shape._replace(first_weight=weight * shape.first_weight, second_weight=second)
+
+    def _both_ways(self, shape: Shape, kx: Array, ky: Array) -> tuple[Array, Array]:
+        """Ψ at k and at -k. All spreadings are even in θ, and -k lies at π - |θ|."""
+        layer, spreading = self._spectrum.layer, self._spectrum.spreading
+        theta = np.abs(wrap_angle(np.arctan2(ky, kx) - layer.wind_direction))
+        return shape.density(theta, spreading), shape.density(np.pi - theta, spreading)
+
+    def _refine(self, forward: Array, backward: Array) -> None:
+        """Replace samples by means over sub-cells where Ψ varies within a cell."""
+        grid = self._grid
+        for n, column, row in self._cells_to_divide():
+            offset = ((np.arange(n) + 0.5) / n - 0.5) * grid.spacing
+            kx = grid.kx[0, column][:, np.newaxis, np.newaxis] + offset[np.newaxis, :, np.newaxis]
+            ky = grid.ky[row, 0][:, np.newaxis, np.newaxis] + offset[np.newaxis, np.newaxis, :]
+            along, against = self._both_ways(self._weighted_shape(np.hypot(kx, ky)), kx, ky)
+            forward[column, row] = along.mean(axis=(1, 2))
+            backward[column, row] = against.mean(axis=(1, 2))
+
+    def _cells_to_divide(self) -> Iterator[tuple[int, NDArray[np.intp], NDArray[np.intp]]]:
+        """Numbers n of sub-cells along a side, with the columns and rows of the cells that want n x n."""
+        subdivisions = self._subdivisions()
+        for n in np.unique(subdivisions[subdivisions > 1]):
+            column, row = np.nonzero(subdivisions == n)
+            yield int(n), column, row
+
+    def _subdivisions(self) -> NDArray[np.int8]:
+        """(N//2+1, N) sub-cells along a side: more towards the origin, where cells are wide against their
+        wave number, and where the sharp end of a band cuts a cell."""
+        grid = self._grid
+        result = np.zeros(grid.shape[::-1], np.int8)
+        near = int(min(_FINEST_RADIUS, grid.resolution // 2))
+        for rows in (slice(0, near), slice(-near, None)):
+            radius = np.hypot(np.arange(near)[:, np.newaxis], grid.ky[rows, 0] / grid.spacing)
+            wanted = _FINEST_RADIUS / np.clip(radius, 1.0, _FINEST_RADIUS)
+            result[:near, rows] = 2 ** np.ceil(np.log2(wanted))
+        ends = self._spectrum.sharp_ends
+        k = grid.k.T if len(ends) else None
+        for end in ends:
+            cut = np.abs(k - end) < np.sqrt(0.5) * grid.spacing
+            result[cut] = np.maximum(result[cut], _BAND_SUBCELLS)
+        result[~grid.usable.T] = 0
+        return result
+
+
+def _rise(octaves: Array, width: float) -> Array:
+    """0 below, 1 above 0 octaves, with a smooth step of the given width between; a half at 0."""
+    if width == 0.0:
+        return (octaves >= 0.0).astype(np.float64)
+    # held before the division: a width may be as small as a float can be
+    x = np.clip(np.clip(octaves, -width, width) / width + 0.5, 0.0, 1.0)
+    return x * x * (3.0 - 2.0 * x)

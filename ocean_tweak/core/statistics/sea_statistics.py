@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers that describe a sea: of its spectrum, as the grid resolves it, of one seed, of a field.
+
+Moments: m0 = ∫S dω is the variance of the elevation, m2 = ∫ω²S dω; Hs = 4√m0 is the significant wave
+height, Tp the period at the peak of the frequency spectrum, Tz = 2π√(m0/m2) the mean period between
+zero up-crossings.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..data.plain_data import to_plain
+from ..parameters.ocean_parameters import OceanParameters, Patch
+from ..spectral import dispersion
+from ..spectral.sea_state import (
+    Modes,
+    SeaState,
+    field_state,
+    mode_state,
+    modes_state,
+    state_of_moments,
+    together,
+)
+from ..spectral.spreading import mean_cosine
+from ..synthesis.initial_state import InitialState
+from ..synthesis.sea_spectrum import SeaSpectrum
+from ..waves.contribution import WAVES, Gives
+
+Array = NDArray[np.float64]
+
+__all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
+
+#: said of a sea without waves
+FLAT = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
+
+_LEAST_WAVELENGTHS = 3.0
+LEAST_RESOLVED_SHARE = 0.95
+_LEAST_LOOP_PERIODS = 3.0
+_LARGEST_SPEED_CHANGE = 0.1
+
+
+@dataclass(frozen=True)
+class PatchStatistics:
+    """A patch of a sea, and the statistics of its band in the sea's axes.
+
+    share : of the sum's variance on the grids, 0…1
+    """
+
+    patch: Patch
+    statistics: Statistics
+    share: float
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data for JSON."""
+        patch = self.patch
+        return {
+            **to_plain(patch, brief=True),
+            "spacing": patch.spacing,
+            "samples_a_wave": patch.samples_a_wave or None,
+            "longest_waves_a_side": patch.longest_waves_a_side,
+            "share": self.share,
+            **{name: getattr(self.statistics, name).to_dict() for name in ("spectrum", "resolved", "seed")},
+        }
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a sea will be.
+
+    spectrum : the continuous spectrum, all wavelengths
+    resolved : the mean over all seeds of what the grid holds
+    seed : this seed, averaged over time; hero waves are in it, and in none of the above
+    wavelengths_per_domain : peak wavelengths along a side
+    sample_spacing : m
+    loop_speed_change : largest relative change of a wave's phase speed by the loop, or None without one
+    warnings : one sentence each, with the remedy
+    patches : of a sea of patches, from long waves to short; the rest is then of their sum, its spectrum that
+        of all waves and its grid all grids together
+    """
+
+    spectrum: SeaState
+    resolved: SeaState
+    seed: SeaState
+    wavelengths_per_domain: float
+    sample_spacing: float
+    loop_speed_change: float | None
+    warnings: tuple[str, ...]
+    patches: tuple[PatchStatistics, ...] = ()
+
+    @property
+    def m0(self) -> float:
+        """Variance of the elevation, m², of the continuous spectrum."""
+        return self.spectrum.m0
+
+    @property
+    def significant_wave_height(self) -> float:
+        """Hs of the continuous spectrum, m."""
+        return self.spectrum.significant_wave_height
+
+    @property
+    def peak_period(self) -> float:
+        """Tp of the continuous spectrum, s."""
+        return self.spectrum.peak_period
+
+    @property
+    def peak_wavelength(self) -> float:
+        """Wavelength at the peak of the continuous spectrum, m."""
+        return self.spectrum.peak_wavelength
+
+    @property
+    def resolved_share(self) -> float:
+        """Share of the spectrum's energy that the grid resolves, 0…1."""
+        return self.resolved.m0 / self.spectrum.m0 if self.spectrum.m0 > 0.0 else 1.0
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data for JSON; what does not exist (the period of a flat sea) is None."""
+        per_domain = self.wavelengths_per_domain
+        return {
+            "spectrum": self.spectrum.to_dict(),
+            "resolved": self.resolved.to_dict(),
+            "seed": self.seed.to_dict(),
+            "resolved_share": self.resolved_share,
+            "wavelengths_per_domain": per_domain if np.isfinite(per_domain) else None,
+            "sample_spacing": self.sample_spacing,
+            "loop_speed_change": self.loop_speed_change,
+            "warnings": list(self.warnings),
+            **({"patches": [patch.to_dict() for patch in self.patches]} if self.patches else {}),
+        }
+
+
+def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statistics:
+    """Statistics of a sea from its parameters and its initial state."""
+    sea = SeaSpectrum(parameters)
+    spectrum = continuous_state(sea)
+    placed = [layer.state(parameters) for layer in parameters.active() if Gives.FIELDS in layer.gives]
+    told = [state for state in placed if state is not None]
+    resolved, seed = (
+        together([modes_state(_modes(state, expected), parameters), *told]) for expected in (True, False)
+    )
+    result = Statistics(
+        spectrum=spectrum,
+        resolved=resolved,
+        seed=seed,
+        wavelengths_per_domain=parameters.domain_size / spectrum.peak_wavelength,
+        sample_spacing=parameters.domain_size / parameters.resolution,
+        loop_speed_change=_loop_speed_change(parameters, state),
+        warnings=(),
+    )
+    return dataclasses.replace(result, warnings=_warnings(parameters, sea, result))
+
+
+def _modes(state: InitialState, expected: bool) -> list[Modes]:
+    """Energies of all of a sea's states: expected over all seeds, or of this seed."""
+    return [
+        Modes(part.grid, part.expected_plus, part.expected_minus, part.omega)
+        if expected
+        else Modes(part.grid, np.abs(part.h_plus) ** 2, np.abs(part.h_minus) ** 2, part.omega)
+        for part in state.parts
+    ]
+
+
+def continuous_state(sea: SeaSpectrum) -> SeaState:
+    """State of all waves of a sea of which it is told, whether a grid resolves them or not."""
+    others = (layer.state(sea.parameters) for layer in sea.parameters.active())
+    return together([spectrum_state(sea), *(state for state in others if state is not None)])
+
+
+def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> float | None:
+    """Largest relative change of the phase speed among the modes that hold 99 % of the energy."""
+    if state.loop_duration is None:
+        return None
+    changes = [0.0]
+    for part in state.parts:
+        energy = ((part.expected_plus + part.expected_minus) * part.grid.multiplicity).ravel()
+        order = np.argsort(energy)[::-1]
+        cumulated = np.cumsum(energy[order])
+        if not cumulated[-1] > 0.0:
+            continue
+        carrying = order[: int(np.searchsorted(cumulated, 0.99 * cumulated[-1])) + 1]
+        true = _without_loop(parameters, part).ravel()[carrying]
+        moving = true > 0.0
+        changes.append(np.max(np.abs(part.omega.ravel()[carrying][moving] / true[moving] - 1.0), initial=0.0))
+    return float(max(changes))
+
+
+def _without_loop(parameters: OceanParameters, part: InitialState) -> Array:
+    """ω in rad/s of a state's waves as it would be without a loop."""
+    own = None if part.layer is None else part.layer.frequencies(parameters, part.grid)
+    if own is not None:
+        return own
+    return dispersion.angular_frequency(part.grid.k, parameters.dispersion, parameters.water)
+
+
+def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> tuple[str, ...]:
+    of_layers = tuple(layer_warnings(parameters))
+    if not np.isfinite(statistics.peak_wavelength):
+        return of_layers if is_told_apart(parameters) else (*of_layers, FLAT)
+    return (
+        *of_layers,
+        *grid_warnings(parameters, sea, statistics),
+        *loop_warnings(parameters, statistics),
+        *fetch_warnings(parameters, sea),
+    )
+
+
+def is_told_apart(parameters: OceanParameters) -> bool:
+    """Whether some waves are in no statistics, so that a sea whose statistics are flat need not be."""
+    return any(not layer.gives & (Gives.SPECTRUM | Gives.STATE) for layer in parameters.active())
+
+
+def layer_warnings(parameters: OceanParameters) -> Iterator[str]:
+    """What layers say themselves, and of which waves nobody says anything."""
+    for layer in parameters.active():
+        yield from layer.warnings(parameters)
+        is_told = layer.gives & (Gives.SPECTRUM | Gives.STATE) or type(layer).outlook(parameters) is not None
+        if layer.gives & WAVES and not is_told:
+            yield (
+                f"{layer.names.label}: nothing tells how high these waves are, so neither the numbers of "
+                "this sea nor its foam know of them"
+            )
+
+
+def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> list[str]:
+    """Of a grid that is too small or too coarse for its waves."""
+    warnings = []
+    wavelength = statistics.peak_wavelength
+    if parameters.has_states:
+        wavelength = _longest_random_wave(parameters, 2.0 * np.pi / sea.peak_wave_number)
+    if parameters.domain_size / wavelength < _LEAST_WAVELENGTHS:
+        warnings.append(
+            f"The domain of {parameters.domain_size:g} m holds only "
+            f"{parameters.domain_size / wavelength:.2g} of the longest waves ({wavelength:.3g} m): "
+            "wave height will differ much between seeds. "
+            f"Make the domain at least {_round_up(_LEAST_WAVELENGTHS * wavelength)} m"
+        )
+    if statistics.resolved_share < LEAST_RESOLVED_SHARE:
+        warnings.append(
+            f"The grid resolves {100.0 * statistics.resolved_share:.0f} % of the energy: samples are "
+            f"{statistics.sample_spacing:.3g} m apart. Raise the resolution or make the domain smaller"
+        )
+    return warnings
+
+
+def _longest_random_wave(parameters: OceanParameters, of_spectra: float) -> float:
+    """Wavelength in m of the longest peak among what differs in height from seed to seed; NaN for none."""
+    peaks = (of_spectra, *(layer.longest_random_wave(parameters) for layer in parameters.active()))
+    return max((peak for peak in peaks if np.isfinite(peak)), default=float("nan"))
+
+
+def _round_up(length: float) -> str:
+    """A length rounded up to two digits."""
+    unit = 10.0 ** (np.floor(np.log10(length)) - 1.0)
+    return f"{np.ceil(length / unit) * unit:.10g}"
+
+
+def loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[str]:
+    """Of a loop that is too short."""
+    if parameters.loop_duration is None or statistics.loop_speed_change is None:
+        return []
+    duration, shortest = float(parameters.loop_duration), _LEAST_LOOP_PERIODS * statistics.peak_period
+    warnings = []
+    if duration < shortest:
+        warnings.append(
+            f"The loop of {duration:g} s is shorter than {_LEAST_LOOP_PERIODS:g} peak periods and will look "
+            f"mechanical. Make it at least {_round_up(shortest)} s"
+        )
+    if statistics.loop_speed_change > _LARGEST_SPEED_CHANGE:
+        warnings.append(
+            f"The loop changes the speed of some waves by {100.0 * statistics.loop_speed_change:.0f} %. "
+            "Make it longer"
+        )
+    return warnings
+
+
+def fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
+    """Of fetches that the sea is done growing before."""
+    return [
+        f"Layer {spectrum.layer.id}: the sea is fully developed after {spectrum.scales.fetch / 1e3:.4g} km; "
+        f"the fetch of {spectrum.layer.fetch / 1e3:.4g} km counts as that"
+        for spectrum in sea.layers
+        if spectrum.fetch_is_limited
+    ]
+
+
+def spectrum_state(sea: SeaSpectrum) -> SeaState:
+    """State of the layers' continuous spectra together, by quadrature over ln ω."""
+    omega, weight = sea.rule
+    parameters = sea.parameters
+    k = dispersion.wave_number(omega, parameters.dispersion, parameters.water)
+    spectrum, vector = np.zeros_like(omega), 0.0j
+    for layer in sea.layers:
+        energy = layer.frequency_spectrum(omega)
+        # directions change slowly over ω: every eighth frequency will do
+        cosine = mean_cosine(omega[::8] / layer.peak_frequency, layer.spreading)
+        towards = np.exp(1j * layer.layer.wind_direction)
+        vector += towards * np.sum(energy * np.interp(omega, omega[::8], cosine) * weight)
+        spectrum += energy
+    m0, m2 = np.sum(spectrum * weight), np.sum(omega**2 * spectrum * weight)
+    slope = np.sum(k**2 * spectrum * weight)
+    return state_of_moments(m0, m2, slope, vector, sea.peak_frequency, parameters)

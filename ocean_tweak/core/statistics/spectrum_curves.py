@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The spectrum of a sea as curves to look at: over frequency, layer by layer, and over direction."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..parameters.ocean_parameters import OceanParameters
+from ..spectral import dispersion
+from ..synthesis.sea_spectrum import SeaSpectrum
+
+Array = NDArray[np.float64]
+
+#: how far around the peaks is shown, in units of the lowest and of the highest peak frequency
+_SHOWN = (0.45, 4.0)
+
+
+class FrequencyCurves(NamedTuple):
+    """S over ω.
+
+    omega : (size,) rad/s, ascending, evenly in log ω
+    layers : (layers, size) m²·s/rad, the active layers that have waves
+    resolved : lowest and highest ω in rad/s of the waves that the grid holds
+    """
+
+    omega: Array
+    layers: Array
+    resolved: tuple[float, float]
+
+
+class PolarDensity(NamedTuple):
+    """Energy over frequency and direction.
+
+    omega : (rings,) rad/s, ascending
+    theta : (directions,) rad, counter-clockwise from +x, the first 0
+    density : (rings, directions) m²·s/rad²
+    """
+
+    omega: Array
+    theta: Array
+    density: Array
+
+
+def frequency_curves(parameters: OceanParameters, size: int = 256) -> FrequencyCurves:
+    """The curves of a sea's active layers; those of a sea without any, or in a calm, have zero rows."""
+    sea = SeaSpectrum(parameters)
+    omega = shown_frequencies(sea, size)
+    layers = [layer.frequency_spectrum(omega) for layer in sea.layers]
+    return FrequencyCurves(omega, np.array(layers).reshape(-1, size), resolved_band(parameters))
+
+
+def polar_density(parameters: OceanParameters, rings: int = 48, directions: int = 144) -> PolarDensity:
+    """Energy of all active layers together."""
+    sea = SeaSpectrum(parameters)
+    omega = shown_frequencies(sea, rings)
+    theta: Array = np.linspace(0.0, 2.0 * np.pi, directions, endpoint=False)
+    density = np.zeros((rings, directions))
+    for layer in sea.layers:
+        spreading = layer.directional_spreading(omega[:, np.newaxis], theta[np.newaxis, :])
+        density += layer.frequency_spectrum(omega)[:, np.newaxis] * spreading
+    return PolarDensity(omega, theta, density)
+
+
+def shown_frequencies(sea: SeaSpectrum, size: int) -> Array:
+    """ω in rad/s around all peaks, evenly in log ω."""
+    peaks = [layer.peak_frequency for layer in sea.layers] or [1.0]
+    return np.geomspace(_SHOWN[0] * min(peaks), _SHOWN[1] * max(peaks), size)
+
+
+def resolved_band(parameters: OceanParameters) -> tuple[float, float]:
+    """Lowest and highest ω in rad/s of the waves that fit the domain and its samples."""
+    length, samples = parameters.domain_size, parameters.resolution
+    k = np.array([2.0 * np.pi / length, np.pi * (samples - 2) / length])
+    low, high = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
+    return float(low), float(high)

@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All that a shot reads of a sea: one table, from which whatever leaves the core is made.
+
+Fields over the patch, maps of images, attributes of meshes, primvars, columns of points, what the command
+line knows and the table of docs/channels.md follow from CHANNELS and MAPS. Formulas stand above their rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .transforms import PositionRows, X, Y, Z
+
+RealArray = NDArray[np.floating]
+
+
+def displacement(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 3) m: what is added to the rest position (x, y, 0), choppiness applied."""
+    for component in (X, Y, Z):
+        rows.position(component, out=out[..., component])
+
+
+def slope(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 2) m/m: derivatives of the elevation by the rest position's x and y."""
+    for index, along in enumerate("xy"):
+        rows.position(Z, along, out=out[..., index])
+
+
+def velocity(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 3) m/s: derivative of the displacement in ocean time."""
+    for component in (X, Y, Z):
+        rows.position(component, "t", out=out[..., component])
+
+
+def _gradient(rows: PositionRows) -> tuple[RealArray, RealArray, RealArray, RealArray]:
+    """Jxx, Jxy, Jyx, Jyy of the map from the rest position to the displaced one, seen from above."""
+    return (
+        1.0 + rows.position(X, "x"),
+        rows.position(X, "y"),
+        rows.position(Y, "x"),
+        1.0 + rows.position(Y, "y"),
+    )
+
+
+def strain(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 3): of the horizontal displacement, Dx by x, Dy by y, and the mean of Dx by y and Dy by x.
+
+    Those of several patches add, once turned; normals, Jacobians and eigenvalues do not.
+    """
+    rows.position(X, "x", out=out[..., 0])
+    rows.position(Y, "y", out=out[..., 1])
+    np.multiply(rows.position(X, "y") + rows.position(Y, "x"), 0.5, out=out[..., 2])
+
+
+def jacobian(rows: PositionRows, out: RealArray) -> None:
+    """(N, N): determinant of the gradient of x ↦ x + λD; 1 - λkA at one wave's crest, < 0 in a fold."""
+    xx, xy, yx, yy = _gradient(rows)
+    np.subtract(xx * yy, xy * yx, out=out)
+
+
+def min_eigenvalue(rows: PositionRows, out: RealArray) -> None:
+    """(N, N): smaller eigenvalue of the gradient of x ↦ x + λD, < 0 where the surface folds.
+
+    The crest field of Horvath (2015), § 8. The gradient is symmetric but where troughs are damped; there
+    its symmetric part counts.
+    """
+    half_sum, half_difference, shear = _symmetric_part(rows)
+    # a square root of squares: strains are near 1, and hypot's care for overflow costs as much as a field
+    np.multiply(half_difference, half_difference, out=half_difference)
+    half_difference += shear * shear
+    np.subtract(half_sum, np.sqrt(half_difference, out=half_difference), out=out)
+
+
+def cusp(rows: PositionRows, out: RealArray) -> None:
+    """(N, N): how far the surface is squeezed, 1 - min_eigenvalue; 0 where it is stretched, 1 in a fold."""
+    min_eigenvalue(rows, out)
+    np.subtract(1.0, out, out=out)
+    np.maximum(out, 0.0, out=out)
+
+
+def min_eigenvector(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 2): unit vector along which the surface is squeezed most, its x ≥ 0."""
+    _, half_difference, shear = _symmetric_part(rows)
+    angle = 0.5 * np.arctan2(-shear, -half_difference)
+    np.cos(angle, out=out[..., 0])
+    np.sin(angle, out=out[..., 1])
+
+
+def _symmetric_part(rows: PositionRows) -> tuple[RealArray, RealArray, RealArray]:
+    """Half the sum and half the difference of the diagonal, and the mean of the others."""
+    along_x, along_y = rows.position(X, "x"), rows.position(Y, "y")
+    across, also_across = rows.position(X, "y"), rows.position(Y, "x")
+    shear = across if across is also_across else 0.5 * (across + also_across)
+    half_sum = along_x + along_y
+    half_sum *= 0.5
+    half_sum += 1.0
+    half_difference = along_x - along_y
+    half_difference *= 0.5
+    return half_sum, half_difference, shear
+
+
+def normal(rows: PositionRows, out: RealArray) -> None:
+    """(N, N, 3): unit normal of the displaced surface, the cross product of its tangents."""
+    xx, xy, yx, yy = _gradient(rows)
+    zx, zy = rows.position(Z, "x"), rows.position(Z, "y")
+    np.subtract(yx * zy, zx * yy, out=out[..., X])
+    np.subtract(zx * xy, xx * zy, out=out[..., Y])
+    np.subtract(xx * yy, xy * yx, out=out[..., Z])
+    out /= np.sqrt(np.sum(out * out, axis=-1, keepdims=True))
+
+
+class UsdAttribute(NamedTuple):
+    """How a channel stands in a layer of USD.
+
+    name, type : of the attribute, the type a name of `Sdf.ValueTypeNames`
+    halved : whether it may be stored in 16 bits
+    """
+
+    name: str
+    type: str
+    halved: bool = False
+
+
+#: how numbers turn with the axes: as themselves, as x, y (, z), or as xx, yy, xy of a symmetric tensor
+SCALAR, VECTOR, TENSOR = "scalar", "vector", "tensor"
+_SUFFIXES = {SCALAR: ("",), VECTOR: ("_x", "_y", "_z"), TENSOR: ("_xx", "_yy", "_xy")}
+
+#: what a channel is made from: the waves of one instant, or the foam's memory
+WAVES, MEMORY = "waves", "foam"
+
+_PLACE = frozenset({(X, ""), (Y, ""), (Z, "")})
+_MOTION = frozenset({(X, "t"), (Y, "t"), (Z, "t")})
+_GRADIENT = frozenset({(X, "x"), (X, "y"), (Y, "x"), (Y, "y")})
+_SLOPES = frozenset({(Z, "x"), (Z, "y")})
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What is known of a field, wherever it goes.
+
+    name : of the output; an attribute of `SurfaceFields`
+    text : what it is, for readers of the documentation
+    unit : of its numbers, m or m/s where they scale with the scene's units, or 1
+    components : numbers a sample; 0 for a plain (N, N) array
+    turns : SCALAR, VECTOR or TENSOR
+    make : fills its rows; None where its source is another than WAVES
+    needs : components of the position and their derivatives that it is made of
+    source : WAVES, or MEMORY for what is made from earlier moments too
+    adds : whether those of a sea's patches, turned, add up to that of the sea
+    rest : its numbers on a flat sea
+    attribute : of meshes in Blender; "" where they have none
+    switch : the ocean's setting that asks for it on the ocean's own mesh; "" where it is always there, None
+        where only meshes of patches have it
+    usd : None where layers have none
+    """
+
+    name: str
+    text: str
+    unit: str
+    components: int
+    turns: str
+    make: Callable[[PositionRows, RealArray], None] | None
+    needs: frozenset[tuple[int, str]]
+    source: str = WAVES
+    adds: bool = False
+    rest: float | tuple[float, ...] = 0.0
+    attribute: str = ""
+    switch: str | None = None
+    usd: UsdAttribute | None = None
+
+    def write(self, rows: PositionRows, out: RealArray) -> None:
+        """Fill the rows of a field of WAVES."""
+        assert self.make is not None
+        self.make(rows, out)
+
+    def shape(self, resolution: int) -> tuple[int, ...]:
+        """Shape of the whole field."""
+        return (resolution, resolution, self.components) if self.components else (resolution, resolution)
+
+    @property
+    def scales(self) -> bool:
+        """Whether its numbers are metres, or metres per second."""
+        return self.unit.startswith("m")
+
+    @property
+    def is_rate(self) -> bool:
+        """Whether its numbers are per second."""
+        return self.unit.endswith("/s")
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """A name for each of its numbers."""
+        return tuple(self.name + suffix for suffix in _SUFFIXES[self.turns][: max(self.components, 1)])
+
+
+_ROWS = (
+    Channel(
+        "displacement", "from the place at rest to the present one", "m", 3, VECTOR, displacement, _PLACE,
+        adds=True, attribute="displacement", switch="",
+    ),
+    Channel(
+        "slope", "of the elevation, by the place at rest", "1", 2, VECTOR, slope, _SLOPES,
+        adds=True, attribute="slope",
+    ),
+    Channel(
+        "velocity", "of the water at the surface", "m/s", 3, VECTOR, velocity, _MOTION,
+        adds=True, attribute="velocity", switch="use_velocity",
+        usd=UsdAttribute("velocities", "Vector3fArray"),
+    ),
+    Channel(
+        "strain", "of the horizontal displacement", "1", 3, TENSOR, strain, _GRADIENT,
+        adds=True, attribute="strain",
+    ),
+    Channel(
+        "jacobian", "how much area is left of each piece of the surface; less than 0 in a fold",
+        "1", 0, SCALAR, jacobian, _GRADIENT, rest=1.0,
+    ),
+    Channel(
+        "min_eigenvalue", "how much length is left where the surface is squeezed most; less than 0 in a fold",
+        "1", 0, SCALAR, min_eigenvalue, _GRADIENT, rest=1.0,
+    ),
+    Channel(
+        "cusp", "how far the surface is squeezed: 0 where it is stretched, 1 where it folds", "1", 0, SCALAR,
+        cusp, _GRADIENT, attribute="cusp", switch="use_foam",
+        usd=UsdAttribute("primvars:cusp", "FloatArray", halved=True),
+    ),
+    Channel(
+        "min_eigenvector", "unit vector along which the surface is squeezed most", "1", 2, VECTOR,
+        min_eigenvector, _GRADIENT, rest=(1.0, 0.0),
+    ),
+    Channel(
+        "normal", "unit normal of the waves themselves", "1", 3, VECTOR, normal, _GRADIENT | _SLOPES,
+        rest=(0.0, 0.0, 1.0), attribute="custom_normal", switch="use_normals",
+        usd=UsdAttribute("normals", "Normal3fArray"),
+    ),
+    Channel(
+        "foam", "how much of the water is white, 0 to 1", "1", 0, SCALAR, None, frozenset(), source=MEMORY,
+        attribute="foam", switch="use_foam", usd=UsdAttribute("primvars:foam", "FloatArray", halved=True),
+    ),
+)  # fmt: skip
+
+#: by name
+CHANNELS: dict[str, Channel] = {row.name: row for row in _ROWS}
+
+#: a map's name in files, in the order in which jobs list them → the channels whose numbers are its red, green
+#: and blue; what is left is 0
+MAPS: dict[str, tuple[str, ...]] = {
+    "disp": ("displacement",),
+    "foam": ("foam", "cusp"),
+    "normal": ("normal",),
+    "vel": ("velocity",),
+    "slope": ("slope",),
+    "strain": ("strain",),
+}
+
+#: the map that moves a surface: a sequence has it in every frame
+MOVING_MAP = "disp"
+
+#: what surfaces of one instant are made of
+OF_WAVES = {name: channel for name, channel in CHANNELS.items() if channel.source == WAVES}
+
+#: what is made from earlier moments too, and so in the order of frames
+OF_MEMORY = frozenset(CHANNELS) - OF_WAVES.keys()
+#: the first of those, made from cusp
+FOAM = "foam"
+
+#: those of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
+ADDING = frozenset(name for name, channel in CHANNELS.items() if channel.adds)
+
+
+class Fields(Protocol):
+    """Fields by their channel's name."""
+
+    def __getitem__(self, name: str, /) -> RealArray:
+        """The field of a channel."""
+
+
+def channels_of(maps: Iterable[str]) -> frozenset[str]:
+    """The channels that maps are made of."""
+    return frozenset(name for each in maps for name in MAPS[each])
+
+
+def unit_of(map_name: str) -> str:
+    """Of a map's numbers."""
+    return CHANNELS[MAPS[map_name][0]].unit
+
+
+def is_put_together(map_name: str) -> bool:
+    """Whether a map's image is another array than its channel."""
+    return CHANNELS[MAPS[map_name][0]].components != 3
+
+
+def image_of(map_name: str, fields: Fields) -> RealArray:
+    """(N, N, 3): a map's red, green and blue."""
+    parts = [fields[name] for name in MAPS[map_name]]
+    parts = [part[..., np.newaxis] if part.ndim == 2 else part for part in parts]
+    rest = 3 - sum(part.shape[-1] for part in parts)
+    if rest:
+        parts.append(np.zeros((*parts[0].shape[:2], rest), parts[0].dtype))
+    return np.concatenate(parts, axis=-1) if len(parts) > 1 else parts[0]
+
+
+class SurfaceFields:
+    """Fields of one instant on the (N, N) samples [y, x]; only those asked for exist.
+
+    The names, shapes and units are those of CHANNELS.
+    """
+
+    def __init__(self, time: float, fields: dict[str, RealArray]) -> None:
+        self.time = time
+        self._fields = fields
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._fields
+
+    def __getitem__(self, name: str) -> RealArray:
+        """The field of a channel. Raises KeyError."""
+        return self._fields[name]
+
+    def including(self, others: SurfaceFields) -> SurfaceFields:
+        """The same fields and others."""
+        return SurfaceFields(self.time, {**self._fields, **others._fields})
+
+    def __getattr__(self, name: str) -> RealArray:
+        if name in CHANNELS:
+            fields: dict[str, RealArray] = self.__dict__.get("_fields", {})
+            if name in fields:
+                return fields[name]
+            made = ", ".join(sorted(fields)) or "nothing"
+            raise AttributeError(
+                f"{name} was not computed (only {made}): ask for it with surface(time, outputs={{'{name}'}})"
+            )
+        raise AttributeError(f"surface fields have no {name!r}: known are {', '.join(CHANNELS)}")
+
+
+def checked_outputs(outputs: Iterable[str]) -> frozenset[str]:
+    """The wanted outputs as a set. Raises ValueError for a name that is not known."""
+    wanted = frozenset((outputs,) if isinstance(outputs, str) else outputs)
+    unknown = sorted(wanted - CHANNELS.keys())
+    if unknown:
+        raise ValueError(f"outputs = {unknown[0]!r}: must be among {', '.join(CHANNELS)}")
+    return wanted
+
+
+def memory_groups(wanted: Iterable[str]) -> list[list[str]]:
+    """The outputs in groups that are made one after the other, so that the arrays between the two passes
+    serve them in turn: at most five of those, 20 bytes a sample. Velocity shares none with the others."""
+    moving = sorted(
+        name for name in wanted if any(derivative == "t" for _, derivative in CHANNELS[name].needs)
+    )
+    still = sorted(set(wanted) - set(moving))
+    return [group for group in (still, moving) if group]

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sea's Fourier coefficients before time enters: random, with the spectrum's energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..numerics import random
+from ..numerics.grid import WaveVectorGrid
+from ..numerics.memo import remembered, total_bytes
+from ..parameters.ocean_parameters import OceanParameters
+from ..spectral import dispersion
+from ..spectral.directional_spectrum import DirectionalSpectrum
+from ..waves.contribution import Contribution, Gives
+from .sea_spectrum import SeaSpectrum
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+_NORMAL, _PHASE = 0, 2  # streams of a wave vector's random numbers; a normal number takes two
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """Coefficients of the waves that travel along +k and along -k, for the half plane kx ≥ 0.
+
+    All arrays are (N, N//2+1), indexed [ky, kx]. Those of `initial_state` are transposed in memory (their
+    `.T` is contiguous), which is how the transforms read them.
+
+    h_plus, h_minus : complex, m. The elevation's coefficient at time t is
+        h_plus·exp(-iωt) + h_minus·exp(+iωt); h_minus(k) is the conjugate of h_plus(-k).
+    omega : float64, rad/s; in a loop a multiple of 2π/T
+    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²,
+        without the hero waves, which no seed changes
+    loop_duration : T in s, or None
+    orbit_depth : depth in m that widens the water's orbits; infinite for those of deep water
+    mirrored : whether ω is even in ky, which halves the work; where it is not, it still is even in k
+    others : states on the same grid whose waves add to these, with frequencies of their own
+    layer : whose waves they are, where they are one of the others
+    """
+
+    grid: WaveVectorGrid
+    h_plus: ComplexArray
+    h_minus: ComplexArray
+    omega: Array
+    expected_plus: RealArray
+    expected_minus: RealArray
+    loop_duration: Fraction | None = None
+    orbit_depth: float = float("inf")
+    mirrored: bool = True
+    others: tuple[InitialState, ...] = ()
+    layer: Contribution | None = None
+
+    @property
+    def parts(self) -> tuple[InitialState, ...]:
+        """All of a sea's states, each with frequencies of its own."""
+        return self, *self.others
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays, with those of the other states."""
+        own = (self.h_plus, self.h_minus, self.omega, self.expected_plus, self.expected_minus)
+        factor = vars(self).get("potential_factor")
+        return total_bytes((*own, factor, *self.others))
+
+    @cached_property
+    def potential_factor(self) -> ComplexArray:
+        """1/k, (N, N//2+1) m, complex: from the elevation to the potential of the horizontal displacement.
+
+        In finite depth orbits are wider by coth kh (linear theory, Airy).
+        """
+        grid = self.grid
+        result = np.empty(grid.shape[::-1], self.h_plus.dtype)  # complex, or each product would convert it
+        for columns in grid.column_blocks():
+            k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
+            k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
+            result[columns] = grid.mirror(1.0 / (k * np.tanh(k * self.orbit_depth)))
+        return result.T
+
+
+@remembered("random phases")
+def random_phasors(
+    grid: WaveVectorGrid, seed: int, amplitudes: str, dtype: type = np.complex128
+) -> ComplexArray:
+    """ν·exp(iε) for k and for -k, (2, N, N//2+1): ε uniform in [0, 2π); ν standard normal
+    (Horvath 2015, eq. 47 and § 7.1.2) or, for FIXED amplitudes, 1 (Chen 2014, eq. 19)."""
+    result: ComplexArray = np.empty((2, *grid.shape[::-1]), dtype)
+    along, against = result
+    for columns in grid.column_blocks():
+        kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
+        along[columns] = _phasors(kx, ky, seed, amplitudes)
+        against[columns] = _phasors(-kx, -ky, seed, amplitudes)
+    return result.swapaxes(1, 2)
+
+
+def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
+    key = random.hash_wave_vectors(kx, ky, seed)
+    angle = 2.0 * np.pi * random.uniform(key, _PHASE)
+    phasors = np.empty(key.shape, np.complex128)
+    phasors.real, phasors.imag = np.cos(angle), np.sin(angle)
+    if amplitudes == "GAUSSIAN":
+        phasors *= random.normal(key, _NORMAL)
+    return phasors
+
+
+class Coefficients:
+    """What layers add their waves to; arrays (N, N//2+1), transposed in memory.
+
+    grid, omega : of the sea
+    h_plus, h_minus, expected_plus, expected_minus : of its state, as `InitialState` has them
+    dtype : of the coefficients
+    """
+
+    def __init__(self, sea: OceanParameters, dtype: type) -> None:
+        self._sea = sea
+        self.dtype = dtype
+        self.grid = WaveVectorGrid(sea.resolution, sea.domain_size)
+        shape = self.grid.shape[::-1]
+        self.h_plus, self.h_minus = (np.zeros(shape, dtype).T for _ in range(2))
+        real = self.h_plus.real.dtype
+        self.expected_plus, self.expected_minus = (np.zeros(shape, real).T for _ in range(2))
+        self.omega = _angular_frequency(self.grid, sea)
+        self._others: list[InitialState] = []
+
+    def set_apart(
+        self,
+        layer: Contribution,
+        h_plus: ComplexArray,
+        h_minus: ComplexArray,
+        omega: Array,
+        expected_plus: RealArray,
+        expected_minus: RealArray,
+        mirrored: bool,
+    ) -> None:
+        """Add a layer's waves with frequencies of their own; the arguments are as `InitialState` has them."""
+        self._others.append(
+            InitialState(
+                self.grid, h_plus, h_minus, omega, expected_plus, expected_minus,
+                self._sea.loop_duration, _orbit_depth(self._sea), mirrored, layer=layer,
+            )
+        )  # fmt: skip
+
+    def state(self) -> InitialState:
+        """The sea's state with all that was added."""
+        state = InitialState(
+            self.grid,
+            self.h_plus,
+            self.h_minus,
+            self.omega,
+            self.expected_plus,
+            self.expected_minus,
+            loop_duration=self._sea.loop_duration,
+            orbit_depth=_orbit_depth(self._sea),
+            others=tuple(self._others),
+        )
+        state.potential_factor  # noqa: B018  made with the state, not by its first surface
+        return state
+
+
+def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> InitialState:
+    """Coefficients of all layers together: layers add in the spectrum, and so do those of other kinds."""
+    made = Coefficients(parameters, dtype)
+    for spectrum in SeaSpectrum(parameters).layers:
+        _add_random_waves(spectrum, parameters, made)
+    if parameters.match_height:
+        _match_height(made.grid, made.h_plus, made.h_minus, made.expected_plus + made.expected_minus)
+    for layer in parameters.active():
+        if Gives.COEFFICIENTS in layer.gives:
+            layer.add(parameters, made)
+    return made.state()
+
+
+def _add_random_waves(spectrum: DirectionalSpectrum, sea: OceanParameters, to: Coefficients) -> None:
+    """Draw waves from a spectrum.
+
+    The amplitude of a cosine is ν√(2ΨΔkxΔky), so its coefficient is half of that (Horvath 2015, eq. 47,
+    corrected by this half; Chen 2014, eq. 10 and 18), and the elevation's variance is ΣΨΔkxΔky = m0.
+    """
+    forward, backward = spectrum.cell_means(to.grid)
+    seed = spectrum.layer.random_seed(sea)
+    along, against = random_phasors(to.grid, seed, sea.amplitudes, to.dtype)
+    for mean, phasors, h, expected in (
+        (forward, along, to.h_plus, to.expected_plus),
+        (backward, np.conj(against), to.h_minus, to.expected_minus),
+    ):
+        mean *= 0.5 * to.grid.cell_area
+        expected += mean
+        h += phasors * np.sqrt(mean).astype(expected.dtype, copy=False)
+
+
+def _orbit_depth(parameters: OceanParameters) -> float:
+    return parameters.water.depth if parameters.orbits == "FINITE_DEPTH" else float("inf")
+
+
+def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:
+    """Scale a seed's coefficients so that its energy is the expected one."""
+    energy = np.sum((np.abs(h_plus) ** 2 + np.abs(h_minus) ** 2) * grid.multiplicity)
+    if energy > 0.0:
+        factor = h_plus.real.dtype.type(np.sqrt(np.sum(mean * grid.multiplicity) / energy))
+        h_plus *= factor
+        h_minus *= factor
+
+
+def _angular_frequency(grid: WaveVectorGrid, parameters: OceanParameters) -> Array:
+    """ω(k), (N, N//2+1); in a loop of duration T the nearest multiple of 2π/T, at least one."""
+    result = np.empty(grid.shape[::-1])
+    for columns in grid.column_blocks():
+        k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
+        omega = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
+        if parameters.loop_duration is not None:
+            fundamental = 2.0 * np.pi / float(parameters.loop_duration)
+            omega = fundamental * np.maximum(1.0, np.rint(omega / fundamental))
+        result[columns] = grid.mirror(omega)
+    return result.T

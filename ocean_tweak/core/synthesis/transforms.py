@@ -1,0 +1,353 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From Fourier coefficients to fields over the patch, by inverse transforms in two passes.
+
+The position of the sample that rests at (x, y, 0) is (x, y, 0) + P with P = (λDx, λDy, h). Two scalar fields
+and their derivatives give everything: the elevation h, and the potential Φ with Φ(k) = ĥ/|k|, whose gradient
+is D. So D(k) = +i (k/|k|) ĥ, the transform of Chen (2014), eq. 11, with which points move towards the crests
+and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
+
+The first pass goes over blocks of columns kx: it moves the coefficients to their time, multiplies by
+(i ky)ⁿ and transforms along y. The second goes over blocks of rows y: it multiplies by (i kx)ᵐ, which
+commutes with the first transform, and transforms along x. Fields that differ only in m share a first pass.
+
+Waves of a wind field are not the gradient of a potential: where there are such, λDx and λDy, each with a
+first pass of its own, take the potential's place, and all three hold the sum of both kinds of waves.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..numerics.memo import MEMO
+from ..parameters.ocean_parameters import OceanParameters
+from ..waves.contribution import BlockShares, Shares, Sharing
+from .initial_state import InitialState
+from .propagation import PropagatedState, propagate
+from .trough_damping import TroughDamping
+
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+X, Y, Z = 0, 1, 2
+
+#: complex numbers in the blocks of either pass that are worked on at once, by all workers together: the
+#: wider, the quicker, up to the size of a cache
+_BLOCK = 2**17
+
+#: bytes a sample that a surface may take beyond its outputs, those of a column, and those of the
+#: temporaries that live for each number of a block
+_MEMORY, _COLUMN, _TEMPORARIES = 24, 4, 48
+
+#: rows of a block lie this much further apart than they are long, or the columns that are to become rows
+#: would all fall into the same few lines of the caches
+_PADDING = 8
+
+_NUMPY_TRANSFORMS_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
+
+
+#: what a column may hold: h, Φ, λDx or λDy
+ELEVATION, POTENTIAL, ALONG_X, ALONG_Y = range(4)
+
+
+class Column(NamedTuple):
+    """What a first pass transforms: h, Φ, λDx or λDy, or a rate, of all or of long waves, times (i ky)ⁿ."""
+
+    source: int
+    rate: bool
+    long: bool
+    y_order: int
+
+
+class Term(NamedTuple):
+    """A real field: a column times (i kx)ᵐ."""
+
+    column: Column
+    x_order: int
+
+
+def term(component: int, derivative: str = "", long: bool = False, gradient: bool = True) -> Term:
+    """The field of P[component] or of its derivative by "x", "y" or "t".
+
+    gradient : whether the horizontal displacement is the gradient of Φ
+    """
+    rate, along_x, along_y = derivative == "t", derivative == "x", derivative == "y"
+    if component == Z:
+        return Term(Column(ELEVATION, rate, long, along_y), along_x)
+    if not gradient:
+        return Term(Column(ALONG_X if component == X else ALONG_Y, rate, long, along_y), along_x)
+    return Term(Column(POTENTIAL, rate, long, along_y + (component == Y)), along_x + (component == X))
+
+
+@dataclass(frozen=True)
+class Synthesis:
+    """How a sea's fields are made.
+
+    state, parameters, damping : the sea
+    dtype : complex64 or complex128
+    workers : threads; the result does not depend on their number
+    sharing : waves that are no gradient of a potential
+    """
+
+    state: InitialState
+    parameters: OceanParameters
+    damping: TroughDamping | None = None
+    dtype: type = np.complex64
+    workers: int = 1
+    sharing: tuple[Sharing, ...] = ()
+
+    def term(self, component: int, derivative: str = "", long: bool = False) -> Term:
+        """The field of this sea's P[component] or of its derivative by "x", "y" or "t"."""
+        return term(component, derivative, long, not self.sharing)
+
+    def x_factor(self, wanted: Term) -> ComplexArray:
+        """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none."""
+        factor = (1j * self.state.grid.kx[0]) ** wanted.x_order
+        if wanted.column.source == POTENTIAL and wanted.column.y_order == 0:
+            factor *= self.parameters.choppiness
+        return factor.astype(self.dtype)
+
+    def y_factor(self, column: Column) -> ComplexArray:
+        """(i ky)ⁿ of a column, (N,), and the choppiness λ if it is one of the potential's derivatives."""
+        factor = (1j * self.state.grid.ky[:, 0]) ** column.y_order
+        if column.source == POTENTIAL:
+            factor *= self.parameters.choppiness
+        return factor.astype(self.dtype)
+
+    def fill(
+        self,
+        time: float | Fraction,
+        wanted: Iterable[tuple[int, str]],
+        write: Callable[[slice, Rows], None],
+    ) -> None:
+        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block."""
+        needed = sorted({self.term(*key).column for key in self._with_long_waves(wanted)})
+        shape = self.state.grid.shape
+        # fresh memory takes time: each thread has arrays that it fills again and again
+        own = (shape, self.dtype, threading.get_ident())
+        arrays: ComplexArray | None = MEMO.take("workspaces", own)
+        if arrays is None or len(arrays) < len(needed):
+            arrays = np.empty((len(needed), *shape), self.dtype)
+        first_pass = dict(zip(needed, arrays, strict=False))
+        shares = self._shares(time, needed)
+
+        def transform_along_y(block: slice) -> None:
+            self._transform_columns(time, block, first_pass, shares)
+
+        def transform_along_x(block: slice) -> None:
+            write(block, Rows(self, first_pass, block))
+
+        n = self.state.grid.resolution
+        run_blocks(transform_along_y, self._blocks(n // 2 + 1, len(arrays)), self.workers)
+        run_blocks(transform_along_x, self._blocks(n, len(arrays)), self.workers)
+        MEMO.put("workspaces", own, arrays)
+
+    def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
+        """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
+        with_rate = any(column.rate for column in columns)
+        shares = self._shares(time, columns)
+        added = [share.of_block(slice(None)) for share in shares]
+        sources = _Sources(self, propagate(self.state, time, self.dtype, with_rate), slice(None), added)
+        return {column: sources.coefficients(column).T for column in columns}
+
+    def _shares(self, time: float | Fraction, columns: Iterable[Column]) -> list[Shares]:
+        """What is added to some columns that is no gradient."""
+        rates = {column.rate for column in columns}
+        return [
+            waves.shares(float(time), False in rates, True in rates, self.dtype, self.workers)
+            for waves in self.sharing
+        ]
+
+    def _with_long_waves(self, wanted: Iterable[tuple[int, str]]) -> set[tuple[int, str, bool]]:
+        wanted = set(wanted)
+        if self.damping is None:
+            return {(*key, False) for key in wanted}
+        # a damped derivative needs the components themselves and the derivative of the long elevation
+        wanted |= {(component, "") for component, _ in wanted} | {(Z, "")}
+        wanted |= {(Z, derivative) for _, derivative in wanted}
+        return {(*key, long) for key in wanted for long in (False, True)}
+
+    def _blocks(self, count: int, columns: int) -> Iterator[slice]:
+        """Blocks of `count` rows or columns, beside a workspace of so many columns."""
+        n = self.state.grid.resolution
+        spare = max(1, _MEMORY - _COLUMN * columns)
+        numbers = min(_BLOCK, n * n * spare // _TEMPORARIES)
+        if self.sharing:  # what they take is told apart, and small blocks are slow
+            numbers = _BLOCK
+        size = max(1, numbers // self.workers // n)
+        return (slice(first, min(first + size, count)) for first in range(0, count, size))
+
+    def _transform_columns(
+        self,
+        time: float | Fraction,
+        block: slice,
+        first_pass: Mapping[Column, ComplexArray],
+        shares: Sequence[Shares],
+    ) -> None:
+        """The first pass for some columns: to y, into the arrays (N, N//2+1) of the first pass."""
+        with_rate = any(column.rate for column in first_pass)
+        # the inverse transforms divide by N each: what they are given is larger by N²
+        scale = float(self.state.grid.resolution) ** 2
+        moved = propagate(self.state, time, self.dtype, with_rate, block, scale)
+        added = [share.of_block(block, scale) for share in shares]
+        sources = _Sources(self, moved, block, added)
+        for column, target in first_pass.items():
+            coefficients = sources.coefficients(column)
+            target[:, block] = _inverse(coefficients).T
+
+
+class _Sources:
+    """Coefficients of a block of columns, (columns, N), each made once."""
+
+    def __init__(
+        self, synthesis: Synthesis, moved: PropagatedState, block: slice, added: Sequence[BlockShares]
+    ) -> None:
+        self._synthesis = synthesis
+        self._block = block
+        self._added = added
+        self._elevations = {False: moved.elevation.T}
+        if moved.rate is not None:
+            self._elevations[True] = moved.rate.T
+        self._bases: dict[Column, ComplexArray] = {}
+
+    def coefficients(self, column: Column) -> ComplexArray:
+        """h, Φ, λDx or λDy, or a rate, times (i ky)ⁿ."""
+        base = self._base(column._replace(y_order=0))
+        if column.y_order == 0:
+            return base
+        return base * self._synthesis.y_factor(column)
+
+    def _base(self, column: Column) -> ComplexArray:
+        if column not in self._bases:
+            self._bases[column] = self._with_shares(column) if self._added else self._spectral(column)
+        return self._bases[column]
+
+    def _spectral(self, column: Column) -> ComplexArray:
+        """h or Φ of the spectrum's waves alone."""
+        base = self._elevations[column.rate]
+        if column.source != ELEVATION:
+            factor = self._synthesis.state.potential_factor.T[self._block]
+            base = base * factor.astype(base.dtype, copy=False)
+        damping = self._synthesis.damping
+        if column.long and damping is not None:
+            base = base * damping.long_waves.T[self._block].astype(base.dtype)
+        return base
+
+    def _with_shares(self, column: Column) -> ComplexArray:
+        """h, λDx or λDy of the spectrum's waves and of those that are no gradient.
+
+        The latter count among the long waves: it is not them that troughs are rid of.
+        """
+        if column.source == ELEVATION:
+            result = self._spectral(column).copy()
+            for added in self._added:
+                added.add(Z, column.rate, result)
+            return result
+        potential = column._replace(source=POTENTIAL)
+        if potential not in self._bases:
+            self._bases[potential] = self._spectral(potential)
+        choppiness = self._synthesis.parameters.choppiness
+        grid = self._synthesis.state.grid
+        east = column.source == ALONG_X
+        along = grid.kx[0, self._block, np.newaxis] if east else grid.ky[:, 0]
+        result = self._bases[potential] * (1j * choppiness * along).astype(self._synthesis.dtype)
+        for added in self._added:
+            added.add(X if east else Y, column.rate, result, choppiness)
+        return result
+
+
+class PositionRows(Protocol):
+    """Whatever gives components of the displacement and their derivatives, each as one array."""
+
+    def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
+        """P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
+
+
+class Rows:
+    """Real fields on a block of rows, each transformed once, when it is first needed."""
+
+    def __init__(self, synthesis: Synthesis, first_pass: Mapping[Column, ComplexArray], block: slice) -> None:
+        self._synthesis = synthesis
+        self._first_pass = first_pass
+        self._block = block
+        self._made: dict[Term, RealArray] = {}
+
+    def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
+        """(rows, N) P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
+        term, damping = self._synthesis.term, self._synthesis.damping
+        if damping is None:
+            return self._transform(term(component, derivative), out)
+        everything = self._transform(term(component, derivative))
+        long_waves = self._transform(term(component, derivative, long=True))
+        weight, slope = damping.weight(self._transform(term(Z, "", long=True)))
+        result = long_waves + weight * (everything - long_waves)
+        if derivative:
+            short = self._transform(term(component)) - self._transform(term(component, long=True))
+            result += slope * self._transform(term(Z, derivative, long=True)) * short
+        if out is not None:
+            out[...] = result
+        return result
+
+    def _transform(self, wanted: Term, out: RealArray | None = None) -> RealArray:
+        if wanted in self._made:
+            if out is None:
+                return self._made[wanted]
+            out[...] = self._made[wanted]
+            return out
+        coefficients = self._first_pass[wanted.column][self._block]
+        if wanted.x_order:
+            coefficients = coefficients * self._synthesis.x_factor(wanted)
+        self._made[wanted] = _inverse_real(coefficients, out)
+        return self._made[wanted]
+
+
+def _inverse(coefficients: ComplexArray) -> ComplexArray:
+    """Inverse transform along the last axis, divided by N, in the precision of the coefficients.
+
+    NumPy before 2.0 transforms in double precision only; the result is rounded back where it is stored.
+    """
+    if not _NUMPY_TRANSFORMS_IN_PLACE:
+        return np.fft.ifft(coefficients, axis=-1)
+    rows, n = coefficients.shape
+    padded = np.empty((rows, n + _PADDING), coefficients.dtype)
+    return np.fft.ifft(coefficients, axis=-1, out=padded[:, :n])
+
+
+def _inverse_real(coefficients: ComplexArray, out: RealArray | None) -> RealArray:
+    """Inverse real transform along the last axis, divided by N, in the precision of the coefficients."""
+    if out is None:
+        rows, columns = coefficients.shape
+        out = np.empty((rows, 2 * (columns - 1)), coefficients.real.dtype)
+    if _NUMPY_TRANSFORMS_IN_PLACE:
+        np.fft.irfft(coefficients, axis=-1, out=out)
+    else:
+        out[...] = np.fft.irfft(coefficients, axis=-1)
+    return out
+
+
+def run_blocks(work: Callable[[slice], None], blocks: Iterable[slice], workers: int) -> None:
+    """Do the work for each block, on as many threads as asked for; an error in any stops all."""
+    if workers == 1:
+        for block in blocks:
+            work(block)
+        return
+    queue, lock = iter(blocks), threading.Lock()
+
+    def pull() -> None:
+        while True:
+            with lock:
+                block = next(queue, None)
+            if block is None:
+                return
+            work(block)
+
+    with ThreadPoolExecutor(workers) as pool:
+        for done in [pool.submit(pull) for _ in range(workers)]:
+            done.result()

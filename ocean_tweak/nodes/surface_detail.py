@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Patterns for what no grid holds: ripples, the lace of foam and gusts, all square and repeating.
+
+They are of unit size: a shader gives them their length in metres and their strength.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.numerics import random
+
+Array = NDArray[np.float64]
+
+#: the wavelengths of the ripples as waves in the pattern; all have the same slope variance per octave
+FEWEST_WAVES, MOST_WAVES = 8, 128
+
+#: cells of the foam's lace along a side, and the weight of each size
+_LACE = ((9, 0.55), (23, 0.30), (61, 0.15))
+
+
+def ripple_slopes(resolution: int, seed: int = 0) -> Array:
+    """(2, N, N) slopes along x and y of waves that run along +x, with a mean square of 1 together.
+
+    Ψ ~ k⁻⁴ cos²θ: the equilibrium range (Phillips 1958), in which every octave has the same slopes.
+    """
+    index = np.fft.fftfreq(resolution, 1.0 / resolution)
+    kx, ky = index[: resolution // 2 + 1], index[:, np.newaxis]
+    k = np.hypot(kx, ky)
+    band = (k >= FEWEST_WAVES) & (k <= min(MOST_WAVES, resolution // 2 - 1))
+    amplitude = np.where(band, np.maximum(kx, 0.0) / np.maximum(k, 1.0) ** 3, 0.0)
+    elevation = amplitude * np.exp(2j * np.pi * _uniform(kx, ky, seed))
+    slopes = np.stack([np.fft.irfft2(1j * part * elevation, s=k.shape[:1] * 2) for part in (kx, ky)])
+    return slopes / np.sqrt(np.mean(np.sum(slopes**2, axis=0)))
+
+
+def foam_lace(resolution: int, seed: int = 1) -> Array:
+    """(N, N) in 0…1, evenly distributed: a share F of foam covers where this is below F.
+
+    The walls between cells of several sizes are covered first, as in foam that thins out.
+    """
+    place = (np.arange(resolution) + 0.5) / resolution
+    x, y = np.meshgrid(place, place)
+    bend_x, bend_y = (0.009 * _smooth_noise(resolution, seed + number) for number in (10, 11))
+    height = 0.05 * _smooth_noise(resolution, seed + 12)
+    for number, (cells, weight) in enumerate(_LACE):
+        height += weight * _wall_distance(x + bend_x, y + bend_y, cells, seed + number)
+    return _evened(height)
+
+
+def gusts(resolution: int, seed: int = 2) -> Array:
+    """(N, N) in 0…1, evenly distributed: smooth bumps of an eighth to a third of the pattern."""
+    return _evened(_smooth_noise(resolution, seed))
+
+
+def _evened(field: Array) -> Array:
+    """Each value's rank, 0…1."""
+    order = np.empty(field.size)
+    order[np.argsort(field, axis=None, kind="stable")] = np.arange(field.size) + 0.5
+    return order.reshape(field.shape) / field.size
+
+
+def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:
+    """How far from the wall to the next cell a point is, about 0…1: a periodic Worley (1996) pattern."""
+    column, row = np.floor(x * cells), np.floor(y * cells)
+    nearest, next_nearest = (np.full(x.shape, np.inf) for _ in range(2))
+    for shift_y in (-1, 0, 1):
+        for shift_x in (-1, 0, 1):
+            of_x, of_y = column + shift_x, row + shift_y
+            corner_x, corner_y = np.mod(of_x, cells), np.mod(of_y, cells)
+            point_x = of_x + _uniform(corner_x, corner_y, seed, 0)
+            point_y = of_y + _uniform(corner_x, corner_y, seed, 1)
+            distance = np.hypot(x * cells - point_x, y * cells - point_y)
+            next_nearest = np.minimum(next_nearest, np.maximum(nearest, distance))
+            nearest = np.minimum(nearest, distance)
+    return np.asarray(next_nearest - nearest)
+
+
+def _smooth_noise(resolution: int, seed: int) -> Array:
+    """(N, N) random bumps of an eighth to a third of the pattern, with a mean square of 1."""
+    index = np.fft.fftfreq(resolution, 1.0 / resolution)
+    kx, ky = index[: resolution // 2 + 1], index[:, np.newaxis]
+    k = np.hypot(kx, ky)
+    modes = np.where((k >= 3.0) & (k <= 8.0), np.exp(2j * np.pi * _uniform(kx, ky, seed)) / k.clip(1.0), 0.0)
+    noise = np.fft.irfft2(modes, s=k.shape[:1] * 2)
+    return np.asarray(noise / np.sqrt(np.mean(noise**2)))
+
+
+def _uniform(x: Array, y: Array, seed: int, stream: int = 0) -> Array:
+    # not a wave vector here, but a cell's or a mode's two whole numbers
+    x, y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
+    return random.uniform(random.hash_wave_vectors(x, y, seed), stream)
