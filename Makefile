@@ -63,6 +63,7 @@ build:      ## the extension's zip, into build/
 docs:       ## write the documentation that is made from the code
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.parameters_doc
+	@$(VENV) -m tools.architecture
 
 papers:     ## make the tables and pictures of docs/papers anew (some minutes)
 	@$(PYTHON) -m tools.setup python-5.2
