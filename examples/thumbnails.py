@@ -37,7 +37,7 @@ def main() -> None:
     """Render as the command line says."""
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
     extension = enable()
-    presets = extension.module("core.presets").built_in()
+    presets = extension.module("core.parameters.presets").built_in()
     arguments.out.mkdir(parents=True, exist_ok=True)
     for key in arguments.presets or presets:
         build(extension, presets[key].parameters)

@@ -44,7 +44,7 @@ def enable_from_source(repository):
 
 @pytest.fixture(scope="session")
 def extension(package):
-    """Import a module of the enabled extension: `extension("core.parameters")`."""
+    """Import a module of the enabled extension: `extension("core.parameters.ocean_parameters")`."""
     home = Path(os.environ["BLENDER_USER_RESOURCES"]) if "OCEAN_TWEAK_ZIP" in os.environ else ROOT
 
     def import_module(name):

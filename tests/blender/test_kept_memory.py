@@ -14,7 +14,7 @@ MB = 10**6
 
 @pytest.fixture
 def memo(extension):
-    module = extension("core.memo")
+    module = extension("core.numerics.memo")
     module.MEMO.drop()
     yield module.MEMO
     module.MEMO.budget = None
@@ -78,7 +78,7 @@ def test_a_budget_below_one_sea_shows_it_and_says_so(
             empty_scene.frame_set(frame)
         assert item.ocean_tweak.error == ""
     assert len(made) <= 1
-    line = extension("core.memory").beyond_budget(parameters)
+    line = extension("core.sea.memory").beyond_budget(parameters)
     assert "the memory for all seas is 100 kB" in line
     assert "raise Memory in the extension's preferences" in line
     bpy.context.view_layer.objects.active = item

@@ -168,7 +168,7 @@ def test_too_little_memory_is_shown(add, make_parameters, core, empty_scene, mon
 
 def test_a_bug_is_not_hidden(add, make_parameters, core, extension, empty_scene, monkeypatch):
     add(make_parameters())
-    extension("core.memo").MEMO.drop()
+    extension("core.numerics.memo").MEMO.drop()
     monkeypatch.setattr(core.Ocean, "surface", lambda *a, **k: {}["missing"])
     with pytest.raises(KeyError):
         extension("scene.handlers").refresh_on_frame_change(empty_scene)

@@ -27,14 +27,14 @@ def own_folder(extension, tmp_path, monkeypatch):
 
 def test_a_preset_is_the_sea_and_the_shot_keeps_its_timing(ocean, extension):
     assert bpy.ops.ocean.apply_preset(key="beaufort_05") == {"FINISHED"}
-    preset = extension("core.presets").built_in()["beaufort_05"].parameters
+    preset = extension("core.parameters.presets").built_in()["beaufort_05"].parameters
     assert sea_of(ocean).layers[0].wind_speed == 9.4
     assert sea_of(ocean).timing.start_frame == 101
     assert sea_of(ocean).replace(timing=preset.timing) == preset
 
 
 def test_a_preset_brings_its_layers(ocean, extension):
-    presets = extension("core.presets").built_in()
+    presets = extension("core.parameters.presets").built_in()
     for key in ("crossing_seas", "beaufort_01"):
         assert bpy.ops.ocean.apply_preset(key=key) == {"FINISHED"}
         assert not ocean.ocean_tweak.error
@@ -107,7 +107,7 @@ def test_a_file_that_is_no_preset_is_left_out(own_folder, extension):
 def test_mutated_presets_never_half_apply(ocean, own_folder, extension, tmp_path_factory):
     """A file is read or refused; where it is refused, neither the folder nor the ocean changes."""
     chance = random.Random(11)
-    texts = [preset.to_json() for preset in extension("core.presets").built_in().values()]
+    texts = [preset.to_json() for preset in extension("core.parameters.presets").built_in().values()]
     file = tmp_path_factory.mktemp("in") / "mutated.json"
     before = sea_of(ocean)
     refused = 0
