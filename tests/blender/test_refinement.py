@@ -214,7 +214,7 @@ def test_foam_after_a_jump_is_that_of_the_moment_then_all(item, refinement, core
     assert refinement.is_outstanding(item)
     instant = foam_of(item)
     # as much of the sea as foam covers, where it is squeezed most
-    covered = round(core.foam_threshold.foam_outlook(parameters).coverage * SAMPLES**2)
+    covered = round(core.foam.threshold.foam_outlook(parameters).coverage * SAMPLES**2)
     assert covered > 3
     assert np.count_nonzero(instant >= 0.5) == covered
     assert whole.cusp[instant >= 0.5].min() > whole.cusp[instant < 0.5].max()
@@ -244,7 +244,7 @@ def test_a_render_has_foam_with_its_history(item, refinement, core, make_paramet
 
 def test_foam_that_cannot_be_made_is_told(item, refinement, core, monkeypatch):
     finish(refinement, item)
-    monkeypatch.setattr(core.foam.FoamHistory, "foam", lambda *a: (_ for _ in ()).throw(MemoryError))
+    monkeypatch.setattr(core.foam.model.FoamHistory, "foam", lambda *a: (_ for _ in ()).throw(MemoryError))
     bpy.context.scene.frame_set(100)
     finish(refinement, item)
     assert "memory" in item.ocean_tweak.error
