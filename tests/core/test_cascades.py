@@ -24,12 +24,14 @@ from ocean_tweak.core import (
     WindFieldLayer,
     WindKey,
 )
-from ocean_tweak.core.parameters.patch_seas import patch_parameters
+from ocean_tweak.core.parameters.patch_seas import PARTS, patch_parameters
 from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.sea.bake import bake
 from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.spectral.dispersion import angular_frequency
 from ocean_tweak.core.statistics.unresolved_slopes import unresolved_slope_variance
+from ocean_tweak.core.synthesis.channels import ADDING
 from tests.core.patched_seas import LAYER, SEA, THREE, small
 from tests.layers import layers_of, with_layers
 
@@ -250,3 +252,26 @@ def test_the_document_shows_a_sea() -> None:
     (patches,) = re.findall(r"^```json\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     sea = OceanParameters.from_json(f"{{{patches}}}")
     assert Ocean(sea).statistics().warnings == ()
+
+
+def test_patches_that_miss_much_tell_down_to_which_wave_they_go() -> None:
+    """Two samples of the last one: 2 · 200 m / 64."""
+    breeze = dataclasses.replace(SEA.layers[0], wind_speed=4.0)
+    patches = (Patch(600.0, 0.0, 20.0, 1e6, 128), Patch(200.0, 0.0, 0.0, 20.0, 64))
+    warnings = Ocean(SEA.replace(layers=(breeze,), patches=patches)).statistics().warnings
+    assert any(
+        re.search(r"resolve \d\d % .* of waves down to 6\.25 m\. Plan them", each) for each in warnings
+    )
+
+
+def test_a_bake_of_patches_may_have_all_that_adds_up() -> None:
+    class Kept:
+        outputs = frozenset({*ADDING, PARTS})
+
+        def write(self, _frame: object, *fields: object) -> tuple[Path, ...]:
+            assert len(fields) == 2 * len(SEA.patches)
+            return ()
+
+    shot = Shot(SEA.replace(patches=tuple(dataclasses.replace(p, resolution=64) for p in THREE)))
+    (made,) = bake(shot, (1,), Kept())
+    assert made.frame == 1
