@@ -231,13 +231,13 @@ def _between(
 
 #: file, what stands there, what takes its place: each of them went unnoticed once
 NAMED = (
-    ("spectral/layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA * 1.05, omega_p, 1.0, U"),
-    ("spectral/layer_scales.py", "layer.generalized_a / g**2", "1.05 * layer.generalized_a / g**2"),
-    ("spectral/layer_scales.py", "(layer.generalized_b /", "(1.05 * layer.generalized_b /"),
-    ("spectral/layer_scales.py", "peak_enhancement, U * omega_p", "peak_enhancement, 1.1 * U * omega_p"),
-    ("spectral/layer_scales.py", "PM_ALPHA, omega_p, 1.0, U", "PM_ALPHA, omega_p, 1.0, 1.1 * U"),
-    ("spectral/layer_scales.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA, omega_p, 1.0, 1.1 * U"),
-    ("spectral/layer_scales.py", "/ g**2, omega_p, 1.0, U", "/ g**2, omega_p, 1.0, 1.1 * U"),
+    ("spectral/spectra.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA * 1.05, omega_p, 1.0, U"),
+    ("spectral/spectra.py", "layer.generalized_a / g**2", "1.05 * layer.generalized_a / g**2"),
+    ("spectral/spectra.py", "(layer.generalized_b /", "(1.05 * layer.generalized_b /"),
+    ("spectral/spectra.py", "peak_enhancement, U * omega_p", "peak_enhancement, 1.1 * U * omega_p"),
+    ("spectral/spectra.py", "PM_ALPHA, omega_p, 1.0, U", "PM_ALPHA, omega_p, 1.0, 1.1 * U"),
+    ("spectral/spectra.py", "PM_BETA, omega_p, 1.0, U", "PM_BETA, omega_p, 1.0, 1.1 * U"),
+    ("spectral/spectra.py", "/ g**2, omega_p, 1.0, U", "/ g**2, omega_p, 1.0, 1.1 * U"),
     ("waves/spectral.py", "Wind(wind_at_10_m(self.wind_speed, self.wind_height)", "Wind(self.wind_speed"),
     ("spectral/spectra.py", "_over(constants.DEVELOPMENT**-", "_over(1.05 * constants.DEVELOPMENT**-"),
     ("statistics/sea_statistics.py", "_LARGEST_SPEED_CHANGE = 0.1", "_LARGEST_SPEED_CHANGE = 0.105"),

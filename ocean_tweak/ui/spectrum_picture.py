@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..core import OceanParameters
 from ..core.numerics.bilinear import between
-from ..core.statistics.spectrum_curves import FrequencyCurves, PolarDensity, frequency_curves, polar_density
+from ..core.statistics.sea_spectrum import FrequencyCurves, PolarDensity, frequency_curves, polar_density
 
 Pixels = NDArray[np.float32]
 

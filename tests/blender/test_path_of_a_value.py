@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 
 #: the most modules: whoever needs one more adds one that every value has to pass
-MOST = 19
+MOST = 15
 
 #: where the value arrives
 END = ("scene.vertex_attributes", "write")

@@ -9,7 +9,7 @@ import numpy as np
 
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.synthesis.channels import OF_WAVES
-from ocean_tweak.core.synthesis.initial_state import InitialState
+from ocean_tweak.core.synthesis.coefficients import InitialState
 from ocean_tweak.core.synthesis.transforms import Rows, Synthesis
 
 Wave = tuple[float, float, float, float, float]

@@ -10,7 +10,7 @@ import numpy as np
 from ocean_tweak.core import OceanParameters, Water
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
-from ocean_tweak.core.synthesis.initial_state import InitialState
+from ocean_tweak.core.synthesis.coefficients import InitialState
 from ocean_tweak.core.synthesis.transforms import Synthesis, Z
 from ocean_tweak.core.waves.image.parameters import PictureLayer
 from ocean_tweak.core.waves.image.state import picture_waves

@@ -16,12 +16,12 @@ from ocean_tweak.core.foam.threshold import foam_outlook
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.spectral import spectra
 from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.spectral.layer_scales import layer_scales
+from ocean_tweak.core.spectral.spectra import layer_scales
 from ocean_tweak.core.statistics.sea_scales import beaufort_number
-from ocean_tweak.core.statistics.spectrum_curves import frequency_curves, polar_density
+from ocean_tweak.core.statistics.sea_spectrum import frequency_curves, polar_density
 from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ocean_tweak.core.synthesis.channels import FOAM, OF_WAVES
-from ocean_tweak.core.synthesis.initial_state import initial_state
+from ocean_tweak.core.synthesis.coefficients import initial_state
 from ocean_tweak.core.waves.image.parameters import ANIMATIONS, FILTER_GAINS
 from ocean_tweak.core.waves.spectral import SPREADINGS
 from tests.layers import with_layers

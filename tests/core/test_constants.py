@@ -11,7 +11,7 @@ import pytest
 from ocean_tweak.core import OceanParameters, Water
 from ocean_tweak.core.spectral import dispersion
 from ocean_tweak.core.spectral.spreading import donelan_banner_beta, hasselmann_s
-from ocean_tweak.core.synthesis.initial_state import initial_state
+from ocean_tweak.core.synthesis.coefficients import initial_state
 from ocean_tweak.core.synthesis.trough_damping import trough_damping
 from tests.core.layer_spectra import spectrum_of
 

@@ -17,7 +17,7 @@ from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.data.validation import Validated
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.synthesis.initial_state import initial_state
+from ocean_tweak.core.synthesis.coefficients import initial_state
 from ocean_tweak.core.waves.contribution import Contribution
 from ocean_tweak.core.waves.kinds import KINDS
 from tools import parameters_doc

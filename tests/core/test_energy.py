@@ -14,8 +14,7 @@ from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
 from ocean_tweak.core.spectral.dispersion import angular_frequency
 from ocean_tweak.core.statistics.sea_statistics import field_state
-from ocean_tweak.core.synthesis.initial_state import initial_state
-from ocean_tweak.core.synthesis.propagation import propagate
+from ocean_tweak.core.synthesis.coefficients import initial_state, propagate
 
 
 def test_parseval(windy: OceanParameters) -> None:

@@ -11,9 +11,9 @@ import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing, Water, WaveLayer
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
+from ocean_tweak.core.statistics.sea_spectrum import SeaSpectrum
 from ocean_tweak.core.synthesis.channels import OF_WAVES
-from ocean_tweak.core.synthesis.initial_state import InitialState
-from ocean_tweak.core.synthesis.sea_spectrum import SeaSpectrum
+from ocean_tweak.core.synthesis.coefficients import InitialState
 from tests.core import direct_sum
 from tests.core.direct_sum import surface_of
 

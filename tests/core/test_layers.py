@@ -10,7 +10,7 @@ import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Water, WaveLayer, layer_for_sea_state
 from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
-from ocean_tweak.core.synthesis.initial_state import initial_state
+from ocean_tweak.core.synthesis.coefficients import initial_state
 
 WIND = WaveLayer(wind_speed=15.0, fetch=200e3, id=4)
 SWELL = WaveLayer(

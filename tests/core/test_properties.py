@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Timing, Water, WaveLayer
 from ocean_tweak.core.synthesis.channels import OF_WAVES
-from ocean_tweak.core.synthesis.propagation import propagate
+from ocean_tweak.core.synthesis.coefficients import propagate
 from tests.core.random_seas import SEAS, patched_seas
 
 QUICK = settings(

@@ -10,6 +10,7 @@ from scipy import integrate, special
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.spectral import spectra, wave_number_spectra
 from ocean_tweak.core.spectral.directional_spectrum import DirectionalSpectrum
+from ocean_tweak.core.spectral.spectra import wind_at, wind_at_10_m, wind_factor
 from ocean_tweak.core.spectral.spreading import (
     Spreading,
     directional_spreading,
@@ -18,7 +19,6 @@ from ocean_tweak.core.spectral.spreading import (
     mitsuyasu_s,
     swell_s,
 )
-from ocean_tweak.core.spectral.wind_profile import wind_at, wind_at_10_m, wind_factor
 from tests.core.layer_spectra import spectrum_of
 
 RATIOS = np.append(np.geomspace(0.1, 30.0, 25), [0.95, 1.0, 1.05, 1.6])

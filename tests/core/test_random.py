@@ -10,7 +10,7 @@ from scipy import stats
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.numerics import random
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
-from ocean_tweak.core.synthesis.initial_state import initial_state, random_phasors
+from ocean_tweak.core.synthesis.coefficients import initial_state, random_phasors
 
 PINNED = {
     "combine(0)": 16294208416658607535,

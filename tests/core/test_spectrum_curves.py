@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import OceanParameters, Water, WaveLayer
-from ocean_tweak.core.statistics.spectrum_curves import frequency_curves, polar_density, resolved_band
+from ocean_tweak.core.statistics.sea_spectrum import frequency_curves, polar_density, resolved_band
 
 SWELL = WaveLayer(
     definition="SEA_STATE", significant_wave_height=2.5, peak_period=14.0, wind_direction=0.7, swell=1.0

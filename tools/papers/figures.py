@@ -19,7 +19,7 @@ from PIL import Image
 from ocean_tweak.core import OceanParameters, Water, WindFieldLayer
 from ocean_tweak.core.spectral import dispersion, spectra
 from ocean_tweak.core.spectral.spreading import directional_spreading
-from ocean_tweak.core.synthesis.sea_spectrum import SeaSpectrum
+from ocean_tweak.core.statistics.sea_spectrum import SeaSpectrum
 from ocean_tweak.core.waves.image import filters, source
 from ocean_tweak.core.waves.wind_field.wind import winds_at
 

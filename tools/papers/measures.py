@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean, OceanParameters
-from ocean_tweak.core.synthesis.initial_state import InitialState
+from ocean_tweak.core.synthesis.coefficients import InitialState
 
 from .pages import Table
 

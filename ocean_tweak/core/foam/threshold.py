@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..numerics import random
 from ..parameters.ocean_parameters import OceanParameters
 from ..spectral import constants
-from ..synthesis.initial_state import InitialState
+from ..synthesis.coefficients import InitialState
 from ..waves.contribution import Wind
 from .model import FoamModel, strength_levels
 

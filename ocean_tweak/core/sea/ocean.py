@@ -21,7 +21,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import joined_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
 from ..synthesis.channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
-from ..synthesis.initial_state import InitialState
+from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .anywhere import AnywhereSum
 from .memory import check_memory, memory_need

@@ -17,9 +17,9 @@ from ..masks.weights import weights
 from ..numerics.memo import remembered
 from ..parameters.ocean_parameters import Foam, OceanParameters, Timing
 from ..parameters.patch_seas import Part
+from ..statistics.sea_spectrum import SeaSpectrum
 from ..synthesis.channels import CHANNELS, memory_groups
-from ..synthesis.initial_state import InitialState, initial_state
-from ..synthesis.sea_spectrum import SeaSpectrum
+from ..synthesis.coefficients import InitialState, initial_state
 from ..synthesis.transforms import Rows, Synthesis
 from ..synthesis.trough_damping import TroughDamping, trough_damping
 from ..waves.contribution import Gives

@@ -22,7 +22,7 @@ from ..data.errors import ParameterError
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, NO_LONGEST, REPEATING_SHARE, Patch
 from ..spectral import dispersion
-from ..synthesis.sea_spectrum import SeaSpectrum
+from ..statistics.sea_spectrum import SeaSpectrum
 from .memory import memory_need
 
 Array = NDArray[np.float64]

@@ -13,6 +13,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, NO_LONGEST, REPEATING_SHARE
 from ..parameters.patch_seas import patch_parameters
 from ..spectral.sea_state import SeaState, together
+from ..statistics.sea_spectrum import SeaSpectrum
 from ..statistics.sea_statistics import (
     FLAT,
     LEAST_RESOLVED_SHARE,
@@ -25,7 +26,6 @@ from ..statistics.sea_statistics import (
     layer_warnings,
     loop_warnings,
 )
-from ..synthesis.sea_spectrum import SeaSpectrum
 
 
 def statistics_of_patches(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> Statistics:

@@ -3,18 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..numerics.grid import WaveVectorGrid
 from . import dispersion
-from .layer_scales import LayerScales, layer_scales, scaled_spectrum
-from .radial_table import RadialTable
+from .spectra import LayerScales, layer_scales, scaled_spectrum
 from .spreading import WIND_MODELS, Shape, Spreading, directional_spreading, spreading_shape, wrap_angle
 from .water import Water
 
@@ -22,6 +21,11 @@ if TYPE_CHECKING:
     from ..waves.spectral import WaveLayer
 
 Array = NDArray[np.float64]
+
+#: nodes per unit of ln k: JONSWAP's peak, the narrowest feature, is met to 1e-5 of its value
+_NODES_PER_LOG = 1024
+
+_LEAST_ENERGY = 1e-300
 
 #: cells nearer to the origin than this many cells are averaged over sub-cells: at radius r over
 #: n x n with n the power of two that is at least _FINEST_RADIUS / r
@@ -159,6 +163,63 @@ class DirectionalSpectrum:
         return CellMeans(self, grid).both()
 
 
+class Nodes(NamedTuple):
+    """Where wave numbers lie between the nodes of a table."""
+
+    below: NDArray[np.int64]
+    fraction: Array
+
+
+class RadialTable:
+    """Energy and spreading shape over k, interpolated linearly in ln k (the energy in its logarithm).
+
+    But for the angle, everything in Ψ(kx, ky) depends on k alone. The nodes are whole multiples of a step in
+    ln k, the same for every grid, so that a wave vector has the same value on all of them. A table is made
+    for wave numbers from `lowest` to `highest` in rad/m.
+    """
+
+    def __init__(self, lowest: float, highest: float) -> None:
+        self._first = int(np.floor(np.log(lowest) * _NODES_PER_LOG)) - 1
+        last = int(np.ceil(np.log(highest) * _NODES_PER_LOG)) + 1
+        self.k: Array = np.exp(np.arange(self._first, last + 1) / _NODES_PER_LOG)
+
+    def fill(self, energy: Array, shape: Shape) -> None:
+        """Keep the values at the nodes `k`: energy in m⁴ per unit of D, and the shape of D."""
+        first, second = shape.first_weight, shape.second_weight
+        self._values = shape._replace(
+            first_weight=np.log(np.maximum(energy * first, _LEAST_ENERGY)),
+            second_weight=None if second is None else np.log(np.maximum(energy * second, _LEAST_ENERGY)),
+        )
+
+    def nodes(self, k: Array) -> Nodes:
+        """Where wave numbers lie; k in rad/m within the table's range."""
+        position = np.log(k)
+        position *= _NODES_PER_LOG
+        position -= self._first
+        index = position.astype(np.int64)
+        position -= index
+        return Nodes(index, position)
+
+    def shape(self, at: Nodes) -> Shape:
+        """The shape of D at some nodes, its weights multiplied by the energy."""
+        values = _each(self._values, lambda table: _interpolated(table, at))
+        second = values.second_weight
+        return values._replace(
+            first_weight=np.exp(values.first_weight),
+            second_weight=None if second is None else np.exp(second),
+        )
+
+
+def _interpolated(values: Array, at: Nodes) -> Array:
+    low = values[at.below]
+    return low + at.fraction * (values[at.below + 1] - low)
+
+
+def _each(shape: Shape, function: Callable[[Array], Array]) -> Shape:
+    """A shape with each of the arrays that it has changed by a function."""
+    return Shape._make(None if array is None else function(array) for array in shape)
+
+
 class CellMeans:
     """Means of a spectrum over the cells of a grid.
 
@@ -192,7 +253,7 @@ class CellMeans:
         kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
         half = np.maximum(np.hypot(kx, ky[: grid.resolution // 2 + 1]), 0.5 * grid.spacing)
         shape = self._weighted_shape(half)
-        return self._both_ways(shape.map(grid.mirror), kx, ky)
+        return self._both_ways(_each(shape, grid.mirror), kx, ky)
 
     def _weighted_shape(self, k: Array) -> Shape:
         shape = self._table.shape(self._table.nodes(k))

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..numerics.grid import WaveVectorGrid
 from . import dispersion
-from .layer_scales import refined_peak
+from .spectra import refined_peak
 
 if TYPE_CHECKING:
     from ..parameters.ocean_parameters import OceanParameters

@@ -158,17 +158,6 @@ class Shape(NamedTuple):
     second: Array | None
     swell: Array | None
 
-    def map(self, function: Callable[[Array], Array]) -> Shape:
-        """Each of the arrays there are, changed by a function."""
-        first_weight, first, second_weight, second, swell = self
-        return Shape(
-            function(first_weight),
-            function(first),
-            None if second_weight is None else function(second_weight),
-            None if second is None else function(second),
-            None if swell is None else function(swell),
-        )
-
     def density(self, theta: Array, spreading: Spreading) -> Array:
         """D in 1/rad at angles |θ| in 0…π, broadcast against the frequencies."""
         result = self.first_weight * MODELS[spreading.model].shape(theta, self.first)

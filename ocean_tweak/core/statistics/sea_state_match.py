@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 from ..data.errors import ParameterError
 from ..spectral import constants, spectra
-from ..spectral.layer_scales import layer_scales
+from ..spectral.spectra import layer_scales, wind_at
 from ..spectral.water import Water
-from ..spectral.wind_profile import wind_at
 from ..waves.spectral import WaveLayer
 
 #: below this dimensionless fetch g F / U² nobody has measured JONSWAP's growth

@@ -28,9 +28,9 @@ from ..spectral.sea_state import (
     together,
 )
 from ..spectral.spreading import mean_cosine
-from ..synthesis.initial_state import InitialState
-from ..synthesis.sea_spectrum import SeaSpectrum
+from ..synthesis.coefficients import InitialState
 from ..waves.contribution import WAVES, Gives
+from .sea_spectrum import SeaSpectrum
 
 Array = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from ..parameters.patch_seas import patch_parameters
 from ..spectral import constants, dispersion
 from ..spectral.directional_spectrum import DirectionalSpectrum
 from ..spectral.water import Water
-from ..synthesis.sea_spectrum import SeaSpectrum
+from .sea_spectrum import SeaSpectrum
 
 Array = NDArray[np.float64]
 

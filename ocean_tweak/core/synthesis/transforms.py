@@ -29,8 +29,7 @@ from numpy.typing import NDArray
 from ..numerics.memo import MEMO
 from ..parameters.ocean_parameters import OceanParameters
 from ..waves.contribution import BlockShares, Shares, Sharing
-from .initial_state import InitialState
-from .propagation import PropagatedState, propagate
+from .coefficients import InitialState, PropagatedState, propagate
 from .trough_damping import TroughDamping
 
 RealArray = NDArray[np.floating]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..spectral import constants
-from .initial_state import InitialState
+from .coefficients import InitialState
 
 Array = NDArray[np.floating]
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..parameters.ocean_parameters import OceanParameters
     from ..spectral.directional_spectrum import DirectionalSpectrum
     from ..spectral.sea_state import SeaState
-    from ..synthesis.initial_state import Coefficients
+    from ..synthesis.coefficients import Coefficients
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

@@ -13,7 +13,7 @@ from ..masks.parameters import Mask
 from ..numerics import random
 from ..spectral import constants
 from ..spectral.directional_spectrum import DirectionalSpectrum
-from ..spectral.wind_profile import wind_at_10_m
+from ..spectral.spectra import wind_at_10_m
 from .contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from ...core.data.printable import printable
 from ...core.parameters.shot import Moment
 from ...core.sea.bake import ShotSurfaces
 from ...core.synthesis.channels import MOVING_MAP, unit_of
-from ...core.synthesis.propagation import propagate
+from ...core.synthesis.coefficients import propagate
 from ..exr import ExrError, ExrSequence, read_image
 from ..points import PointsError
 from .job import Job

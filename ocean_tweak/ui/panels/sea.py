@@ -9,7 +9,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ...core import WaveLayer
 from ...core.sea.memory import beyond_budget
-from ...core.spectral.wind_profile import wind_at_10_m
+from ...core.spectral.spectra import wind_at_10_m
 from ...core.statistics import sea_scales
 from ...scene import alarm, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames

@@ -14,7 +14,7 @@ from .outlook import HeroWaveOutlooks, hero_wave_outlooks
 
 if TYPE_CHECKING:
     from ...parameters.ocean_parameters import OceanParameters
-    from ...synthesis.initial_state import Coefficients
+    from ...synthesis.coefficients import Coefficients
 
 #: wavelengths that a crest must be wide: a narrower hump is no wave, it runs apart in all directions
 NARROWEST = 0.5

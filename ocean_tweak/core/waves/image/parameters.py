@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ...numerics.grid import WaveVectorGrid
     from ...parameters.ocean_parameters import OceanParameters
     from ...spectral.sea_state import SeaState
-    from ...synthesis.initial_state import Coefficients
+    from ...synthesis.coefficients import Coefficients
 
 FILTERS = ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE")
 FILTER_GAINS = ("PHYSICAL", "PAPER")
