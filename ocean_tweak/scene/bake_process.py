@@ -17,10 +17,9 @@ from ..core.data.frames import Frame, format_frames
 from ..core.parameters.shot import Shot
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
-from .maps import maps_of, wanted_channels
 from .patch_objects import shot_maps
 from .preferences import preferences
-from .settings import settings_of
+from .settings import maps_of, settings_of, wanted_channels
 
 
 class BakeProcess(CommandProcess):

@@ -19,8 +19,7 @@ from ..export.cache.records import recorded_frames
 from ..export.files import is_link
 from .cache_place import bake_name, cache_folder, own_uid
 from .image_sequence import folder_of
-from .maps import maps_of, wanted_channels
-from .settings import OceanObjectError, all_oceans, settings_of
+from .settings import OceanObjectError, all_oceans, maps_of, settings_of, wanted_channels
 from .shots import scene_frames, shot_of
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..core import Ocean, OceanParameters
 from ..core.foam.model import FoamHistory, FoamModel
 from ..core.foam.threshold import LEAST_SQUEEZE, foam_outlook
-from ..core.numerics.bilinear import resampled
+from ..core.numerics.interpolation import resampled
 from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS, FOAM
 

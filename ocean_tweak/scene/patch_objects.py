@@ -17,8 +17,7 @@ import numpy as np
 
 from ..core import OceanParameters
 from ..core.data.plain_data import to_plain
-from ..core.masks.parameters import Mask
-from ..core.masks.weights import weights
+from ..core.masks import Mask, weights
 from ..core.parameters.fingerprint import fingerprint
 from ..core.parameters.patch_seas import Part, parts
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel

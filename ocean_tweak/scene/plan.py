@@ -14,8 +14,7 @@ from ..core.numerics.machine import usable_memory
 from .animated import clock_of
 from .grid_mesh import Grid
 from .image_sequence import baked_stretch
-from .maps import maps_of, wanted_channels
-from .settings import OceanObjectError, OceanSettings
+from .settings import OceanObjectError, OceanSettings, maps_of, wanted_channels
 from .units import frame_rate, frame_with_subframe, metres_per_unit, time_stretch
 
 #: samples along each side of the surface that is shown while a parameter is dragged

@@ -7,13 +7,15 @@ it owns labels, ranges and units; here only this interface is known.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Protocol
 
 import bpy
 
 from ..core import OceanParameters
+from ..core.synthesis.channels import CHANNELS, MAPS
+from ..nodes.names import MAP_INPUTS
 from .modifiers import Textures, is_moved
 
 if TYPE_CHECKING:  # it reads the settings' paths itself
@@ -228,3 +230,17 @@ def shown_oceans() -> dict[bpy.types.Object, bpy.types.Scene]:
 def all_oceans() -> Iterator[bpy.types.Object]:
     """Every ocean of the file."""
     return (item for item in bpy.data.objects if is_ocean(item))
+
+
+def wanted_channels(settings: OceanSettings) -> frozenset[str]:
+    """The channels that an ocean's switches ask for, each an attribute of its mesh."""
+    return frozenset(
+        name
+        for name, channel in CHANNELS.items()
+        if channel.switch is not None and (not channel.switch or getattr(settings, channel.switch))
+    )
+
+
+def maps_of(channels: Collection[str]) -> tuple[str, ...]:
+    """The maps among those that Blender reads of which all channels are wanted."""
+    return tuple(name for name in MAP_INPUTS if all(channel in channels for channel in MAPS[name]))

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.numerics.bilinear import stretched
+from ..core.numerics.interpolation import stretched
 from ..core.synthesis.channels import CHANNELS, Channel
 from .grid_mesh import Grid
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import OceanParameters
-from ..core.numerics.bilinear import between
+from ..core.numerics.interpolation import between
 from ..core.statistics.sea_spectrum import FrequencyCurves, PolarDensity, frequency_curves, polar_density
 
 Pixels = NDArray[np.float32]

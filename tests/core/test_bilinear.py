@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from ocean_tweak.core.numerics.bilinear import Reader, between, stretched, wrapped
+from ocean_tweak.core.numerics.interpolation import Reader, between, stretched, wrapped
 
 FIELD = np.array([[1.0, 2.0, 4.0], [8.0, 16.0, 32.0], [64.0, 128.0, 256.0]])
 

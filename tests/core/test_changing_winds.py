@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, Raster, WindFieldLayer, WindKey
-from ocean_tweak.core.waves.wind_field.emission import Emission
-from ocean_tweak.core.waves.wind_field.origins import layer_origins
+from ocean_tweak.core.waves.wind_field.emission import Emission, layer_origins
 from ocean_tweak.core.waves.wind_field.shape import radius_classes
 from ocean_tweak.core.waves.wind_field.wind import bilinear, sampled_wind
 from tests.core.wind_seas import LONE, G, keyed, particles, sea

@@ -19,7 +19,7 @@ from ocean_tweak.core.foam.threshold import (
     strain_covariances,
     whitecap_coverage,
 )
-from ocean_tweak.core.numerics.bilinear import resampled
+from ocean_tweak.core.numerics.interpolation import resampled
 
 SEA = OceanParameters(
     resolution=64, domain_size=200.0, seed=2, layers=(WaveLayer(wind_speed=15.0, wind_direction=0.7),)

@@ -15,7 +15,7 @@ from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea.bake import ShotSurfaces
 from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.sea.part_waves import PartWaves, strain_covariances
-from ocean_tweak.core.sea.tile import border_shares
+from ocean_tweak.core.sea.sums import border_shares
 from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from tests.core.patched_seas import LAYER, SEA, THREE, summed
 

@@ -21,7 +21,7 @@ from ocean_tweak.core import (
     WaveLayer,
     WindFieldLayer,
 )
-from ocean_tweak.core.masks.weights import weights, weights_on_grid
+from ocean_tweak.core.masks import weights, weights_on_grid
 from ocean_tweak.core.parameters.patch_seas import parts
 from ocean_tweak.core.sea.part_waves import PartWaves
 from ocean_tweak.core.sea.surfaces import Field, summed_field

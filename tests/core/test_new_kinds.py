@@ -21,7 +21,7 @@ from ocean_tweak.core import (
     Timing,
     WaveLayer,
 )
-from ocean_tweak.core.masks.weights import weights
+from ocean_tweak.core.masks import weights
 from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.spectral.dispersion import angular_frequency

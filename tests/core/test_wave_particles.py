@@ -11,9 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from ocean_tweak.core import Ocean, WindFieldLayer
-from ocean_tweak.core.waves.wind_field.emission import Emission
+from ocean_tweak.core.waves.wind_field.emission import Emission, layer_origins
 from ocean_tweak.core.waves.wind_field.life import Particles, particles_of
-from ocean_tweak.core.waves.wind_field.origins import layer_origins
 from ocean_tweak.core.waves.wind_field.shape import RadiusClasses, bump, radius_classes
 from tests.core.wind_seas import LENGTH, LONE, OUTPUTS, PERIOD, SPEED, G, particles, sea
 from tests.layers import layers_of

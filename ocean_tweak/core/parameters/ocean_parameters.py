@@ -19,7 +19,7 @@ from ..data.errors import ParameterError
 from ..data.plain_data import from_plain, parse_json, to_plain
 from ..data.raster import check_numbers, numbers_in
 from ..data.validation import OPEN, Validated, choice, default_of, integer, nested, number, rational, switch
-from ..masks.parameters import Mask
+from ..masks import Mask
 from ..spectral.water import Water
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave

@@ -16,14 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..foam.model import FoamHistory, FoamModel, foam_at
 from ..foam.threshold import Strains, foam_model, sampled_strains
-from ..numerics.bilinear import resampled
+from ..numerics.interpolation import resampled
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import joined_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
 from ..synthesis.channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
-from .anywhere import AnywhereSum
 from .memory import check_memory, memory_need
 from .on import Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
@@ -31,7 +30,7 @@ from .placed_waves import PlacedWaves, check_repeats, placed_waves
 from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import SurfacePoints, find_points, refine_points
 from .statistics import statistics_of_patches
-from .tile import TileSum
+from .sums import AnywhereSum, TileSum
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]

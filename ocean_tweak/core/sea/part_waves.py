@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..foam import threshold as foam_threshold
-from ..masks.weights import weights
+from ..masks import weights
 from ..numerics.memo import remembered
 from ..parameters.ocean_parameters import Foam, OceanParameters, Timing
 from ..parameters.patch_seas import Part

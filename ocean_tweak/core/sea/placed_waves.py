@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
-from ..masks.weights import weights
+from ..masks import weights
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.transforms import X, Y, Z
 from ..waves.contribution import Contribution, Gives

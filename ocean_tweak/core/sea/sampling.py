@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks.weights import Weights
-from ..numerics.bilinear import Reader, wrapped
+from ..masks import Weights
+from ..numerics.interpolation import Reader, wrapped
 from ..synthesis.transforms import X, Y, Z
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks.weights import Weights
-from ..numerics.bilinear import between
+from ..masks import Weights
+from ..numerics.interpolation import between
 from ..synthesis.transforms import Column, Synthesis, X, Y, Z
 from .sampling import into_patch
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 from ..data.errors import ParameterError
 from ..data.validation import choice, nested, number, switch
-from ..masks.parameters import Mask
+from ..masks import Mask
 from ..numerics import random
 from ..spectral import constants
 from ..spectral.directional_spectrum import DirectionalSpectrum

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.numerics.bilinear import wrapped
+from ...core.numerics.interpolation import wrapped
 
 RealArray = NDArray[np.floating]
 

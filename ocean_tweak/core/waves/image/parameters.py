@@ -12,12 +12,11 @@ import numpy as np
 from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import choice, integer, nested, number, raster
-from ...masks.parameters import Mask
+from ...masks import Mask
 from ..contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
-from . import statistics
 from .animation import angular_frequency
 from .source import side
-from .state import filtered, picture_waves, wanted_variance
+from .state import filtered, peak_wavelength, picture_waves, state_of, wanted_variance
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -167,13 +166,13 @@ class PictureLayer(Contribution):
 
     def state(self, sea: OceanParameters) -> SeaState:
         """Of all that the picture holds."""
-        return statistics.state_of(sea.alone(self), self)
+        return state_of(sea.alone(self), self)
 
     def longest_random_wave(self, sea: OceanParameters) -> float:
         """That of noise through the physical filter; all others have the height that they are given."""
         if self.picture is not None or not self.is_physical or not wanted_variance(self, sea.water) > 0.0:
             return float("nan")
-        return statistics.peak_wavelength(self, sea.dispersion, sea.water)
+        return peak_wavelength(self, sea.dispersion, sea.water)
 
     def slope_variance(self, sea: OceanParameters, resolution: int | None) -> float:
         """Of what the picture holds, or of what of it so many samples do."""

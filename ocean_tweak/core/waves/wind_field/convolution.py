@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...numerics.grid import WaveVectorGrid
+from ...numerics.interpolation import spline_weights
 from ...numerics.memo import remembered
-from ...numerics.splines import spline_weights
 from .shape import bump
 
 Array = NDArray[np.float64]

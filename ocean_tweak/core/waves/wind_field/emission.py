@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When waves are born, from the wind at their origins alone.
+"""Where and when waves are born: in a few places of each cell of the patch, drawn from a seed, and whenever
+the wind there, and nothing else, says so.
 
 The phase of an origin grows by dt/T, T = √(2π)·V/g the period of its wind's waves; a wave is born whenever it
 passes a whole number. So the waves that live at any time follow from that time, without those before.
@@ -12,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...numerics import random
 from ...numerics.memo import remembered, total_bytes
-from .origins import Origins, layer_origins
 from .relations import period
 from .wind import winds_at
 
@@ -23,9 +24,39 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
+_X, _Y, _PHASE = 0, 1, 2  # streams of an origin's random numbers
+
+#: tells the numbers of these layers from those of spectral layers with the same ids
+_SALT = 0x57494E44
+
 #: numbers of the table of phases over which steps between two times of the wind become coarser, and steps
 #: between two times at most and at least
 _TABLE, _MOST_STEPS = 2_000_000, 128
+
+
+class Origins(NamedTuple):
+    """Places (n,) in m, and the share of a period (n,) by which each is ahead, in [0, 1)."""
+
+    x: Array
+    y: Array
+    phase: Array
+
+
+def layer_origins(layer: WindFieldLayer, ocean_seed: int, domain_size: float) -> Origins:
+    """The origins of a layer, cell after cell."""
+    seed = layer.seed if layer.seed >= 0 else random.combine(ocean_seed, layer.id)
+    count = layer.columns * layer.rows * layer.origins
+    start = np.uint64(random.combine(seed, _SALT))
+    keys = random.mix(np.arange(count, dtype=np.uint64) ^ start)
+    cell = np.arange(count) // layer.origins
+    row, column = cell // layer.columns, cell % layer.columns
+
+    def place(index: NDArray[np.intp], cells: int, stream: int) -> Array:
+        offset = 0.5 + layer.jitter * (random.uniform(keys, stream) - 0.5)
+        return np.asarray((index + offset) * (domain_size / cells))
+
+    phase = layer.phase_jitter * random.uniform(keys, _PHASE)
+    return Origins(place(column, layer.columns, _X), place(row, layer.rows, _Y), phase)
 
 
 class Births(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...data.raster import Raster
-from ...numerics.bilinear import between
+from ...numerics.interpolation import between
 
 if TYPE_CHECKING:
     from .parameters import WindFieldLayer

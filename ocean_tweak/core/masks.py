@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The weights of masks: from 0 to 1 over the sea, by which displacement and velocity are multiplied.
+"""Masks, and their weights: from 0 to 1 over the sea, by which displacement and velocity are multiplied.
 
 A weight belongs to the water at rest, lies over the domain and repeats with it. It is continuous and has
 continuous derivatives, which the slopes and strains of a masked sea need: ∂(w d) = w ∂d + d ∂w.
@@ -8,19 +8,51 @@ continuous derivatives, which the slopes and strains of a masked sea need: ∂(w
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..numerics.memo import remembered
-from ..numerics.splines import spline_slopes, spline_weights
-from .parameters import Mask
+from .data.errors import ParameterError
+from .data.raster import Raster
+from .data.validation import Validated, choice, number, raster, switch
+from .numerics.interpolation import spline_slopes, spline_weights
+from .numerics.memo import remembered
 
 Array = NDArray[np.float64]
 
 #: rows of a square of weights that are made at once
 _ROWS = 128
+
+
+MASK_SOURCES = ("IMAGE", "DISTANCE")
+
+
+@dataclass(frozen=True)
+class Mask(Validated):
+    """Where a layer's or a patch's waves are: fully at weight 1, not at all at 0."""
+
+    source: str = choice("DISTANCE", MASK_SOURCES, "What gives the weight: an image, or a distance")
+    image: Raster | None = raster("Weights from 0 to 1, stretched over the domain", channels=1)
+    x: float = number(
+        0.0, -1e6, 1e6, "m", "Distance: the place from which it is measured", "far outside of any domain"
+    )
+    y: float = number(
+        0.0, -1e6, 1e6, "m", "Distance: the place from which it is measured", "far outside of any domain"
+    )
+    near: float = number(50.0, 0.0, 1e6, "m", "Distance up to which the weight is 0", "any domain")
+    far: float = number(150.0, 1e-3, 1e6, "m", "Distance from which on the weight is 1", "any domain")
+    inverted: bool = switch(False, "Exchange 0 and 1: waves near the place, or where the image is dark")
+
+    def __post_init__(self) -> None:
+        if isinstance(self.image, Raster):
+            object.__setattr__(self, "image", self.image.grey())
+        super().__post_init__()
+        if self.source == "IMAGE" and self.image is None:
+            raise ParameterError("image", None, "give an image, whose brightness is the weight")
+        if self.source == "DISTANCE" and self.near >= self.far:
+            raise ParameterError("near", self.near, f"must be below far = {self.far:g} m")
 
 
 class Weights(NamedTuple):

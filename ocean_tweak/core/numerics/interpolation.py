@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values between the samples [y, x] of a field: bilinear, as meshes, renderers and nodes show them.
+"""Values between samples.
 
-`between` looks places up in fields of any number of rows and columns, in double precision. A `Reader` reads
-many fields of one grid at the same places, in the fields' own precision. Both are of fields that repeat.
-`stretched` puts more or fewer samples along an axis.
+Of fields [y, x], bilinear, as meshes, renderers and nodes show them. `between` looks places up in fields of
+any number of rows and columns, in double precision; a `Reader` reads many fields of one grid at the same
+places, in the fields' own precision. Both are of fields that repeat. `stretched` puts more or fewer samples
+along an axis.
+
+Of samples at whole numbers, by the quadratic B-spline: smooth, and never beyond the samples' own range.
 """
 
 from __future__ import annotations
@@ -115,3 +118,21 @@ def resampled(field: RealArray, resolution: int) -> RealArray:
     if size == resolution:
         return field
     return stretched(stretched(wrapped(field), 0, resolution), 1, resolution)[:-1, :-1]
+
+
+def spline_weights(position: Array) -> tuple[NDArray[np.intp], Array]:
+    """The three samples around each place, (3, …), and how much each counts there; they add up to 1."""
+    nearest, off = _nearest(position)
+    samples = nearest.astype(np.intp) + np.arange(-1, 2).reshape(3, *(1,) * position.ndim)
+    return samples, np.stack((0.5 * (0.5 - off) ** 2, 0.75 - off * off, 0.5 * (0.5 + off) ** 2))
+
+
+def spline_slopes(position: Array) -> Array:
+    """(3, …) derivatives of those weights by the position."""
+    _, off = _nearest(position)
+    return np.stack((off - 0.5, -2.0 * off, off + 0.5))
+
+
+def _nearest(position: Array) -> tuple[Array, Array]:
+    nearest = np.rint(position)
+    return nearest, position - nearest
