@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..core.data.errors import ParameterError
 from ..core.data.frames import Frame, parse_frames
+from ..core.sea.on import Area
 from ..core.sea.patch_plan import Wish
 from ..export.cache.job import UID
 from ..export.frame_files import BAKED
@@ -63,6 +64,17 @@ def maps(text: str) -> tuple[str, ...]:
 def attributes(text: str) -> tuple[str, ...]:
     """names between commas, each once."""
     return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+
+
+class AreaAction(argparse.Action):
+    """SIZE SAMPLES, or SIZE SAMPLES X Y, as an Area."""
+
+    def __call__(self, parser, namespace, values, option_string=None):  # type: ignore[no-untyped-def]
+        """Keep the area. Ends with the parser's own error for what is none."""
+        try:
+            setattr(namespace, self.dest, Area.of_words(values))
+        except ValueError as error:
+            parser.error(f"argument {option_string}: {error}")
 
 
 def tiles(text: str) -> tuple[int, int]:

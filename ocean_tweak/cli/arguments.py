@@ -106,6 +106,7 @@ def _add_files_arguments(parser: _Arguments) -> None:
         "--maps", type=argument_values.maps, metavar="LIST", default=(MOVING_MAP,),
         help=f"what to write, of {','.join(BAKED)}; {MOVING_MAP} by default",
     )  # fmt: skip
+    _add_area(parser)
     parser.add_argument("--name", help="start of the file names; by default that of the sea")
     parser.add_argument(
         "--uid",
@@ -115,6 +116,14 @@ def _add_files_arguments(parser: _Arguments) -> None:
     parser.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
         help="PXR24 (default) keeps 2⁻¹⁶ of a value, the others are exact; HTJ2K needs Blender 5.2 to read",
+    )  # fmt: skip
+
+
+def _add_area(parser: _Arguments) -> None:
+    parser.add_argument(
+        "--area", action=argument_values.AreaAction, nargs="+", metavar=("SIZE", "SAMPLES X Y"),
+        help="SIZE SAMPLES [X Y]: instead of the tile, which repeats, SAMPLES² samples of a square of SIZE m "
+        "from the corner X Y, 0 0 by default",
     )  # fmt: skip
 
 
@@ -283,6 +292,7 @@ def _add_usd_content(parser: _Arguments) -> None:
     add("half", action="store_true")
     add("tiles", type=argument_values.tiles, metavar="3x3")
     add("proxy", type=int, metavar="N")
+    _add_area(parser)
     add("variants", type=argument_values.resolutions, metavar="512,256")
 
 

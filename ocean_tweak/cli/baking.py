@@ -182,7 +182,8 @@ def _frames(
     if workers > 1:
         yield from make_in_processes(folder, job, frames, workers, stopped, tell)
         return
-    with closing(make_frames(job.shot, frames, CacheSink(folder, job, tell), tell=tell)) as making:
+    sink = CacheSink(folder, job, tell)
+    with closing(make_frames(job.shot, frames, sink, tell=tell, on=job.on)) as making:
         while not stopped():  # what is under way is finished
             baked = next(making, None)
             if baked is None:
@@ -196,7 +197,7 @@ def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:
     workers = fitting_workers(job, most) if wanted is None else min(wanted, most)
     check_memory(
         workers * need,
-        f"Baking {job.shot.parameters.resolution}² samples with {workers} worker{'s' if workers > 1 else ''}",
+        f"Baking {job.resolution}² samples with {workers} worker{'s' if workers > 1 else ''}",
     )
     _LOG.info("processes: %d, each with about %s of memory", workers, readable_bytes(need))
     return workers

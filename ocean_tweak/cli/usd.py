@@ -14,6 +14,7 @@ from ..core.data.frames import Frame, format_frames
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import readable_bytes
 from ..core.parameters.shot import Shot
+from ..core.sea.on import Area
 from ..export.cache.job import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.apart import problems_of
@@ -32,7 +33,7 @@ _THREADS = 2
 
 def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
     """Write a sea as USD layers."""
-    shot, frames = _shot_and_frames(arguments, scene_oceans)
+    shot, frames, area = _what(arguments, scene_oceans)
     package = Package(
         arguments.name or asset_name(arguments.out),
         shot,
@@ -45,6 +46,7 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
         tiles=arguments.tiles,
         proxy=arguments.proxy,
         variants=arguments.variants,
+        area=area,
     )
     if arguments.stitch and arguments.only:
         raise UsageError("--stitch: makes no frames; leave --only out")
@@ -104,10 +106,10 @@ def _stopped(package: Package) -> str:
     return "stopped after a whole frame; the same command goes on"
 
 
-def _shot_and_frames(
+def _what(
     arguments: argparse.Namespace, scene_oceans: SceneOceans | None
-) -> tuple[Shot, tuple[Frame, ...]]:
-    """The sea and its frames, of the arguments or of a bake. Raises UsageError or CacheError."""
+) -> tuple[Shot, tuple[Frame, ...], Area | None]:
+    """The sea, its frames and its area, of the arguments or of a bake. Raises UsageError or CacheError."""
     if arguments.bake is not None:
         return _of_bake(arguments)
     seas = chosen_seas(arguments, scene_oceans)
@@ -119,16 +121,17 @@ def _shot_and_frames(
     frames = arguments.frames or sea.frames
     if not frames:
         raise UsageError("--frames: say which frames to write")
-    return sea.shot, frames
+    return sea.shot, frames, arguments.area
 
 
-def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...]]:
+def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...], Area | None]:
     folder: Path = arguments.bake
     if arguments.form != "displacement":
         raise UsageError(f"--bake: is for --form displacement, not {arguments.form}")
     given = {
         "--params": arguments.params, "--preset": arguments.preset, "--set": arguments.assignments,
         "--fps": arguments.fps, "--start-frame": arguments.start_frame,
+        "--area": arguments.area,
     }  # fmt: skip
     for option, value in given.items():
         if value:
@@ -137,7 +140,15 @@ def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...]]:
     frames = arguments.frames or job.frames or recorded_frames(folder)
     if not frames:
         raise UsageError(f"{folder}: holds no frames")
-    return job.shot, frames
+    return job.shot, frames, _on_its_texels(job.area)
+
+
+def _on_its_texels(area: Area | None) -> Area | None:
+    """The area of a mesh that has a vertex a texel of a bake's images."""
+    if area is None:
+        return None
+    quads = area.resolution - 1
+    return Area(area.size * quads / area.resolution, quads, area.corner)
 
 
 def verify(arguments: argparse.Namespace) -> int:

@@ -32,8 +32,9 @@ def _job(arguments: argparse.Namespace, name: str, sea: FileSea) -> Job:
     name = safe_name(arguments.name or name)
     uid = arguments.uid or sea.uid or uid_of(name)
     # no longer needed where --set made it a sea of one patch
-    needed = sea.maps if sea.shot.parameters.patches else ()
-    return Job(name, uid, sea.shot, (*arguments.maps, *needed), arguments.compression, frames)
+    needed = sea.maps if sea.shot.parameters.patches and arguments.area is None else ()
+    maps = (*arguments.maps, *needed)
+    return Job(name, uid, sea.shot, maps, arguments.compression, frames, arguments.area)
 
 
 def cache_of(arguments: argparse.Namespace, sea: FileSea) -> Path:

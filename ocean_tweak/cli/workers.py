@@ -259,7 +259,7 @@ def _give_up(ended: threading.Event, folder: Path) -> None:
 def _make(folder: Path, job: Job, frames: Sequence[Frame], ended: threading.Event) -> None:
     tell = Seldom(lambda frame, doing: _say({"frame": format_frames((frame,)), "doing": doing}))
     sink = CacheSink(folder, job, tell)
-    with contextlib.closing(make_frames(job.shot, frames, sink, tell=tell)) as making:
+    with contextlib.closing(make_frames(job.shot, frames, sink, tell=tell, on=job.on)) as making:
         for frame, paths, seconds in making:
             _say(
                 {

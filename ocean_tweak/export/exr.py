@@ -26,6 +26,7 @@ from ..core.data.frames import Frame
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import printable
 from ..core.parameters.ocean_parameters import OceanParameters, Patch
+from ..core.sea.on import Area
 from ..core.synthesis.channels import MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
 from .files import open_file, whole_file
 from .frame_files import frame_file
@@ -96,6 +97,7 @@ class ExrSequence:
     patch : the number of the patch, from 0, whose frames these are, in a sea of several
     compression : a key of COMPRESSION_ERROR
     maps : keys of `core.channels.MAPS`
+    area : the square that they show, of the whole sea; None for the tile of the sea or of the patch
     """
 
     directory: Path
@@ -104,6 +106,7 @@ class ExrSequence:
     compression: str = "PXR24"
     maps: tuple[str, ...] = (MOVING_MAP,)
     patch: int | None = None
+    area: Area | None = None
 
     @property
     def outputs(self) -> frozenset[str]:
@@ -117,12 +120,16 @@ class ExrSequence:
 
     @property
     def domain_size(self) -> float:
-        """Of the patch, m."""
+        """Side of what an image shows, m."""
+        if self.area is not None:
+            return self.area.size
         return self.parameters.domain_size if self.patch is None else self._patch.domain_size
 
     @property
     def resolution(self) -> int:
         """Texels along each side."""
+        if self.area is not None:
+            return self.area.resolution
         return self.parameters.resolution if self.patch is None else self._patch.resolution
 
     @property
@@ -160,6 +167,8 @@ class ExrSequence:
             "compression": self.compression,
             "parameters": self.parameters.to_dict(brief=True),
         }
+        if self.area is not None:
+            metadata["area"] = self.area.to_dict()
         if self.patch is not None:
             count = len(self.parameters.patches)
             metadata["patch"] = {"number": self.patch + 1, "of": count, "rotation": self._patch.rotation}

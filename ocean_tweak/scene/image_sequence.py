@@ -252,9 +252,14 @@ def _image(path: Path) -> bpy.types.Image:
 
 
 def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
-    """Frames per second of a file's shot, and its stretch. Raises SequenceError for a newer file."""
+    """Frames per second of a file's shot, and its stretch. Raises SequenceError for newer files and areas."""
     try:
-        timing = Timing(**read_header(path)["parameters"]["timing"])
+        header = read_header(path)
+        if "area" in header:
+            raise SequenceError(
+                f"{path} shows an area, which does not repeat as the ocean's mesh does: bake without --area"
+            )
+        timing = Timing(**header["parameters"]["timing"])
         return timing.fps, timing.stretch
     except NewerExrError as error:
         raise SequenceError(str(error)) from None

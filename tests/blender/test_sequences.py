@@ -53,6 +53,16 @@ def test_frames_for_a_render_are_counted_before_they_are_made(extension, capsys)
         assert "--frames" in capsys.readouterr().err
 
 
+def test_images_of_an_area_are_refused(sequences, extension, core, make_parameters, tmp_path):
+    parameters, area = make_parameters(), core.Area(60.0, 16, (5.0, -10.0))
+    sink = extension("export.exr").ExrSequence(tmp_path, "sea", parameters, area=area)
+    sink.write(1, core.Ocean(parameters).frame(1, sink.outputs, area))
+    with pytest.raises(
+        sequences.SequenceError, match=r"sea_disp\.0001\.exr shows an area, which does not repeat"
+    ):
+        sequences.load_sequence(sequences.find_sequence(tmp_path))
+
+
 def test_nothing_is_added_for_a_sequence_that_cannot_be_used(
     sequences, bake, ocean_object, make_parameters, empty_scene
 ):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -196,8 +197,136 @@ def test_kinds_have_numbers_and_names_of_their_own() -> None:
 def test_a_bake_of_what_does_not_repeat_is_refused_with_the_remedy(tmp_path, capsys) -> None:
     params = tmp_path / "sea.json"
     params.write_text(sea(Hump()).to_json())
-    assert main(["bake", "--params", str(params), "--frames", "1", "--out", str(tmp_path)]) == 2
-    (line,) = (line for line in capsys.readouterr().err.splitlines() if "HUMP" in line)
-    assert "layers.1 = 'HUMP': its waves do not repeat" in line
-    assert "mute the layer" in line
-    assert not list(tmp_path.glob("**/*.exr"))
+    given = ["--params", str(params), "--frames", "1", "--out"]
+    for command in (
+        ["bake", *given, str(tmp_path)],
+        ["usd", *given, str(tmp_path / "sea.usd"), "--form=clips"],
+    ):
+        assert main(command) == 2
+        (line,) = (line for line in capsys.readouterr().err.splitlines() if "HUMP" in line)
+        assert "layers.1 = 'HUMP': its waves do not repeat" in line
+        assert "with --area, or mute the layer" in line
+    assert not [path for path in tmp_path.glob("**/*") if path.is_file() and path != params]
+
+
+AREA = ("--area", "60", "48", "5", "-10")
+
+
+def bell_at(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    return 2.0 * np.exp(-0.5 * ((x - 30.0) ** 2 + (y - 20.0) ** 2) / 100.0)
+
+
+def humped(tmp_path) -> list[str]:
+    """What commands are told of a sea with a hump, whose frame 36 is 1.5 s after the start."""
+    params = tmp_path / "sea.json"
+    params.write_text(sea(Ripple(), Hump(), resolution=64).to_json())
+    return ["--params", str(params), "--frames", "35-36"]
+
+
+def test_images_of_an_area_hold_what_does_not_repeat(tmp_path, capsys) -> None:
+    bake = ["bake", *humped(tmp_path), *AREA, "--out", str(tmp_path), "--workers", "1"]
+    assert main([*bake, "--maps", "disp,vel,normal,foam"]) == 0
+    (image,) = tmp_path.glob("*/*/sea_disp.0036.exr")
+    pixels, header = read_image(image)
+    assert header["domain_size"] == 60.0
+    assert header["area"] == {"size": 60.0, "resolution": 48, "corner": [5.0, -10.0]}
+    x, y = np.meshgrid(5.0 + 1.25 * np.arange(48), -10.0 + 1.25 * np.arange(48))
+    of_ripple = ripple_at(x, TIME, sea(), Ripple())
+    np.testing.assert_allclose(
+        pixels[..., 2], TIME * bell_at(x, y) + of_ripple, atol=0.02
+    )  # of the mesh's chords
+    made = Ocean(sea(Ripple(), Hump(), resolution=64)).surface(
+        TIME, ("displacement", "velocity"), Area(60.0, 48, (5.0, -10.0))
+    )
+    np.testing.assert_allclose(pixels, made.displacement, rtol=2.0**-15, atol=1e-6)
+    velocity, _ = read_image(image.with_name("sea_vel.0036.exr"))
+    np.testing.assert_allclose(velocity, made.velocity, rtol=2.0**-15, atol=1e-6)
+    folder = image.parent
+    capsys.readouterr()
+    assert main(["verify", str(folder)]) == 0
+    assert "2 frames: 2 whole" in capsys.readouterr().out
+
+    content = image.read_bytes()
+    image.unlink()
+    (folder / "bake.json").unlink()  # the job is told by the other images
+    assert main(["resume", str(folder), "--workers", "1"]) == 0
+    assert image.read_bytes() == content
+    assert main(["verify", str(folder)]) == 0
+
+
+def test_verify_sees_an_area_that_is_elsewhere(tmp_path, capsys) -> None:
+    bake = ["bake", *humped(tmp_path), "--out", str(tmp_path), "--workers", "1", "--area", "60", "48"]
+    for corner in ((), ("5", "0")):
+        assert main([*bake, *corner]) == 0
+    here, elsewhere = sorted(tmp_path.glob("*/v*"))
+    for path in (*elsewhere.glob("*.exr"), *elsewhere.glob("records/*")):
+        path.replace(here / path.relative_to(elsewhere))
+    capsys.readouterr()
+    assert main(["verify", str(here)]) == 1
+    assert "frame 35 is stale: it was made from other parameters" in capsys.readouterr().out
+
+
+def test_layers_of_usd_show_an_area_at_its_place(tmp_path) -> None:
+    Usd = pytest.importorskip("pxr.Usd")
+    from ocean_tweak.export.usd.verify import verify
+
+    layer = tmp_path / "sea.usd"
+    given = ["usd", *humped(tmp_path), *AREA, "--out", str(layer), "--variants", "48,24", "--proxy", "12"]
+    for form in ("points", "clips"):
+        assert main([*given, "--form", form, "--force"]) == 0
+        stage = Usd.Stage.Open(str(layer))
+        stage.Reload()
+        for mesh, quads in (("surface", 48), ("proxy", 12)):
+            prim = stage.GetPrimAtPath(f"/sea/geo/sea/{mesh}")
+            points = np.array(prim.GetAttribute("points").Get(36)).reshape(quads + 1, quads + 1, 3)
+            along = 60.0 / quads * np.arange(quads + 1)
+            x, y = np.meshgrid(5.0 + along, -10.0 + along)
+            np.testing.assert_allclose(points[..., :2], np.stack([x, y], axis=-1), atol=1e-5)
+            expected = TIME * bell_at(x, y) + ripple_at(x, TIME, sea(), Ripple())
+            np.testing.assert_allclose(points[..., 2], expected, atol=0.02)
+            extent = np.array(prim.GetAttribute("extent").Get(36))
+            np.testing.assert_allclose(extent[:, :2], [[5.0, -10.0], [65.0, 50.0]], atol=1e-5)
+        assert list(verify(layer, (36,))) == []
+
+
+def test_images_of_an_area_move_layers_of_usd(tmp_path, capsys) -> None:
+    Usd = pytest.importorskip("pxr.Usd")
+    from ocean_tweak.export.usd.verify import verify
+
+    given = humped(tmp_path)
+    assert main(["bake", *given, *AREA, "--out", str(tmp_path), "--workers", "1"]) == 0
+    (folder,) = tmp_path.glob("sea-*/v*")
+    for name, source, size in (("own", [*given, *AREA], 60.0), ("of", ["--bake", str(folder)], 58.75)):
+        layer = tmp_path / name / f"{name}.usd"
+        assert main(["usd", *source, "--form", "displacement", "--out", str(layer)]) == 0
+        assert list(verify(layer)) == []
+        stage = Usd.Stage.Open(str(layer))
+        surface = stage.GetPrimAtPath(f"/{name}/geo/sea/surface")
+        points, st = (np.array(surface.GetAttribute(key).Get()) for key in ("points", "primvars:st"))
+        np.testing.assert_allclose(points[[0, -1], :2], [[5.0, -10.0], [5.0 + size, size - 10.0]], atol=1e-5)
+        texels = round(size / 1.25) + 1  # each vertex in the middle of its own
+        np.testing.assert_allclose(st[[0, 1, -1], 0] * texels, [0.5, 1.5, texels - 0.5], atol=1e-4)
+    assert main(["usd", "--bake", str(folder), *AREA, "--form=displacement", "--out", str(layer)]) == 2
+    assert "--area: the bake" in capsys.readouterr().err
+    assert main(["usd", *given, *AREA, "--tiles=2x1", "--form=clips", "--out", str(layer)]) == 2
+    assert "tiles = (2, 1): must be 1x1 of an area" in capsys.readouterr().err
+
+
+def test_a_farm_bakes_the_same_area(tmp_path, capsys) -> None:
+    given = humped(tmp_path)
+    area = ["--area", "60", "48", "-0.00001", "-1000"]
+    assert main(["job", *given, *area, "--out", str(tmp_path / "job")]) == 0
+    steps = json.loads((tmp_path / "job" / "template.json").read_text())["steps"]
+    for step in steps:
+        words = step["script"]["actions"]["onRun"]["args"]
+        place = words.index("--area")
+        assert words[place : place + 5] == area
+    for words, problem in (
+        (("60",), "must be SIZE SAMPLES"),
+        (("60", "48", "1"), "must be SIZE SAMPLES"),
+        (("0", "48"), "size = 0.0: must be a length above 0 m"),
+        (("60", "1"), "resolution = 1: must be from 2 to 8192 samples"),
+        (("60", "48", "nan", "0"), "corner = (nan, 0.0): must be x and y in m"),
+    ):
+        assert main(["bake", *given, "--area", *words, "--out", str(tmp_path)]) == 2
+        assert problem in capsys.readouterr().err

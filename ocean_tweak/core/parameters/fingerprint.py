@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from ..data import formats
@@ -34,8 +35,11 @@ def shot_fingerprint(shot: Shot) -> str:
     return fingerprint({"synthesis": formats.SYNTHESIS, "shot": hashed(shot)})
 
 
-def frame_fingerprint(shot: Shot, frame: Frame) -> str:
-    """That of a frame: of its own parameters and time. Raises ParameterError where there is no such frame."""
+def frame_fingerprint(shot: Shot, frame: Frame, area: Mapping[str, Any] | None = None) -> str:
+    """That of a frame: of its own parameters and time. Raises ParameterError where there is no such frame.
+
+    area : plain data of the square where it is made; None for the sea's own tile
+    """
     moment = shot.at(frame)
     return fingerprint(
         {
@@ -44,5 +48,6 @@ def frame_fingerprint(shot: Shot, frame: Frame) -> str:
             "frame": frame_label(frame),
             "time": time_text(moment.time),
             "rate": moment.rate,
+            **({} if area is None else {"area": area}),
         }
     )

@@ -19,6 +19,7 @@ from ..parameters.shot import Moment, Shot
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .memory import check_memory, memory_need
 from .ocean import Ocean
+from .on import TILE, Area, Tile
 
 
 class FrameSink(Protocol):
@@ -44,10 +45,14 @@ class BakedFrame(NamedTuple):
 
 
 class ShotSurfaces:
-    """Surfaces of a shot's frames, on one thread; quickest where frames follow each other."""
+    """Surfaces of a shot's frames, on one thread; quickest where frames follow each other.
 
-    def __init__(self, shot: Shot) -> None:
+    on : where they are wanted: on the tile of each patch, or in an area of all together
+    """
+
+    def __init__(self, shot: Shot, on: Tile | Area = TILE) -> None:
         self.shot = shot
+        self.on = on
         self._sea: Ocean | None = None
 
     def sea(self, frame: Frame) -> Ocean:
@@ -57,25 +62,31 @@ class ShotSurfaces:
             self._sea = Ocean(parameters, workers=1)
         return self._sea
 
+    def seas(self, frame: Frame) -> tuple[Ocean, ...]:
+        """Those whose fields a frame has: of each patch, or of all together in an area."""
+        sea = self.sea(frame)
+        return (sea,) if isinstance(self.on, Area) else sea.patches
+
     def prepare(self, frame: Frame) -> None:
         """Make the waves of a frame, which its surfaces share."""
-        for patch in self.sea(frame).patches:
-            patch.prepare()
+        for sea in self.seas(frame):
+            sea.prepare()
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each patch in a frame, on its tile, and ADDING of each part where PARTS is asked for.
+        """Fields of each of its seas in a frame, and ADDING of each part where PARTS is asked for.
 
         Velocity is per second of the shot.
         """
-        sea = self.sea(frame)
-        made = self._made(frame, sea.patches, frozenset(outputs) - {PARTS})
-        return (*made, *self._made(frame, sea.parts, ADDING)) if PARTS in outputs else made
+        made = self._made(frame, self.seas(frame), frozenset(outputs) - {PARTS}, self.on)
+        if PARTS not in outputs:
+            return made
+        return (*made, *self._made(frame, self.sea(frame).parts, ADDING, TILE))
 
     def _made(
-        self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str]
+        self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str], on: Tile | Area
     ) -> tuple[SurfaceFields, ...]:
         moment: Moment = self.shot.at(frame)
-        made = tuple(sea.surface(moment.time, outputs) for sea in seas)
+        made = tuple(sea.surface(moment.time, outputs, on) for sea in seas)
         for name in outputs if moment.rate != 1.0 else ():
             if CHANNELS[name].is_rate:
                 for fields in made:
@@ -83,8 +94,8 @@ class ShotSurfaces:
         return made
 
     def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:
-        """Fields of a frame of a sea on one grid. Raises ValueError for another."""
-        if self.shot.parameters.is_cascade:
+        """Fields of a frame of a sea on one grid, or in an area. Raises ValueError for another."""
+        if self.shot.parameters.is_cascade and self.on == TILE:
             raise ValueError("this sea has several patches: their fields are those of frames()")
         (fields,) = self.frames(frame, outputs)
         return fields
@@ -96,41 +107,44 @@ def bake(
     sink: FrameSink,
     workers: int = 1,
     tell: Callable[[Frame, str], None] = lambda frame, doing: None,
+    on: Tile | Area = TILE,
 ) -> Iterator[BakedFrame]:
     """Make and keep each frame, several at once; yields each in order when it is kept.
 
-    A worker makes a whole frame on one thread: while one encodes, another computes. Only foam, which has a
-    memory, is made here, in the order of the frames. What a frame holds does not depend on the number of
-    workers. When the caller stops, frames under way are finished and no more begun.
+    A worker makes a whole frame on one thread: while one encodes, another computes. Only a tile's foam, which
+    has a memory, is made here, in the order of the frames; that of an area looks back anew in each. What a
+    frame holds does not depend on the number of workers. When the caller stops, frames under way are finished
+    and no more begun.
 
     tell : is told again and again what is being done for a frame
+    on : where the fields are wanted
 
     Raises MemoryError before the first frame where the machine is too small, and ValueError for fields of
     several patches that are not sums of theirs.
     """
-    _check(shot.parameters, sink, workers)
-    with_memory = ShotSurfaces(shot)
+    _check(shot.parameters, sink, workers, on)
+    with_memory = ShotSurfaces(shot, on)
+    wanted = sink.outputs & OF_MEMORY if on == TILE else frozenset()
     own = threading.local()
 
     def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
         started += time.perf_counter()
         if not hasattr(own, "surfaces"):
-            own.surfaces = ShotSurfaces(shot)
-        fields, *others = own.surfaces.frames(frame, sink.outputs - OF_MEMORY)
+            own.surfaces = ShotSurfaces(shot, on)
+        fields, *others = own.surfaces.frames(frame, sink.outputs - wanted)
         if foam is not None:
             fields = fields.including(foam)
         return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
     # frames go forward: what they share stays, and no seas of frames gone by
-    need = memory_need(shot.parameters, sink.outputs)
+    need = memory_need(shot.parameters, sink.outputs, on=on)
     with MEMO.at_most(need.state + workers * need.surface), ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
                 begun = time.perf_counter()
                 if not under_way:  # made once, before the workers ask for it
                     with_memory.prepare(frame)
-                wanted = sink.outputs & OF_MEMORY
                 foam = _foam(with_memory, frame, wanted, tell) if wanted else None
                 # the wait for a worker is no work
                 under_way.append(pool.submit(make, frame, begun - time.perf_counter(), foam))
@@ -153,12 +167,14 @@ def _foam(
     return surfaces.frame(frame, wanted)
 
 
-def _check(parameters: OceanParameters, sink: FrameSink, workers: int) -> None:
+def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile | Area) -> None:
     """Raise for what cannot be baked, or not on this machine."""
-    if parameters.is_cascade and parameters.is_masked:
+    is_cascade = parameters.is_cascade and on == TILE
+    if is_cascade and parameters.is_masked:
         raise ValueError("masks: lie over the sea and not over its patches, which repeat; join the patches")
-    if parameters.is_cascade and not sink.outputs <= {*ADDING, PARTS}:
+    if is_cascade and not sink.outputs <= {*ADDING, PARTS}:
         others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS}))
         raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")
-    need = memory_need(parameters, sink.outputs).peak(workers)
-    check_memory(need, f"Baking {parameters.resolution}² samples with {workers} workers")
+    need = memory_need(parameters, sink.outputs, on=on).peak(workers)
+    samples = on.resolution if isinstance(on, Area) else parameters.resolution
+    check_memory(need, f"Baking {samples}² samples with {workers} workers")

@@ -16,21 +16,30 @@ from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from ..synthesis.transforms import term
 from ..waves.contribution import Gives, MemoryNeed
 from ..waves.kinds import KINDS
+from .on import TILE, Area, Tile
 
 #: float64 arrays of half the plane that live while the initial state is made, beyond what stays
 _TEMPORARY_ARRAYS = 5
+
+#: bytes a sample of an area: where it lies, between which samples of a part, and what is read there
+_READING = 80
 
 #: bytes of the tables from which a state is made, whatever the resolution
 TABLES = 48 * 2**20
 
 
 def memory_need(
-    parameters: OceanParameters, outputs: Iterable[str] = ("displacement",), precision: str = "single"
+    parameters: OceanParameters,
+    outputs: Iterable[str] = ("displacement",),
+    precision: str = "single",
+    on: Tile | Area = TILE,
 ) -> MemoryNeed:
     """Bytes that a sea needs for the outputs asked for; one of several patches has all of them at once."""
     outputs = frozenset(outputs)
     if PARTS in outputs:
         return _need_with_parts(parameters, outputs - {PARTS}, precision)
+    if isinstance(on, Area):
+        return _need_in_area(parameters, outputs, precision, on)
     if parameters.is_sum:
         return _need_of_parts(parameters, outputs, precision)
     n = parameters.resolution
@@ -79,6 +88,24 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
         surface += 3 * keys * parameters.resolution**2 * (4 if precision == "single" else 8)
         surface += _foam_bytes(parameters) if outputs & OF_MEMORY else 0
     return MemoryNeed(sum(need.state for need in needs), max(need.building for need in needs), surface)
+
+
+def _need_in_area(
+    parameters: OceanParameters, outputs: frozenset[str], precision: str, on: Area
+) -> MemoryNeed:
+    """That of all parts on samples of their own, and of the components that are added up in the area."""
+    apart = joined_bands(parameters) if parameters.joined else parameters
+    waves = (outputs - OF_MEMORY) | ({"cusp"} if outputs & OF_MEMORY else set())
+    needs = [memory_need(part.parameters, waves, precision) for part in parts(apart)]
+    keys = {key for name in waves for key in CHANNELS[name].needs}
+    real = 4 if precision == "single" else 8
+    numbers = sum(max(1, CHANNELS[name].components) for name in outputs)
+    a_sample = _READING + (2 * numbers + (len(needs) + 1) * len(keys)) * real
+    return MemoryNeed(
+        sum(need.state for need in needs),
+        max(need.building for need in needs),
+        sum(need.surface for need in needs) + a_sample * on.resolution**2,
+    )
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:

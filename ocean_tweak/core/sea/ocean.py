@@ -24,7 +24,7 @@ from ..synthesis.channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, check
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .memory import check_memory, memory_need
-from .on import Area, Places, Tile
+from .on import TILE, Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves
 from .placed_waves import strain_covariances as placed_strain_covariances
@@ -37,9 +37,6 @@ RealArray = NDArray[np.floating]
 
 #: minimum eigenvalue below which several sheets of the surface are looked for
 _NEARLY_FOLDED = 0.1
-
-
-_WHOLE_TILE = Tile()
 
 
 class Ocean:
@@ -91,9 +88,9 @@ class Ocean:
         """
         return tuple(Ocean(part.parameters, self.precision, self._workers) for part in parts(self.parameters))
 
-    def memory(self, outputs: Iterable[str] = ("displacement",)) -> MemoryNeed:
+    def memory(self, outputs: Iterable[str] = ("displacement",), on: Tile | Area = TILE) -> MemoryNeed:
         """Bytes that the sea takes, and each surface with these outputs."""
-        return memory_need(self.parameters, outputs, self.precision)
+        return memory_need(self.parameters, outputs, self.precision, on)
 
     def prepare(self) -> None:
         """Make the waves, which all surfaces share; the first surface does so otherwise."""
@@ -114,7 +111,7 @@ class Ocean:
         self,
         time: float | Fraction,
         outputs: Iterable[str] = ("displacement",),
-        on: Tile | Area | Places = _WHOLE_TILE,
+        on: Tile | Area | Places = TILE,
         out: Mapping[str, RealArray] | None = None,
     ) -> SurfaceFields:
         """Fields at a time in s; only the outputs asked for are computed.
@@ -150,7 +147,7 @@ class Ocean:
         self,
         frame: float | Fraction,
         outputs: Iterable[str] = ("displacement",),
-        on: Tile | Area | Places = _WHOLE_TILE,
+        on: Tile | Area | Places = TILE,
     ) -> SurfaceFields:
         """Fields at a frame of the shot, which may hold a sub-frame."""
         return self.surface(self.parameters.timing.time(frame), outputs, on)

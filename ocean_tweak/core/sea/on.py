@@ -4,17 +4,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
+#: samples along each side of an area in a file, at most: as of a sea's own
+MOST_SAMPLES = 8192
+
 
 @dataclass(frozen=True)
 class Tile:
     """The (N, N) samples [y, x] of a sea's own domain, which repeats."""
+
+
+TILE = Tile()
 
 
 @dataclass(frozen=True)
@@ -33,15 +41,43 @@ class Area:
     corner: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "size", float(self.size))
+        object.__setattr__(self, "corner", tuple(map(float, self.corner)))
         if not (math.isfinite(self.size) and self.size > 0.0):
             raise ValueError(f"size = {self.size!r}: must be a length above 0 m")
         if self.resolution < 1:
             raise ValueError(f"resolution = {self.resolution!r}: must be 1 or more samples")
+        if len(self.corner) != 2 or not all(map(math.isfinite, self.corner)):
+            raise ValueError(f"corner = {self.corner!r}: must be x and y in m")
 
     def rest_positions(self) -> tuple[Array, Array]:
         """x and y in m, (N, N) each."""
         along = self.size / self.resolution * np.arange(self.resolution)
         return _checked(self.corner[0] + along, (self.corner[1] + along)[:, np.newaxis])
+
+    @classmethod
+    def of_file(cls, size: float, resolution: int, corner: Sequence[float] = (0.0, 0.0)) -> Area:
+        """An area of plain data, as `to_dict` writes it. Raises ValueError for one that no file can have."""
+        x, y = corner
+        if not (type(resolution) is int and 2 <= resolution <= MOST_SAMPLES):
+            raise ValueError(f"resolution = {resolution!r}: must be from 2 to {MOST_SAMPLES} samples")
+        return cls(size, resolution, (x, y))
+
+    @classmethod
+    def of_words(cls, words: Sequence[str]) -> Area:
+        """An area as it is written on the command line. Raises ValueError."""
+        if len(words) not in (2, 4):
+            raise ValueError(f"{' '.join(words)!r} must be SIZE SAMPLES, or SIZE SAMPLES X Y")
+        return cls.of_file(float(words[0]), int(words[1]), [float(word) for word in words[2:]] or (0.0, 0.0))
+
+    def words(self) -> tuple[str, ...]:
+        """SIZE SAMPLES X Y, without exponents: -1e-05 would be taken for an option."""
+        size, *corner = (np.format_float_positional(number, trim="-") for number in (self.size, *self.corner))
+        return (size, str(self.resolution), *corner)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as it stands in jobs and headers."""
+        return {**asdict(self), "corner": list(self.corner)}
 
 
 @dataclass(frozen=True, eq=False)

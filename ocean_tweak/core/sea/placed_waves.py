@@ -63,8 +63,8 @@ def check_repeats(sea: OceanParameters) -> None:
         if Gives.FIELDS in layer.gives and not layer.muted:
             raise ParameterError(
                 f"layers.{index}", layer.kind,
-                "its waves do not repeat with the domain, as all on a Tile do: ask for an Area or Places, or "
-                "mute the layer",
+                "its waves do not repeat with the domain, as all on a Tile do: ask for an Area or Places, "
+                "where files are written with --area, or mute the layer",
             )  # fmt: skip
 
 

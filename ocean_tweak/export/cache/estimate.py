@@ -114,11 +114,12 @@ def fitting_workers(job: Job, frames: int) -> int:
 def process_memory(job: Job) -> int:
     """Bytes that a process takes which makes and writes frames of a job."""
     parameters = job.shot.parameters
+    if job.area is not None:
+        return _memory_of_area(job)
     need = Ocean(parameters).memory(job.outputs - OF_MEMORY)
     sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
     samples = max([*sides, parameters.resolution]) ** 2
-    together = any(is_put_together(name) for name in job.images)
-    writing = (_PUT_TOGETHER if together else _WRITING) * samples
+    writing = _writing(job) * samples
     if PARTS in job.outputs:
         writing = max(writing, _POINTS * max(part.parameters.resolution for part in parts(parameters)) ** 2)
     making = need.surface + writing
@@ -130,11 +131,22 @@ def process_memory(job: Job) -> int:
     return max(_LEAST, _PROCESS + need.state + max(need.building - TABLES, making))
 
 
+def _memory_of_area(job: Job) -> int:
+    need = Ocean(job.shot.parameters).memory(job.outputs, job.on)
+    making = need.surface + _writing(job) * job.resolution**2
+    return max(_LEAST, _PROCESS + need.state + max(need.building - TABLES, making))
+
+
+def _writing(job: Job) -> int:
+    """Bytes a sample while a map is written."""
+    return _PUT_TOGETHER if any(is_put_together(name) for name in job.images) else _WRITING
+
+
 def _frame_bytes(folder: Path, job: Job, frame: Frame) -> int:
     """Of a frame's files on the disk."""
     trial = _at(job, _TRIAL)
-    scale = (job.shot.parameters.resolution / trial.shot.parameters.resolution) ** 2
-    fields = ShotSurfaces(trial.shot).frames(frame, trial.outputs - {PARTS})
+    scale = (job.resolution / trial.resolution) ** 2
+    fields = ShotSurfaces(trial.shot, trial.on).frames(frame, trial.outputs - {PARTS})
     images = sum(_room(len(data) * scale) for data in _images(folder, trial, frame, fields))
     return images + sum(_room(points.bytes) for points in job.points(folder, frame))
 
@@ -164,6 +176,8 @@ def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> f
     ) / max(1, len(frames) - 1)
     alone = math.ceil(len(frames) / workers)
     foam = costs.moment if job.outputs & OF_MEMORY else 0.0
+    if job.area is not None:  # each frame looks back anew
+        costs, foam = costs._replace(frame=costs.frame + foam * (most + 1)), 0.0
     first, later = foam * (most + 1), foam * (following + 1)
     seas = costs.sea * (alone if changes else 1)
     # foam is made beside the frame before
@@ -174,7 +188,7 @@ def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> f
 
 
 def _costs(folder: Path, job: Job, frame: Frame) -> _Costs:
-    resolution = job.shot.parameters.resolution
+    resolution = _samples(job)
     larger = max(side for least, side in _TIMED.items() if resolution >= least)
     if job.shot.parameters.patches:  # what is made of them does not follow from few samples
         larger = _TIMED_PATCHES
@@ -212,14 +226,14 @@ def by_trials(resolution: int, larger: int, timed: Callable[[int], Sequence[floa
 
 
 def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
-    surfaces, parameters = ShotSurfaces(job.shot), job.shot.at(frame).parameters
+    surfaces, parameters = ShotSurfaces(job.shot, job.on), job.shot.at(frame).parameters
     with_foam, moment = job.outputs & OF_MEMORY, 0.0
 
     def sea() -> None:
-        for grid in surfaces.sea(frame).patches:
-            grid.prepare()
+        for of_grid in surfaces.seas(frame):
+            of_grid.prepare()
             if with_foam:
-                grid.foam_history  # noqa: B018
+                of_grid.foam_history if job.area is None else of_grid.foam_model  # noqa: B018
         if PARTS in job.outputs:
             surfaces.frames(frame, {PARTS})
 
@@ -233,7 +247,8 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
     making = cpu_seconds(sea)
     if with_foam:
         looks = foam_outlook(parameters).memory + 1
-        seas = (surfaces, ShotSurfaces(job.shot))
+        # in an area the second would find what the first looked at
+        seas = (surfaces, *(() if job.area is not None else (ShotSurfaces(job.shot),)))
         moment = min(cpu_seconds(partial(of.frames, frame, with_foam)) for of in seas) / looks
     if not parameters.patches:
         made()
@@ -271,8 +286,13 @@ def _changes(shot: Shot) -> bool:
 
 def _at(job: Job, most: int, is_timed: bool = False) -> Job:
     """The job with at most so many samples along a side."""
-    parameters = job.shot.parameters
+    parameters, area, whole = job.shot.parameters, job.area, _samples(job)
     samples = min(parameters.resolution, most)
+    if area is not None and most < whole:  # both in proportion
+        samples = max(16, 2 * round(parameters.resolution * most / whole / 2))
+        area = replace(area, resolution=max(2, round(area.resolution * most / whole)))
+    elif area is not None:
+        samples = parameters.resolution
     foam = parameters.foam
     if foam.resolution:  # in proportion, so that its time is too
         of_foam = max(16, 2 * round(foam.resolution * samples / parameters.resolution / 2))
@@ -282,7 +302,12 @@ def _at(job: Job, most: int, is_timed: bool = False) -> Job:
         few = few.replace(foam=replace(foam, half_life=min(foam.half_life, _SHORT_FOAM)))
         if samples < parameters.resolution:  # else the bake itself goes on with these waves
             few = few.replace(seed=_new_seed())
-    return replace(job, shot=Shot(few, job.shot.animation))
+    return replace(job, shot=Shot(few, job.shot.animation), area=area)
+
+
+def _samples(job: Job) -> int:
+    """Along a side of what a frame takes longest with: its image, or the sea where it has more."""
+    return max(job.resolution, job.shot.parameters.resolution)
 
 
 def _new_seed() -> int:

@@ -12,7 +12,7 @@ import json
 import platform
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, combinations
@@ -25,10 +25,12 @@ from ...core.data import formats
 from ...core.data.errors import ParameterError
 from ...core.data.frames import Frame, format_frames, frame_label, parse_frames
 from ...core.data.printable import shown
-from ...core.parameters.fingerprint import fingerprint, hashed
+from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashed
 from ...core.parameters.ocean_parameters import OceanParameters
 from ...core.parameters.patch_seas import PARTS, parts
 from ...core.parameters.shot import Shot
+from ...core.sea.on import TILE, Area, Tile
+from ...core.sea.placed_waves import check_repeats
 from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
 from ..exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
@@ -64,6 +66,7 @@ class Job:
     maps : some of BAKED; in whatever order they are given, the job is the same
     compression : a key of COMPRESSION_ERROR
     frames : those that are asked for
+    area : the square where the sea is baked; None for its own tile, or those of its patches
 
     Raises ParameterError for what would name files elsewhere, and for maps that cannot be made.
     """
@@ -74,6 +77,7 @@ class Job:
     maps: tuple[str, ...] = (MOVING_MAP,)
     compression: str = "PXR24"
     frames: tuple[Frame, ...] = field(default=(), compare=False)
+    area: Area | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(name for name in BAKED if name in self.maps))
@@ -81,7 +85,7 @@ class Job:
             raise ParameterError("name", self.name, "holds what file names cannot hold")
         if not UID.fullmatch(self.uid):
             raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
-        _check_maps(self.maps, self.shot.parameters)
+        _check_maps(self.maps, self.shot.parameters, self.area)
 
     @cached_property
     def fingerprint(self) -> str:
@@ -93,8 +97,26 @@ class Job:
                 "shot": hashed(self.shot),
                 "maps": list(self.maps),
                 "compression": self.compression,
+                **self._told_area(),
             }
         )
+
+    def frame_fingerprint(self, frame: Frame) -> str:
+        """SHA-256 of what a frame is made from."""
+        return frame_fingerprint(self.shot, frame, **self._told_area())
+
+    def _told_area(self) -> dict[str, Any]:
+        return {} if self.area is None else {"area": self.area.to_dict()}
+
+    @property
+    def on(self) -> Tile | Area:
+        """Where the fields of a frame are made."""
+        return self.area or TILE
+
+    @property
+    def resolution(self) -> int:
+        """Texels along each side of an image, the first patch's where it has several."""
+        return self.shot.parameters.resolution if self.area is None else self.area.resolution
 
     @property
     def home(self) -> str:
@@ -118,11 +140,12 @@ class Job:
         return tuple(name for name in self.maps if name in MAPS)
 
     def sequences(self, folder: Path, frame: Frame) -> tuple[ExrSequence, ...]:
-        """The sinks for a frame, one a patch, whose headers tell this frame's parameters."""
+        """The sinks for a frame, whose headers tell its parameters: one a patch, or one of an area."""
         parameters = self.shot.at(frame).parameters
-        patches: Iterable[int | None] = range(len(parameters.patches)) if parameters.is_cascade else (None,)
+        is_one = self.area is not None or not parameters.is_cascade
+        patches: Iterable[int | None] = (None,) if is_one else range(len(parameters.patches))
         return tuple(
-            ExrSequence(folder, self.name, parameters, self.compression, self.images, patch)
+            ExrSequence(folder, self.name, parameters, self.compression, self.images, patch, self.area)
             for patch in patches
         )
 
@@ -134,10 +157,11 @@ class Job:
         return tuple(PointSequence(folder, self.name, number, part) for number, part in enumerate(of_sea, 1))
 
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
-        """The sink for a frame of a sea of one patch. Raises CacheError for another."""
-        if self.shot.parameters.is_cascade:
+        """The sink for a frame of a sea of one patch, or of an area. Raises CacheError for another."""
+        sequence, *others = self.sequences(folder, frame)
+        if others:
             raise CacheError(f"{folder} holds the images of several patches, not of one")
-        return self.sequences(folder, frame)[0]
+        return sequence
 
     def files(self, folder: Path, frame: Frame) -> list[tuple[str, str]]:
         """Map and file name of each of a frame's files."""
@@ -169,6 +193,7 @@ class Job:
             "frames": format_frames(self.frames),
             "maps": list(self.maps),
             "compression": self.compression,
+            **self._told_area(),
             "shot": self.shot.to_dict(),
             "made_with": made_with(),
         }
@@ -199,20 +224,37 @@ class Job:
             raise ValueError(f"has the frames {shown(frames)}")
         job = cls(
             name, uid, Shot.from_dict(data.get("shot")), tuple(maps), compression,
-            parse_frames(frames) if frames else (),
+            parse_frames(frames) if frames else (), told_area(data),
         )  # fmt: skip
         if job.fingerprint != data.get("fingerprint"):
             raise ValueError("was changed: its fingerprint is not that of its contents")
         return job
 
 
-def maps_for(parameters: OceanParameters) -> tuple[str, ...]:
+def told_area(data: Mapping[str, Any]) -> Area | None:
+    """The area that a job, or the header of an image, is of. Raises ValueError for what is none."""
+    if "area" not in data:
+        return None
+    try:
+        return Area.of_file(**data["area"])
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"has the area {shown(data['area'])}: {error}") from None
+
+
+def maps_for(parameters: OceanParameters, area: Area | None = None) -> tuple[str, ...]:
     """The maps that a sea can be baked to: of several patches those that add up, and their points."""
+    if area is not None:
+        return tuple(MAPS)
     images = tuple(name for name in MAPS if not parameters.is_cascade or ADDING.issuperset(MAPS[name]))
     return (*images, POINTS) if parameters.patches else images
 
 
-def _check_maps(maps: tuple[str, ...], parameters: OceanParameters) -> None:
+def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area | None) -> None:
+    if area is not None:
+        if POINTS in maps:
+            raise ParameterError("maps", POINTS, "are those of patches, which repeat: an area has none")
+        return
+    check_repeats(parameters)
     if parameters.is_cascade and parameters.is_masked:
         raise ParameterError(
             "joined", parameters.joined,
@@ -357,10 +399,11 @@ def recovered_job(folder: Path) -> Job:
         try:
             metadata = read_header(path)
             shot, compression = Shot.from_dict(metadata["parameters"]), str(metadata["compression"])
-        except (ExrError, ParameterError, KeyError):
+            area = told_area(metadata)
+        except (ExrError, ValueError, KeyError):
             continue
-        for maps in _all_choices(maps_for(shot.parameters)):
-            job = Job(name, uid, shot, maps, compression)
+        for maps in _all_choices(maps_for(shot.parameters, area)):
+            job = Job(name, uid, shot, maps, compression, area=area)
             if job.fingerprint[:8] == match[2]:
                 return job
     raise CacheError(problem)

@@ -20,7 +20,6 @@ from ...core.data import formats
 from ...core.data.errors import ParameterError
 from ...core.data.frames import MOST_FRAMES, Frame, format_frames, frame_label, parse_frames
 from ...core.data.printable import shown
-from ...core.parameters.fingerprint import frame_fingerprint
 from ...core.synthesis.channels import SurfaceFields
 from ..files import PART, begun_file, open_file, read_bytes, remove_begun, sync_folder, write_text
 from .job import LOCKS, RECORDS, Job, NewerBakeError, check_seal, made_with, record_path, sealed
@@ -138,7 +137,7 @@ class CacheSink:
             FileEntry(name, path.name, path.stat().st_size, file_hash(path))
             for (name, _), path in zip(self.job.files(self.folder, frame), paths, strict=True)
         )
-        made = FrameRecord(frame, frame_fingerprint(self.job.shot, frame), entries, self._asked)
+        made = FrameRecord(frame, self.job.frame_fingerprint(frame), entries, self._asked)
         write_text(record, json.dumps(made.to_dict(), indent=1) + "\n")
         sync_folder(record.parent)
         return tuple(paths)
@@ -206,7 +205,7 @@ def inspect(folder: Path, job: Job, frame: Frame) -> Finding:
         return Finding(frame, State.DAMAGED, f"its record cannot be used: {error}")
     if record is None:
         return Finding(frame, State.MISSING, "it has no record")
-    if record.fingerprint != frame_fingerprint(job.shot, frame):
+    if record.fingerprint != job.frame_fingerprint(frame):
         return Finding(frame, State.STALE, "it was made from other parameters")
     if sorted((entry.map, entry.name) for entry in record.files) != sorted(job.files(folder, frame)):
         return Finding(frame, State.DAMAGED, "its record lists other files than the job has")

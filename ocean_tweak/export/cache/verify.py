@@ -15,6 +15,7 @@ from ...core.data.plain_data import to_plain
 from ...core.data.printable import printable
 from ...core.parameters.shot import Moment
 from ...core.sea.bake import ShotSurfaces
+from ...core.sea.on import TILE, Area, Tile
 from ...core.synthesis.channels import MOVING_MAP, unit_of
 from ...core.synthesis.coefficients import propagate
 from ..exr import ExrError, ExrSequence, read_image
@@ -33,12 +34,12 @@ _FLAT = 1e-6
 
 def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]:
     """Read each frame back: record, hashes, header, finite pixels, wave height."""
-    seas = ShotSurfaces(job.shot)
+    surfaces = ShotSurfaces(job.shot, job.on)
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
-            grids = seas.sea(frame).patches
-            for sequence, sea in zip(job.sequences(folder, frame), grids, strict=True):
+            seas = surfaces.seas(frame)
+            for sequence, sea in zip(job.sequences(folder, frame), seas, strict=True):
                 problem = _problem(job, sequence, frame, sea)
                 if problem:
                     break
@@ -48,10 +49,10 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
         yield finding
 
 
-def wave_height(sea: Ocean, moment: Moment) -> float:
+def wave_height(sea: Ocean, moment: Moment, on: Tile | Area = TILE) -> float:
     """Hs in m of the waves of a moment: of one sum from their amplitudes, or else of the surface."""
-    if sea.parameters.is_sum:
-        return _height_of(sea.surface(moment.time).displacement)
+    if sea.parameters.is_sum or on != TILE:
+        return _height_of(sea.surface(moment.time, on=on).displacement)
     state = sea.initial_state
     weight = state.grid.multiplicity[0]
     variance = 0.0
@@ -71,11 +72,13 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: Ocean) -> str:
         except ExrError as error:
             return str(error)
         told = {key: metadata.get(key) for key in ("map", "frame", "domain_size", "unit")}
+        told |= {"area": metadata["area"]} if "area" in metadata else {}
         wanted = {
             "map": name,
             "frame": to_plain(frame),
             "domain_size": sequence.domain_size,
             "unit": unit_of(name),
+            **({} if sequence.area is None else {"area": sequence.area.to_dict()}),
         }
         if told != wanted:
             return f"{path.name} says it is {printable(told, 200)}, not {wanted}"
@@ -83,7 +86,7 @@ def _problem(job: Job, sequence: ExrSequence, frame: Frame, sea: Ocean) -> str:
             return f"{path.name} holds values that are not finite"
         if name == MOVING_MAP:
             bounds = DAMPED_WAVE_HEIGHTS if moment.parameters.trough_damping else WAVE_HEIGHTS
-            expected = wave_height(sea, moment)
+            expected = wave_height(sea, moment, job.on)
             problem = _wrong_height(image, expected, bounds)
             if problem:
                 return f"{path.name} {problem}"

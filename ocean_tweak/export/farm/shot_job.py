@@ -121,6 +121,7 @@ def sea_arguments(bake: Job, seas: str, cache: str) -> list[str]:
         *_option("--uid", bake.uid),
         *_option("--maps", ",".join(bake.maps)),
         *_option("--compression", bake.compression),
+        *(("--area", *bake.area.words()) if bake.area is not None else ()),
         f"--out={cache}",
     ]
 

@@ -46,7 +46,7 @@ def _points(grid: UsdGrid, fields: SurfaceFields) -> RealArray:
 
 
 def _colours(grid: UsdGrid, fields: SurfaceFields) -> RealArray:
-    return _mixed(grid.wrapped(fields.foam).reshape(-1, 1))
+    return _mixed(grid.of_vertices(fields.foam).reshape(-1, 1))
 
 
 def _mixed(foam: RealArray) -> RealArray:
@@ -63,7 +63,7 @@ def _of_channel(channel: Channel) -> Attribute:
         return field.reshape(grid.vertices, *field.shape[2:])
 
     def values(grid: UsdGrid, fields: SurfaceFields) -> RealArray:
-        return in_layer(grid, grid.wrapped(fields[channel.name]))
+        return in_layer(grid, grid.of_vertices(fields[channel.name]))
 
     def rest(grid: UsdGrid) -> RealArray:
         flat = np.full(channel.shape(grid.quads + 1), channel.rest, np.float32)

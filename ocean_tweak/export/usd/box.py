@@ -34,7 +34,7 @@ def union(boxes: Iterable[Box]) -> Box:
 
 def tile_offsets(package: Package) -> Corner:
     """(tiles, 3): where each tile stands, rows from south to north; the first is the sea's own place."""
-    size = package.shot.parameters.domain_size * package.scale
+    size = package.size * package.scale
     across, along = package.tiles
     column, row = (part.reshape(-1) * size for part in np.meshgrid(np.arange(across), np.arange(along)))
     nothing = np.zeros(len(column))

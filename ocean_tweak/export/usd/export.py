@@ -182,16 +182,17 @@ class Export:
 def _make_points(export: Export, frames: Sequence[Frame], workers: int) -> Iterator[BakedFrame]:
     for folder, edition in export.editions:
         folder.mkdir(exist_ok=True)
-        shot = export.package.at(edition.resolution)
+        shot, on = export.package.at(edition.resolution), export.package.on(edition.resolution)
         with points_sink(folder / _GEOMETRY["points"][0], edition) as sink:
-            yield from bake(shot, frames, sink, workers)
+            yield from bake(shot, frames, sink, workers, on=on)
 
 
 def _make_clips(export: Export, frames: Sequence[Frame], workers: int) -> Iterator[BakedFrame]:
     for folder, edition, sink in export._clips():
         sink.path(frames[0]).parent.mkdir(parents=True, exist_ok=True)
         todo = export._todo(sink, frames)
-        yield from bake(export.package.at(edition.resolution), todo, sink, workers)
+        shot, on = export.package.at(edition.resolution), export.package.on(edition.resolution)
+        yield from bake(shot, todo, sink, workers, on=on)
         sync_folder(folder)
 
 

@@ -25,6 +25,7 @@ class UsdGrid:
     texels : along each side of the images that may lie on it
     step : how many samples from one vertex to the next
     up_axis, scale : of the layer; units in a metre
+    corner : x and y of the first vertex in m, of an area that has a sample for each vertex; None for a tile
     """
 
     size: float
@@ -33,6 +34,7 @@ class UsdGrid:
     step: int = 1
     up_axis: str = "Z"
     scale: float = 1.0
+    corner: tuple[float, float] | None = None
 
     @property
     def quads(self) -> int:
@@ -44,9 +46,10 @@ class UsdGrid:
         """How many there are."""
         return (self.quads + 1) ** 2
 
-    def wrapped(self, field: RealArray) -> RealArray:
-        """(N, N, …) samples as (quads + 1, quads + 1, …), the first row and column once more at the end."""
-        return wrapped(field[:: self.step, :: self.step], np.float32)
+    def of_vertices(self, field: RealArray) -> RealArray:
+        """Samples as (quads + 1, quads + 1, …) of their own: a tile's first ones are once more at the end."""
+        steps = field[:: self.step, :: self.step]
+        return wrapped(steps, np.float32) if self.corner is None else np.array(steps, np.float32)
 
     def turned(self, vectors: RealArray, scale: float = 1.0) -> RealArray:
         """(…, 3) vectors as (vertices, 3) along the layer's axes, times the scale; may change the array."""
@@ -60,10 +63,11 @@ class UsdGrid:
         """(vertices, 3) float32: displaced vertices, or the flat ones."""
         count = self.quads + 1
         shape = (count, count, 3)
-        position = np.zeros(shape, np.float32) if displacement is None else self.wrapped(displacement)
+        position = np.zeros(shape, np.float32) if displacement is None else self.of_vertices(displacement)
         # summed in double precision and rounded once
         rest = np.arange(count) * (self.size / self.quads)
-        for component, along in ((0, rest), (1, rest[:, np.newaxis])):
+        x, y = self.corner or (0.0, 0.0)
+        for component, along in ((0, x + rest), (1, y + rest[:, np.newaxis])):
             moved = position[..., component]
             np.add(moved, along, out=moved, dtype=np.float64, casting="same_kind")
         return self.turned(position, self.scale)
@@ -75,8 +79,12 @@ class UsdGrid:
         return first + np.array([0, 1, row + 1, row], np.int32)
 
     def texture_coordinates(self) -> RealArray:
-        """(vertices, 2) float32: x/size + ½/texels, the centres of the texels that hold the samples."""
-        along = np.arange(self.quads + 1) / self.quads + 0.5 / self.texels
+        """(vertices, 2) float32: the centres of the texels that hold the samples.
+
+        x/size + ½/texels; the image of an area ends with the last vertex.
+        """
+        whole = 1.0 if self.corner is None else 1.0 - 1.0 / self.texels
+        along = np.arange(self.quads + 1) / self.quads * whole + 0.5 / self.texels
         return np.stack(np.meshgrid(along, along), axis=-1).astype(np.float32).reshape(-1, 2)
 
 

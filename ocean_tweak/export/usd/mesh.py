@@ -41,8 +41,9 @@ class Edition:
     def meshes(self) -> Iterator[tuple[str, UsdGrid]]:
         """Paths of the mesh prims and their grids."""
         package = self.package
-        sea = package.shot.parameters
-        grid = UsdGrid(sea.domain_size, self.resolution, sea.resolution, 1, package.up_axis, package.scale)
+        grid = UsdGrid(
+            package.size, self.resolution, package.texels, 1, package.up_axis, package.scale, package.corner
+        )
         yield f"/{ROOT}/{SURFACE}", grid
         step = proxy_step(self.resolution, package.proxy)
         if step:

@@ -17,6 +17,8 @@ from ...core.data import formats
 from ...core.data.frames import Frame, as_frame, format_frames, frame_label, parse_frames
 from ...core.parameters.fingerprint import fingerprint, hashed, shot_fingerprint
 from ...core.parameters.shot import Shot
+from ...core.sea.on import MOST_SAMPLES, TILE, Area, Tile
+from ...core.sea.placed_waves import check_repeats
 from .attributes import ATTRIBUTES
 
 FORMS = ("points", "clips", "displacement")
@@ -41,6 +43,8 @@ class Package:
     tiles : patches side by side along x and y, as instances
     proxy : most quads along a side of the coarse mesh for viewports; 0 for none
     variants : resolutions to choose from, the first one by default; none for the sea's own alone
+    area : the square that the mesh shows, with as many quads along each side as it has samples; None for the
+        sea's tile
 
     Raises ParameterError naming what does not fit.
     """
@@ -56,6 +60,7 @@ class Package:
     tiles: tuple[int, int] = (1, 1)
     proxy: int = 64
     variants: tuple[int, ...] = ()
+    area: Area | None = None
 
     def __post_init__(self) -> None:
         _check_choice("form", self.form, FORMS)
@@ -75,7 +80,11 @@ class Package:
             raise ParameterError("frames", "", "must hold at least one frame")
         _check_name(self.name)
         parameters = self.shot.parameters
-        if parameters.is_cascade:  # layers have one grid
+        if self.area is not None:
+            self._check_area()
+        else:
+            check_repeats(parameters)
+        if parameters.is_cascade and self.area is None:  # layers have one grid
             joined = parameters.on_one_grid(parameters.resolution)
             object.__setattr__(self, "shot", replace(self.shot, parameters=joined))
         self.shot.check(self.frames)
@@ -85,11 +94,50 @@ class Package:
     @property
     def resolutions(self) -> tuple[int, ...]:
         """Of the editions; the first one is shown by default."""
-        return self.variants or (self.shot.parameters.resolution,)
+        return self.variants or ((self.area or self.shot.parameters).resolution,)
 
     def at(self, resolution: int) -> Shot:
-        """The sea with as many samples along a side: the same waves, as far as they can be held."""
+        """The sea of an edition: a tile has as many samples, and the waves that they can hold."""
+        if self.area is not None:
+            return self.shot
         return replace(self.shot, parameters=self.shot.parameters.at_resolution(resolution))
+
+    def on(self, resolution: int) -> Tile | Area:
+        """Where an edition's samples are: in an area, one for each vertex, the last ones on its far sides."""
+        if self.area is None:
+            return TILE
+        size = self.area.size * (resolution + 1) / resolution
+        return Area(size, resolution + 1, self.area.corner)
+
+    def _check_area(self) -> None:
+        """Raise ParameterError for what an area cannot have."""
+        if self.tiles != (1, 1):
+            raise ParameterError("tiles", self.tiles, "must be 1x1 of an area: it does not repeat")
+        for resolution in self.resolutions:
+            if not 1 <= resolution < MOST_SAMPLES:
+                reason = f"must be from 1 to {MOST_SAMPLES - 1} quads along a side of an area"
+                raise ParameterError("variants" if self.variants else "area", resolution, reason)
+
+    @property
+    def image_area(self) -> Area | None:
+        """What an image shows that lies on the mesh; None for the sea's tile."""
+        on = TILE if self.area is None else self.on(self.area.resolution)
+        return on if isinstance(on, Area) else None
+
+    @property
+    def texels(self) -> int:
+        """Along each side of such an image."""
+        return (self.image_area or self.shot.parameters).resolution
+
+    @property
+    def size(self) -> float:
+        """Of the mesh at rest, m."""
+        return self.shot.parameters.domain_size if self.area is None else self.area.size
+
+    @property
+    def corner(self) -> tuple[float, float] | None:
+        """Its first vertex at rest, m; None of a tile, whose is at 0, 0."""
+        return None if self.area is None else self.area.corner
 
     @property
     def frames_per_second(self) -> float:
@@ -118,8 +166,12 @@ class Package:
                 "attributes": list(self.attributes),
                 "half": self.half,
                 "proxy": self.proxy,
+                **self._told_area(),
             }
         )
+
+    def _told_area(self) -> dict[str, str]:
+        return {} if self.area is None else {"area": " ".join(self.area.words())}
 
     def record(self) -> dict[str, Any]:
         """What stands in the asset's customData: strings and plain numbers."""
@@ -137,6 +189,7 @@ class Package:
             "tiles": f"{self.tiles[0]}x{self.tiles[1]}",
             "proxy": self.proxy,
             "variants": ",".join(map(str, self.variants)),
+            **self._told_area(),
         }
 
     @classmethod
@@ -156,6 +209,7 @@ class Package:
             tiles=(int(across), int(along)),
             proxy=int(data["proxy"]),
             variants=tuple(map(int, _listed(data["variants"]))),
+            area=Area.of_words(data["area"].split()) if "area" in data else None,
         )
         if package.fingerprint != data["fingerprint"]:
             raise ValueError("was changed: its fingerprint is not that of its parameters")

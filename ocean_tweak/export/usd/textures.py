@@ -28,8 +28,9 @@ FOLDER = "textures"
 def own_bake(top: Path, package: Package) -> Path:
     """The folder of the bake beside an asset, made where it is missing."""
     job = Job(
-        safe_name(package.name), uid_of(package.name), package.shot, (MOVING_MAP,), frames=package.frames
-    )
+        safe_name(package.name), uid_of(package.name), package.shot, (MOVING_MAP,), frames=package.frames,
+        area=package.image_area,
+    )  # fmt: skip
     return open_folder(top.parent / FOLDER, job)
 
 
@@ -37,7 +38,7 @@ def make(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> Itera
     """Bake what is not whole of the frames. Raises Held where somebody else bakes them."""
     with claimed(folder, tuple(frames)):
         todo = tuple(finding.frame for finding in unfinished(folder, job, frames))
-        yield from bake(job.shot, todo, CacheSink(folder, job), workers)
+        yield from bake(job.shot, todo, CacheSink(folder, job), workers, on=job.on)
 
 
 def image_paths(folder: Path, job: Job, frames: Sequence[Frame]) -> dict[Frame, Path]:
