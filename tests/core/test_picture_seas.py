@@ -118,6 +118,14 @@ def test_warnings_do_not_misfire() -> None:
     assert "holds only 0.93 of the longest waves (216 m)" in warning
     (warning,) = Ocean(sea()).statistics().warnings
     assert "flat" in warning
+
+
+def test_beside_a_picture_it_is_the_waves_of_the_wind_that_a_domain_is_too_small_for() -> None:
+    """As the same sea without the picture tells it in another test."""
+    layers = (WaveLayer(), PictureLayer(picture=Raster(drawing(32, 32)), filter="FRACTAL"))
+    windy = OceanParameters(resolution=256, domain_size=200.0, layers=layers)
+    (warning,) = Ocean(windy).statistics().warnings
+    assert "holds only 2.2 of the longest waves (89.7 m)" in warning
     smooth = PictureLayer(
         picture=Raster(np.tile(np.sin(np.arange(64) * np.pi / 32), (64, 1))), wind_speed=0.5
     )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ocean_tweak.core import Ocean, WindFieldLayer
+from ocean_tweak.core import Ocean, Raster, WindFieldLayer, WindKey
 from ocean_tweak.core.waves.wind_field.emission import Emission, layer_origins
 from ocean_tweak.core.waves.wind_field.life import Particles, particles_of
 from ocean_tweak.core.waves.wind_field.shape import RadiusClasses, bump, radius_classes
@@ -110,6 +110,16 @@ def test_speed_length_and_period_follow_the_wind(speed: float) -> None:
     np.testing.assert_allclose(np.sort(later.x)[-1], np.sort(now.x)[-1] + 0.5 * now.velocity_x[0])
     radii = radius_classes(layers_of(parameters, "WIND_FIELD"), G).radii
     np.testing.assert_allclose(radii, [0.5 * speed**2 / G])
+
+
+def test_many_radii_are_a_few_of_equal_ratio() -> None:
+    """Those of winds from 10 to 10·√1.9 m/s differ by 1.9: two, a quarter from either end by ratio."""
+    speeds = 10.0 * np.sqrt(np.linspace(1.0, 1.9, 2000)).astype(np.float32)
+    key = WindKey(0.0, Raster(np.stack([speeds, np.zeros_like(speeds)], axis=-1)[np.newaxis]))
+    radii = radius_classes((WindFieldLayer(keys=(key,)),), G).radii
+    smallest = 0.5 * 100.0 * np.quantile(np.linspace(1.0, 1.9, 2000), 0.05) / G
+    ratio = 0.5 * 190.0 / G / smallest
+    assert radii == pytest.approx([smallest * ratio**0.25, smallest * ratio**0.75], rel=1e-5)
 
 
 # waves of several particles
