@@ -14,7 +14,7 @@ from collections.abc import Callable
 import bpy
 
 from .averaged import AVERAGED
-from .averages import CARRIED, OTHERS, SLOPES, patch_carried
+from .averages import CARRIED, OTHERS, SLOPES, cells, patch_carried
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, coordinates, named_attribute, sample_index
 from .names import DISPLACEMENT, VELOCITY
@@ -36,6 +36,7 @@ _INPUTS = (
     Plug("Weight", "NodeSocketString", "", "Attribute of theirs that the patch is multiplied by"),
     Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     Plug("Fade", "NodeSocketBool", True, "Average by the size of the cells"),
+    Plug("Repeats", "NodeSocketBool", True, "Go on beyond the mesh; otherwise there is nothing of it"),
 )
 _OUTPUTS = (Plug("Geometry", "NodeSocketGeometry", None, "The grid with the sums of this one too"),)
 
@@ -44,16 +45,17 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, _INPUTS, _OUTPUTS)
     ocean, patch = Spaces(build, build.given("Ocean")), Spaces(build, build.given("Patch"))
     facts = build.group(node_group(GRID_FACTS), {"Geometry": patch.mesh})
-    before = _sums_before(build)
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     in_ocean = build.vector("ADD", position, build.given("Corner"))
     in_patch = patch.point_of_ocean(ocean.point_of_asker(in_ocean))
     inputs = {name: output(facts, name) for name in ("Columns", "Rows", "Spacing")}
+    place = build.vector("SUBTRACT", in_patch, output(facts, "Corner"))
+    before = _sums_before(build, build.logic("OR", build.given("Repeats"), _is_over(build, place, inputs)))
     inputs |= {name: build.given(name) for name in ("Size", "Fade")}
     inputs |= {
         "Geometry": output(before, "Geometry"),
         "Surface": patch_carried(build, output(facts, "Geometry")),
-        "Place": build.vector("SUBTRACT", in_patch, output(facts, "Corner")),
+        "Place": place,
     }
     grid = output(build.group(node_group(AVERAGED), inputs), "Geometry")
 
@@ -67,15 +69,27 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish(build.switch("GEOMETRY", is_there, build.given("Geometry"), grid))
 
 
-def _sums_before(build: Builder) -> bpy.types.Node:
-    """Keeps the sums and the weight, whose names are used anew."""
+def _is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
+    """Whether a place, from a mesh's first vertex, is over the mesh."""
+    extent = build.vector("MULTIPLY", facts["Spacing"], cells(build, facts["Columns"], facts["Rows"]))
+    from_middle = build.vector("SUBTRACT", build.vector("DIVIDE", place, extent), (0.5, 0.5, 0.5))
+    x, y, _ = coordinates(build, alone(build, "ABSOLUTE", from_middle))
+    return build.compare("LESS_EQUAL", build.math("MAXIMUM", x, y), 0.5, "FLOAT")
+
+
+def _sums_before(build: Builder, is_there: Socket) -> bpy.types.Node:
+    """Keeps the sums and the weight, whose names are used anew.
+
+    is_there : whether there is a patch where a vertex is
+    """
     node = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
     values = {name: output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in CARRIED}
     for name, value in values.items():
         node.capture_items.new("VECTOR", name)
         build.tree.links.new(value, node.inputs[name])
     node.capture_items.new("VECTOR", "Weight")
-    build.tree.links.new(_weight(build), node.inputs["Weight"])
+    weight = build.switch("VECTOR", is_there, (0.0, 0.0, 0.0), _weight(build))
+    build.tree.links.new(weight, node.inputs["Weight"])
     return node
 
 
@@ -154,4 +168,4 @@ def _turned_strain(build: Builder, strain: Socket, axis: Socket) -> Socket:
     )
 
 
-CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 2, _build)
+CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 3, _build)

@@ -42,6 +42,8 @@ _LEAST_HEIGHT = 2.0 / EARTH_RADIUS
 SHORTEST_CELLS = 4.0
 #: of the sea's patches, where it has several; under masks a patch may be several too
 PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
+#: of what does not repeat
+AREA_INPUT = "Area"
 
 INPUTS = (
     OCEAN_INPUT,
@@ -67,6 +69,7 @@ INPUTS = (
         "Weights", "NodeSocketObject", None,
         "Points over the domain with the weights of patches; none takes those of the ocean's mesh",
     ),
+    Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, and is 0 along its sides"),
 )  # fmt: skip
 
 
@@ -192,7 +195,8 @@ def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
     for number, name in enumerate(PATCH_INPUTS, start=1):
         inputs = {**whole, "Patch": build.given(name), "Weight": WEIGHT.format(number)}
         grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
-    return grid
+    inputs = {**whole, "Patch": build.given(AREA_INPUT), "Repeats": False}
+    return output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
 
 
 def _weights(build: Builder, sea: _Sea) -> dict[str, Socket]:
@@ -273,4 +277,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", *shown)
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 2, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 3, _build)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ..core import OceanParameters
+from ..core.sea.placed_waves import repeating
 from ..nodes.camera_grid import finest_spacing
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
@@ -64,7 +65,9 @@ def add_camera_surface(
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
     _make_room(ocean)
-    refresh(ocean, scene, Wanted.PATCHES | Wanted.NEIGHBOURS)
+    # its own mesh is without what does not repeat from now on
+    own = Wanted.SURFACE | Wanted.SAMPLES if repeating(parameters) is not parameters else Wanted(0)
+    refresh(ocean, scene, own | Wanted.PATCHES | Wanted.NEIGHBOURS)
     return surface
 
 

@@ -21,7 +21,7 @@ from . import evaluation
 from .animated import shown_settings
 from .floating import FloatError, Ride
 from .image_sequence import SequenceError, file_of, shown_frame
-from .plan import plan_of
+from .patch_objects import plan_for
 from .settings import OceanSettings, is_ocean
 from .stored_paths import image_file
 
@@ -67,7 +67,7 @@ def water_at(
     if not is_ocean(ocean):
         raise FloatError(f"{ocean.name} is no ocean any more: its modifier was applied or removed")
     settings = shown_settings(ocean, depsgraph)
-    plan = plan_of(settings, scene)
+    plan = plan_for(ocean, settings, scene)
     if settings.source == "LIVE":
         displacement = evaluation.surfaces_of(plan.parameters).ocean.surface(plan.time).displacement
     else:

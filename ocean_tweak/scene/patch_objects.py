@@ -6,34 +6,39 @@ the patch's own axes and is turned as the patch is. They are live, or nodes read
 the bake that moves the ocean's own mesh has them.
 
 Of a sea under masks, a patch is as many meshes as it has masks. Their weights are on points over the domain.
+Waves that do not repeat are on one mesh more, over a square around the camera.
 """
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 
 import bpy
 import numpy as np
 
-from ..core import OceanParameters
+from ..core import Area
 from ..core.data.plain_data import to_plain
 from ..core.masks import Mask, weights
 from ..core.parameters.fingerprint import fingerprint
 from ..core.parameters.patch_seas import Part, parts
+from ..core.sea.placed_waves import placed_fields, repeating
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
-from ..nodes.camera_surface import CAMERA_SURFACE, PATCH_INPUTS
-from ..nodes.modifier_inputs import set_inputs
+from ..nodes.camera_surface import AREA_INPUT, CAMERA_SURFACE, PATCH_INPUTS
+from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
 from ..nodes.versioned import is_of_kind
 from . import evaluation, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
-from .plan import Plan
-from .settings import OceanObjectError, is_ocean, settings_of
+from .plan import Placed, Plan, plan_of
+from .settings import OceanObjectError, OceanSettings, is_ocean, settings_of
 from .vertex_attributes import RealArray
 
-_NUMBER, _MASKS = "ocean_tweak_patch", "ocean_tweak_masks"
+_NUMBER, _MASKS, _AREA = "ocean_tweak_patch", "ocean_tweak_masks", "ocean_tweak_area"
+#: domains along each side of the square of what does not repeat, and cells of it, at most
+_AROUND, _AREA_CELLS = 2, 512
 #: cells of the weights along each side of the domain
 _WEIGHTS = 256
 
@@ -54,6 +59,27 @@ def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
     return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
 
 
+def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
+    """What an ocean needs: where a surface around a camera shows it, its own mesh has what repeats alone.
+
+    settings : of the ocean, or as animation makes them
+
+    Raises as `plan_of`.
+    """
+    plan, surface = plan_of(settings, scene), camera_surface_of(ocean)
+    own = repeating(plan.parameters) if surface is not None else plan.parameters
+    if surface is None or own is plan.parameters:
+        return plan
+    camera = get_input(_modifier_of(surface), "Camera") or scene.camera or surface
+    place = ocean.matrix_world.inverted_safe() @ camera.matrix_world.translation
+    size = _AROUND * own.domain_size
+    cells = min(_AROUND * plan.viewport.samples, _AREA_CELLS)
+    cell = size / cells  # a camera that moves shows the same samples
+    corner = (cell * round((along / plan.scale - 0.5 * size) / cell) for along in place[:2])
+    area = Area(size + cell, cells + 1, tuple(corner))
+    return dataclasses.replace(plan, parameters=own, placed=Placed(plan.parameters, area))
+
+
 def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
     """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
 
@@ -67,8 +93,10 @@ def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
     surface = camera_surface_of(ocean)
     parameters = plan.parameters if points is None else points.parameters
     made, weighted = {}, None
-    if surface is None or not parameters.patches:
+    if surface is None:
         remove(ocean)
+    elif not parameters.patches:
+        _remove(child for child in ocean.children if _NUMBER in child or _MASKS in child)
     else:
         of_sea = parts(parameters)
         if len(of_sea) > len(PATCH_INPUTS):
@@ -80,23 +108,37 @@ def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
         weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
-        set_inputs(_modifier_of(surface), {**inputs, "Weights": weighted})
+        area, modifier = _refreshed_area(ocean, plan), _modifier_of(surface)
+        if get_input(modifier, AREA_INPUT) != area:
+            surface.update_tag()  # Blender does not see that it is shown otherwise from now on
+        set_inputs(modifier, {**inputs, "Weights": weighted, AREA_INPUT: area})
 
 
 def are_live(ocean: bpy.types.Object) -> bool:
-    """Whether an ocean has patches that no files move."""
-    return any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
+    """Whether an ocean has patches that no files move, or waves that do not repeat."""
+    return shows_area(ocean) or any(
+        patch_points.modifier_of(item) is None for item in patches_of(ocean).values()
+    )
+
+
+def shows_area(ocean: bpy.types.Object) -> bool:
+    """Whether waves that do not repeat are shown around a camera."""
+    return any(_AREA in child for child in ocean.children)
 
 
 def remove(ocean: bpy.types.Object) -> None:
     """Take the meshes of an ocean's patches and their weights away."""
-    _remove(child for child in ocean.children if _NUMBER in child or _MASKS in child)
+    _remove(child for child in ocean.children if _is_ours(child))
 
 
 def remove_left() -> None:
     """Take away those whose ocean was deleted: nobody can choose them."""
-    own = (item for item in bpy.data.objects if _NUMBER in item or _MASKS in item)
+    own = (item for item in bpy.data.objects if _is_ours(item))
     _remove(item for item in own if not is_ocean(item.parent))
+
+
+def _is_ours(item: bpy.types.Object) -> bool:
+    return any(key in item for key in (_NUMBER, _MASKS, _AREA))
 
 
 def _modifier_of(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
@@ -121,8 +163,28 @@ def _refreshed(
             patch_points.read_points(item, number, part, points)
         elif item.data.library is None:
             patch_points.read_none(item)
-            _write(item.data, part.parameters, plan)
+            patch = part.parameters
+            fields, _ = evaluation.surfaces_of(patch).fields(plan.time, ADDING, plan.is_whole)
+            grid = Grid(patch.domain_size * plan.scale, patch.resolution, patch.resolution)
+            _write(item.data, grid, fields, plan)
         yield number, item
+
+
+def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | None:
+    """The mesh of what does not repeat; None where there is nothing of it."""
+    present = next((child for child in ocean.children if _AREA in child), None)
+    if plan.placed is None:
+        _remove(iter((present,) if present is not None else ()))
+        return None
+    item = present or _new(ocean, "Area", _AREA, "")
+    if item.data.users > 1:  # of a duplicate
+        item.data = item.data.copy()
+    if item.data.library is None:
+        area = plan.placed.area
+        cells = area.resolution - 1
+        grid = Grid(area.size * cells / area.resolution * plan.scale, cells, cells)
+        _write(item.data, grid, placed_fields(plan.placed.whole, area, plan.time), plan, area.corner)
+    return item
 
 
 def _weights(
@@ -172,17 +234,25 @@ def _new(ocean: bpy.types.Object, role: str, key: str, value: object) -> bpy.typ
     return item
 
 
-def _write(mesh: bpy.types.Mesh, patch: OceanParameters, plan: Plan) -> None:
-    """Put the plan's moment of a patch on its points."""
-    grid = Grid(patch.domain_size * plan.scale, patch.resolution, patch.resolution)
+def _write(
+    mesh: bpy.types.Mesh,
+    grid: Grid,
+    fields: Mapping[str, RealArray],
+    plan: Plan,
+    corner: tuple[float, float] = (0.0, 0.0),
+) -> None:
+    """Put the fields ADDING of the plan's moment on points.
+
+    corner : x and y of the first one at rest, m
+    """
     if len(mesh.vertices) != grid.vertices:
         mesh.clear_geometry()
         mesh.vertices.add(grid.vertices)
-    fields, _ = evaluation.surfaces_of(patch).fields(plan.time, ADDING, plan.is_whole)
-    values = {name: _in_units(CHANNELS[name], field, plan) for name, field in sorted(fields.items())}
+    values = {name: _in_units(CHANNELS[name], fields[name], plan) for name in sorted(ADDING)}
     for name, value in values.items():
         vertex_attributes.put(mesh, CHANNELS[name], value)
     places: RealArray = grid.positions()
+    places[:, :2] += np.float32(plan.scale) * np.array(corner, np.float32)
     places += values["displacement"].reshape(-1, 3)
     mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     mesh.update_tag()

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import bpy
 
-from ..core import OceanParameters
+from ..core import Area, OceanParameters
 from ..core.numerics.machine import usable_memory
 from .animated import clock_of
 from .grid_mesh import Grid
@@ -27,6 +27,18 @@ _VERTEX_BYTES = 200
 
 
 @dataclass(frozen=True)
+class Placed:
+    """Waves that do not repeat, of an ocean that a surface around a camera shows.
+
+    whole : the sea with all of its waves
+    area : where they are shown, beside the ocean's mesh
+    """
+
+    whole: OceanParameters
+    area: Area
+
+
+@dataclass(frozen=True)
 class Plan:
     """What an ocean needs.
 
@@ -37,6 +49,7 @@ class Plan:
     frame : of the scene, sub-frame included
     time : the ocean's, s
     rate : seconds of it in a second of the scene
+    placed : what the parameters are without; None where nothing is left out
     """
 
     parameters: OceanParameters
@@ -47,6 +60,12 @@ class Plan:
     frame: Fraction
     time: Fraction
     rate: float
+    placed: Placed | None = None
+
+    @property
+    def whole(self) -> OceanParameters:
+        """The sea with all of its waves."""
+        return self.parameters if self.placed is None else self.placed.whole
 
     @property
     def maps(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ import bpy
 from ..core import OceanParameters
 from . import bake_state, evaluation
 from .modifiers import set_changed
-from .plan import plan_of
+from .patch_objects import plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, refresh, tell
 from .settings import OceanSettings, all_oceans, scene_of, settings_of
 
@@ -39,12 +39,12 @@ def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], o
     As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
     OceanObjectError for settings that are no sea.
     """
-    return evaluation.surfaces_of(plan_of(settings_of(item), scene).viewport_sea()).ocean.prepare
+    return evaluation.surfaces_of(plan_for(item, settings_of(item), scene).viewport_sea()).ocean.prepare
 
 
 def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
     """What makes the foam that the viewport lacks; raises as `_waves_job`."""
-    plan = plan_of(settings_of(item), scene)
+    plan = plan_for(item, settings_of(item), scene)
     maker = evaluation.surfaces_of(plan.viewport_sea()).foam_of(plan.is_whole)
     return lambda: maker.at(plan.time)
 

@@ -29,7 +29,7 @@ from . import (
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
 from .modifiers import Images, Shown, Textures, set_changed
-from .plan import Plan, plan_of, velocity_scale
+from .plan import Plan, velocity_scale
 from .settings import OceanObjectError, OceanSettings, settings_of
 from .vertex_attributes import Fields, resampled, tiled
 
@@ -140,8 +140,9 @@ def _refresh_sea(
     shown: OceanSettings | None,
 ) -> Wanted:
     """Show the waves in viewport, patches and render. Returns what is still to come."""
-    plan, missing, is_baked = plan_of(shown or settings, scene), _NOTHING, settings.source != "LIVE"
-    _seas[item.session_uid] = plan.parameters
+    plan = patch_objects.plan_for(item, shown or settings, scene)
+    missing, is_baked = _NOTHING, settings.source != "LIVE"
+    _seas[item.session_uid] = plan.whole
     text = _statistics(settings, plan, scene, wanted) if Wanted.SURFACE in wanted else None
     if Wanted.SURFACE in wanted and is_baked:
         _refresh_baked(item, settings, plan, scene)
@@ -161,7 +162,7 @@ def _refresh_sea(
 
 def _statistics(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, wanted: Wanted) -> str | None:
     """Those of the sea that is shown, as JSON; None where they are not known, and not wanted."""
-    counted = plan.parameters if settings.source == "LIVE" else bake_state.shown_parameters(settings, scene)
+    counted = plan.whole if settings.source == "LIVE" else bake_state.shown_parameters(settings, scene)
     if Wanted.STATISTICS not in wanted:
         return evaluation.known_statistics(counted)
     text = evaluation.statistics_of(counted)
@@ -176,7 +177,7 @@ def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scen
     textures = Textures(settings.texture, settings.render_texture)
     modifiers.tell_held_frame(item, textures, scene.frame_current)
     try:
-        plan = plan_of(settings, scene)
+        plan = patch_objects.plan_for(item, settings, scene)
         if settings.method == "NODES" and vertex_attributes.can_hold(item.data, plan.viewport):
             return
         fields, _ = _viewport_fields(plan, Wanted.SAMPLES)

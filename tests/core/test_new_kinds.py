@@ -25,6 +25,7 @@ from ocean_tweak.core import (
 from ocean_tweak.core.masks import weights
 from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
 from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.sea.placed_waves import placed_fields, repeating
 from ocean_tweak.core.spectral.dispersion import angular_frequency
 from ocean_tweak.core.waves.contribution import Contribution, Gives, Names, muted
 from ocean_tweak.core.waves.kinds import KINDS, shown
@@ -205,7 +206,8 @@ def test_a_bake_of_what_does_not_repeat_is_refused_with_the_remedy(tmp_path, cap
         assert main(command) == 2
         (line,) = (line for line in capsys.readouterr().err.splitlines() if "HUMP" in line)
         assert "layers.1 = 'HUMP': its waves do not repeat" in line
-        assert "with --area, or mute the layer" in line
+        assert "written with --area" in line
+        assert "or mute the layer" in line
     assert not [path for path in tmp_path.glob("**/*") if path.is_file() and path != params]
 
 
@@ -330,3 +332,25 @@ def test_a_farm_bakes_the_same_area(tmp_path, capsys) -> None:
     ):
         assert main(["bake", *given, "--area", *words, "--out", str(tmp_path)]) == 2
         assert problem in capsys.readouterr().err
+
+
+def test_what_does_not_repeat_alone_ends_softly_in_an_area() -> None:
+    parameters = sea(Ripple(), Hump())
+    assert repeating(sea(Ripple())) == sea(Ripple())
+    assert Ocean(repeating(parameters), "double").height_at(30.0, 20.0, TIME) == pytest.approx(
+        Ocean(sea(Ripple()), "double").height_at(30.0, 20.0, TIME)
+    )
+    area = Area(202.0, 101, (-70.0, -80.0))
+    fields = placed_fields(parameters, area, TIME)
+    x, y = area.rest_positions()
+    z = fields.displacement[..., 2]
+    inner = slice(11, -11)  # beyond a tenth along each side
+    np.testing.assert_allclose(z[inner, inner], TIME * bell_at(x, y)[inner, inner], atol=1e-5)
+    np.testing.assert_allclose(fields.velocity[inner, inner, 2], bell_at(x, y)[inner, inner], atol=1e-5)
+    for edge in (z[0], z[-1], z[:, 0], z[:, -1]):
+        assert np.all(edge == 0.0)
+    near = placed_fields(parameters, Area(40.1, 401, (10.0, 0.0)), TIME)  # its rim is across the hump
+    numbers = np.gradient(near.displacement[..., 2].astype(np.float64), 0.1)
+    assert np.abs(numbers).max() > 0.2
+    for along, number in ((0, numbers[1]), (1, numbers[0])):
+        np.testing.assert_allclose(near.slope[1:-1, 1:-1, along], number[1:-1, 1:-1], atol=0.01)

@@ -2,6 +2,7 @@
 """A kind of waves more, before Blender's classes are made: its settings, its entries and its sea follow."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -22,6 +23,7 @@ from tests.new_kinds import Hump, Ripple
 KINDS.extend((Ripple, Hump))
 from ocean_tweak import registration
 from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+from ocean_tweak.nodes import modifier_inputs
 from ocean_tweak.scene import camera_surface, ocean_object
 from ocean_tweak.ui import parameter_properties
 
@@ -58,9 +60,45 @@ bpy.ops.wm.open_mainfile(filepath=str(Path(sys.argv[1]).with_suffix(".blend")))
 (again,) = (each for each in bpy.data.objects if each.ocean_tweak.is_ocean)
 found["again"] = again.ocean_tweak.to_parameters(bpy.context.scene) == sea
 bpy.context.view_layer.objects.active = again
+scene = bpy.context.scene
 assert bpy.ops.ocean.layer_add(kind="HUMP") == {"FINISHED"}
+found["shown"] = again.ocean_tweak.error
+again.ocean_tweak.layers[1].ripple.muted = True
+hump = again.ocean_tweak.layers[2].hump
+hump.x, hump.y, hump.height, hump.width = 70.0, 40.0, 2.0, 20.0
+scene.frame_set(37)
+
+def near(of, x, y):
+    # of the vertex at rest nearest to a place
+    mesh = of.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    count = len(mesh.vertices)
+    values = {}
+    for name in ("position", "displacement", "velocity"):
+        values[name] = np.empty(3 * count, np.float32)
+        mesh.attributes[name].data.foreach_get("vector", values[name])
+    normals = np.empty(3 * count, np.float32)
+    mesh.vertex_normals.foreach_get("vector", normals)
+    values = {**values, "normal": normals}
+    values = {name: value.reshape(-1, 3).astype(float) for name, value in values.items()}
+    rest = values["position"] - values["displacement"]
+    index = np.argmin(np.hypot(rest[:, 0] - x, rest[:, 1] - y))
+    told = (values[name][index].tolist() for name in ("displacement", "velocity", "normal"))
+    return [rest[index].tolist(), *told]
+
+(surface,) = (each for each in again.children if each.modifiers and "Camera" in each.name)
+modifier_inputs.set_input(surface.modifiers[0], "Fade", False)
+surface.update_tag()
+places = ((70.0, 40.0), (62.0, 44.0), (79.0, 40.0), (-30.0, 40.0), (160.0, 40.0))
+found["humped"] = [near(surface, *place) for place in places]
+found["own"] = highest(again, "position")
+scene.camera.location.x += 33.3
+scene.frame_set(37)
+found["moved"] = [near(surface, *place) for place in places]
+camera_surface.remove_camera_surface(again)
+scene.frame_set(38)
 found["refused"] = again.ocean_tweak.error
-again.ocean_tweak.layers[2].hump.muted = True
+found["left"] = [each.name for each in again.children]
+hump.muted = True
 found["mended"] = again.ocean_tweak.error
 Path(sys.argv[1]).write_text(json.dumps(found))
 """
@@ -92,7 +130,25 @@ def test_its_sea_is_shown_and_kept(found):
     assert found["again"] is True
 
 
+def test_a_camera_surface_shows_what_does_not_repeat(found):
+    assert found["shown"] == ""
+    assert found["own"] == 0.0
+    time = 36 / 24
+    for (x, y, _), displacement, velocity, normal in (*found["humped"], *found["moved"]):
+        u, v = (x - 70.0) / 20.0, (y - 40.0) / 20.0
+        bell = 2.0 * math.exp(-0.5 * (u * u + v * v))
+        assert displacement == pytest.approx([0.0, 0.0, time * bell], abs=0.02)
+        assert velocity == pytest.approx([0.0, 0.0, bell], abs=0.02)
+        slope = [-time * bell * u / 20.0, -time * bell * v / 20.0]
+        length = math.sqrt(1.0 + slope[0] ** 2 + slope[1] ** 2)
+        assert normal == pytest.approx([-slope[0] / length, -slope[1] / length, 1.0 / length], abs=0.01)
+    heights = [displacement[2] for _, displacement, _, _ in found["humped"]]
+    assert heights[0] == pytest.approx(3.0, abs=0.03)
+    assert heights[3:] == pytest.approx([0.0, 0.0], abs=1e-3)  # a domain to the side, and beyond the area
+
+
 def test_what_does_not_repeat_is_refused_with_the_remedy(found):
+    assert found["left"] == []
     assert "layers.2 = 'HUMP': its waves do not repeat" in found["refused"]
     assert "mute the layer" in found["refused"]
     assert found["mended"] == ""

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from ..data.printable import shown
 
 Array = NDArray[np.float64]
 
@@ -78,6 +80,16 @@ class Area:
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as it stands in jobs and headers."""
         return {**asdict(self), "corner": list(self.corner)}
+
+
+def told_area(data: Mapping[str, Any]) -> Area | None:
+    """The area that a job, or the header of an image, is of. Raises ValueError for what is none."""
+    if "area" not in data:
+        return None
+    try:
+        return Area.of_file(**data["area"])
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"has the area {shown(data['area'])}: {error}") from None
 
 
 @dataclass(frozen=True, eq=False)

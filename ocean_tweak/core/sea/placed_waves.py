@@ -10,15 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
-from ..masks import weights
+from ..masks import Weights, weights
 from ..parameters.ocean_parameters import OceanParameters
+from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
 from ..waves.contribution import Contribution, Gives
-from .sampling import Key, unweighted, weighted
+from .on import Area
+from .sampling import Key, Summed, unweighted, weighted
 from .surfaces import Field, Values
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
+
+#: in which waves that are shown in an area alone go down to 0 along its sides, in its size
+_RIM = 0.1
 
 
 class PlacedWaves:
@@ -57,6 +62,41 @@ def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
     return tuple(PlacedWaves(layer, sea) for layer in sea.active() if Gives.FIELDS in layer.gives)
 
 
+def repeating(sea: OceanParameters) -> OceanParameters:
+    """The sea without these layers; the same one where it has none."""
+    if not placed_waves(sea):
+        return sea
+    layers = (layer.changed(muted=True) if Gives.FIELDS in layer.gives else layer for layer in sea.layers)
+    return sea.replace(layers=tuple(layers))
+
+
+def placed_fields(sea: OceanParameters, area: Area, time: float | Fraction) -> SurfaceFields:
+    """ADDING of these layers alone in an area, (n, n, …) float32, at whose outermost samples they are 0.
+
+    There must be such layers.
+    """
+    x, y = (places.ravel() for places in area.rest_positions())
+    needs = frozenset().union(*(CHANNELS[name].needs for name in ADDING))
+    under = _rim(area)
+    sums = Summed(weighted(waves.at(x, y, time, unweighted(needs)), under) for waves in placed_waves(sea))
+    fields: dict[str, RealArray] = {}
+    for name in ADDING:
+        made: RealArray = np.empty((x.size, CHANNELS[name].components), np.float32)
+        CHANNELS[name].write(sums, made)
+        fields[name] = made.reshape(CHANNELS[name].shape(area.resolution))
+    return SurfaceFields(float(time), fields)
+
+
+def _rim(area: Area) -> Weights:
+    """1 inside, 0 at the outermost samples, and smooth between."""
+    along = np.arange(area.resolution) / max(area.resolution - 1, 1)
+    part = np.clip(np.minimum(along, 1.0 - along) / _RIM, 0.0, 1.0)
+    share = part * part * (3.0 - 2.0 * part)
+    reach = _RIM * area.size * (area.resolution - 1) / area.resolution
+    slope = np.sign(0.5 - along) * 6.0 * part * (1.0 - part) / reach
+    return Weights(*(np.outer(v, u).ravel() for v, u in ((share, share), (share, slope), (slope, share))))
+
+
 def check_repeats(sea: OceanParameters) -> None:
     """Raise ParameterError, with the remedy, for a sea with waves that do not repeat, which has no tile."""
     for index, layer in enumerate(sea.layers):
@@ -64,7 +104,7 @@ def check_repeats(sea: OceanParameters) -> None:
             raise ParameterError(
                 f"layers.{index}", layer.kind,
                 "its waves do not repeat with the domain, as all on a Tile do: ask for an Area or Places, "
-                "where files are written with --area, or mute the layer",
+                "where files are written with --area, in Blender with a Camera Surface, or mute the layer",
             )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ import json
 import platform
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, combinations
@@ -29,7 +29,7 @@ from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashe
 from ...core.parameters.ocean_parameters import OceanParameters
 from ...core.parameters.patch_seas import PARTS, parts
 from ...core.parameters.shot import Shot
-from ...core.sea.on import TILE, Area, Tile
+from ...core.sea.on import TILE, Area, Tile, told_area
 from ...core.sea.placed_waves import check_repeats
 from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
 from ..exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_header
@@ -229,16 +229,6 @@ class Job:
         if job.fingerprint != data.get("fingerprint"):
             raise ValueError("was changed: its fingerprint is not that of its contents")
         return job
-
-
-def told_area(data: Mapping[str, Any]) -> Area | None:
-    """The area that a job, or the header of an image, is of. Raises ValueError for what is none."""
-    if "area" not in data:
-        return None
-    try:
-        return Area.of_file(**data["area"])
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"has the area {shown(data['area'])}: {error}") from None
 
 
 def maps_for(parameters: OceanParameters, area: Area | None = None) -> tuple[str, ...]:
