@@ -143,9 +143,9 @@ def test_the_farm_renders_no_ocean_that_was_changed_after_its_bake(baked, extens
 
 
 def test_another_frame_of_a_bake_makes_no_sea(baked, extension, empty_scene, monkeypatch):
-    refresh, planned = extension("scene.refresh"), []
-    plan_of = refresh.plan_of
-    monkeypatch.setattr(refresh, "plan_of", lambda *given: planned.append(given) or plan_of(*given))
+    plans, planned = extension("scene.patch_objects"), []
+    plan_of = plans.plan_of
+    monkeypatch.setattr(plans, "plan_of", lambda *given: planned.append(given) or plan_of(*given))
     empty_scene.frame_set(2)
     assert planned == []
     baked.ocean_tweak.choppiness = 0.5  # a setting may change the mesh and what moves it

@@ -350,6 +350,10 @@ def test_what_does_not_repeat_alone_ends_softly_in_an_area() -> None:
     for edge in (z[0], z[-1], z[:, 0], z[:, -1]):
         assert np.all(edge == 0.0)
     near = placed_fields(parameters, Area(40.1, 401, (10.0, 0.0)), TIME)  # its rim is across the hump
+    inner = slice(41, -41)
+    x, y = np.meshgrid(10.0 + 0.1 * np.arange(401), 0.1 * np.arange(401))
+    z = near.displacement[..., 2]
+    np.testing.assert_allclose(z[inner, inner], TIME * bell_at(x, y)[inner, inner], atol=1e-5)
     numbers = np.gradient(near.displacement[..., 2].astype(np.float64), 0.1)
     assert np.abs(numbers).max() > 0.2
     for along, number in ((0, numbers[1]), (1, numbers[0])):
