@@ -12,7 +12,7 @@ from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
 from . import needs, patch_objects, water_material
-from .patch_objects import camera_surface_of
+from .plan import camera_surface_of
 from .refresh import Wanted, refresh
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit

@@ -21,7 +21,7 @@ from . import evaluation
 from .animated import shown_settings
 from .floating import FloatError, Ride
 from .image_sequence import SequenceError, file_of, shown_frame
-from .patch_objects import plan_for
+from .plan import plan_for
 from .settings import OceanSettings, is_ocean
 from .stored_paths import image_file
 

@@ -15,6 +15,7 @@ import bpy
 from ..nodes.modifier_inputs import all_inputs
 from . import floating, patch_objects
 from .cache_place import shown_bake
+from .plan import camera_surface_of
 from .settings import all_oceans, oceans_in, settings_of, was_ocean
 
 
@@ -84,7 +85,7 @@ def _found() -> _Seen:
 
 def look_at(ocean: bpy.types.Object) -> None:
     """Find what goes with an ocean."""
-    has_surface = patch_objects.camera_surface_of(ocean) is not None
+    has_surface = camera_surface_of(ocean) is not None
     _seen.scenes.update(scene.session_uid for scene in ocean.users_scene)
     has_bake = settings_of(ocean).source == "SEQUENCE" and shown_bake(ocean) is not None
     _seen.of[ocean.session_uid] = Neighbours(needs_of(ocean), has_surface, has_bake)
@@ -119,7 +120,7 @@ def forget_all() -> None:
 
 def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     """The ocean and what reads it, as far as these need the extension; none where all of it is baked."""
-    surface = patch_objects.camera_surface_of(ocean)
+    surface = camera_surface_of(ocean)
     if settings_of(ocean).source == "LIVE":
         return (_live(ocean), *_readers(ocean))
     if surface is not None and patch_objects.shows_area(ocean):

@@ -11,41 +11,31 @@ Waves that do not repeat are on one mesh more, over a square around the camera.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 
 import bpy
 import numpy as np
 
-from ..core import Area
 from ..core.data.plain_data import to_plain
 from ..core.masks import Mask, weights
 from ..core.parameters.fingerprint import fingerprint
 from ..core.parameters.patch_seas import Part, parts
-from ..core.sea.placed_waves import placed_fields, repeating
+from ..core.sea.placed_waves import placed_fields
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
-from ..nodes.camera_surface import AREA_INPUT, CAMERA_SURFACE, PATCH_INPUTS
+from ..nodes.camera_surface import AREA_INPUT, PATCH_INPUTS
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
-from ..nodes.versioned import is_of_kind
 from . import evaluation, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
-from .plan import Placed, Plan, plan_of
-from .settings import OceanObjectError, OceanSettings, is_ocean, settings_of
+from .plan import Plan, camera_surface_of, surface_modifier
+from .settings import OceanObjectError, is_ocean, settings_of
 from .vertex_attributes import RealArray
 
 _NUMBER, _MASKS, _AREA = "ocean_tweak_patch", "ocean_tweak_masks", "ocean_tweak_area"
-#: domains along each side of the square of what does not repeat, and cells of it, at most
-_AROUND, _AREA_CELLS = 2, 512
 #: cells of the weights along each side of the domain
 _WEIGHTS = 256
-
-
-def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
-    """The surface that shows an ocean around a camera; None where its own mesh does."""
-    return next((child for child in ocean.children if _modifier_of(child) is not None), None)
 
 
 def shot_maps(ocean: bpy.types.Object) -> tuple[str, ...]:
@@ -57,27 +47,6 @@ def shot_maps(ocean: bpy.types.Object) -> tuple[str, ...]:
 def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
     """The meshes of an ocean's patches by their number, from 1."""
     return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
-
-
-def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
-    """What an ocean needs: where a surface around a camera shows it, its own mesh has what repeats alone.
-
-    settings : of the ocean, or as animation makes them
-
-    Raises as `plan_of`.
-    """
-    plan, surface = plan_of(settings, scene), camera_surface_of(ocean)
-    own = repeating(plan.parameters) if surface is not None else plan.parameters
-    if surface is None or own is plan.parameters:
-        return plan
-    camera = get_input(_modifier_of(surface), "Camera") or scene.camera or surface
-    place = ocean.matrix_world.inverted_safe() @ camera.matrix_world.translation
-    size = _AROUND * own.domain_size
-    cells = min(_AROUND * plan.viewport.samples, _AREA_CELLS)
-    cell = size / cells  # a camera that moves shows the same samples
-    corner = (cell * round((along / plan.scale - 0.5 * size) / cell) for along in place[:2])
-    area = Area(size + cell, cells + 1, tuple(corner))
-    return dataclasses.replace(plan, parameters=own, placed=Placed(plan.parameters, area))
 
 
 def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
@@ -108,7 +77,7 @@ def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
         weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
-        area, modifier = _refreshed_area(ocean, plan), _modifier_of(surface)
+        area, modifier = _refreshed_area(ocean, plan), surface_modifier(surface)
         if get_input(modifier, AREA_INPUT) != area:
             surface.update_tag()  # Blender does not see that it is shown otherwise from now on
         set_inputs(modifier, {**inputs, "Weights": weighted, AREA_INPUT: area})
@@ -139,11 +108,6 @@ def remove_left() -> None:
 
 def _is_ours(item: bpy.types.Object) -> bool:
     return any(key in item for key in (_NUMBER, _MASKS, _AREA))
-
-
-def _modifier_of(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
-    modifiers = (modifier for modifier in surface.modifiers if modifier.type == "NODES")
-    return next((each for each in modifiers if is_of_kind(each.node_group, CAMERA_SURFACE)), None)
 
 
 def _refreshed(

@@ -11,6 +11,10 @@ import bpy
 
 from ..core import Area, OceanParameters
 from ..core.numerics.machine import usable_memory
+from ..core.sea.placed_waves import repeating
+from ..nodes.camera_surface import CAMERA_SURFACE
+from ..nodes.modifier_inputs import get_input
+from ..nodes.versioned import is_of_kind
 from .animated import clock_of
 from .grid_mesh import Grid
 from .image_sequence import baked_stretch
@@ -22,6 +26,8 @@ COARSE = 128
 #: samples along each side at which foam is made for a viewport whose render makes its own
 VIEWPORT_FOAM = 128
 _LEAST_SAMPLES = 16
+#: domains along each side of the square of what does not repeat, and cells of it, at most
+_AROUND, _AREA_CELLS = 2, 512
 # bytes that a vertex of a grid with all its attributes takes, counting one copy for the evaluation
 _VERTEX_BYTES = 200
 
@@ -148,3 +154,35 @@ def _check(grid: Grid) -> None:
             f"{need / 2**30:.0f} GB of memory and this machine has {memory / 2**30:.0f} GB: "
             "lower the repeats or the resolution"
         )
+
+
+def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
+    """The surface that shows an ocean around a camera; None where its own mesh does."""
+    return next((child for child in ocean.children if surface_modifier(child) is not None), None)
+
+
+def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
+    """What an ocean needs: where a surface around a camera shows it, its own mesh has what repeats alone.
+
+    settings : of the ocean, or as animation makes them
+
+    Raises as `plan_of`.
+    """
+    plan, surface = plan_of(settings, scene), camera_surface_of(ocean)
+    own = repeating(plan.parameters) if surface is not None else plan.parameters
+    if surface is None or own is plan.parameters:
+        return plan
+    camera = get_input(surface_modifier(surface), "Camera") or scene.camera or surface
+    place = ocean.matrix_world.inverted_safe() @ camera.matrix_world.translation
+    size = _AROUND * own.domain_size
+    cells = min(_AROUND * plan.viewport.samples, _AREA_CELLS)
+    cell = size / cells  # a camera that moves shows the same samples
+    corner = (cell * round((along / plan.scale - 0.5 * size) / cell) for along in place[:2])
+    area = Area(size + cell, cells + 1, tuple(corner))
+    return dataclasses.replace(plan, parameters=own, placed=Placed(plan.parameters, area))
+
+
+def surface_modifier(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
+    """What shows an ocean on an object; None where nothing does."""
+    modifiers = (modifier for modifier in surface.modifiers if modifier.type == "NODES")
+    return next((each for each in modifiers if is_of_kind(each.node_group, CAMERA_SURFACE)), None)

@@ -19,7 +19,7 @@ import bpy
 from ..core import OceanParameters
 from . import bake_state, evaluation
 from .modifiers import set_changed
-from .patch_objects import plan_for
+from .plan import plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, refresh, tell
 from .settings import OceanSettings, all_oceans, scene_of, settings_of
 

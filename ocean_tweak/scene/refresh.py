@@ -29,7 +29,7 @@ from . import (
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
 from .modifiers import Images, Shown, Textures, set_changed
-from .plan import Plan, velocity_scale
+from .plan import Plan, plan_for, velocity_scale
 from .settings import OceanObjectError, OceanSettings, settings_of
 from .vertex_attributes import Fields, resampled, tiled
 
@@ -140,7 +140,7 @@ def _refresh_sea(
     shown: OceanSettings | None,
 ) -> Wanted:
     """Show the waves in viewport, patches and render. Returns what is still to come."""
-    plan = patch_objects.plan_for(item, shown or settings, scene)
+    plan = plan_for(item, shown or settings, scene)
     missing, is_baked = _NOTHING, settings.source != "LIVE"
     _seas[item.session_uid] = plan.whole
     text = _statistics(settings, plan, scene, wanted) if Wanted.SURFACE in wanted else None
@@ -177,7 +177,7 @@ def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scen
     textures = Textures(settings.texture, settings.render_texture)
     modifiers.tell_held_frame(item, textures, scene.frame_current)
     try:
-        plan = patch_objects.plan_for(item, settings, scene)
+        plan = plan_for(item, settings, scene)
         if settings.method == "NODES" and vertex_attributes.can_hold(item.data, plan.viewport):
             return
         fields, _ = _viewport_fields(plan, Wanted.SAMPLES)

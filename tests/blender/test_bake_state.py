@@ -143,7 +143,7 @@ def test_the_farm_renders_no_ocean_that_was_changed_after_its_bake(baked, extens
 
 
 def test_another_frame_of_a_bake_makes_no_sea(baked, extension, empty_scene, monkeypatch):
-    plans, planned = extension("scene.patch_objects"), []
+    plans, planned = extension("scene.plan"), []
     plan_of = plans.plan_of
     monkeypatch.setattr(plans, "plan_of", lambda *given: planned.append(given) or plan_of(*given))
     empty_scene.frame_set(2)
