@@ -91,13 +91,13 @@ def _room_of(name: str, below: Imports) -> str:
     if not inside:
         return package
     folder = ROOT / PACKAGE / package
-    if (folder / inside[0]).is_dir():
+    if _is_package(folder / inside[0]):
         return f"{package}.{inside[0]}"
     seen, left = {name}, [name]
     while left:
         for other in below[left.pop()] - seen:
             if other.startswith(f"{package}."):
-                if (folder / other.split(".")[1]).is_dir():
+                if _is_package(folder / other.split(".")[1]):
                     return name
                 seen.add(other)
                 left.append(other)
@@ -106,7 +106,7 @@ def _room_of(name: str, below: Imports) -> str:
 
 def _room(name: str, modules: Sequence[str]) -> Room:
     path = ROOT / PACKAGE / Path(*name.split("."))
-    about = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    about = path / "__init__.py" if _is_package(path) else path.with_suffix(".py")
     files = [path for module in modules for path in _files(module) if path.stat().st_size]
     return Room(
         name,
@@ -114,6 +114,11 @@ def _room(name: str, modules: Sequence[str]) -> Room:
         len(files),
         sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files),
     )
+
+
+def _is_package(path: Path) -> bool:
+    """Whether this is a package, and not what Python left where one was."""
+    return (path / "__init__.py").exists()
 
 
 def _files(module: str) -> list[Path]:
