@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import tracemalloc
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -14,6 +15,7 @@ from ocean_tweak.core.numerics import random
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.sea import memory
 from ocean_tweak.core.sea.memory import memory_need
+from ocean_tweak.core.synthesis import transforms
 from ocean_tweak.core.synthesis.channels import OF_WAVES, memory_groups
 from tests.layers import with_layers
 
@@ -77,6 +79,29 @@ def test_memory_beyond_the_outputs(outputs: set[str]) -> None:
     # NumPy before 2.0 transforms in double precision, and its blocks are twice as large
     assert (peak - kept) / 1024**2 <= (24.0 if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else 34.0)
     assert peak < 1.4 * memory_need(parameters, outputs).surface
+
+
+def test_a_sea_that_needed_more_arrays_does_not_make_the_next_one_slow(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Small blocks are slow, and a sea has as many of them whatever was made before it."""
+    counts: list[int] = []
+    run = transforms.run_blocks
+
+    def counted(work: Callable[[slice], None], blocks: Iterable[slice], workers: int) -> None:
+        each = list(blocks)
+        counts.append(len(each))
+        run(work, each, workers)
+
+    monkeypatch.setattr(transforms, "run_blocks", counted)
+    MEMO.drop()
+    plain = OceanParameters(resolution=66)
+    Ocean(plain).surface(1.0)
+    first = counts.copy()
+    Ocean(plain.replace(trough_damping=0.5)).surface(1.0, OF_WAVES)
+    counts.clear()
+    Ocean(plain).surface(2.0)
+    assert counts == first
 
 
 def test_memory_while_a_state_is_made_is_told() -> None:

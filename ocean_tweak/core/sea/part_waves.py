@@ -93,14 +93,16 @@ class PartWaves:
 
     def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
         """Fill the arrays of all outputs but foam, on the part's own samples: what is quickest."""
-        for group in memory_groups(wanted):
-            needs = frozenset().union(*(CHANNELS[name].needs for name in group))
+        groups = memory_groups(wanted)
+        needs = [frozenset().union(*(CHANNELS[name].needs for name in group)) for group in groups]
+        most = max((len(self._synthesis.columns(each)) for each in needs), default=0)
+        for group, needed in zip(groups, needs, strict=True):
 
             def write(block: slice, rows: Rows, group: Sequence[str] = group) -> None:
                 for name in group:
                     CHANNELS[name].write(rows, fields[name][block])
 
-            self._synthesis.fill(time, needs, write)
+            self._synthesis.fill(time, needed, write, most)
 
     def components(self, time: float | Fraction, wanted: Iterable[Key]) -> dict[Key, RealArray]:
         """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t"."""

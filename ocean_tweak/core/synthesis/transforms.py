@@ -120,14 +120,22 @@ class Synthesis:
             factor *= self.parameters.choppiness
         return factor.astype(self.dtype)
 
+    def columns(self, wanted: Iterable[tuple[int, str]]) -> list[Column]:
+        """What the first pass must make for some components and derivatives."""
+        return sorted({self.term(*key).column for key in self._with_long_waves(wanted)})
+
     def fill(
         self,
         time: float | Fraction,
         wanted: Iterable[tuple[int, str]],
         write: Callable[[slice, Rows], None],
+        most: int = 0,
     ) -> None:
-        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block."""
-        needed = sorted({self.term(*key).column for key in self._with_long_waves(wanted)})
+        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block.
+
+        most : columns that other parts of the same surface take, whose arrays are there meanwhile
+        """
+        needed = self.columns(wanted)
         shape = self.state.grid.shape
         # fresh memory takes time: each thread has arrays that it fills again and again
         own = (shape, self.dtype, threading.get_ident())
@@ -144,8 +152,9 @@ class Synthesis:
             write(block, Rows(self, first_pass, block))
 
         n = self.state.grid.resolution
-        run_blocks(transform_along_y, self._blocks(n // 2 + 1, len(arrays)), self.workers)
-        run_blocks(transform_along_x, self._blocks(n, len(arrays)), self.workers)
+        most = max(most, len(needed))
+        run_blocks(transform_along_y, self._blocks(n // 2 + 1, most), self.workers)
+        run_blocks(transform_along_x, self._blocks(n, most), self.workers)
         MEMO.put("workspaces", own, arrays)
 
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
