@@ -25,18 +25,8 @@ from ..core.sea.bake import bake as make_frames
 from ..core.sea.memory import check_memory
 from ..export import logs
 from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory
-from ..export.cache.job import (
-    JOB_FILE,
-    CacheError,
-    Job,
-    NewerBakeError,
-    log_file,
-    made_with,
-    open_folder,
-    read_job,
-    recovered_job,
-    write_job,
-)
+from ..export.cache.folders import JOB_FILE, log_file, open_folder, read_job, recovered_job, write_job
+from ..export.cache.job import CacheError, Job, NewerBakeError, made_with
 from ..export.cache.locks import Held, claimed, let_go
 from ..export.cache.records import CacheSink, Finding, give_up_writing, remove_leftovers, unfinished
 from ..export.exr import ExrError

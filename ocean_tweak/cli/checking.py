@@ -13,7 +13,8 @@ from ..core.data.plain_data import to_plain
 from ..core.data.printable import printable, readable_bytes
 from ..export.cache.clean import clean as clean_frames
 from ..export.cache.clean import foreign_images, remove_rest
-from ..export.cache.job import CacheError, Job, is_bake, read_job
+from ..export.cache.folders import is_bake, read_job
+from ..export.cache.job import CacheError, Job
 from ..export.cache.locks import claimed
 from ..export.cache.records import State, asked_frames, recorded_frames
 from ..export.cache.verify import verify as verify_frames

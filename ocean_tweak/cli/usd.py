@@ -15,7 +15,7 @@ from ..core.data.plain_data import to_plain
 from ..core.data.printable import readable_bytes
 from ..core.parameters.shot import Shot
 from ..core.sea.on import Area
-from ..export.cache.job import read_job
+from ..export.cache.folders import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.apart import problems_of
 from ..export.usd.export import Export

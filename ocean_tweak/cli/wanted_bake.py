@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..core.data.frames import Frame, format_frames
-from ..export.cache.job import CacheError, Job, bakes_in, find_folder, safe_name, uid_of
+from ..export.cache.folders import bakes_in, find_folder
+from ..export.cache.job import CacheError, Job, safe_name, uid_of
 from ..export.cache.records import recorded_frames
 from ..export.places import CACHE_VARIABLE, environment_cache
 from .outcome import UsageError

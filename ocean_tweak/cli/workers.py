@@ -34,7 +34,8 @@ from ..core.data.frames import Frame, format_frames, parse_frames
 from ..core.sea.bake import BakedFrame
 from ..core.sea.bake import bake as make_frames
 from ..export import logs
-from ..export.cache.job import CacheError, Job, read_job
+from ..export.cache.folders import read_job
+from ..export.cache.job import CacheError, Job
 from ..export.cache.records import CacheSink, give_up_writing
 from ..export.exr import ExrError
 from ..export.python_process import environment, module_command

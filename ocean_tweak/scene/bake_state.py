@@ -16,7 +16,8 @@ from ..core.data.raster import has_brief_rasters, raster_bytes
 from ..core.numerics.memo import remembered
 from ..core.parameters.former_json import modern
 from ..core.parameters.shot import OCEAN_TIME, Moment, Shot
-from ..export.cache.job import JOB_FILE, CacheError, read_job
+from ..export.cache.folders import JOB_FILE, read_job
+from ..export.cache.job import CacheError
 from ..export.exr import ExrError, read_header
 from . import alarm
 from .animated import clock_of, is_animated

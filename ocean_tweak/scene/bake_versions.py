@@ -13,7 +13,8 @@ import bpy
 
 from ..export.cache import clean
 from ..export.cache.estimate import Estimate, estimate, fitting_workers
-from ..export.cache.job import Job, bakes_in
+from ..export.cache.folders import bakes_in
+from ..export.cache.job import Job
 from ..export.cache.locks import claimed
 from ..export.cache.records import recorded_frames
 from ..export.files import is_link

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import bpy
 
-from ..export.cache.job import JOB_FILE, UID, is_bake, safe_name, uid_of
+from ..export.cache.folders import JOB_FILE, is_bake
+from ..export.cache.job import UID, safe_name, uid_of
 from ..export.files import is_link
 from ..export.places import environment_cache
 from . import stored_paths

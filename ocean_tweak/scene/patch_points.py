@@ -11,7 +11,7 @@ import bpy
 
 from ..core import OceanParameters
 from ..core.parameters.patch_seas import Part
-from ..export.cache.job import JOB_FILE
+from ..export.cache.folders import JOB_FILE
 from ..export.frame_files import POINTS, SMALL_POINTS, files_start, image_file_of
 from ..export.points import MOST_IN_WINDOW
 from ..nodes.modifier_inputs import set_inputs

@@ -14,7 +14,8 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.core.parameters.shot import Shot
-from ocean_tweak.export.cache.job import read_job, sealed
+from ocean_tweak.export.cache.folders import read_job
+from ocean_tweak.export.cache.job import sealed
 from ocean_tweak.export.cache.records import CacheSink, file_hash, read_record
 from ocean_tweak.export.exr import read_image, write_image
 from tests.batch.bakery import contents, only_folder, records, times_of_change, write_sea

@@ -13,7 +13,8 @@ from ocean_tweak.core.data import formats
 from ocean_tweak.core.parameters.fingerprint import fingerprint, shot_fingerprint
 from ocean_tweak.core.parameters.presets import built_in
 from ocean_tweak.core.parameters.shot import Animation, Shot
-from ocean_tweak.export.cache.job import CacheError, Job, read_job
+from ocean_tweak.export.cache.folders import read_job
+from ocean_tweak.export.cache.job import CacheError, Job
 from ocean_tweak.export.cache.records import FrameRecord
 from ocean_tweak.export.exr import ExrError, read_header, read_image, write_image
 

@@ -18,7 +18,8 @@ from ocean_tweak.cli import FileSea, main
 from ocean_tweak.cli.outcome import shell_word
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.parameters.shot import Shot
-from ocean_tweak.export.cache.job import CacheError, read_job, sealed
+from ocean_tweak.export.cache.folders import read_job
+from ocean_tweak.export.cache.job import CacheError, sealed
 from ocean_tweak.export.exr import read_image, write_image
 from tests.batch.bakery import ROOT, command, contents
 

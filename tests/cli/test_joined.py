@@ -98,10 +98,10 @@ def test_masked_layers_are_baked(masked: Path, tmp_path: Path) -> None:
 def test_another_wave_height_is_seen(
     masked: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from ocean_tweak.export.cache import job, verify
+    from ocean_tweak.export.cache import folders, verify
 
     folder = bake(masked, tmp_path / "cache")
-    baked = job.read_job(folder)
+    baked = folders.read_job(folder)
     pixels = read_image(folder / "masked_disp.0001.exr")[0]
     sea, moment = Ocean(baked.shot.parameters), baked.shot.at(1)
     assert verify.wave_height(sea, moment) == pytest.approx(4.0 * np.std(pixels[..., 2]), rel=1e-5)

@@ -11,17 +11,8 @@ from typing import NamedTuple
 from ...core.data.frames import Frame
 from ..files import PART, is_link
 from ..frame_files import BAKED, POINTS, frame_file
-from .job import (
-    ENTRY,
-    JOB_FILE,
-    LOCKS,
-    RECORDS,
-    CacheError,
-    is_bake,
-    log_file,
-    record_path,
-    refuse_links,
-)
+from .folders import ENTRY, JOB_FILE, LOCKS, RECORDS, is_bake, log_file, record_path, refuse_links
+from .job import CacheError
 from .locks import claims
 from .records import FileEntry, read_record, recorded_frames
 

@@ -30,7 +30,7 @@ from typing import Any
 from ...core.data.frames import Frame, format_frames, parse_frames
 from ...core.data.printable import printable
 from ..files import alone, read_bytes, write_text
-from .job import ENTRY, LOCKS, refuse_links
+from .folders import ENTRY, LOCKS, refuse_links
 from .processes import boot, hardware, process_start, this_machine
 
 #: s between two beats

@@ -22,7 +22,8 @@ from ...core.data.frames import MOST_FRAMES, Frame, format_frames, frame_label, 
 from ...core.data.printable import shown
 from ...core.synthesis.channels import SurfaceFields
 from ..files import PART, begun_file, open_file, read_bytes, remove_begun, sync_folder, write_text
-from .job import LOCKS, RECORDS, Job, NewerBakeError, check_seal, made_with, record_path, sealed
+from .folders import LOCKS, RECORDS, record_path
+from .job import Job, NewerBakeError, check_seal, made_with, sealed
 
 _LARGEST_RECORD = 2**20
 _BLOCK = 2**20

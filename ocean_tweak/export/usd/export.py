@@ -13,7 +13,8 @@ import numpy as np
 from ...core import ParameterError
 from ...core.data.frames import Frame, format_frames
 from ...core.sea.bake import BakedFrame, bake
-from ..cache.job import Job, read_job
+from ..cache.folders import read_job
+from ..cache.job import Job
 from ..cache.records import unfinished
 from ..files import sync_folder, writable_folder
 from . import textures

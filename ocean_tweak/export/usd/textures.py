@@ -12,7 +12,8 @@ import numpy as np
 from ...core.data.frames import Frame, format_frames
 from ...core.sea.bake import BakedFrame, bake
 from ...core.synthesis.channels import MOVING_MAP
-from ..cache.job import Job, open_folder, safe_name, uid_of
+from ..cache.folders import open_folder
+from ..cache.job import Job, safe_name, uid_of
 from ..cache.locks import claimed
 from ..cache.records import CacheSink, State, inspect, unfinished
 from ..exr import read_image
