@@ -96,7 +96,7 @@ class ExrSequence:
     parameters : what made the frames; stands in every header
     patch : the number of the patch, from 0, whose frames these are, in a sea of several
     compression : a key of COMPRESSION_ERROR
-    maps : keys of `core.channels.MAPS`
+    maps : keys of `core.synthesis.channels.MAPS`
     area : the square that they show, of the whole sea; None for the tile of the sea or of the patch
     """
 

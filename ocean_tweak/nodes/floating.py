@@ -2,7 +2,7 @@
 """Float on Ocean: geometry nodes that let instances, or a geometry as a whole, ride an ocean's surface.
 
 What rides feels the plane of least squares through the surface over its waterline, a disc; waves shorter than
-the disc cancel out. The stencil of points that stands for it is that of `core.waterline`.
+the disc cancel out. The stencil of points that stands for it is that of `core.sea.waterline`.
 """
 
 from __future__ import annotations

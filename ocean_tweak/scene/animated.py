@@ -81,7 +81,8 @@ def set_keys(
 ) -> None:
     """Give an ocean's settings a key a frame of the scene, linear between; other keys and drivers go.
 
-    samples : values in Blender units, by path as in `core.shot.ANIMATED`; none takes the animation off
+    samples : values in Blender units, by path as in `core.parameters.shot.ANIMATED`; none takes the animation
+        off
     """
     _remove_animation(item)
     for path, values in samples.items():

@@ -266,3 +266,14 @@ def test_readme_lists_every_make_target() -> None:
         re.findall(r"^([a-z-]+):.*##", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
     )
     assert targets == set(re.findall(r"^\| `make ([a-z-]+)`", README, re.MULTILINE))
+
+
+def test_what_docstrings_name_by_its_room_is_there() -> None:
+    package = ROOT / "ocean_tweak"
+    pattern = re.compile(r"`((?:core|export|nodes|scene|ui|cli)\.[a-z_.]+[A-Za-z_]*)`")
+    named = [
+        name for path in package.rglob("*.py") for name in pattern.findall(path.read_text(encoding="utf-8"))
+    ]
+    assert len(named) > 10
+    modules = {name for name in named if package.joinpath(*name.split(".")).with_suffix(".py").exists()}
+    assert [name for name in named if name not in modules and not function_exists(name)] == []

@@ -155,7 +155,7 @@ def default_workers(resolution: int) -> int:
 def strain_covariances(
     parts: Sequence[PartWaves], drift: tuple[float, float], between_samples: bool = False
 ) -> tuple[Array, Array]:
-    """As `foam_threshold.strain_covariances` has them, of parts together, without masks.
+    """As `core.foam.threshold.strain_covariances` has them, of parts together, without masks.
 
     Waves are independent, so theirs add.
 

@@ -109,6 +109,6 @@ def check_repeats(sea: OceanParameters) -> None:
 
 
 def strain_covariances(sea: OceanParameters, drift: tuple[float, float]) -> list[tuple[Array, Array]]:
-    """Of each of these layers that tells them, as `foam_threshold.strain_covariances` has them."""
+    """Of each of these layers that tells them, as `core.foam.threshold.strain_covariances` has them."""
     told = (layer.strain_covariances(sea, drift) for layer in sea.active() if Gives.FIELDS in layer.gives)
     return [found for found in told if found is not None]

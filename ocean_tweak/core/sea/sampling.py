@@ -105,7 +105,7 @@ class Grid:
 
 
 class Summed:
-    """Sums of components, as the formulas of `core.channels` read them."""
+    """Sums of components, as the formulas of `core.synthesis.channels` read them."""
 
     def __init__(self, parts: Iterable[Mapping[Key, RealArray]]) -> None:
         self._sums: dict[Key, RealArray] = {}

@@ -158,7 +158,7 @@ class Job:
     def write(self, folder: Path, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[Path]:
         """Write a frame's files, those that `files` names, in its order. Yields each path when it is whole.
 
-        fields : what `core.bake.ShotSurfaces` makes for `outputs`
+        fields : what `core.sea.bake.ShotSurfaces` makes for `outputs`
         """
         sequences = self.sequences(folder, frame)
         for sequence, own in zip(sequences, fields, strict=False):
