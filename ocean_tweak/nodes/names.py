@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..core.synthesis.channels import CHANNELS
 
 #: point attributes of the evaluated mesh: Blender units, Blender units per second of scene time, 0…1, and
-#: how far the surface is squeezed; NORMAL is the one that Blender takes for the mesh's free custom normals
+#: how far the surface is compressed; NORMAL is the one that Blender takes for the mesh's free custom normals
 DISPLACEMENT, VELOCITY, FOAM, CUSP, NORMAL = (
     CHANNELS[name].attribute for name in ("displacement", "velocity", "foam", "cusp", "normal")
 )

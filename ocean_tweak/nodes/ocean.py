@@ -12,7 +12,7 @@ A sea of several patches is their sum, at the place of a vertex at rest:
 - of normals, the slopes n_xy / n_z are added, with n_z held at 0.01 or more: a sheet that hangs over counts
   as very steep. One patch alone keeps its normals as they are;
 - foam covers like independent layers: 1 - (1 - a)(1 - b);
-- squeezes (cusp) are added: the most that two can make together, and what they make along one direction.
+- compressions (cusp) are added: the most that two can make together, and what they make along one direction.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from .versioned import GroupKind
 #: the images' inputs: name, socket type, default, description
 IMAGE_INPUTS = (
     Plug("Displacement", "NodeSocketImage", None, "Displacement in metres: red x, green y, blue z"),
-    Plug("Foam", "NodeSocketImage", None, "Red foam from 0 to 1, green how far the surface is squeezed"),
+    Plug("Foam", "NodeSocketImage", None, "Red foam from 0 to 1, green how far the surface is compressed"),
     Plug("Normal", "NodeSocketImage", None, "Normals of the surface in object space"),
     Plug("Velocity", "NodeSocketImage", None, "Velocity in metres per second"),
 )
@@ -41,7 +41,7 @@ _OUTPUTS = (
     Plug("Velocity", "NodeSocketVector", None, "Blender units per second"),
     Plug("Normal", "NodeSocketVector", None, "Unit length; upwards where there is no image"),
     Plug("Foam", "NodeSocketFloat", None, "From 0 to 1"),
-    Plug("Cusp", "NodeSocketFloat", None, "How far the surface is squeezed"),
+    Plug("Cusp", "NodeSocketFloat", None, "How far the surface is compressed"),
     *(
         Plug(f"Has {name}", "NodeSocketBool", None, "Whether the image has a file for the frame")
         for name in MAP_INPUTS.values()

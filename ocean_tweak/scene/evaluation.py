@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from ..core.foam.model import FoamHistory, FoamModel
-from ..core.foam.threshold import LEAST_SQUEEZE, foam_outlook
+from ..core.foam.threshold import LEAST_COMPRESSION, foam_outlook
 from ..core.numerics.interpolation import resampled
 from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS, FOAM
@@ -28,7 +28,7 @@ _PART = 8
 _FOAM_IS_NEAR = Fraction(1)
 # the name under which foam without its history is kept
 _INSTANT = "instant foam"
-# squeeze over the threshold at which foam has half its strength: the middle of the model's rise
+# compression over the threshold at which foam has half its strength: the middle of the model's rise
 _HALF_STRENGTH = 1.125
 
 
@@ -152,7 +152,7 @@ class FoamMaker:
 
 
 def _instant_foam(parameters: OceanParameters, cusp: RealArray) -> RealArray:
-    """(N, N) 0…1: foam where the (N, N) squeeze is largest, on as much of the sea as foam will cover.
+    """(N, N) 0…1: foam where the (N, N) compression is largest, on as much of the sea as foam will cover.
 
     The threshold is read off this one field: the model's own, from the sea's statistics, takes longer to
     find than a surface takes to make.
@@ -162,7 +162,7 @@ def _instant_foam(parameters: OceanParameters, cusp: RealArray) -> RealArray:
     if covered == 0:
         return np.zeros_like(cusp)
     least = np.partition(cusp, cusp.size - covered, axis=None)[cusp.size - covered]
-    if least <= LEAST_SQUEEZE:
+    if least <= LEAST_COMPRESSION:
         return np.zeros_like(cusp)
     model = FoamModel(float(least) / _HALF_STRENGTH, 0.0, (0.0, 0.0), 1.0)
     return model.strength(cusp).astype(np.float32)

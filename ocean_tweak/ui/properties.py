@@ -89,7 +89,7 @@ _SWITCHES = {
     "use_foam": BoolProperty(
         name="Foam", default=True, **_SHOWN,
         description="Write the attributes foam, how much of the water is white, and cusp, how far it is "
-        "squeezed. A frame alone looks back over up to 180 moments, playback goes on from the last",
+        "compressed. A frame alone looks back over up to 180 moments, playback goes on from the last",
     ),
     "use_normals": BoolProperty(
         name="Normals", default=True, **_SHOWN,

@@ -89,9 +89,11 @@ def test_what_takes_long_is_told_meanwhile(
     assert seconds > 0.05 * count
 
 
-def slow_birth(self: FoamModel, squeeze: np.ndarray, time_: Fraction, birth=FoamModel.birth) -> np.ndarray:
+def slow_birth(
+    self: FoamModel, compression: np.ndarray, time_: Fraction, birth=FoamModel.birth
+) -> np.ndarray:
     time.sleep(0.05)
-    return birth(self, squeeze, time_)
+    return birth(self, compression, time_)
 
 
 def test_a_frame_that_is_quick_needs_no_words(

@@ -213,7 +213,7 @@ def test_foam_after_a_jump_is_that_of_the_moment_then_all(item, refinement, core
     bpy.context.scene.frame_set(100)
     assert refinement.is_outstanding(item)
     instant = foam_of(item)
-    # as much of the sea as foam covers, where it is squeezed most
+    # as much of the sea as foam covers, where it is compressed most
     covered = round(core.foam.threshold.foam_outlook(parameters).coverage * SAMPLES**2)
     assert covered > 3
     assert np.count_nonzero(instant >= 0.5) == covered

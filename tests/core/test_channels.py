@@ -17,7 +17,7 @@ from ocean_tweak.core.synthesis.channels import (
 )
 
 SEA = OceanParameters(resolution=16, domain_size=60.0, layers=(WaveLayer(wind_speed=12.0, fetch=20e3),))
-#: on a flat sea all directions are squeezed alike
+#: on a flat sea all directions are compressed alike
 WITHOUT_REST = {"min_eigenvector"}
 
 

@@ -124,7 +124,7 @@ HALVES = (
     ],
     ids=["flat", "joined", "too long", "too short", "muted", "no gain", "masked", "no energy"],
 )  # fmt: skip
-def test_a_sea_without_squeeze_has_no_foam(changes: dict, precision: str) -> None:
+def test_a_sea_without_compression_has_no_foam(changes: dict, precision: str) -> None:
     sea = OceanParameters(resolution=32, layers=(WIND,), foam=Foam(coverage=100.0, half_life=0.5)).replace(
         **changes
     )
@@ -134,13 +134,13 @@ def test_a_sea_without_squeeze_has_no_foam(changes: dict, precision: str) -> Non
     assert not np.any(fields.cusp)
 
 
-def test_patches_without_squeeze_have_no_foam() -> None:
+def test_patches_without_compression_have_no_foam() -> None:
     sea = Ocean(OceanParameters(choppiness=0.0, layers=(WIND,), patches=HALVES))
     assert not np.any(sea.surface(4.0, {"foam"}, on=Area(100.0, 16)).foam)
 
 
 def test_crests_of_one_direction_can_be_white_all_over() -> None:
-    """They squeeze half of the sea: no threshold covers more of it."""
+    """They compress half of the sea: no threshold covers more of it."""
     swell = WaveLayer(wind_speed=100.0, spreading="COSINE_2S", spreading_exponent=1e4, swell=0.0)
     sea = OceanParameters(resolution=32, layers=(swell,), foam=Foam(coverage=100.0, half_life=0.0))
     fields = Ocean(sea).surface(4.0, {"foam", "cusp"})
@@ -148,19 +148,19 @@ def test_crests_of_one_direction_can_be_white_all_over() -> None:
     np.testing.assert_array_equal(fields.foam[fields.cusp > 1e-3], 1.0)
 
 
-# The life of a single patch: a squeeze that is there for one lattice time
+# The life of a single patch: a compression that is there for one lattice time
 
 
 def one_birth(model: FoamModel, size: int = 32, born: int = 0) -> FoamHistory:
     """Full foam at the sample (5, 7) at one time in s and never else."""
 
-    def squeeze_at(time: Fraction) -> np.ndarray:
-        squeeze = np.zeros((size, size))
+    def compression_at(time: Fraction) -> np.ndarray:
+        compression = np.zeros((size, size))
         if time == born:
-            squeeze[5, 7] = 10.0
-        return squeeze
+            compression[5, 7] = 10.0
+        return compression
 
-    return FoamHistory(model, squeeze_at)
+    return FoamHistory(model, compression_at)
 
 
 def test_foam_fades_by_half_in_its_half_life() -> None:
@@ -218,23 +218,23 @@ def test_a_lattice_of_at_most_eight_a_second() -> None:
 
 
 def test_strains_are_those_of_the_fields() -> None:
-    """Mean, spread and tail of the squeeze, and of its rate, against the sea itself."""
+    """Mean, spread and tail of the compression, and of its rate, against the sea itself."""
     ocean = Ocean(OceanParameters(resolution=256, domain_size=800.0, layers=SEA.layers, seed=1))
     expected = sampled_strains(
         *strain_covariances(ocean.initial_state, ocean.parameters.choppiness, (0.0, 0.0))
     )
-    squeezes, rates = [], []
+    compressions, rates = [], []
     for time in np.arange(0.0, 60.0, 5.0):
         before, after = (
             1.0 - ocean.surface(time + s, {"min_eigenvalue"}).min_eigenvalue for s in (-0.02, 0.02)
         )
-        squeezes.append(0.5 * (before + after))
+        compressions.append(0.5 * (before + after))
         rates.append((after - before) / 0.04)
-    for fields, numbers in ((np.array(squeezes), expected.squeeze), (np.array(rates), expected.rate)):
+    for fields, numbers in ((np.array(compressions), expected.compression), (np.array(rates), expected.rate)):
         assert np.mean(fields) == pytest.approx(np.mean(numbers), abs=0.03 * np.std(numbers))
         assert np.std(fields) == pytest.approx(np.std(numbers), rel=0.03)
-    level = np.quantile(expected.squeeze, 0.99)
-    assert np.mean(np.array(squeezes) > level) == pytest.approx(0.01, rel=0.2)
+    level = np.quantile(expected.compression, 0.99)
+    assert np.mean(np.array(compressions) > level) == pytest.approx(0.01, rel=0.2)
 
 
 def test_covariances_of_strains_are_those_of_the_fields() -> None:

@@ -226,7 +226,7 @@ def test_expected_sea_and_its_foam_are_without_the_hero_wave(windy: OceanParamet
     assert placed.foam_model.threshold == plain.foam_model.threshold
 
 
-def test_a_hero_wave_squeezes_its_crest_and_foams(windy: OceanParameters) -> None:
+def test_a_hero_wave_compresses_its_crest_and_foams(windy: OceanParameters) -> None:
     """Foam lies at the crest of a steep wave, at the focus: sample (32, 16)."""
     windy = windy.replace(resolution=128, foam=dataclasses.replace(windy.foam, half_life=0.5, drift=0.0))
     wave = HeroWave(x=200.0, y=400.0, wavelength=80.0, group_width=300.0, crest_height=8.0)

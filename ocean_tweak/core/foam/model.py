@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam: whitecaps that are born where the surface is squeezed, drift and fade. The one thing with a memory.
+"""Foam: whitecaps that are born where the surface is compressed, drift and fade. The one thing with a memory.
 
 F(x, t) is the largest of 2^(-age/T)·c(x - v·age, t - age) over the present and over a fixed lattice of times
-before it: c is 1 where the squeeze exceeds a threshold, T the half-life, v the drift. Terms below 1/512 are
-dropped, so the memory is finite and any frame can be made alone.
+before it: c is 1 where the compression exceeds a threshold, T the half-life, v the drift. Terms below 1/512
+are dropped, so the memory is finite and any frame can be made alone.
 
 Instead of F, a grid that drifts along keeps the latest birth B = t + T·log₂c of foam at each point: F is
 2^((B - t)/T), and B of several times is their maximum, which neither rounds nor depends on the order. So a
@@ -32,7 +32,7 @@ LATTICE_RATE = 8
 #: foam thinner than this is none
 FAINTEST = 2.0**-9
 
-#: from no foam to full foam the squeeze rises by this share of the threshold
+#: from no foam to full foam the compression rises by this share of the threshold
 _SOFTNESS = 0.25
 
 
@@ -40,7 +40,7 @@ _SOFTNESS = 0.25
 class FoamModel:
     """How foam is born and how it lives.
 
-    threshold : squeeze at which c begins to rise from 0
+    threshold : compression at which c begins to rise from 0
     half_life : T in s
     drift : x and y in m/s
     spacing : between samples, m
@@ -72,22 +72,22 @@ class FoamModel:
         exact = Fraction(time)
         return exact if self.loop_duration is None else exact % self.loop_duration
 
-    def birth(self, squeeze: RealArray, time: Fraction) -> Array:
-        """B in s of the foam that is born at a time from a squeeze; -inf where there is none."""
-        strength = self.strength(squeeze)
+    def birth(self, compression: RealArray, time: Fraction) -> Array:
+        """B in s of the foam that is born at a time from a compression; -inf where there is none."""
+        strength = self.strength(compression)
         result = np.full(strength.shape, -np.inf)
         foam = strength >= FAINTEST
         result[foam] = float(time) + self.half_life * np.log2(strength[foam])
         return result
 
-    def strength(self, squeeze: RealArray) -> Array:
+    def strength(self, compression: RealArray) -> Array:
         """c in 0…1."""
-        x = np.clip((squeeze.astype(np.float64) / self.threshold - 1.0) / _SOFTNESS, 0.0, 1.0)
+        x = np.clip((compression.astype(np.float64) / self.threshold - 1.0) / _SOFTNESS, 0.0, 1.0)
         return x * x * (3.0 - 2.0 * x)
 
 
 def strength_levels(count: int = 8) -> Array:
-    """Squeezes over the threshold at which foam is born with 2^-1 … 2^0 of its strength."""
+    """Compressions over the threshold at which foam is born with 2^-1 … 2^0 of its strength."""
     strength = 2.0 ** ((np.arange(count) + 0.5) / count - 1.0)
     x = 0.5 - np.sin(np.arcsin(1.0 - 2.0 * strength) / 3.0)  # the smoothstep's inverse
     return 1.0 + _SOFTNESS * x
@@ -100,10 +100,10 @@ class FoamHistory:
     goes on with it, and others wait.
     """
 
-    def __init__(self, model: FoamModel, squeeze_at: Callable[[Fraction], RealArray]) -> None:
-        """`squeeze_at` gives the (N, N) squeeze at a time."""
+    def __init__(self, model: FoamModel, compression_at: Callable[[Fraction], RealArray]) -> None:
+        """`compression_at` gives the (N, N) compression at a time."""
         self._model = model
-        self._squeeze_at = squeeze_at
+        self._compression_at = compression_at
         self._births: Array | None = None
         self._last = 0
         self._busy = threading.Lock()
@@ -122,7 +122,7 @@ class FoamHistory:
         model = self._model
         now = model.reduced(time)
         with self._busy:
-            present = model.strength(self._squeeze_at(now)).astype(np.float32)
+            present = model.strength(self._compression_at(now)).astype(np.float32)
             if model.memory == 0:
                 return present
             left = faded(self._births_until(math.floor(now / model.step)), now, model)
@@ -151,27 +151,29 @@ class FoamHistory:
         model = self._model
         time = index * model.step
         rows, columns = (round(-float(time) * v / model.spacing) for v in model.drift[::-1])
-        squeeze = self._squeeze_at(model.reduced(time))
-        return np.roll(model.birth(squeeze, time), (rows, columns), axis=(0, 1))
+        compression = self._compression_at(model.reduced(time))
+        return np.roll(model.birth(compression, time), (rows, columns), axis=(0, 1))
 
 
-#: gives the squeeze of the sea at places in m, at a time in s
-SqueezeAt = Callable[[Array, Array, Fraction], RealArray]
+#: gives the compression of the sea at places in m, at a time in s
+CompressionAt = Callable[[Array, Array, Fraction], RealArray]
 
 
-def foam_at(model: FoamModel, squeeze_at: SqueezeAt, x: Array, y: Array, time: float | Fraction) -> RealArray:
+def foam_at(
+    model: FoamModel, compression_at: CompressionAt, x: Array, y: Array, time: float | Fraction
+) -> RealArray:
     """(places,) float32 F in 0…1 at rest positions x and y in m, without a grid that could keep births.
 
     Each place looks back along its own drift: so the foam of a sum repeats with none of its patches.
     """
     now = model.reduced(time)
-    result = model.strength(squeeze_at(x, y, now)).astype(np.float32)
+    result = model.strength(compression_at(x, y, now)).astype(np.float32)
     last = math.floor(now / model.step)
     for index in range(last - model.memory + 1, last + 1):
         then = index * model.step
         age = float(now - then)
-        squeeze = squeeze_at(x - age * model.drift[0], y - age * model.drift[1], model.reduced(then))
-        np.maximum(result, faded(model.birth(squeeze, then), now, model), out=result)
+        compression = compression_at(x - age * model.drift[0], y - age * model.drift[1], model.reduced(then))
+        np.maximum(result, faded(model.birth(compression, then), now, model), out=result)
     result[result < FAINTEST] = 0.0
     return result
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much foam a sea has, and where whitecaps begin: the squeeze of the surface beyond which it is foam.
+"""How much foam a sea has, and where whitecaps begin: the compression of the surface beyond which it is foam.
 
 With true wave heights hardly anything folds, so foam cannot wait for folding. Instead the threshold follows
 from the sea's own strains, so that the share of the surface under foam is the one that winds leave at sea.
@@ -26,8 +26,8 @@ Array = NDArray[np.float64]
 
 _SAMPLES = 2**18
 
-#: squeeze from which foam may be born: below it are the roundings of float32 fields, and of a sea without any
-LEAST_SQUEEZE = 1e-6
+#: compression from which foam may be born: below it are roundings of float32 fields, and of a sea without any
+LEAST_COMPRESSION = 1e-6
 
 
 def foam_wind(parameters: OceanParameters) -> Wind | None:
@@ -69,39 +69,42 @@ def _coverage(parameters: OceanParameters) -> float:
 
 @dataclass(frozen=True)
 class Strains:
-    """Random strains of a sea: squeezes (1 - minimum eigenvalue) and their rates in 1/s at some points."""
+    """Strains of a random sea at some points: compression (1 - minimum eigenvalue) and its rate in 1/s."""
 
-    squeeze: Array
+    compression: Array
     rate: Array
 
     def threshold(self, coverage: float, duration: float, rises: Array) -> float:
-        """The squeeze from which foam is to be born, so that it covers a share of the sea.
+        """The compression from which foam is to be born, so that it covers a share of the sea.
 
         A point counts as covered while its foam is at least half as dense as it can be. Foam is born with
-        a strength that rises with the squeeze; it covers for `duration` s when it was born at full
+        a strength that rises with the compression; it covers for `duration` s when it was born at full
         strength, shorter otherwise. By Rice (1944) a level is crossed upwards at the mean of the positive
-        rates there times the squeeze's density; rare crossings are independent. It is never below
-        LEAST_SQUEEZE, so that a sea without squeeze has no foam.
+        rates there times the compression's density; rare crossings are independent. It is never below
+        LEAST_COMPRESSION, so that a sea without compression has no foam.
 
         coverage : 0…1
-        rises : squeezes over the threshold at which the strength is 2^-1 … 2^0, evenly spaced in the exponent
+        rises : compressions over the threshold at which the strength is 2^-1 … 2^0, evenly spaced in the
+            exponent
         """
-        order = np.argsort(self.squeeze)
-        squeeze, rising = self.squeeze[order], np.maximum(self.rate[order], 0.0)
+        order = np.argsort(self.compression)
+        compression, rising = self.compression[order], np.maximum(self.rate[order], 0.0)
         rank = np.arange(_SAMPLES)
         above = 1.0 - (rank + 0.5) / _SAMPLES
         # crossings at each point: the mean over its neighbours, fewer of them towards the rare end
         half = np.maximum(8, (0.2 * _SAMPLES * above).astype(np.int64))
         low, high = (np.clip(rank + sign * half, 0, _SAMPLES - 1) for sign in (-1, 1))
         sums = np.concatenate(([0.0], np.cumsum(rising)))
-        crossings = (sums[high + 1] - sums[low]) / _SAMPLES / np.maximum(squeeze[high] - squeeze[low], 1e-12)
-        candidates = np.linspace(squeeze[_SAMPLES // 2], squeeze[-1], 2000)
+        crossings = (
+            (sums[high + 1] - sums[low]) / _SAMPLES / np.maximum(compression[high] - compression[low], 1e-12)
+        )
+        candidates = np.linspace(compression[_SAMPLES // 2], compression[-1], 2000)
         levels = candidates[:, np.newaxis] * rises
-        now = np.interp(levels[:, 0], squeeze, above)
-        later = np.interp(levels, squeeze, crossings).mean(axis=1) * duration
+        now = np.interp(levels[:, 0], compression, above)
+        later = np.interp(levels, compression, crossings).mean(axis=1) * duration
         covered = 1.0 - (1.0 - now) * np.exp(-later / np.maximum(1.0 - now, 1e-3))
         enough = np.nonzero(covered >= coverage)[0]
-        return max(LEAST_SQUEEZE, float(candidates[enough[-1]] if len(enough) else candidates[0]))
+        return max(LEAST_COMPRESSION, float(candidates[enough[-1]] if len(enough) else candidates[0]))
 
 
 def strain_covariances(
@@ -150,10 +153,10 @@ def sampled_strains(of_gradient: Array, of_rates: Array) -> Strains:
     gradient, change = (_correlated(c, stream) for c, stream in ((of_gradient, 0), (of_rates, 8)))
     half_difference, shear = 0.5 * (gradient[0] - gradient[1]), gradient[2]
     root = np.hypot(half_difference, shear)
-    squeeze = root - 0.5 * (gradient[0] + gradient[1])
+    compression = root - 0.5 * (gradient[0] + gradient[1])
     across = half_difference * 0.5 * (change[0] - change[1]) + shear * change[2]
     rate = across / np.maximum(root, 1e-30) - 0.5 * (change[0] + change[1])
-    return Strains(squeeze, rate)
+    return Strains(compression, rate)
 
 
 def _correlated(covariance: Array, stream: int) -> Array:

@@ -109,7 +109,7 @@ def _need_in_area(
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:
-    """The field itself; births, a squeeze and temporaries at the foam's own resolution."""
+    """The field itself; births, a compression and temporaries at the foam's own resolution."""
     own = parameters.foam.resolution or parameters.resolution
     return 4 * parameters.resolution**2 + 48 * own**2
 

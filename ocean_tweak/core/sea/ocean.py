@@ -139,7 +139,7 @@ class Ocean:
             self._anywhere.fill(x.ravel(), y.ravel(), time, wanted - OF_MEMORY, fields)
             if FOAM in wanted:
                 sea = self._of_foam
-                foam = foam_at(sea.foam_model, sea._anywhere.squeeze_at, x.ravel(), y.ravel(), time)
+                foam = foam_at(sea.foam_model, sea._anywhere.compression_at, x.ravel(), y.ravel(), time)
                 fields[FOAM][...] = foam.reshape(x.shape)
         return SurfaceFields(float(time), fields)
 

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 _STEPS = 40
 _TOLERANCE = 1e-5  # of a sample's spacing
 
-#: where the surface is squeezed to less than this, it may lie over itself nearby
+#: where the surface is compressed to less than this, it may lie over itself nearby
 _FOLDING = 0.3
 #: quads of the net that is laid around a place to find other sheets, at the most, along each axis
 _NET = 64
@@ -233,7 +233,7 @@ def _net(px: Array, py: Array, offset: Array) -> tuple[Array, Array]:
 
 
 def _near_folds(x: Array, y: Array, field: Field, step: float) -> NDArray[np.bool_]:
-    """Whether the surface is squeezed a lot at any of 5 x 5 places around each."""
+    """Whether the surface is compressed a lot at any of 5 x 5 places around each."""
     result = np.zeros(x.shape, bool)
     for dy in (-2.0, -1.0, 0.0, 1.0, 2.0):
         for dx in (-2.0, -1.0, 0.0, 1.0, 2.0):

@@ -171,16 +171,16 @@ class AnywhereSum:
             CHANNELS[name].write(sums, made)
             fields[name][...] = made.reshape(fields[name].shape)
 
-    def squeeze_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
+    def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 of the channel cusp; the strains it is made of are remembered, for the next
         frame's foam looks back at them too.
         """
         needs = CHANNELS["cusp"].needs
         key = (self._parameters, self._precision, time)
         strains = MEMO.get(_STRAINS, key, lambda: _Strains(self._components(time, needs)))
-        squeeze = np.empty(x.shape, np.float32)
-        CHANNELS["cusp"].write(self._sums(x, y, time, needs, strains.of_parts), squeeze)
-        return squeeze
+        compression = np.empty(x.shape, np.float32)
+        CHANNELS["cusp"].write(self._sums(x, y, time, needs, strains.of_parts), compression)
+        return compression
 
     def exact_field(self, time: float | Fraction) -> Field:
         """The band-limited surface. Raises ValueError with trough damping, which leaves no sum of waves."""

@@ -77,14 +77,14 @@ def min_eigenvalue(rows: PositionRows, out: RealArray) -> None:
 
 
 def cusp(rows: PositionRows, out: RealArray) -> None:
-    """(N, N): how far the surface is squeezed, 1 - min_eigenvalue; 0 where it is stretched, 1 in a fold."""
+    """(N, N): how far the surface is compressed, 1 - min_eigenvalue; 0 where it is stretched, 1 in a fold."""
     min_eigenvalue(rows, out)
     np.subtract(1.0, out, out=out)
     np.maximum(out, 0.0, out=out)
 
 
 def min_eigenvector(rows: PositionRows, out: RealArray) -> None:
-    """(N, N, 2): unit vector along which the surface is squeezed most, its x ≥ 0."""
+    """(N, N, 2): unit vector along which the surface is compressed most, its x ≥ 0."""
     _, half_difference, shear = _symmetric_part(rows)
     angle = 0.5 * np.arctan2(-shear, -half_difference)
     np.cos(angle, out=out[..., 0])
@@ -221,16 +221,16 @@ _ROWS = (
         "1", 0, SCALAR, jacobian, _GRADIENT, rest=1.0,
     ),
     Channel(
-        "min_eigenvalue", "how much length is left where the surface is squeezed most; less than 0 in a fold",
+        "min_eigenvalue", "how much length is left where the surface is compressed most; below 0 in a fold",
         "1", 0, SCALAR, min_eigenvalue, _GRADIENT, rest=1.0,
     ),
     Channel(
-        "cusp", "how far the surface is squeezed: 0 where it is stretched, 1 where it folds", "1", 0, SCALAR,
+        "cusp", "how far the surface is compressed: 0 where it is stretched, 1 in a fold", "1", 0, SCALAR,
         cusp, _GRADIENT, attribute="cusp", switch="use_foam",
         usd=UsdAttribute("primvars:cusp", "FloatArray", halved=True),
     ),
     Channel(
-        "min_eigenvector", "unit vector along which the surface is squeezed most", "1", 2, VECTOR,
+        "min_eigenvector", "unit vector along which the surface is compressed most", "1", 2, VECTOR,
         min_eigenvector, _GRADIENT, rest=(1.0, 0.0),
     ),
     Channel(
