@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from ..core.synthesis.channels import CHANNELS
 
-#: point attributes of the evaluated mesh: Blender units, Blender units per second of scene time, 0…1, and
-#: how far the surface is compressed; NORMAL is the one that Blender takes for the mesh's free custom normals
-DISPLACEMENT, VELOCITY, FOAM, CUSP, NORMAL = (
-    CHANNELS[name].attribute for name in ("displacement", "velocity", "foam", "cusp", "normal")
+#: point attributes of the evaluated mesh: Blender units, Blender units per second of scene time, 0…1, how
+#: far the surface is compressed, how strongly it breaks now, 0…1, and seconds since the foam was born; NORMAL
+#: is the one that Blender takes for the mesh's free custom normals
+DISPLACEMENT, VELOCITY, FOAM, CUSP, BREAKING, FOAM_AGE, NORMAL = (
+    CHANNELS[name].attribute
+    for name in ("displacement", "velocity", "foam", "cusp", "breaking", "foam_age", "normal")
 )
 
 #: point attribute of a surface around the camera: mean square slope of the waves that it leaves out
@@ -28,4 +30,10 @@ WEIGHT = "ocean_tweak_weight_{}"
 TEXTURE_COORDINATES = "st"
 
 #: the maps that Blender reads, by their names in files, and the input that takes the image of each
-MAP_INPUTS = {"disp": "Displacement", "foam": "Foam", "normal": "Normal", "vel": "Velocity"}
+MAP_INPUTS = {
+    "disp": "Displacement",
+    "foam": "Foam",
+    "normal": "Normal",
+    "vel": "Velocity",
+    "foam_age": "Foam Age",
+}

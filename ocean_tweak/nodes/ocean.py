@@ -11,7 +11,8 @@ A sea of several patches is their sum, at the place of a vertex at rest:
 - displacements and velocities are added;
 - of normals, the slopes n_xy / n_z are added, with n_z held at 0.01 or more: a sheet that hangs over counts
   as very steep. One patch alone keeps its normals as they are;
-- foam covers like independent layers: 1 - (1 - a)(1 - b);
+- foam, and crests that break, cover like independent layers: 1 - (1 - a)(1 - b);
+- the age of foam is that of the denser one;
 - compressions (cusp) are added: the most that two can make together, and what they make along one direction.
 """
 
@@ -29,12 +30,12 @@ from .building import Builder, Panel, Plug, Socket, output
 from .frame_warnings import WARNINGS
 from .grid import GRID
 from .grid import INPUTS as GRID_INPUTS
-from .names import CUSP, DISPLACEMENT, FOAM, TEXTURE_COORDINATES, VELOCITY
+from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, FOAM_AGE, TEXTURE_COORDINATES, VELOCITY
 from .patch import EARLY_IMAGE_INPUTS, IMAGE_INPUTS, PATCH, SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
-_VERSION = 3
+_VERSION = 4
 _NAME = "Ocean Tweak"
 
 #: patches that a group can add, of whichever seas
@@ -99,9 +100,12 @@ class _Surface(NamedTuple):
     normal: Socket
     foam: Socket
     cusp: Socket
+    breaking: Socket
+    foam_age: Socket
     has_velocity: Socket
     has_normal: Socket
     has_foam: Socket
+    has_foam_age: Socket
     warns: Socket
 
 
@@ -204,9 +208,12 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
         normal=output(read, "Normal"),
         foam=output(read, "Foam"),
         cusp=output(read, "Cusp"),
+        breaking=output(read, "Breaking"),
+        foam_age=output(read, "Foam Age"),
         has_velocity=output(read, "Has Velocity"),
         has_normal=output(read, "Has Normal"),
         has_foam=output(read, "Has Foam"),
+        has_foam_age=output(read, "Has Foam Age"),
         warns=output(warnings, "Warning"),
     )
 
@@ -216,21 +223,20 @@ def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
     total = surfaces[0]
     slope = _slope(build, total.normal) if len(surfaces) > 1 else None
     for other in surfaces[1:]:
-        free = build.math(
-            "MULTIPLY",
-            build.math("SUBTRACT", 1.0, total.foam),
-            build.math("SUBTRACT", 1.0, other.foam),
-        )
         slope = build.vector("ADD", slope, _slope(build, other.normal))
+        is_denser = build.compare("GREATER_THAN", other.foam, total.foam, "FLOAT")
         total = _Surface(
             displacement=build.vector("ADD", total.displacement, other.displacement),
             velocity=build.vector("ADD", total.velocity, other.velocity),
             normal=total.normal,
-            foam=build.math("SUBTRACT", 1.0, free),
+            foam=_either(build, total.foam, other.foam),
             cusp=build.math("ADD", total.cusp, other.cusp),
+            breaking=_either(build, total.breaking, other.breaking),
+            foam_age=build.switch("FLOAT", is_denser, total.foam_age, other.foam_age),
             has_velocity=build.logic("OR", total.has_velocity, other.has_velocity),
             has_normal=build.logic("OR", total.has_normal, other.has_normal),
             has_foam=build.logic("OR", total.has_foam, other.has_foam),
+            has_foam_age=build.logic("OR", total.has_foam_age, other.has_foam_age),
             warns=build.logic("OR", total.warns, other.warns),
         )
     if slope is None:
@@ -238,6 +244,12 @@ def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
     upwards = build.vector("ADD", slope, (0.0, 0.0, 1.0))
     unit = build.add("ShaderNodeVectorMath", {"Vector": upwards}, operation="NORMALIZE")
     return total._replace(normal=output(unit, "Vector"))
+
+
+def _either(build: Builder, one: Socket, other: Socket) -> Socket:
+    """The share that is under one of two independent ones, or under both."""
+    free = build.math("MULTIPLY", build.math("SUBTRACT", 1.0, one), build.math("SUBTRACT", 1.0, other))
+    return build.math("SUBTRACT", 1.0, free)
 
 
 def _slope(build: Builder, normal: Socket) -> Socket:
@@ -253,8 +265,12 @@ def _written(build: Builder, geometry: Socket, surface: _Surface) -> Socket:
     result = build.store(geometry, DISPLACEMENT, surface.displacement, "FLOAT_VECTOR")
     moving = build.store(result, VELOCITY, surface.velocity, "FLOAT_VECTOR")
     result = build.switch("GEOMETRY", surface.has_velocity, result, moving)
-    foamy = build.store(build.store(result, FOAM, surface.foam, "FLOAT"), CUSP, surface.cusp, "FLOAT")
+    foamy = build.store(result, FOAM, surface.foam, "FLOAT")
+    foamy = build.store(foamy, CUSP, surface.cusp, "FLOAT")
+    foamy = build.store(foamy, BREAKING, surface.breaking, "FLOAT")
     result = build.switch("GEOMETRY", surface.has_foam, result, foamy)
+    aged = build.store(result, FOAM_AGE, surface.foam_age, "FLOAT")
+    result = build.switch("GEOMETRY", surface.has_foam_age, result, aged)
     smooth = build.change("GeometryNodeSetShadeSmooth", result)  # flat faces have normals of their own
     shaded = build.change(
         "GeometryNodeSetMeshNormal", smooth, {"Custom Normal": surface.normal}, mode="FREE", domain="POINT"

@@ -12,9 +12,15 @@ from .versioned import GroupKind
 #: the images' inputs: name, socket type, default, description
 IMAGE_INPUTS = (
     Plug("Displacement", "NodeSocketImage", None, "Displacement in metres: red x, green y, blue z"),
-    Plug("Foam", "NodeSocketImage", None, "Red foam from 0 to 1, green how far the surface is compressed"),
+    Plug(
+        "Foam",
+        "NodeSocketImage",
+        None,
+        "Red foam from 0 to 1, green how far the surface is compressed, blue how strongly it breaks now",
+    ),
     Plug("Normal", "NodeSocketImage", None, "Normals of the surface in object space"),
     Plug("Velocity", "NodeSocketImage", None, "Velocity in metres per second"),
+    Plug("Foam Age", "NodeSocketImage", None, "Red seconds since the foam was born"),
 )
 
 #: the images of frames before 0: Blender counts the files of a sequence upwards from 0
@@ -42,6 +48,8 @@ _OUTPUTS = (
     Plug("Normal", "NodeSocketVector", None, "Unit length; upwards where there is no image"),
     Plug("Foam", "NodeSocketFloat", None, "From 0 to 1"),
     Plug("Cusp", "NodeSocketFloat", None, "How far the surface is compressed"),
+    Plug("Breaking", "NodeSocketFloat", None, "How strongly it breaks now, from 0 to 1"),
+    Plug("Foam Age", "NodeSocketFloat", None, "Seconds since the foam was born"),
     *(
         Plug(f"Has {name}", "NodeSocketBool", None, "Whether the image has a file for the frame")
         for name in MAP_INPUTS.values()
@@ -68,6 +76,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     texels = {name: _texel(build, image, number) for name, image in images.items()}
     has = {name: _has_texels(build, image, number) for name, image in images.items()}
     foam = build.add("ShaderNodeSeparateXYZ", {"Vector": texels["Foam"]})
+    age = build.add("ShaderNodeSeparateXYZ", {"Vector": texels["Foam Age"]})
     unit = build.add("ShaderNodeVectorMath", {"Vector": texels["Normal"]}, operation="NORMALIZE")
     build.finish_with(
         {
@@ -76,6 +85,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
             "Normal": build.switch("VECTOR", has["Normal"], (0.0, 0.0, 1.0), output(unit, "Vector")),
             "Foam": output(foam, "X"),
             "Cusp": output(foam, "Y"),
+            "Breaking": output(foam, "Z"),
+            "Foam Age": output(age, "X"),
             **{f"Has {name}": value for name, value in has.items()},
         }
     )
@@ -103,4 +114,4 @@ def _has_texels(build: Builder, image: Socket, number: Socket) -> Socket:
     return build.compare("GREATER_THAN", width, 0)
 
 
-PATCH = GroupKind("Ocean Tweak Patch", 2, _build)
+PATCH = GroupKind("Ocean Tweak Patch", 3, _build)

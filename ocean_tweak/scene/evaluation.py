@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
-from ..core.foam.model import FoamHistory, FoamModel
+from ..core.foam.model import FoamHistory, FoamModel, Whitecaps
 from ..core.foam.threshold import LEAST_COMPRESSION, foam_outlook
-from ..core.numerics.interpolation import resampled
 from ..core.numerics.memo import MEMO, total_bytes
-from ..core.synthesis.channels import CHANNELS, FOAM
+from ..core.synthesis.channels import CHANNELS, OF_MEMORY
 
 RealArray = NDArray[np.float32]
 
@@ -26,8 +25,8 @@ _MOST_SURFACES = 4
 _PART = 8
 # s after the foam that was made last, within which the next one is quickly made
 _FOAM_IS_NEAR = Fraction(1)
-# the name under which foam without its history is kept
-_INSTANT = "instant foam"
+# what foam without its history is kept under, before the name of its channel
+_INSTANT = "instant "
 # compression over the threshold at which foam has half its strength: the middle of the model's rise
 _HALF_STRENGTH = 1.125
 
@@ -63,22 +62,29 @@ class Surfaces:
         patient : otherwise foam is shown without its history where that would take long
         """
         kept = self._kept(time)
-        self._make(time, kept, outputs - kept.keys() - {FOAM})
-        result = {name: kept[name] for name in outputs - {FOAM}}
-        if FOAM in outputs:
-            result[FOAM] = self._foam_at(time, kept, self.foam_of(is_whole), patient)
+        self._make(time, kept, outputs - kept.keys() - OF_MEMORY)
+        result = {name: kept[name] for name in outputs - OF_MEMORY}
+        remembered = outputs & OF_MEMORY
+        if remembered:
+            before = self._foam_at(time, kept, self.foam_of(is_whole), patient)
+            result.update({name: kept[before + name] for name in remembered})
         MEMO.put(_SURFACES, self.ocean.parameters, self)  # it has grown
-        return result, FOAM not in outputs or FOAM in kept
+        return result, remembered <= kept.keys()
 
-    def _foam_at(
-        self, time: Fraction, kept: dict[str, RealArray], maker: FoamMaker, patient: bool
-    ) -> RealArray:
-        if FOAM not in kept and (patient or maker.is_near(time)):
-            kept[FOAM] = self._closed(FOAM, maker.at(time))
-        if FOAM not in kept and _INSTANT not in kept:
+    def _foam_at(self, time: Fraction, kept: dict[str, RealArray], maker: FoamMaker, patient: bool) -> str:
+        """Make the foam, with its history or without; what it is kept under, before its channels' names."""
+        if "foam" not in kept and (patient or maker.is_near(time)):
+            self._keep(kept, "", maker.at(time))
+        if "foam" in kept:
+            return ""
+        if _INSTANT + "foam" not in kept:
             foam = _instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
-            kept[_INSTANT] = self._closed(_INSTANT, foam)
-        return kept[FOAM if FOAM in kept else _INSTANT]
+            self._keep(kept, _INSTANT, Whitecaps(foam, foam, np.zeros_like(foam)))
+        return _INSTANT
+
+    def _keep(self, kept: dict[str, RealArray], before: str, made: Whitecaps) -> None:
+        for name, field in made._asdict().items():
+            kept[before + name] = self._closed(before + name, field)
 
     def foam_of(self, is_whole: bool) -> FoamMaker:
         """What makes the foam of whole frames, or of those between."""
@@ -104,7 +110,7 @@ class Surfaces:
         if name in self._spare:
             return self._spare.pop(name)
         side = self.ocean.parameters.resolution + 1
-        return np.empty(CHANNELS[FOAM if name == _INSTANT else name].shape(side), np.float32)
+        return np.empty(CHANNELS[name.removeprefix(_INSTANT)].shape(side), np.float32)
 
     def _kept(self, time: Fraction) -> dict[str, RealArray]:
         """What there is of a time; the oldest ones go where there are enough."""
@@ -129,15 +135,14 @@ class FoamMaker:
         # the window's thread and the one that makes foam ahead of it
         self._busy = threading.Lock()
 
-    def at(self, time: Fraction) -> RealArray:
-        """(N, N) 0…1. It may be called on any thread, and waits for another one."""
+    def at(self, time: Fraction) -> Whitecaps:
+        """(N, N) each. It may be called on any thread, and waits for another one."""
         with self._busy:
             if self._history is None:
                 self._history = self._ocean.new_foam_history()
-            foam = resampled(self._history.foam(time), self._ocean.parameters.resolution)
+            made = self._history.whitecaps(time)
             self._last = self._reduced(time)
-        MEMO.trim()
-        return foam
+        return made
 
     def is_near(self, time: Fraction) -> bool:
         """Whether the foam of a time is quickly made, right now."""

@@ -88,8 +88,9 @@ class OCEAN_PG_maps(bpy.types.PropertyGroup):
 _SWITCHES = {
     "use_foam": BoolProperty(
         name="Foam", default=True, **_SHOWN,
-        description="Write the attributes foam, how much of the water is white, and cusp, how far it is "
-        "compressed. A frame alone looks back over up to 180 moments, playback goes on from the last",
+        description="Write the attributes foam, how much of the water is white, breaking, how much crests "
+        "break now, foam_age in seconds, and cusp, how far the water is compressed. A frame alone looks back "
+        "over up to 180 moments, playback goes on from the last",
     ),
     "use_normals": BoolProperty(
         name="Normals", default=True, **_SHOWN,

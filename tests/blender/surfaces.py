@@ -12,10 +12,12 @@ CONTRACT = {
     "velocity": ("FLOAT_VECTOR", "POINT", 3),
     "foam": ("FLOAT", "POINT", 1),
     "cusp": ("FLOAT", "POINT", 1),
+    "breaking": ("FLOAT", "POINT", 1),
+    "foam_age": ("FLOAT", "POINT", 1),
     "st": ("FLOAT2", "CORNER", 2),
 }
-OUTPUTS = {"displacement", "velocity", "normal", "foam", "cusp"}
-ALL_MAPS = ("disp", "foam", "normal", "vel")
+OUTPUTS = {"displacement", "velocity", "normal", "foam", "cusp", "breaking", "foam_age"}
+ALL_MAPS = ("disp", "foam", "normal", "vel", "foam_age")
 
 
 def read(mesh, rows, columns):
@@ -74,6 +76,8 @@ def wanted(core, parameters, frame, metres=1.0, repeats=(1, 1)):
         "velocity": over_all(fields.velocity) / metres,
         "foam": over_all(fields.foam),
         "cusp": over_all(fields.cusp),
+        "breaking": over_all(fields.breaking),
+        "foam_age": over_all(fields.foam_age),
         "normal": over_all(fields.normal),
         "st": st,
     }
@@ -85,10 +89,10 @@ def _surface(sea, parameters, time):
 
 
 def assert_alike(found, expected, metres=1.0, tolerance=1e-4):
-    """All that is expected is found, to a tenth of a millimetre; normals to a thousandth."""
+    """All that is expected is found, to a tenth of a millimetre; normals and ages to a thousandth."""
     assert set(found) == set(expected)
     for name, values in expected.items():
         scale = metres if name in ("position", "displacement", "velocity") else 1.0
-        limit = 1e-3 if name == "normal" else tolerance
+        limit = 1e-3 if name in ("normal", "foam_age") else tolerance
         difference = np.abs(found[name] - values).max() * scale
         assert difference < limit, f"{name} differs by {difference}"

@@ -244,7 +244,9 @@ def test_a_render_has_foam_with_its_history(item, refinement, core, make_paramet
 
 def test_foam_that_cannot_be_made_is_told(item, refinement, core, monkeypatch):
     finish(refinement, item)
-    monkeypatch.setattr(core.foam.model.FoamHistory, "foam", lambda *a: (_ for _ in ()).throw(MemoryError))
+    monkeypatch.setattr(
+        core.foam.model.FoamHistory, "whitecaps", lambda *a: (_ for _ in ()).throw(MemoryError)
+    )
     bpy.context.scene.frame_set(100)
     finish(refinement, item)
     assert "memory" in item.ocean_tweak.error

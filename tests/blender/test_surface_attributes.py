@@ -17,6 +17,8 @@ WAYS = {
     "Displace, files": ("DISPLACE", "SEQUENCE", 0),
 }
 SIDE = SAMPLES + 1
+#: what the switch of foam asks for
+FOAM = {"foam", "cusp", "breaking", "foam_age"}
 VIEWPORT = 16
 
 
@@ -98,7 +100,7 @@ def test_what_is_switched_off_is_left_out(add, make_parameters, empty_scene, way
     item = add(make_parameters(), way)
     side = (WAYS[way][2] or SAMPLES) + 1
     empty_scene.frame_set(2)
-    switches = {"use_foam": {"foam", "cusp"}, "use_normals": {"normal"}, "use_velocity": {"velocity"}}
+    switches = {"use_foam": FOAM, "use_normals": {"normal"}, "use_velocity": {"velocity"}}
     everything = {"position", "displacement", "st"}.union(*switches.values())
     for switch, names in switches.items():
         setattr(item.ocean_tweak, switch, False)
@@ -114,7 +116,8 @@ def test_maps_that_were_not_baked_are_left_out(add, core, make_parameters, empty
     parameters = make_parameters()
     item = add(parameters, way, maps)
     empty_scene.frame_set(3)
-    names = {"disp": {"displacement"}, "foam": {"foam", "cusp"}, "normal": {"normal"}, "vel": {"velocity"}}
+    names = {"disp": {"displacement"}, "foam": FOAM - {"foam_age"}}
+    names |= {"normal": {"normal"}, "vel": {"velocity"}}
     left = {"position", "st"}.union(*(names[name] for name in maps))
     expected = wanted(core, parameters, 3)
     assert_alike(read(evaluated_mesh(item), SIDE, SIDE), {name: expected[name] for name in left})
@@ -185,11 +188,11 @@ def test_a_mesh_in_edit_mode_shows_the_sea(add, core, make_parameters, empty_sce
 
 @pytest.mark.parametrize(
     ("switch", "attributes"),
-    [("use_foam", {"foam", "cusp"}), ("use_velocity", {"velocity"}), ("use_normals", {"custom_normal"})],
+    [("use_foam", FOAM), ("use_velocity", {"velocity"}), ("use_normals", {"custom_normal"})],
 )
 def test_a_live_mesh_has_what_its_switches_ask_for_and_nothing_else(add, make_parameters, switch, attributes):
     item = add(make_parameters(), "nodes, attributes")
-    everything = {"displacement", "velocity", "custom_normal", "foam", "cusp"}
+    everything = {"displacement", "velocity", "custom_normal", *FOAM}
 
     def of_sea():
         of_grid = {"position", "sharp_face", "st"}

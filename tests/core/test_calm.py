@@ -20,7 +20,7 @@ from ocean_tweak.core.spectral.spectra import layer_scales
 from ocean_tweak.core.statistics.sea_scales import beaufort_number
 from ocean_tweak.core.statistics.sea_spectrum import frequency_curves, polar_density
 from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
-from ocean_tweak.core.synthesis.channels import FOAM, OF_WAVES
+from ocean_tweak.core.synthesis.channels import CHANNELS
 from ocean_tweak.core.synthesis.coefficients import initial_state
 from ocean_tweak.core.waves.image.parameters import ANIMATIONS, FILTER_GAINS
 from ocean_tweak.core.waves.spectral import SPREADINGS
@@ -28,7 +28,7 @@ from tests.layers import with_layers
 
 pytestmark = pytest.mark.filterwarnings("error")
 
-ALL = {*OF_WAVES, FOAM}
+ALL = CHANNELS.keys()
 FROM_WIND = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS")
 SWELL = WaveLayer(definition="SEA_STATE", significant_wave_height=0.5, peak_period=3.0, id=7)
 SEA = OceanParameters(resolution=32, domain_size=60.0, layers=(SWELL,))

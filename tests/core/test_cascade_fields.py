@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Area, Foam, Ocean, OceanParameters, Patch, Places
-from ocean_tweak.core.foam.model import FoamModel, foam_at
+from ocean_tweak.core.foam.model import FoamModel, whitecaps_at
 from ocean_tweak.core.foam.threshold import whitecap_coverage
 from ocean_tweak.core.synthesis.channels import OF_WAVES
 from tests.core.patched_seas import LAYER, SEA, THREE, small, summed
@@ -145,13 +145,13 @@ def test_foam_drifts_along_the_wind() -> None:
         return np.where((np.hypot(x, y) < 0.4) & (time == 1), 1.0, 0.0)
 
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(-6.0, 6.1, 0.25), np.arange(-6.0, 6.1, 0.25)))
-    foam = foam_at(model, spot, x, y, 3.0)
+    foam = whitecaps_at(model, spot, x, y, 3.0).foam
     covered = foam > 0.0
     assert np.mean(x[covered]) == pytest.approx(2.0 * 1.5, abs=0.1)
     assert np.mean(y[covered]) == pytest.approx(2.0 * -0.5, abs=0.1)
     np.testing.assert_allclose(foam[covered], 0.5, rtol=1e-6)
-    assert np.all(foam_at(model, spot, x, y, 1.0) == (np.hypot(x, y) < 0.4))
-    assert not np.any(foam_at(model, spot, x, y, 0.5))
+    assert np.all(whitecaps_at(model, spot, x, y, 1.0).foam == (np.hypot(x, y) < 0.4))
+    assert not np.any(whitecaps_at(model, spot, x, y, 0.5).foam)
 
 
 def test_cusp_of_the_sum_is_made_of_strains_as_the_document_says() -> None:

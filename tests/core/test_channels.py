@@ -66,7 +66,7 @@ def test_the_channels_of_a_map_fill_its_colours_in_order(fields, name):
 
 
 def test_maps_ask_for_their_channels():
-    assert channels_of(("foam", "vel")) == {"foam", "cusp", "velocity"}
+    assert channels_of(("foam", "vel")) == {"foam", "cusp", "breaking", "velocity"}
     assert channels_of(()) == set()
 
 

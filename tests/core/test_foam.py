@@ -20,6 +20,8 @@ from ocean_tweak.core.foam.threshold import (
     whitecap_coverage,
 )
 from ocean_tweak.core.numerics.interpolation import resampled
+from ocean_tweak.core.sea.on import TILE
+from ocean_tweak.core.synthesis.channels import OF_MEMORY
 
 SEA = OceanParameters(
     resolution=64, domain_size=200.0, seed=2, layers=(WaveLayer(wind_speed=15.0, wind_direction=0.7),)
@@ -30,19 +32,24 @@ def foam(ocean: Ocean, frame: float) -> np.ndarray:
     return ocean.frame(frame, {"foam"}).foam
 
 
+def whitecaps(ocean: Ocean, frame: float) -> bytes:
+    fields = ocean.frame(frame, OF_MEMORY)
+    return b"".join(fields[name].tobytes() for name in sorted(OF_MEMORY))
+
+
 @pytest.mark.parametrize("changes", [{}, {"loop_duration": Fraction(3)}, {"foam": Foam(resolution=32)}])
 def test_any_frame_has_the_bytes_of_the_sequence(changes: dict) -> None:
     """24 frames in order, in reverse, alone, and in two chunks; sub-frames too."""
     parameters = SEA.replace(**changes)
     frames = [frame / 2 for frame in range(2, 50)]
     ocean = Ocean(parameters)
-    in_order = [foam(ocean, frame).tobytes() for frame in frames]
-    backwards = [foam(ocean, frame).tobytes() for frame in reversed(frames)]
+    in_order = [whitecaps(ocean, frame) for frame in frames]
+    backwards = [whitecaps(ocean, frame) for frame in reversed(frames)]
     assert backwards[::-1] == in_order
-    alone = [foam(Ocean(parameters), frame).tobytes() for frame in frames[::9]]
+    alone = [whitecaps(Ocean(parameters), frame) for frame in frames[::9]]
     assert alone == in_order[::9]
     chunk = Ocean(parameters)
-    assert [foam(chunk, frame).tobytes() for frame in frames[20:]] == in_order[20:]
+    assert [whitecaps(chunk, frame) for frame in frames[20:]] == in_order[20:]
     assert len(set(in_order)) == len(frames)
 
 
@@ -160,25 +167,25 @@ def one_birth(model: FoamModel, size: int = 32, born: int = 0) -> FoamHistory:
             compression[5, 7] = 10.0
         return compression
 
-    return FoamHistory(model, compression_at)
+    return FoamHistory(model, compression_at, size)
 
 
 def test_foam_fades_by_half_in_its_half_life() -> None:
     history = one_birth(FoamModel(threshold=1.0, half_life=2.0, drift=(0.0, 0.0), spacing=1.0))
-    assert history.foam(-0.5).max() == 0.0
+    assert history.whitecaps(-0.5).foam.max() == 0.0
     for age in (0.0, 0.03, 1.0, 2.0, 4.5):
-        assert history.foam(age)[5, 7] == pytest.approx(2.0 ** (-age / 2.0), rel=1e-6)
-        assert np.count_nonzero(history.foam(age)) == 1
-    assert history.foam(17.9)[5, 7] > 0.0
-    assert history.foam(18.1).max() == 0.0  # below 1/512
+        assert history.whitecaps(age).foam[5, 7] == pytest.approx(2.0 ** (-age / 2.0), rel=1e-6)
+        assert np.count_nonzero(history.whitecaps(age).foam) == 1
+    assert history.whitecaps(17.9).foam[5, 7] > 0.0
+    assert history.whitecaps(18.1).foam.max() == 0.0  # below 1/512
 
 
 def test_foam_drifts() -> None:
     history = one_birth(FoamModel(threshold=1.0, half_life=20.0, drift=(0.5, -0.25), spacing=0.5))
-    field = history.foam(2.0)
+    field = history.whitecaps(2.0).foam
     assert np.unravel_index(np.argmax(field), field.shape) == (5 - 1, 7 + 2)
     assert field.max() == pytest.approx(2.0**-0.1, rel=1e-6)
-    halfway = history.foam(0.5)  # half a sample in x, a quarter in y
+    halfway = history.whitecaps(0.5).foam  # half a sample in x, a quarter in y
     np.testing.assert_allclose(halfway[4:6, 7:9] / 2.0**-0.025, [[0.125, 0.125], [0.375, 0.375]], rtol=1e-6)
 
 
@@ -186,15 +193,99 @@ def test_foam_drifts_from_where_it_was_born() -> None:
     """Born at 4 s, its drifting grid has by then moved by (4, -2) samples."""
     model = FoamModel(threshold=1.0, half_life=20.0, drift=(0.5, -0.25), spacing=0.5)
     for age, place in ((0.0, (5, 7)), (2.0, (4, 9)), (8.0, (1, 15))):
-        field = one_birth(model, born=4).foam(4.0 + age)
+        field = one_birth(model, born=4).whitecaps(4.0 + age).foam
         assert np.unravel_index(np.argmax(field), field.shape) == place
         assert field.max() == pytest.approx(2.0 ** (-age / 20.0), rel=1e-6)
 
 
+def test_age_is_that_of_the_birth_that_is_seen() -> None:
+    history = one_birth(FoamModel(threshold=1.0, half_life=2.0, drift=(0.0, 0.0), spacing=1.0), born=4)
+    for age in (0.0, 0.03, 1.0, 4.5):
+        found = history.whitecaps(4.0 + age)
+        assert found.foam_age[5, 7] == pytest.approx(age, abs=1e-6)
+        assert np.count_nonzero(found.foam_age) == (age > 0.0)
+        assert found.breaking.max() == (age == 0.0)
+    assert history.whitecaps(4.0 + 18.1).foam_age.max() == 0.0  # nothing is left of it
+
+
+def test_the_age_of_what_drifts_between_samples_is_of_one_birth() -> None:
+    """Two births side by side, of 0 s and of 3 s, half a sample on: no mean of their ages is seen."""
+
+    def compression_at(time: Fraction) -> np.ndarray:
+        compression = np.zeros((8, 8))
+        compression[2, 2], compression[2, 3] = 10.0 * (time == 0), 10.0 * (time == 3)
+        return compression
+
+    model = FoamModel(threshold=1.0, half_life=20.0, drift=(0.1, 0.0), spacing=1.0)
+    found = FoamHistory(model, compression_at, 8).whitecaps(5.0)
+    assert np.count_nonzero(found.foam) == 3
+    np.testing.assert_allclose(found.foam_age[found.foam > 0.0], [5.0, 2.0, 2.0], atol=1e-6)
+    finer = FoamHistory(model, compression_at, 32).whitecaps(5.0)
+    ages = np.unique(finer.foam_age)
+    np.testing.assert_allclose(ages, [0.0, 2.0, 5.0], atol=1e-6)
+    assert np.count_nonzero(finer.foam) > 16
+
+
+@pytest.mark.parametrize("half_life", [0.0, 0.5])
+def test_foam_is_the_largest_of_all_births_in_reach(half_life: float) -> None:
+    """Against a list of all that was ever born, without drift; off the lattice of times too."""
+    sea = SEA.replace(foam=Foam(drift=0.0, half_life=half_life, coverage=3.0))
+    ocean = Ocean(sea)
+    threshold = ocean.foam_model.threshold
+    for time in (5.0, 5.07):
+        births = {time, *(np.arange(math.floor(8 * time) + 1) / 8)} if half_life else {time}
+        strength = {}
+        for then in births:
+            x = np.clip((ocean.surface(then, {"cusp"}).cusp.astype(float) / threshold - 1.0) * 4.0, 0.0, 1.0)
+            strength[then] = x * x * (3.0 - 2.0 * x)
+        left = {
+            then: c * (2.0 ** (-(time - then) / half_life) if half_life else 1.0)
+            for then, c in strength.items()
+        }
+        expected = np.max(list(left.values()), axis=0)
+        expected[expected < 2.0**-9] = 0.0
+        age = time - np.array(list(left))[np.argmax(list(left.values()), axis=0)]
+        found = ocean.surface(time, {"foam", "breaking", "foam_age"})
+        np.testing.assert_allclose(found.foam, expected, atol=1e-5)
+        np.testing.assert_allclose(
+            found.breaking, np.where(strength[time] < 2.0**-9, 0.0, strength[time]), atol=1e-5
+        )
+        breaks = found.breaking > 0.0
+        assert 0.01 < np.mean(breaks) < 0.5
+        assert not np.any(found.foam_age[breaks | (found.foam == 0.0)])
+        old = (found.foam > 0.0) & ~breaks
+        np.testing.assert_allclose(found.foam_age[old], age[old], atol=1e-5)
+        assert np.any(old) == (half_life > 0.0)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"foam": Foam(resolution=32, coverage=5.0)},
+        {"foam": Foam(half_life=0.0)},
+        {"loop_duration": Fraction(3)},
+    ],
+    ids=["plain", "coarser", "no half-life", "loop"],
+)
+@pytest.mark.parametrize("precision", ["single", "double"])
+def test_what_breaks_is_part_of_the_foam_and_new(changes: dict, precision: str) -> None:
+    ocean = Ocean(SEA.replace(**changes), precision)
+    for on in (TILE, Area(150.0, 40, (20.0, -70.0))):
+        found = ocean.surface(2.3, {"foam", "breaking", "foam_age"}, on=on)
+        assert np.any(found.breaking > 0.5)
+        assert np.all((found.breaking >= 0.0) & (found.breaking <= found.foam) & (found.foam <= 1.0))
+        assert not np.any(found.foam_age[(found.breaking > 0.0) | (found.foam == 0.0)])
+        old = (found.breaking == 0.0) & (found.foam > 0.0)
+        assert np.all(
+            (found.foam_age[old] > 0.0) & (found.foam_age[old] <= 9.0 * ocean.parameters.foam.half_life + 0.2)
+        )
+
+
 def test_foam_without_a_half_life_stays_where_it_is_born() -> None:
     history = one_birth(FoamModel(threshold=1.0, half_life=0.0, drift=(1.0, 0.0), spacing=1.0))
-    assert history.foam(0.0)[5, 7] == 1.0
-    assert history.foam(0.1).max() == 0.0
+    assert history.whitecaps(0.0).foam[5, 7] == 1.0
+    assert history.whitecaps(0.1).foam.max() == 0.0
     ocean = Ocean(SEA.replace(foam=Foam(half_life=0.0)))
     fields = ocean.surface(3.0, {"foam", "cusp"})
     born = fields.foam > 0.0

@@ -11,7 +11,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, Timing
+from ocean_tweak.core import Ocean, OceanParameters, Timing, WaveLayer
 from ocean_tweak.core.synthesis.channels import MAPS
 from ocean_tweak.export import files
 from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, silenced, write_image
@@ -123,12 +123,14 @@ def test_damaged_and_foreign_files_are_named(tmp_path: Path, image: np.ndarray) 
 
 
 def test_maps_hold_what_they_say(tmp_path: Path) -> None:
-    parameters = OceanParameters(resolution=32, domain_size=100.0)
+    parameters = OceanParameters(resolution=32, domain_size=100.0, layers=(WaveLayer(wind_speed=20.0),))
     sink = ExrSequence(tmp_path, "sea", parameters, "ZIP", tuple(MAPS))
     fields = Ocean(parameters).frame(30, sink.outputs)
     paths = sink.write(30, fields)
+    assert fields.breaking.max() > 0.1
+    assert fields.foam_age.max() > 1.0
     assert [path.name for path in paths] == [
-        f"sea_{name}.0030.exr" for name in ("disp", "foam", "normal", "vel", "slope", "strain")
+        f"sea_{name}.0030.exr" for name in ("disp", "foam", "normal", "vel", "slope", "strain", "foam_age")
     ]
     images = {name: read_image(sink.path(30, name)) for name in MAPS}
     np.testing.assert_array_equal(images["disp"][0], fields.displacement)
@@ -136,12 +138,15 @@ def test_maps_hold_what_they_say(tmp_path: Path) -> None:
     np.testing.assert_array_equal(images["vel"][0], fields.velocity)
     np.testing.assert_array_equal(images["foam"][0][..., 0], fields.foam)
     np.testing.assert_array_equal(images["foam"][0][..., 1], fields.cusp)
-    assert not np.any(images["foam"][0][..., 2])
+    np.testing.assert_array_equal(images["foam"][0][..., 2], fields.breaking)
+    np.testing.assert_array_equal(images["foam_age"][0][..., 0], fields.foam_age)
+    assert not np.any(images["foam_age"][0][..., 1:])
     np.testing.assert_array_equal(images["slope"][0][..., :2], fields.slope)
     assert not np.any(images["slope"][0][..., 2])
     np.testing.assert_array_equal(images["strain"][0], fields.strain)
     assert {name: metadata["unit"] for name, (_, metadata) in images.items()} == {
-        "disp": "m", "foam": "1", "normal": "1", "vel": "m/s", "slope": "1", "strain": "1"
+        "disp": "m", "foam": "1", "normal": "1", "vel": "m/s", "slope": "1", "strain": "1",
+        "foam_age": "s",
     }  # fmt: skip
     assert images["vel"][1]["map"] == "vel"
 

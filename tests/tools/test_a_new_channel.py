@@ -144,8 +144,9 @@ def test_it_is_an_attribute_of_the_mesh(found, speeds):
 def test_it_stands_behind_the_others_by_whose_order_files_know_them(found):
     """Flags in .blend files are counted, and fingerprints of bakes list their maps."""
     attributes, baked = found["choices"]
-    assert attributes == ["velocities", "normals", "foam", "cusp", "displayColor", "speed"]
-    assert baked == ["disp", "foam", "normal", "vel", "slope", "strain", "speed", "points"]
+    others = ["breaking", "foam_age", "speed"]
+    assert attributes == ["velocities", "normals", "foam", "cusp", "displayColor", *others]
+    assert baked == ["disp", "foam", "normal", "vel", "slope", "strain", "foam_age", "speed", "points"]
 
 
 def test_it_is_documented(found):

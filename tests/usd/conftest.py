@@ -25,7 +25,7 @@ SEA = {
     "resolution": SAMPLES, "domain_size": SIZE, "seed": 3, "layers": [{"wind_speed": 12.0}],
     "timing": {"fps": 25, "start_frame": 1001}, "foam": {"half_life": 0.05},  # remembers a few frames
 }  # fmt: skip
-OUTPUTS = {"displacement", "velocity", "normal", "foam", "cusp"}
+OUTPUTS = {"displacement", "velocity", "normal", "foam", "cusp", "breaking", "foam_age"}
 FORMS = ("points", "clips", "displacement")
 
 
@@ -59,6 +59,7 @@ def expected(frame: float, step: int = 1, samples: int = SAMPLES) -> SimpleNames
     return SimpleNamespace(
         flat=flat, points=flat + vertices(fields.displacement), velocities=vertices(fields.velocity),
         normals=vertices(fields.normal), foam=vertices(fields.foam), cusp=vertices(fields.cusp),
+        breaking=vertices(fields.breaking), foam_age=vertices(fields.foam_age),
         st=np.stack([column, row], axis=-1) / samples + 0.5 / SAMPLES,
     )  # fmt: skip
 

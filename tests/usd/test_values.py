@@ -34,12 +34,15 @@ def test_values_are_the_cores(exported, tmp_path, form):
         close(value(stage, f"{MESH}.normals", frame), wanted.normals)
         close(value(stage, f"{MESH}.primvars:foam", frame), wanted.foam)
         close(value(stage, f"{MESH}.primvars:cusp", frame), wanted.cusp)
+        close(value(stage, f"{MESH}.primvars:breaking", frame), wanted.breaking)
+        close(value(stage, f"{MESH}.primvars:foam_age", frame), wanted.foam_age)
         extent = value(stage, f"{MESH}.extent", frame)
         close(extent, [wanted.points.min(axis=0), wanted.points.max(axis=0)])
         points = value(stage, f"{MESH}.points", frame)
         assert np.all(points >= extent[0])
         assert np.all(points <= extent[1])
-    assert np.ptp(expected(1001).foam) > 0.01  # or the comparison would say nothing
+    for name in ("foam", "breaking", "foam_age"):  # or the comparison would say nothing
+        assert np.ptp(getattr(expected(1001), name)) > 0.01
 
 
 @pytest.mark.parametrize("form", ANIMATED)

@@ -3,24 +3,27 @@
 
 F(x, t) is the largest of 2^(-age/T)·c(x - v·age, t - age) over the present and over a fixed lattice of times
 before it: c is 1 where the compression exceeds a threshold, T the half-life, v the drift. Terms below 1/512
-are dropped, so the memory is finite and any frame can be made alone.
+are dropped, so the memory is finite and any frame can be made alone. The present's c is the crest that breaks
+now; the age of what is seen is that of the largest term.
 
-Instead of F, a grid that drifts along keeps the latest birth B = t + T·log₂c of foam at each point: F is
-2^((B - t)/T), and B of several times is their maximum, which neither rounds nor depends on the order. So a
-sequence, a chunk of it and a single frame have the same bytes.
+Instead of F, a grid that drifts along keeps the latest birth B = t + T·log₂c of foam at each point, and the
+lattice time of that birth: F is 2^((B - t)/T), and B of several times is their maximum, which neither rounds
+nor depends on the order. So a sequence, a chunk of it and a single frame have the same bytes.
 """
 
 from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numerics.interpolation import resampled
 from ..numerics.memo import MEMO
 
 RealArray = NDArray[np.floating]
@@ -72,14 +75,6 @@ class FoamModel:
         exact = Fraction(time)
         return exact if self.loop_duration is None else exact % self.loop_duration
 
-    def birth(self, compression: RealArray, time: Fraction) -> Array:
-        """B in s of the foam that is born at a time from a compression; -inf where there is none."""
-        strength = self.strength(compression)
-        result = np.full(strength.shape, -np.inf)
-        foam = strength >= FAINTEST
-        result[foam] = float(time) + self.half_life * np.log2(strength[foam])
-        return result
-
     def strength(self, compression: RealArray) -> Array:
         """c in 0…1."""
         x = np.clip((compression.astype(np.float64) / self.threshold - 1.0) / _SOFTNESS, 0.0, 1.0)
@@ -93,6 +88,62 @@ def strength_levels(count: int = 8) -> Array:
     return 1.0 + _SOFTNESS * x
 
 
+class Whitecaps(NamedTuple):
+    """Foam on samples or at places, float32 arrays of one shape, named as the channels that they are.
+
+    foam : F in 0…1, new and old foam together
+    breaking : c of the present in 0…1, nowhere more than the foam
+    foam_age : s since the birth of the foam that is seen; 0 where a crest breaks, and where there is no foam
+    """
+
+    foam: RealArray
+    breaking: RealArray
+    foam_age: RealArray
+
+
+class _Births:
+    """At each place the birth of which there is most left, by now and at any later time."""
+
+    def __init__(self, model: FoamModel, shape: tuple[int, ...], first: int) -> None:
+        """No births yet; `first` is the first lattice time of which there may be some."""
+        self._model = model
+        self._first = first
+        self._latest = np.full(shape, -np.inf)  # B, s
+        self._moments = np.zeros(shape, np.int32)  # lattice times after the first
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the births and their times."""
+        return self._latest.nbytes + self._moments.nbytes
+
+    def add(self, compression: RealArray, index: int, moved: tuple[int, ...] = (0,)) -> None:
+        """Those of a lattice time, moved by whole samples along each axis; of equal ones the later counts."""
+        model = self._model
+        found = np.nonzero(compression > model.threshold)
+        strength = model.strength(compression[found])
+        born = strength >= FAINTEST
+        places = tuple(
+            (axis[born] + by) % size for axis, by, size in zip(found, moved, compression.shape, strict=True)
+        )
+        births = float(index * model.step) + model.half_life * np.log2(strength[born])
+        newer = births >= self._latest[places]
+        places = tuple(axis[newer] for axis in places)
+        self._latest[places] = births[newer]
+        self._moments[places] = index - self._first
+
+    def left(self, now: Fraction) -> tuple[RealArray, RealArray]:
+        """F of what is left by now, and its age in s; what is remembered beyond the faintest is none."""
+        model = self._model
+        foam = np.exp2((self._latest - float(now)) / model.half_life).astype(np.float32)
+        foam[foam < FAINTEST] = 0.0
+        last = math.floor(now / model.step)
+        # counted from the present, so that it does not depend on where the history began
+        moments = (last - self._first) - self._moments
+        age = (float(now - last * model.step) + moments * float(model.step)).astype(np.float32)
+        age[foam == 0.0] = 0.0
+        return foam, age
+
+
 class FoamHistory:
     """Births of foam up to a lattice time, on the grid that drifts along.
 
@@ -100,11 +151,14 @@ class FoamHistory:
     goes on with it, and others wait.
     """
 
-    def __init__(self, model: FoamModel, compression_at: Callable[[Fraction], RealArray]) -> None:
-        """`compression_at` gives the (N, N) compression at a time."""
+    def __init__(
+        self, model: FoamModel, compression_at: Callable[[Fraction], RealArray], resolution: int
+    ) -> None:
+        """`compression_at` gives the (M, M) compression at a time; `resolution` is that of the sea, N."""
         self._model = model
         self._compression_at = compression_at
-        self._births: Array | None = None
+        self._resolution = resolution
+        self._births: _Births | None = None
         self._last = 0
         self._busy = threading.Lock()
         MEMO.watch("foam", self)
@@ -117,79 +171,117 @@ class FoamHistory:
         births = self._births
         return 0 if births is None else births.nbytes
 
-    def foam(self, time: float | Fraction) -> RealArray:
-        """(N, N) float32 F in 0…1 at a time."""
-        model = self._model
+    def whitecaps(self, time: float | Fraction) -> Whitecaps:
+        """(N, N) foam at a time."""
+        model, n = self._model, self._resolution
         now = model.reduced(time)
         with self._busy:
-            present = model.strength(self._compression_at(now)).astype(np.float32)
+            breaking = resampled(_breaking(model, self._compression_at(now)), n)
             if model.memory == 0:
-                return present
-            left = faded(self._births_until(math.floor(now / model.step)), now, model)
-        shift_y, shift_x = (-float(now) * v / model.spacing for v in model.drift[::-1])
-        result = np.maximum(_shifted(left, shift_y, shift_x), present)
-        result[result < FAINTEST] = 0.0
-        return result
+                return _seen(breaking, breaking, np.zeros_like(breaking))
+            foam, age = self._births_until(math.floor(now / model.step)).left(now)
+        for axis, drift in enumerate(reversed(model.drift)):
+            foam, age = _shifted(foam, age, axis, -float(now) * drift / model.spacing)
+        for axis in (0, 1):
+            foam, age = _stretched(foam, age, axis, n)
+        return _seen(breaking, foam, age)
 
-    def _births_until(self, index: int) -> Array:
+    def _births_until(self, index: int) -> _Births:
         first = index - self._model.memory + 1
         if self._births is None or not self._last <= index:
             self._births = None
             self._last = first - 1
         # births of lattice times that are forgotten by now fade below the faintest: they may stay
         first = max(first, self._last + 1)
+        births = self._births
         for step in range(first, index + 1):
-            born = self._born(step)
-            self._births = born if self._births is None else np.maximum(self._births, born, out=self._births)
+            compression = self._compression_at(self._model.reduced(step * self._model.step))
+            if births is None:
+                births = _Births(self._model, compression.shape, first)
+            births.add(compression, step, self._moved(step))
             self.tell(step - first + 1, index + 1 - first)
-        self._last = index
-        assert self._births is not None
-        return self._births
+        assert births is not None
+        is_new = self._births is None
+        self._births, self._last = births, index
+        if is_new:
+            MEMO.trim()
+        return births
 
-    def _born(self, index: int) -> Array:
-        """Births at a lattice time, moved by whole samples onto the drifting grid."""
-        model = self._model
-        time = index * model.step
-        rows, columns = (round(-float(time) * v / model.spacing) for v in model.drift[::-1])
-        compression = self._compression_at(model.reduced(time))
-        return np.roll(model.birth(compression, time), (rows, columns), axis=(0, 1))
+    def _moved(self, index: int) -> tuple[int, int]:
+        """Whole samples by which rows and columns of a lattice time are moved onto the drifting grid."""
+        time, spacing = float(index * self._model.step), self._model.spacing
+        x, y = (round(-time * v / spacing) for v in self._model.drift)
+        return y, x
 
 
 #: gives the compression of the sea at places in m, at a time in s
 CompressionAt = Callable[[Array, Array, Fraction], RealArray]
 
 
-def foam_at(
+def whitecaps_at(
     model: FoamModel, compression_at: CompressionAt, x: Array, y: Array, time: float | Fraction
-) -> RealArray:
-    """(places,) float32 F in 0…1 at rest positions x and y in m, without a grid that could keep births.
+) -> Whitecaps:
+    """(places,) foam at rest positions x and y in m, without a grid that could keep births.
 
     Each place looks back along its own drift: so the foam of a sum repeats with none of its patches.
     """
     now = model.reduced(time)
-    result = model.strength(compression_at(x, y, now)).astype(np.float32)
+    breaking = _breaking(model, compression_at(x, y, now))
+    if model.memory == 0:
+        return _seen(breaking, breaking, np.zeros_like(breaking))
     last = math.floor(now / model.step)
-    for index in range(last - model.memory + 1, last + 1):
+    first = last - model.memory + 1
+    births = _Births(model, x.shape, first)
+    for index in range(first, last + 1):
         then = index * model.step
         age = float(now - then)
-        compression = compression_at(x - age * model.drift[0], y - age * model.drift[1], model.reduced(then))
-        np.maximum(result, faded(model.birth(compression, then), now, model), out=result)
-    result[result < FAINTEST] = 0.0
-    return result
+        places = x - age * model.drift[0], y - age * model.drift[1]
+        births.add(compression_at(*places, model.reduced(then)), index)
+    return _seen(breaking, *births.left(now))
 
 
-def faded(births: Array, now: Fraction, model: FoamModel) -> RealArray:
-    """What is left of the foam by now; what a longer history remembers beyond the faintest is none."""
-    result = np.exp2((births - float(now)) / model.half_life).astype(np.float32)
-    result[result < FAINTEST] = 0.0
-    return result
+def _breaking(model: FoamModel, compression: RealArray) -> RealArray:
+    """c of the present, float32."""
+    strength = model.strength(compression).astype(np.float32)
+    strength[strength < FAINTEST] = 0.0
+    return strength
 
 
-def _shifted(field: RealArray, rows: float, columns: float) -> RealArray:
-    """The periodic field read at (i + rows, j + columns), bilinear."""
-    for axis, shift in ((0, rows), (1, columns)):
-        whole = math.floor(shift)
-        fraction = np.float32(shift - whole)
-        near = np.roll(field, -whole, axis=axis)
-        field = near if fraction == 0.0 else near + fraction * (np.roll(near, -1, axis=axis) - near)
-    return field
+def _seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
+    """What breaks now over what is left."""
+    foam = np.maximum(old, breaking)
+    foam[foam < FAINTEST] = 0.0
+    return Whitecaps(foam, breaking, np.where((breaking > 0.0) | (foam == 0.0), np.float32(0.0), age))
+
+
+def _shifted(foam: RealArray, age: RealArray, axis: int, shift: float) -> tuple[RealArray, RealArray]:
+    """Periodic foam and its age read `shift` samples on along an axis; see `_between`."""
+    whole = math.floor(shift)
+    share = np.float32(shift - whole)
+    near = np.roll(foam, -whole, axis), np.roll(age, -whole, axis)
+    return near if share == 0.0 else _between(near, [np.roll(field, -1, axis) for field in near], share)
+
+
+def _stretched(foam: RealArray, age: RealArray, axis: int, samples: int) -> tuple[RealArray, RealArray]:
+    """Periodic foam and its age on so many samples along an axis; see `_between`."""
+    own = foam.shape[axis]
+    if own == samples:
+        return foam, age
+    place = np.arange(samples) * (own / samples)
+    before = place.astype(np.intp)
+    share = (place - before).astype(np.float32).reshape((-1, 1) if axis == 0 else (1, -1))
+    near, far = ([np.take(field, at, axis) for field in (foam, age)] for at in (before, (before + 1) % own))
+    return _between(near, far, share)
+
+
+def _between(
+    near: Sequence[RealArray], far: Sequence[RealArray], share: RealArray | np.float32
+) -> tuple[RealArray, RealArray]:
+    """Foam between samples, linear, and the age of that of the two which gives more of it.
+
+    A mean of a new and an old birth would be the age of neither.
+    """
+    (foam, age), (other_foam, other_age) = near, far
+    other = share * other_foam
+    own = foam - share * foam
+    return own + other, np.where(other > own, other_age, age)

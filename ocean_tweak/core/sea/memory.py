@@ -109,9 +109,10 @@ def _need_in_area(
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:
-    """The field itself; births, a compression and temporaries at the foam's own resolution."""
+    """The fields themselves; births with their times, a compression and temporaries at the foam's own
+    resolution."""
     own = parameters.foam.resolution or parameters.resolution
-    return 4 * parameters.resolution**2 + 48 * own**2
+    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 56 * own**2
 
 
 def _columns(group: Iterable[str], gradient: bool) -> int:

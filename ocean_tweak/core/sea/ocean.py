@@ -14,13 +14,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..foam.model import FoamHistory, FoamModel, foam_at
+from ..foam.model import FoamHistory, FoamModel, Whitecaps, whitecaps_at
 from ..foam.threshold import Strains, foam_model, sampled_strains
-from ..numerics.interpolation import resampled
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import joined_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
-from ..synthesis.channels import CHANNELS, FOAM, OF_MEMORY, SurfaceFields, checked_outputs
+from ..synthesis.channels import CHANNELS, OF_MEMORY, SurfaceFields, checked_outputs
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .memory import check_memory, memory_need
@@ -131,16 +130,16 @@ class Ocean:
             tile, n = self._tile, self.parameters.resolution
             fields = self._arrays(wanted, (n, n), out or {})
             tile.fill(time, wanted - OF_MEMORY, fields)
-            if FOAM in wanted:
-                fields[FOAM][...] = resampled(self.foam_history.foam(time), n)
+            if wanted & OF_MEMORY:
+                _fill(fields, self.foam_history.whitecaps(time))
         else:
             x, y = on.rest_positions()
             fields = self._arrays(wanted, x.shape, out or {})
             self._anywhere.fill(x.ravel(), y.ravel(), time, wanted - OF_MEMORY, fields)
-            if FOAM in wanted:
+            if wanted & OF_MEMORY:
                 sea = self._of_foam
-                foam = foam_at(sea.foam_model, sea._anywhere.compression_at, x.ravel(), y.ravel(), time)
-                fields[FOAM][...] = foam.reshape(x.shape)
+                compression_at = sea._anywhere.compression_at
+                _fill(fields, whitecaps_at(sea.foam_model, compression_at, x.ravel(), y.ravel(), time))
         return SurfaceFields(float(time), fields)
 
     def frame(
@@ -226,7 +225,7 @@ class Ocean:
             tile.fill(time, frozenset({"cusp"}), {"cusp": cusp})
             return cusp
 
-        return FoamHistory(sea.foam_model, cusp_at)
+        return FoamHistory(sea.foam_model, cusp_at, self.parameters.resolution)
 
     @property
     def _of_foam(self) -> Ocean:
@@ -312,6 +311,12 @@ class Ocean:
         folded = fields.min_eigenvalue < _NEARLY_FOLDED
         moving = fields.velocity if with_velocity else None
         return find_points(x, y, fields.displacement, moving, self._spacing, folded), self._spacing
+
+
+def _fill(fields: Mapping[str, RealArray], made: Whitecaps) -> None:
+    """Put foam into the fields that are of it."""
+    for name in fields.keys() & OF_MEMORY:
+        fields[name][...] = getattr(made, name).reshape(fields[name].shape)
 
 
 def _check_time(time: float | Fraction) -> None:

@@ -145,7 +145,7 @@ class Channel:
 
     name : of the output; an attribute of `SurfaceFields`
     text : what it is, for readers of the documentation
-    unit : of its numbers, m or m/s where they scale with the scene's units, or 1
+    unit : of its numbers, m or m/s where they scale with the scene's units, s, or 1
     components : numbers a sample; 0 for a plain (N, N) array
     turns : SCALAR, VECTOR or TENSOR
     make : fills its rows; None where its source is another than WAVES
@@ -242,6 +242,17 @@ _ROWS = (
         "foam", "how much of the water is white, 0 to 1", "1", 0, SCALAR, None, frozenset(), source=MEMORY,
         attribute="foam", switch="use_foam", usd=UsdAttribute("primvars:foam", "FloatArray", halved=True),
     ),
+    Channel(
+        "breaking", "how strongly the crest breaks now, 0 to 1: the new part of the foam", "1", 0, SCALAR,
+        None, frozenset(), source=MEMORY, attribute="breaking", switch="use_foam",
+        usd=UsdAttribute("primvars:breaking", "FloatArray", halved=True),
+    ),
+    Channel(
+        "foam_age", "time since the foam that is seen was born, by the waves' own clock; 0 where a crest"
+        " breaks now and where there is no foam", "s", 0, SCALAR,
+        None, frozenset(), source=MEMORY, attribute="foam_age", switch="use_foam",
+        usd=UsdAttribute("primvars:foam_age", "FloatArray", halved=True),
+    ),
 )  # fmt: skip
 
 #: by name
@@ -251,11 +262,12 @@ CHANNELS: dict[str, Channel] = {row.name: row for row in _ROWS}
 #: and blue; what is left is 0
 MAPS: dict[str, tuple[str, ...]] = {
     "disp": ("displacement",),
-    "foam": ("foam", "cusp"),
+    "foam": ("foam", "cusp", "breaking"),
     "normal": ("normal",),
     "vel": ("velocity",),
     "slope": ("slope",),
     "strain": ("strain",),
+    "foam_age": ("foam_age",),
 }
 
 #: the map that moves a surface: a sequence has it in every frame
@@ -266,8 +278,6 @@ OF_WAVES = {name: channel for name, channel in CHANNELS.items() if channel.sourc
 
 #: what is made from earlier moments too, and so in the order of frames
 OF_MEMORY = frozenset(CHANNELS) - OF_WAVES.keys()
-#: the first of those, made from cusp
-FOAM = "foam"
 
 #: those of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
 ADDING = frozenset(name for name, channel in CHANNELS.items() if channel.adds)

@@ -35,7 +35,7 @@ OPTIONS = {
     "metres_per_unit": Option("Metres per Unit", "metres in a unit of the layers; 0.01 for centimetres"),
     "subframes": Option("Samples per Frame", "samples a frame, for motion blur"),
     "attributes": Option("Attributes", "what the mesh carries beside points and extent"),
-    "half": Option("Half Precision", "foam and cusp in 16 bits"),
+    "half": Option("Half Precision", "foam, cusp, breaking and foam_age in 16 bits"),
     "tiles": Option("Tiles", "patches side by side, as instances"),
     "proxy": Option("Proxy", "quads along a side of the coarse mesh for viewports; 0 for none"),
     "variants": Option(

@@ -39,7 +39,7 @@ class Package:
     up_axis : Z as in Blender, or Y: then all vectors are turned
     metres_per_unit : of the layers; 0.01 gives centimetres
     attributes : keys of ATTRIBUTES
-    half : foam and cusp in 16 bits instead of 32
+    half : foam, cusp, breaking and foam_age in 16 bits instead of 32
     tiles : patches side by side along x and y, as instances
     proxy : most quads along a side of the coarse mesh for viewports; 0 for none
     variants : resolutions to choose from, the first one by default; none for the sea's own alone
