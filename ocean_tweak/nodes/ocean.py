@@ -35,7 +35,7 @@ from .patch import EARLY_IMAGE_INPUTS, IMAGE_INPUTS, PATCH, SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
-_VERSION = 4
+_VERSION = 5
 _NAME = "Ocean Tweak"
 
 #: patches that a group can add, of whichever seas
@@ -53,6 +53,11 @@ _SEA_INPUTS = (
         "Show a warning at frames that have no file. The nearest file is held either way",
     ),
     *ABSENCE_INPUTS,
+    Plug(
+        "Displaced", "NodeSocketBool", False,
+        "A Displace modifier has moved the mesh, by the last whole frame: move it on from there",
+        hidden=True,
+    ),
     Plug("Purpose", "NodeSocketString", "", "What the extension made this modifier for", hidden=True),
 )  # fmt: skip
 
@@ -93,15 +98,21 @@ def ocean_group(patches: int = 1) -> GroupKind:
 
 
 class _Surface(NamedTuple):
-    """Fields over the mesh, and for each map whether there is one."""
+    """Fields over the mesh, and for each map whether there is one.
+
+    on_from_begun : the displacement since the last whole frame
+    is_between : whether there is any
+    """
 
     displacement: Socket
+    on_from_begun: Socket
     velocity: Socket
     normal: Socket
     foam: Socket
     cusp: Socket
     breaking: Socket
     foam_age: Socket
+    is_between: Socket
     has_velocity: Socket
     has_normal: Socket
     has_foam: Socket
@@ -138,9 +149,16 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
     offset = build.add("GeometryNodeInputNamedAttribute", {"Name": DISPLACEMENT}, data_type="FLOAT_VECTOR")
     moved = build.change("GeometryNodeSetPosition", known, {"Offset": output(offset, "Attribute")})
     moves = build.logic("OR", build.given("Move"), absent)
-    result = build.switch("GEOMETRY", moves, known, moved)
+    result = build.switch("GEOMETRY", moves, _moved_on(build, known, surface), moved)
     # nobody asks a group for its warnings unless something hangs on them
     build.finish(build.switch("GEOMETRY", surface.warns, result, result))
+
+
+def _moved_on(build: Builder, geometry: Socket, surface: _Surface) -> Socket:
+    """The geometry that Displace has moved, at a frame between two: Displace reads the one before."""
+    moved = build.change("GeometryNodeSetPosition", geometry, {"Offset": surface.on_from_begun})
+    is_behind = build.logic("AND", build.given("Displaced"), surface.is_between)
+    return build.switch("GEOMETRY", is_behind, geometry, moved)
 
 
 def _own_grid(build: Builder, geometry: Socket) -> Socket:
@@ -183,16 +201,15 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
         return {name: build.given(numbered(name, patch)) for name, *_ in names}
 
     frame = build.group(node_group(SHOWN_FRAME), given(FRAME_INPUTS))
-    read = build.group(
-        node_group(PATCH),
-        {
-            **given(IMAGE_INPUTS),
-            **given(EARLY_IMAGE_INPUTS),
-            **{name: build.given(name) for name, *_ in SCALE_INPUTS},
-            "Coordinates": coordinates,
-            "Frame": output(frame, "Frame"),
-        },
-    )
+    maps = {
+        **given(IMAGE_INPUTS),
+        **given(EARLY_IMAGE_INPUTS),
+        **{name: build.given(name) for name, *_ in SCALE_INPUTS},
+        "Coordinates": coordinates,
+    }
+    shown, begun, seconds = (output(frame, name) for name in ("Frame", "Begun Frame", "Seconds"))
+    read = build.group(node_group(PATCH), {**maps, "Frame": shown, "Seconds": seconds})
+    before = build.group(node_group(PATCH), {**maps, "Frame": begun})
     warnings = build.group(
         node_group(WARNINGS),
         {
@@ -204,12 +221,18 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
     )
     return _Surface(
         displacement=output(read, "Displacement"),
+        on_from_begun=build.vector("SUBTRACT", output(read, "Displacement"), output(before, "Displacement")),
         velocity=output(read, "Velocity"),
         normal=output(read, "Normal"),
         foam=output(read, "Foam"),
         cusp=output(read, "Cusp"),
         breaking=output(read, "Breaking"),
         foam_age=output(read, "Foam Age"),
+        is_between=build.logic(
+            "OR",
+            build.compare("NOT_EQUAL", seconds, 0.0, "FLOAT"),
+            build.compare("NOT_EQUAL", shown, begun),
+        ),
         has_velocity=output(read, "Has Velocity"),
         has_normal=output(read, "Has Normal"),
         has_foam=output(read, "Has Foam"),
@@ -227,12 +250,14 @@ def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
         is_denser = build.compare("GREATER_THAN", other.foam, total.foam, "FLOAT")
         total = _Surface(
             displacement=build.vector("ADD", total.displacement, other.displacement),
+            on_from_begun=build.vector("ADD", total.on_from_begun, other.on_from_begun),
             velocity=build.vector("ADD", total.velocity, other.velocity),
             normal=total.normal,
             foam=_either(build, total.foam, other.foam),
             cusp=build.math("ADD", total.cusp, other.cusp),
             breaking=_either(build, total.breaking, other.breaking),
             foam_age=build.switch("FLOAT", is_denser, total.foam_age, other.foam_age),
+            is_between=build.logic("OR", total.is_between, other.is_between),
             has_velocity=build.logic("OR", total.has_velocity, other.has_velocity),
             has_normal=build.logic("OR", total.has_normal, other.has_normal),
             has_foam=build.logic("OR", total.has_foam, other.has_foam),

@@ -63,6 +63,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
         *EARLY_IMAGE_INPUTS,
         Plug("Coordinates", "NodeSocketVector", None, "Texture coordinates: 0 to 1 is one patch"),
         Plug("Frame", "NodeSocketInt", 1, "File of the image sequences"),
+        Plug("Seconds", "NodeSocketFloat", 0.0, "Of the scene, for which velocity moves the water on"),
         *SCALE_INPUTS,
     )
     build = Builder(tree, inputs, _OUTPUTS)
@@ -78,10 +79,12 @@ def _build(tree: bpy.types.NodeTree) -> None:
     foam = build.add("ShaderNodeSeparateXYZ", {"Vector": texels["Foam"]})
     age = build.add("ShaderNodeSeparateXYZ", {"Vector": texels["Foam Age"]})
     unit = build.add("ShaderNodeVectorMath", {"Vector": texels["Normal"]}, operation="NORMALIZE")
+    displacement = build.scaled(texels["Displacement"], build.given("Scale"))
+    velocity = build.scaled(texels["Velocity"], build.given("Velocity Scale"))
     build.finish_with(
         {
-            "Displacement": build.scaled(texels["Displacement"], build.given("Scale")),
-            "Velocity": build.scaled(texels["Velocity"], build.given("Velocity Scale")),
+            "Displacement": moved_on(build, displacement, velocity, build.given("Seconds")),
+            "Velocity": velocity,
             "Normal": build.switch("VECTOR", has["Normal"], (0.0, 0.0, 1.0), output(unit, "Vector")),
             "Foam": output(foam, "X"),
             "Cusp": output(foam, "Y"),
@@ -90,6 +93,13 @@ def _build(tree: bpy.types.NodeTree) -> None:
             **{f"Has {name}": value for name, value in has.items()},
         }
     )
+
+
+def moved_on(build: Builder, displacement: Socket, velocity: Socket, seconds: Socket) -> Socket:
+    """The displacement some seconds later or earlier, as far as the velocity stays what it is."""
+    is_between = build.compare("NOT_EQUAL", seconds, 0.0, "FLOAT")
+    later = build.vector("ADD", displacement, build.scaled(velocity, seconds))
+    return build.switch("VECTOR", is_between, displacement, later)
 
 
 def _texel(build: Builder, image: Socket, number: Socket) -> Socket:
@@ -114,4 +124,4 @@ def _has_texels(build: Builder, image: Socket, number: Socket) -> Socket:
     return build.compare("GREATER_THAN", width, 0)
 
 
-PATCH = GroupKind("Ocean Tweak Patch", 3, _build)
+PATCH = GroupKind("Ocean Tweak Patch", 4, _build)

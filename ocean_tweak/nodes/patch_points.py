@@ -13,7 +13,7 @@ from ..core.synthesis.channels import CHANNELS
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, named_attribute, sample_index, whole_number
 from .names import DISPLACEMENT, SLOPE, SLOPE_VARIANCE, STRAIN, VELOCITY
-from .patch import SCALE_INPUTS
+from .patch import SCALE_INPUTS, moved_on
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
@@ -38,7 +38,8 @@ _NUMBERS = {
 
 def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, INPUTS)
-    points = _read(build)
+    frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
+    points = _read(build, output(frame, "Frame"))
     count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
     along = whole_number(build, alone(build, "SQRT", count, "ShaderNodeMath"), "ROUND")
     columns = build.integer("ADD", along, 1)
@@ -55,12 +56,14 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
     place = told(output(build.add("GeometryNodeInputPosition"), "Position"))
     moved = build.vector("SUBTRACT", place, _at_rest(build, near_column, near_row, along))
+    values = {
+        name: told(combined(build, *(_number(build, each) for each in _NUMBERS[name]))) for name in _NUMBERS
+    }
+    values[VELOCITY] = build.scaled(values[VELOCITY], build.given("Velocity Scale"))
     scaled = build.scaled(moved, build.given("Scale"))
-    grid = build.store(line, DISPLACEMENT, scaled, "FLOAT_VECTOR")
-    for name, numbers in _NUMBERS.items():
-        value = told(combined(build, *(_number(build, number) for number in numbers)))
-        if name == VELOCITY:
-            value = build.scaled(value, build.given("Velocity Scale"))
+    values[DISPLACEMENT] = moved_on(build, scaled, values[VELOCITY], output(frame, "Seconds"))
+    grid = line
+    for name, value in values.items():
         grid = build.store(grid, name, value, "FLOAT_VECTOR")
     rest = build.scaled(_at_rest(build, column, row, along), build.given("Scale"))
     displacement = output(named_attribute(build, DISPLACEMENT, "FLOAT_VECTOR"), "Attribute")
@@ -68,13 +71,12 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish(build.change("GeometryNodeSetPosition", grid, {"Position": position}))
 
 
-def _read(build: Builder) -> Socket:
-    """The points of the frame that is shown."""
-    frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
+def _read(build: Builder, frame: Socket) -> Socket:
+    """The points of a frame."""
     is_window = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
     files = build.switch("STRING", is_window, *(build.given(name) for name in FILES))
     path = build.add("FunctionNodeFormatString", {"Format": "{files}{frame:04}.ply"})
-    for kind, name, value in (("STRING", "files", files), ("INT", "frame", output(frame, "Frame"))):
+    for kind, name, value in (("STRING", "files", files), ("INT", "frame", frame)):
         path.format_items.new(kind, name)
         build.tree.links.new(value, path.inputs[name])
     return output(build.add("GeometryNodeImportPLY", {"Path": output(path, "String")}), "Mesh")
@@ -94,4 +96,4 @@ def _at_rest(build: Builder, column: Socket, row: Socket, along: Socket) -> Sock
     return combined(build, x, y)
 
 
-PATCH_POINTS = GroupKind("Ocean Tweak Patch Points", 1, _build)
+PATCH_POINTS = GroupKind("Ocean Tweak Patch Points", 2, _build)

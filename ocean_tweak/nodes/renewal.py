@@ -13,11 +13,12 @@ from .modifier_inputs import all_inputs, input_sockets, set_inputs
 from .versioned import GroupKind, check_not_newer, is_stale, node_group
 
 
-def renew_groups(kinds: Iterable[GroupKind]) -> None:
+def renew_groups(kinds: Iterable[GroupKind]) -> bool:
     """Put the present version of each group in the place of an older, on modifiers and inside other groups.
 
     A file with newer groups stays as it is: whoever shows its oceans says so. Inputs and links keep what they
     have by their names, where the type of the socket is still the same; new inputs get their defaults.
+    Returns whether there was any.
     """
     kinds = tuple(kinds)
     own = [group for group in bpy.data.node_groups if group.library is None]
@@ -25,10 +26,10 @@ def renew_groups(kinds: Iterable[GroupKind]) -> None:
         for kind in kinds:
             check_not_newer(own, kind)
     except NewerFormatError:
-        return
+        return False
     stale = {group: kind for group in own for kind in kinds if is_stale(group, kind)}
     if not stale:
-        return
+        return False
     for item in bpy.data.objects:
         for modifier in item.modifiers if item.library is None else ():
             if modifier.type == "NODES" and modifier.node_group in stale:
@@ -39,6 +40,7 @@ def renew_groups(kinds: Iterable[GroupKind]) -> None:
             _renew_node(tree, node, node_group(stale[node.node_tree]))
     for group in [group for group in stale if group.users == 0]:
         bpy.data.node_groups.remove(group)
+    return True
 
 
 def _renew_modifier(modifier: bpy.types.NodesModifier, group: bpy.types.NodeTree) -> None:

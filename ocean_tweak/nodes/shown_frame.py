@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A node group for the file of an image sequence that the scene's frame shows."""
+"""A node group for the file of an image sequence that the scene's frame shows.
+
+It is the nearest one. Between two, as motion blur looks at them, the water of the nearest one is moved by its
+velocity for as long as its frame is away: then it swims smoothly while every file is of a whole frame.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ from collections.abc import Sequence
 import bpy
 
 from .building import Builder, Plug, Socket, output
+from .fields import alone, whole_number
 from .versioned import GroupKind
 
 #: name, socket type, default, description
@@ -26,31 +31,57 @@ FRAME_INPUTS = (
         "200",
         hidden=True,
     ),
+    Plug(
+        "Seconds per File", "NodeSocketFloat", 0.0,
+        "Of the scene, from one file to the next: for so long velocity moves the water at frames between. "
+        "0 lets it stand",
+        hidden=True,
+    ),
 )  # fmt: skip
 
-# Of a file: a product of two float32 may lie below the whole number that it stands for
+# Of a file: a product of two float32 may lie beside the whole number that it stands for
 _TOLERANCE = 1.0 / 128.0
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
     outputs = (
         Plug("Frame", "NodeSocketInt", None, "The file that is shown: in a gap the last one before it"),
-        Plug("Scene Frame", "NodeSocketInt", None, "The file that belongs to the scene's time"),
+        Plug("Scene Frame", "NodeSocketInt", None, "The file that is nearest to the scene's time"),
         Plug("Is Held", "NodeSocketBool", None, "Whether the two differ"),
+        Plug("Seconds", "NodeSocketFloat", None, "Of the scene, since the file's moment; below 0 before it"),
+        Plug("Begun Frame", "NodeSocketInt", None, "The last file at or before the scene's time"),
     )
     build = Builder(tree, FRAME_INPUTS, outputs)
     time = build.add("GeometryNodeInputSceneTime")
     # Blender's scene time is stretched already
     file = build.math("MULTIPLY", output(time, "Frame"), build.given("Files per Frame"))
-    near = build.math("ADD", file, _TOLERANCE)
-    floor = build.add("FunctionNodeFloatToInt", {"Float": near}, rounding_mode="FLOOR")
-    whole = output(floor, "Integer")
-    # beyond the ends the image node gives zero without a word
-    begun = build.integer("MAXIMUM", whole, build.given("First Frame"))
-    ended = build.integer("MINIMUM", begun, build.given("Last Frame"))
-    held = build.integer("SUBTRACT", ended, _frames_back(build, ended))
-    is_held = build.compare("NOT_EQUAL", held, whole)
-    build.finish_with({"Frame": held, "Scene Frame": whole, "Is Held": is_held})
+    whole = _whole(build, file, 0.5 + _TOLERANCE)
+    limited = _limited(build, whole)
+    held = build.integer("SUBTRACT", limited, _frames_back(build, limited))
+    since = build.math("SUBTRACT", file, whole)
+    is_between = build.compare(
+        "GREATER_THAN", alone(build, "ABSOLUTE", since, "ShaderNodeMath"), _TOLERANCE, "FLOAT"
+    )
+    seconds = build.math("MULTIPLY", since, build.given("Seconds per File"))
+    build.finish_with(
+        {
+            "Frame": held,
+            "Scene Frame": whole,
+            "Is Held": build.compare("NOT_EQUAL", held, whole),
+            "Seconds": build.switch("FLOAT", is_between, 0.0, seconds),
+            "Begun Frame": _limited(build, _whole(build, file, _TOLERANCE)),
+        }
+    )
+
+
+def _whole(build: Builder, file: Socket, more: float) -> Socket:
+    return whole_number(build, build.math("ADD", file, more), "FLOOR")
+
+
+def _limited(build: Builder, frame: Socket) -> Socket:
+    """The frame, or the end of the sequence: beyond it the image node gives zero without a word."""
+    begun = build.integer("MAXIMUM", frame, build.given("First Frame"))
+    return build.integer("MINIMUM", begun, build.given("Last Frame"))
 
 
 def _frames_back(build: Builder, frame: Socket) -> Socket:
@@ -64,9 +95,11 @@ def _frames_back(build: Builder, frame: Socket) -> Socket:
     return build.integer("MAXIMUM", output(found, "First Found"), 0)
 
 
-def frame_values(frames: Sequence[int], files_per_frame: float = 1.0) -> dict[str, object]:
+def frame_values(
+    frames: Sequence[int], files_per_frame: float = 1.0, seconds_per_file: float = 0.0
+) -> dict[str, object]:
     """What FRAME_INPUTS are given for a sequence of ascending frames."""
-    values = (frames[0], frames[-1], baked_text(frames), files_per_frame)
+    values = (frames[0], frames[-1], baked_text(frames), files_per_frame, seconds_per_file)
     return {plug.name: value for plug, value in zip(FRAME_INPUTS, values, strict=True)}
 
 
@@ -78,4 +111,4 @@ def baked_text(frames: Sequence[int]) -> str:
     return "".join("1" if frame in present else "0" for frame in range(last, frames[0] - 1, -1))
 
 
-SHOWN_FRAME = GroupKind("Ocean Tweak Frame", 2, _build)
+SHOWN_FRAME = GroupKind("Ocean Tweak Frame", 3, _build)

@@ -20,8 +20,8 @@ from ..export.exr import ExrError, read_image
 from . import evaluation
 from .animated import shown_settings
 from .floating import FloatError, Ride
-from .image_sequence import SequenceError, file_of, shown_frame
-from .plan import plan_for
+from .image_sequence import SequenceError, file_of, shown_frame, since_shown
+from .plan import Plan, plan_for, seconds_per_file, velocity_scale
 from .settings import OceanSettings, is_ocean
 from .stored_paths import image_file
 
@@ -71,7 +71,7 @@ def water_at(
     if settings.source == "LIVE":
         displacement = evaluation.surfaces_of(plan.parameters).ocean.surface(plan.time).displacement
     else:
-        displacement = _baked(settings, scene, frame)
+        displacement = _baked(settings, plan, scene, frame)
     return Water(displacement, plan.parameters.domain_size / len(displacement))
 
 
@@ -113,14 +113,20 @@ def _world_normal(ocean: Matrix, normal: Vector) -> Vector:
     return turned.normalized()
 
 
-def _baked(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> RealArray:
-    """(N, N, 3) of the file that this frame shows."""
+def _baked(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, frame: int) -> RealArray:
+    """(N, N, 3) in m of the file that this frame shows, moved on by velocity where it shows none exactly."""
     image = settings.sequence_maps.disp
     if image is None:
         raise SequenceError("No image sequence is chosen: choose a baked one, or go back to live")
-    path = file_of(settings, shown_frame(settings, scene, frame)) or image_file(image)
+    shown, since = shown_frame(settings, scene, frame), since_shown(settings, scene, frame)
+    moving = file_of(settings, shown, "vel") if since else None
     try:
-        return read_image(path)[0]
+        displacement = read_image(file_of(settings, shown) or image_file(image))[0]
+        if moving is None:
+            return displacement
+        seconds = float(since) * seconds_per_file(settings, scene)
+        factor = seconds * velocity_scale(settings, plan, scene) / plan.scale
+        return displacement + np.float32(factor) * read_image(moving)[0]
     except ExrError as error:
         raise FloatError(str(error)) from error
 

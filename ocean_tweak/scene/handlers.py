@@ -138,6 +138,8 @@ def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     for item in oceans_in(scene):
         show(item, scene, Wanted.BAKE)
         bake_state.warn(item)
+        if text := needs.sharp_under_blur(item, scene):
+            alarm.warned(item, "blur", text)
 
 
 @persistent
@@ -185,11 +187,12 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     _subscribe()
     stored_values.mend_all()
     show_that_it_runs()
-    renew_groups(ALL_KINDS)
+    # what a bake's groups of another version were not told
+    baked = Wanted.NOTES | Wanted.SURFACE | Wanted.PATCHES if renew_groups(ALL_KINDS) else Wanted.NOTES
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
     for item, scene in shown_oceans().items():
-        show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else Wanted.NOTES)
+        show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
 
 
 @persistent

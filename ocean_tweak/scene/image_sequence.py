@@ -169,6 +169,14 @@ def shown_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> 
     return held_frame(baked_frames(settings), _wanted_frame(settings, scene, frame))
 
 
+def since_shown(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> Fraction:
+    """How far behind the moment of its files a frame of the scene is, in files, from -½ to ½.
+
+    0 unless Time Stretching changed since the bake; velocity moves the water on from there.
+    """
+    return _moment(settings, scene, frame) - _wanted_frame(settings, scene, frame)
+
+
 def unbaked_frames(settings: OceanSettings, scene: bpy.types.Scene, frames: Iterable[int]) -> tuple[int, ...]:
     """Those of some frames of the scene that an ocean's sequence has not; none of a live ocean."""
     if settings.source != "SEQUENCE":
@@ -178,8 +186,13 @@ def unbaked_frames(settings: OceanSettings, scene: bpy.types.Scene, frames: Iter
 
 
 def _wanted_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> int:
-    """The frame of the bake at a frame of the scene: the same one, unless Time Stretching changed since."""
-    return math.floor(frame * baked_stretch(settings) / time_stretch(scene))
+    """The frame of the bake nearest to one of the scene: the same, unless Time Stretching changed since."""
+    return math.floor(_moment(settings, scene, frame) + Fraction(1, 2))
+
+
+def _moment(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> Fraction:
+    """A frame of the scene as one of the bake, whole or not."""
+    return frame * baked_stretch(settings) / time_stretch(scene)
 
 
 # asked on every frame; a long list takes milliseconds. What a .blend file says may be anything
@@ -200,10 +213,10 @@ def _stored_stretch(text: str) -> Fraction:
         return Fraction(1)
 
 
-def file_of(settings: OceanSettings, frame: int) -> Path | None:
-    """The file that moves an ocean at a frame of its sequence, there or not; None without a sequence."""
+def file_of(settings: OceanSettings, frame: int, map_name: str = MOVING_MAP) -> Path | None:
+    """The file of a map at a frame of an ocean's sequence, there or not; None where it has no such map."""
     maps = settings.early_maps if frame < 0 else settings.sequence_maps
-    return _file_at(maps.disp, frame)
+    return _file_at(getattr(maps, map_name), frame)
 
 
 def folder_of(settings: OceanSettings) -> Path | None:

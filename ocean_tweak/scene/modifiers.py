@@ -53,6 +53,7 @@ class Shown:
     warn : whether frames without a file get a warning
     early_images : by map, of a sequence's frames before 0
     files_per_frame : files of a sequence in a frame of the animation
+    seconds_per_file : of the scene, from one file to the next; 0 for live images
     """
 
     images: Images | None
@@ -65,6 +66,7 @@ class Shown:
     warn: bool
     early_images: Images | None = None
     files_per_frame: float = 1.0
+    seconds_per_file: float = 0.0
 
     @property
     def render_is_alike(self) -> bool:
@@ -155,10 +157,11 @@ def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> 
         values = {"Samples": shown.render_grid.samples, "Live": shown.frames is None}
         _set_group(made["GRID"], {**grid, **values})
     _set_texture(made["VIEW"], textures.view, shown.images, shown)
-    _set_group(made["MAPS"], {**_sea_inputs(shown), "Move": False})
+    behind = {"Move": False, "Displaced": True}
+    _set_group(made["MAPS"], {**_sea_inputs(shown), **behind})
     if "RENDER" in made:
         _set_texture(made["RENDER"], textures.render, shown.render_images, shown)
-        _set_group(made["MAPS_RENDER"], {**_render_inputs(shown), "Move": False})
+        _set_group(made["MAPS_RENDER"], {**_render_inputs(shown), **behind})
     item.update_tag()
 
 
@@ -179,7 +182,7 @@ def _sea_inputs(shown: Shown) -> dict[str, Any]:
         "Warn Out of Range": shown.warn,
         "Domain Size": shown.grid.size,
         "Resolution": shown.grid.samples,
-        **frame_values(frames, shown.files_per_frame),
+        **frame_values(frames, shown.files_per_frame, shown.seconds_per_file),
         **_image_inputs(shown.images),
         **_early_image_inputs(shown.early_images),
     }

@@ -110,6 +110,17 @@ def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:
     return bool(_seen.of) and (len(bpy.data.objects) != _seen.objects or any(map(_concerns, updates)))
 
 
+def sharp_under_blur(ocean: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """What to say of a bake whose water motion blur leaves sharp: no velocity moves it. "" of others."""
+    settings = settings_of(ocean)
+    has_velocity = any(maps.vel is not None for maps in (settings.sequence_maps, settings.early_maps))
+    if settings.source != "SEQUENCE" or not scene.render.use_motion_blur or has_velocity:
+        return ""
+    if patch_objects.shot_maps(ocean):  # points, which have it, show the sea
+        return ""
+    return "Motion blur is on, but the bake has no velocity: its water stays sharp. Bake it with Velocity on"
+
+
 def forget_all() -> None:
     """Another file is opened, or the extension is disabled."""
     _seen.of.clear()

@@ -21,7 +21,7 @@ from ..nodes.versioned import is_of_kind, node_group
 from .bake_state import told_by
 from .image_sequence import baked_frames, baked_stretch
 from .modifiers import is_of_library, set_changed
-from .plan import Plan, velocity_scale
+from .plan import Plan, seconds_per_file, velocity_scale
 from .settings import OceanSettings
 from .stored_paths import image_file, relative
 
@@ -37,7 +37,8 @@ class Points:
     name : that the files begin with
     parameters : of the sea that was baked
     frames : those that have files, ascending
-    files_per_frame : of the scene
+    files_per_frame : of the animation
+    seconds_per_file : of the scene
     scale : Blender units in a metre
     velocity_scale : Blender units per second in a metre per second
     """
@@ -47,6 +48,7 @@ class Points:
     parameters: OceanParameters
     frames: tuple[int, ...]
     files_per_frame: float
+    seconds_per_file: float
     scale: float
     velocity_scale: float
 
@@ -63,6 +65,7 @@ def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Po
     return Points(
         folder, name, parameters, baked_frames(settings),
         files_per_frame=float(baked_stretch(settings)),
+        seconds_per_file=seconds_per_file(settings, scene),
         scale=plan.scale,
         velocity_scale=velocity_scale(settings, plan, scene),
     )  # fmt: skip
@@ -86,7 +89,7 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
         {
             FILES[0]: points.folder + files_start(points.name, POINTS, number),
             FILES[1]: points.folder + files_start(points.name, in_window, number),
-            **frame_values(points.frames, points.files_per_frame),
+            **frame_values(points.frames, points.files_per_frame, points.seconds_per_file),
             "Domain Size": part.parameters.domain_size,
             "Resolution": samples,
             "Scale": points.scale,

@@ -146,6 +146,11 @@ def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) 
     return float(played * frame_rate(scene) / Fraction(settings.sequence_fps) / plan.metres)
 
 
+def seconds_per_file(settings: OceanSettings, scene: bpy.types.Scene) -> float:
+    """Seconds of the scene from one file of a sequence to the next."""
+    return float(time_stretch(scene) / baked_stretch(settings) / frame_rate(scene))
+
+
 def _check(grid: Grid) -> None:
     memory, need = usable_memory(), grid.vertices * _VERTEX_BYTES
     if memory is not None and need > memory:

@@ -29,7 +29,7 @@ from . import (
 from .grid_mesh import Grid
 from .image_sequence import SequenceError
 from .modifiers import Images, Shown, Textures, set_changed
-from .plan import Plan, plan_for, velocity_scale
+from .plan import Plan, plan_for, seconds_per_file, velocity_scale
 from .settings import OceanObjectError, OceanSettings, settings_of
 from .vertex_attributes import Fields, resampled, tiled
 
@@ -302,6 +302,7 @@ def _refresh_baked(
             warn=settings.out_of_range == "WARN",
             early_images=early_images,
             files_per_frame=float(image_sequence.baked_stretch(settings)),
+            seconds_per_file=seconds_per_file(settings, scene),
         ),
     )
 

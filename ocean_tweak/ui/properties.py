@@ -99,8 +99,8 @@ _SWITCHES = {
     ),
     "use_velocity": BoolProperty(
         name="Velocity", default=True, **_SHOWN,
-        description="Write the attribute velocity from which Cycles makes motion blur, the only one of baked "
-        "files. Costs as much as the displacement",
+        description="Write the attribute velocity, from which Cycles makes motion blur, and by which baked "
+        "water moves between frames in any engine. Costs as much as the displacement",
     ),
 }  # fmt: skip
 

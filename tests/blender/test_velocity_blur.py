@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion blur from the attribute `velocity` is what an open shutter sees."""
+"""Motion blur from the attribute `velocity` is what an open shutter sees, in EEVEE too of a bake."""
+
+from functools import partial
 
 import bpy
 import numpy as np
 import pytest
 
+from .conftest import SAMPLES
 from .surfaces import ALL_MAPS
 
 PIXELS = 128
@@ -13,6 +16,8 @@ WIDTH = 25.0  # of what is seen, m
 FRAME = 3
 SHUTTER = 0.8  # frames
 MOMENTS = 16
+EEVEE_NAMES = ("BLENDER_EEVEE_NEXT", "BLENDER_EEVEE")  # of 4.5 and 5.x
+DOT = 0.5  # of a dot on the water, its radius, m
 WAYS = (("NODES", "LIVE"), ("NODES", "SEQUENCE"), ("DISPLACE", "LIVE"), ("DISPLACE", "SEQUENCE"))
 
 
@@ -45,22 +50,38 @@ def render(empty_scene, tmp_path):
     return pixels
 
 
-def stripes():
-    """A material that shines in soft stripes, 2 m apart, which stay with the water."""
-    material = bpy.data.materials.new("Stripes")
+def shining(pattern):
+    """A material that shines with a pattern, which stays with the water: (nodes, links, st) → a socket."""
+    material = bpy.data.materials.new("Pattern")
     if bpy.app.version < (5, 0):
         material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     coordinates = nodes.new("ShaderNodeAttribute")
     coordinates.attribute_name = "st"
-    wave = nodes.new("ShaderNodeTexWave")
-    wave.inputs["Scale"].default_value = 94.0
     shine, out = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeOutputMaterial")
-    links.new(coordinates.outputs["Vector"], wave.inputs["Vector"])
-    links.new(wave.outputs["Color"], shine.inputs["Color"])
+    links.new(pattern(nodes, links, coordinates.outputs["Vector"]), shine.inputs["Strength"])
     links.new(shine.outputs["Emission"], out.inputs["Surface"])
     return material
+
+
+def stripes(nodes, links, st):
+    """Soft ones, 2 m apart."""
+    wave = nodes.new("ShaderNodeTexWave")
+    wave.inputs["Scale"].default_value = 94.0
+    links.new(st, wave.inputs["Vector"])
+    return wave.outputs["Color"]
+
+
+def dot(nodes, links, st, sample):
+    """One on a sample (row, column)."""
+    away, small = nodes.new("ShaderNodeVectorMath"), nodes.new("ShaderNodeMath")
+    away.operation, small.operation = "DISTANCE", "LESS_THAN"
+    away.inputs[1].default_value = ((sample[1] + 0.5) / SAMPLES, (sample[0] + 0.5) / SAMPLES, 0.0)
+    small.inputs[1].default_value = DOT / DOMAIN
+    links.new(st, away.inputs[0])
+    links.new(away.outputs["Value"], small.inputs[0])
+    return small.outputs[0]
 
 
 def test_blur_is_the_average_of_the_moments(ocean_object, core, bake, make_parameters, empty_scene, render):
@@ -70,7 +91,7 @@ def test_blur_is_the_average_of_the_moments(ocean_object, core, bake, make_param
         fps=1, domain_size=DOMAIN, layers=(layer,), foam=core.Foam(coverage=0.0), start_frame=1
     )
     empty_scene.render.fps = 1
-    material = stripes()
+    material = shining(stripes)
 
     def add(method, source):
         sequence = bake(parameters, FRAME - 1, FRAME + 1, maps=ALL_MAPS) if source == "SEQUENCE" else None
@@ -88,6 +109,48 @@ def test_blur_is_the_average_of_the_moments(ocean_object, core, bake, make_param
         item = add(method, source)
         assert rms(render(blur=True, samples=64) - seen) < 0.25 * without, (method, source)
         bpy.data.objects.remove(item)
+
+
+def test_a_dot_on_baked_water_is_as_long_a_streak_in_either_engine(
+    ocean_object, core, bake, make_parameters, empty_scene, render
+):
+    """It is as long as the water goes by its velocity while the shutter is open."""
+    layer = core.WaveLayer(wind_speed=20.0, fetch=300e3)
+    parameters = make_parameters(
+        fps=1, domain_size=DOMAIN, layers=(layer,), foam=core.Foam(coverage=0.0), start_frame=1
+    )
+    empty_scene.render.fps = 1
+    sequence = bake(parameters, FRAME - 1, FRAME + 1, maps=ALL_MAPS)
+    item = ocean_object.add(empty_scene, parameters, "NODES", "SEQUENCE", sequence)
+    fields = core.Ocean(parameters).frame(FRAME, {"displacement", "velocity"})
+    speed = np.hypot(fields.velocity[..., 0], fields.velocity[..., 1])
+    sample = np.unravel_index(speed.argmax(), speed.shape)
+    wanted = SHUTTER * speed[sample]
+    item.data.materials.append(shining(partial(dot, sample=sample)))
+    empty_scene.camera.location.xy = (
+        np.array(sample[::-1]) * DOMAIN / SAMPLES + fields.displacement[sample][:2]
+    )
+    assert wanted > 4.0 * DOT
+    lengths = {}
+    for engine in ("CYCLES", *EEVEE_NAMES):
+        try:
+            empty_scene.render.engine = engine
+        except TypeError:  # of another version
+            continue
+        empty_scene.eevee.motion_blur_steps = 4
+        sharp, blurred = render(samples=16), render(blur=True, samples=64)
+        lengths[engine] = np.sqrt(12.0 * (variance(blurred) - variance(sharp)))
+    assert len(lengths) == 2
+    for engine, length in lengths.items():
+        assert length == pytest.approx(wanted, rel=0.1), engine
+
+
+def variance(brightness):
+    """Mean square distance of the light from its middle, m²; of a line of length L it is L²/12."""
+    share = brightness / brightness.sum()
+    place = np.stack(np.mgrid[:PIXELS, :PIXELS], axis=-1) * (WIDTH / PIXELS)
+    middle = np.einsum("ij,ijk->k", share, place)
+    return float(np.sum(share * np.sum((place - middle) ** 2, axis=-1)))
 
 
 def rms(difference):

@@ -13,6 +13,7 @@ from ...core.spectral.spectra import wind_at_10_m
 from ...core.statistics import sea_scales
 from ...scene import alarm, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
+from ...scene.needs import sharp_under_blur
 from ...scene.refresh import sea_of_settings
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
@@ -247,6 +248,8 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
     over = None if sea is None else beyond_budget(sea)
     if over is not None:
         warnings.append(over)
+    if text := sharp_under_blur(item, scene):
+        warnings.append(text)
     if settings.bake_is_elsewhere:
         warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
     return warnings
