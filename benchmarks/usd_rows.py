@@ -16,7 +16,7 @@ import numpy as np
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.data.frames import Frame
 from ocean_tweak.core.parameters.shot import Shot
-from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.sea.bake import ShotSeas
 from ocean_tweak.core.synthesis.channels import SurfaceFields
 from ocean_tweak.export.usd.attributes import mesh_values, outputs_of
 from ocean_tweak.export.usd.export import Export
@@ -70,7 +70,7 @@ def _times(plan: Plan, folder: Path) -> Iterator[Row]:
 
 
 def _parts(package: Package, folder: Path) -> dict[str, Callable[[], object]]:
-    surfaces, outputs = ShotSurfaces(package.shot), outputs_of(package.attributes)
+    surfaces, outputs = ShotSeas(package.shot), outputs_of(package.attributes)
     fields = surfaces.frame(package.frames[0], outputs)
 
     def compute() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of seas seen from above, side by side. Wants Pillow."""
+"""Images of seas seen from above, side by side. Wants Pillow."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _DEEP, _BRIGHT = np.array([8.0, 38.0, 60.0]), np.array([190.0, 220.0, 228.0])
 
 
 def shaded(normal: NDArray[np.floating]) -> NDArray[np.uint8]:
-    """A picture (N, N, 3) of the sea from above, lit from one side; its first row is the top."""
+    """An image (N, N, 3) of the sea from above, lit from one side; its first row is the top."""
     light = np.clip((normal @ (_LIGHT / np.linalg.norm(_LIGHT)) - 0.45) / 0.55, 0.0, 1.0)[..., np.newaxis]
     return np.asarray(_DEEP + light * (_BRIGHT - _DEEP), np.uint8)[::-1]
 
 
-def save_side_by_side(pictures: Sequence[NDArray[np.uint8]], path: Path, quality: int) -> None:
-    """Write pictures (rows, columns, 3) of one height as a JPEG, with white between them."""
-    gap = np.full((len(pictures[0]), _GAP, 3), 255, np.uint8)
-    parts = [part for picture in pictures for part in (gap, picture)][1:]
+def save_side_by_side(images: Sequence[NDArray[np.uint8]], path: Path, quality: int) -> None:
+    """Write images (rows, columns, 3) of one height as a JPEG, with white between them."""
+    gap = np.full((len(images[0]), _GAP, 3), 255, np.uint8)
+    parts = [part for image in images for part in (gap, image)][1:]
     Image.fromarray(np.concatenate(parts, axis=1)).save(path, quality=quality)
     print(f"written: {path}, {path.stat().st_size / 1024:.0f} kB")

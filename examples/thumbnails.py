@@ -55,7 +55,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
 
 def build(extension, parameters) -> None:
     """A new file with the preset's sea, its sky and a camera."""
-    core, stage = extension.module("core"), extension.module("scene.stage")
+    core, stage = extension.module("core"), extension.module("scene.surroundings")
     moods = extension.module("scene.moods")
     bpy.ops.wm.read_homefile(use_empty=True)
     scene = bpy.context.scene

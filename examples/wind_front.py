@@ -52,7 +52,7 @@ def parameters() -> OceanParameters:
         layers=(
             WaveLayer(wind_speed=4.0, wind_direction=-0.5, fetch=40e3, spreading="HASSELMANN"),
             WindFieldLayer(
-                keys=tuple(keys), start_time=-4.0, calm=3.0, columns=12, rows=20, jitter=0.7,
+                keys=tuple(keys), start_time=-4.0, minimum_wind_speed=3.0, columns=12, rows=20, jitter=0.7,
                 phase_jitter=0.2, particles=7, split_angle=0.1, life=4.0, steepness=0.09,
             ),
         ),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from ..core.data.errors import ParameterError
 from ..core.data.frames import Frame, parse_frames
-from ..core.sea.on import Area
 from ..core.sea.patch_plan import Wish
+from ..core.sea.regions import Area
 from ..export.cache.job import UID
 from ..export.frame_files import BAKED
 from ..export.places import path_of

@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
     for name, of_sea in parameters.items():
         _foretell(name, of_sea)
-    results = {name: Ocean(of_sea.apart).statistics() for name, of_sea in parameters.items()}
+    results = {name: Ocean(of_sea.separate).statistics() for name, of_sea in parameters.items()}
     if arguments.save is not None:
         _save(arguments.save, seas)
     if arguments.json:
@@ -131,10 +131,11 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         f"  {_peak(parameters, statistics)}sea state {state}, {sea_scales.SEA_STATE_NAMES[state].lower()}",
     ]
     lines += _patch_rows(statistics)
-    if parameters.joined:
-        apart = parameters.domain_size / parameters.joined
+    if parameters.merged_resolution:
+        apart = parameters.domain_size / parameters.merged_resolution
         lines.append(
-            f"  joined on {parameters.joined}² samples, {apart:.3g} m apart: waves from {2.0 * apart:.3g} m"
+            f"  merged on {parameters.merged_resolution}² samples, {apart:.3g} m apart: "
+            f"waves from {2.0 * apart:.3g} m"
         )
     if parameters.is_masked:
         lines.append("  masks lie over some of these waves; all numbers are without them")

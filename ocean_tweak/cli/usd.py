@@ -14,11 +14,11 @@ from ..core.data.frames import Frame, format_frames
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import readable_bytes
 from ..core.parameters.shot import Shot
-from ..core.sea.on import Area
+from ..core.sea.regions import Area
 from ..export.cache.folders import read_job
 from ..export.cache.records import recorded_frames
-from ..export.usd.apart import problems_of
 from ..export.usd.export import Export
+from ..export.usd.isolated import problems_of
 from ..export.usd.package import Package, asset_name, with_samples_between
 from .outcome import DONE, FAILED, UsageError, shell_word
 from .progress import Progress

@@ -5,11 +5,11 @@ from .data.raster import Raster
 from .parameters.ocean_parameters import (
     Foam,
     HeroWave,
+    ImageLayer,
     Mask,
     OceanParameters,
     ParameterError,
     Patch,
-    PictureLayer,
     Timing,
     Water,
     WaveLayer,
@@ -17,19 +17,19 @@ from .parameters.ocean_parameters import (
     WindKey,
 )
 from .sea.ocean import Ocean
-from .sea.on import Area, Places, Tile
+from .sea.regions import Area, Places, Tile
 from .statistics.sea_state_match import layer_for_sea_state
 
 __all__ = [
     "Area",
     "Foam",
     "HeroWave",
+    "ImageLayer",
     "Mask",
     "Ocean",
     "OceanParameters",
     "ParameterError",
     "Patch",
-    "PictureLayer",
     "Places",
     "Raster",
     "Tile",

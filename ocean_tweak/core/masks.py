@@ -41,8 +41,10 @@ class Mask(Validated):
     y: float = number(
         0.0, -1e6, 1e6, "m", "Distance: the place from which it is measured", "far outside of any domain"
     )
-    near: float = number(50.0, 0.0, 1e6, "m", "Distance up to which the weight is 0", "any domain")
-    far: float = number(150.0, 1e-3, 1e6, "m", "Distance from which on the weight is 1", "any domain")
+    inner_radius: float = number(50.0, 0.0, 1e6, "m", "Distance up to which the weight is 0", "any domain")
+    outer_radius: float = number(
+        150.0, 1e-3, 1e6, "m", "Distance from which on the weight is 1", "any domain"
+    )
     inverted: bool = switch(False, "Exchange 0 and 1: waves near the place, or where the image is dark")
 
     def __post_init__(self) -> None:
@@ -51,8 +53,10 @@ class Mask(Validated):
         super().__post_init__()
         if self.source == "IMAGE" and self.image is None:
             raise ParameterError("image", None, "give an image, whose brightness is the weight")
-        if self.source == "DISTANCE" and self.near >= self.far:
-            raise ParameterError("near", self.near, f"must be below far = {self.far:g} m")
+        if self.source == "DISTANCE" and self.inner_radius >= self.outer_radius:
+            raise ParameterError(
+                "inner_radius", self.inner_radius, f"must be below outer_radius = {self.outer_radius:g} m"
+            )
 
 
 class Weights(NamedTuple):
@@ -122,8 +126,8 @@ def _by_distance(mask: Mask, domain_size: float, x: Array, y: Array) -> Weights:
         (p - at + 0.5 * domain_size) % domain_size - 0.5 * domain_size for p, at in ((x, mask.x), (y, mask.y))
     )
     distance = np.hypot(dx, dy)
-    part = np.clip((distance - mask.near) / (mask.far - mask.near), 0.0, 1.0)
-    rate = 6.0 * part * (1.0 - part) / (mask.far - mask.near) / np.maximum(distance, 1e-12)
+    part = np.clip((distance - mask.inner_radius) / (mask.outer_radius - mask.inner_radius), 0.0, 1.0)
+    rate = 6.0 * part * (1.0 - part) / (mask.outer_radius - mask.inner_radius) / np.maximum(distance, 1e-12)
     return Weights(part * part * (3.0 - 2.0 * part), rate * dx, rate * dy)
 
 

@@ -26,7 +26,7 @@ from ..core.data.frames import Frame
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import printable
 from ..core.parameters.ocean_parameters import OceanParameters, Patch
-from ..core.sea.on import Area
+from ..core.sea.regions import Area
 from ..core.synthesis.channels import MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
 from .files import open_file, whole_file
 from .frame_files import frame_file
@@ -165,7 +165,7 @@ class ExrSequence:
             "time": fields.time,
             "domain_size": self.domain_size,
             "compression": self.compression,
-            "parameters": self.parameters.to_dict(brief=True),
+            "parameters": {"format": formats.SEA, **self.parameters.to_dict(brief=True)},
         }
         if self.area is not None:
             metadata["area"] = self.area.to_dict()

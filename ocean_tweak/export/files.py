@@ -18,7 +18,7 @@ from typing import BinaryIO
 #: ending of what is not whole yet
 PART = ".part"
 
-#: bytes of a JSON file: far more than any sea has with its pictures
+#: bytes of a JSON file: far more than any sea has with its images
 LARGEST_JSON = 64_000_000
 
 #: s for which a file is replaced again and again: on Windows that fails while somebody reads the old one

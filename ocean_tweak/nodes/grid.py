@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import bpy
 
-from .absence import ABSENCE
 from .building import Builder, Plug, Socket, output
+from .extension_check import ABSENCE
 from .names import TEXTURE_COORDINATES
 from .versioned import GroupKind, node_group
 

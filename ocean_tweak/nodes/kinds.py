@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from . import (
-    absence,
     averaged,
     averages,
     camera_grid,
     camera_patch,
     camera_surface,
+    extension_check,
     floating,
     frame_warnings,
     grid,
@@ -24,7 +24,7 @@ from . import (
 )
 
 ALL_KINDS = (
-    absence.ABSENCE,
+    extension_check.ABSENCE,
     grid.GRID,
     shown_frame.SHOWN_FRAME,
     patch.PATCH,

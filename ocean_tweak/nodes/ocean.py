@@ -24,9 +24,9 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from .absence import ABSENCE
-from .absence import INPUTS as ABSENCE_INPUTS
 from .building import Builder, Panel, Plug, Socket, output
+from .extension_check import ABSENCE
+from .extension_check import INPUTS as ABSENCE_INPUTS
 from .frame_warnings import WARNINGS
 from .grid import GRID
 from .grid import INPUTS as GRID_INPUTS

@@ -19,7 +19,7 @@ from ..core.parameters.shot import OCEAN_TIME, Moment, Shot
 from ..export.cache.folders import JOB_FILE, read_job
 from ..export.cache.job import CacheError
 from ..export.exr import ExrError, read_header
-from . import alarm
+from . import failures
 from .animated import clock_of, is_animated
 from .cache_place import is_left_behind
 from .image_sequence import SequenceError, baked_frames, file_of, folder_of, shown_frame, unbaked_frames
@@ -52,12 +52,12 @@ def parameters_of(path: Path, frame: int) -> OceanParameters:
     except ParameterError:
         if not has_brief_rasters(told):
             raise
-    # images name their pictures and winds, which stand in the job beside them
+    # images name their images and winds, which stand in the job beside them
     try:
         parameters = read_job(path.parent).shot.at(frame).parameters
     except (CacheError, ParameterError) as error:
         raise SequenceError(
-            f"{path} names the pictures or winds of its sea, but does not hold them, and the bake's job does "
+            f"{path} names the images or winds of its sea, but does not hold them, and the bake's job does "
             f"not either ({error}): switch off Use Its Parameters"
         ) from None
     if parameters.to_dict(brief=True) != modern(told):
@@ -161,7 +161,7 @@ def warn(item: bpy.types.Object) -> None:
     if settings.bake_differs:
         found = [Difference(*entry) for entry in json.loads(settings.bake_differs)]
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-        alarm.warned(
+        failures.warned(
             item, "bake",
             f"not the settings, but the bake in {folder_of(settings)} is shown: {found[0].path} is "
             f"{found[0].own} and was {found[0].baked}{more}",

@@ -11,7 +11,7 @@ from ..nodes.camera_grid import finest_spacing
 from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
-from . import needs, patch_objects, water_material
+from . import patch_objects, portability, water_material
 from .plan import camera_surface_of
 from .refresh import Wanted, refresh
 from .settings import OceanObjectError, is_ocean, settings_of
@@ -87,7 +87,7 @@ def remove_camera_surface(ocean: bpy.types.Object) -> None:
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
     patch_objects.remove(ocean)
-    needs.look_at(ocean)
+    portability.look_at(ocean)
     _make_room(ocean, is_there=False)
 
 

@@ -208,7 +208,7 @@ def statistics_of(parameters: OceanParameters) -> str:
 def computed_statistics(parameters: OceanParameters) -> str:
     """The sea's statistics as JSON, computed; touches no data of Blender and may run on any thread."""
     # of all waves, also those too short for the one grid that shows their sum
-    return json.dumps(Ocean(parameters.apart).statistics().to_dict())
+    return json.dumps(Ocean(parameters.separate).statistics().to_dict())
 
 
 def keep_statistics(parameters: OceanParameters, statistics: str) -> None:
@@ -218,4 +218,4 @@ def keep_statistics(parameters: OceanParameters, statistics: str) -> None:
 
 def _statistical(parameters: OceanParameters) -> OceanParameters:
     """What statistics depend on: heights, not what is done with them."""
-    return parameters.replace(choppiness=0.0, trough_damping=0.0, orbits="DEEP")
+    return parameters.replace(choppiness=0.0, trough_damping=0.0, orbital_motion="DEEP")

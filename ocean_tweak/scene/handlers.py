@@ -14,18 +14,19 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..core.numerics.memo import MEMO
-from ..nodes.absence import show_that_it_ends, show_that_it_runs
+from ..nodes.extension_check import show_that_it_ends, show_that_it_runs
 from ..nodes.kinds import ALL_KINDS
-from ..nodes.renewal import renew_groups
+from ..nodes.upgrades import upgrade_groups
 from . import (
-    alarm,
     bake_state,
     cache_place,
     command_process,
+    failures,
+    former_settings,
     live_image,
-    needs,
     ocean_object,
     patch_objects,
+    portability,
     refinement,
     refresh,
     source_images,
@@ -60,7 +61,7 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
         try:
             handler(scene, depsgraph)
         except Exception:
-            alarm.fail_render()
+            failures.fail_render()
             raise
 
     return run
@@ -134,7 +135,7 @@ def look_after_save(_path: object = None, _unused: object = None) -> None:
 @persistent
 def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """The console hears all again that is wrong with a shot."""
-    alarm.render_begins()
+    failures.render_begins()
     for item in oceans_in(scene):
         show(item, scene, Wanted.BAKE)
         bake_state.warn(item)
@@ -145,7 +146,7 @@ def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
 @persistent
 def end_render(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """A background render that failed ends here."""
-    alarm.render_ends()
+    failures.render_ends()
 
 
 @persistent
@@ -160,13 +161,13 @@ def end_without_modifier(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 @persistent
 def look_around(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Notice objects that go with an ocean, and oceans that are gone."""
-    if depsgraph is not None and needs.is_outdated(depsgraph.updates):
+    if depsgraph is not None and portability.is_outdated(depsgraph.updates):
         _look_around()
 
 
 def _look_around() -> None:
-    needs.look()
-    alarm.keep_only(all_oceans())
+    portability.look()
+    failures.keep_only(all_oceans())
 
 
 def _end_those_without_modifier(items: Iterable[bpy.types.Object]) -> None:
@@ -185,10 +186,11 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     command_process.stop_all()
     _forget_all()
     _subscribe()
+    former_settings.take_over()
     stored_values.mend_all()
     show_that_it_runs()
     # what a bake's groups of another version were not told
-    baked = Wanted.NOTES | Wanted.SURFACE | Wanted.PATCHES if renew_groups(ALL_KINDS) else Wanted.NOTES
+    baked = Wanted.NOTES | Wanted.SURFACE | Wanted.PATCHES if upgrade_groups(ALL_KINDS) else Wanted.NOTES
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
     for item, scene in shown_oceans().items():
@@ -217,6 +219,7 @@ def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
 
     Their node groups do not know yet that the extension runs.
     """
+    former_settings.take_over()
     stored_values.mend_all()
     stored_paths.follow_import(imported)
     show_that_it_runs()
@@ -324,10 +327,10 @@ def _has_file() -> bool:
 
 
 def _forget_all() -> None:
-    alarm.forget_all()
+    failures.forget_all()
     refinement.forget_all()
     refresh.forget_all()
-    needs.forget_all()
+    portability.forget_all()
     MEMO.drop()
     live_image.forget_all()
     source_images.forget_all()

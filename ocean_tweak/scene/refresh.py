@@ -13,17 +13,17 @@ from ..core import OceanParameters, ParameterError
 from ..core.data.frames import format_frames
 from ..core.synthesis.channels import CHANNELS, MOVING_MAP, channels_of, image_of
 from . import (
-    alarm,
     bake_state,
     evaluation,
+    failures,
     grid_mesh,
     image_sequence,
     live_image,
     modifiers,
-    needs,
     ownership,
     patch_objects,
     patch_points,
+    portability,
     vertex_attributes,
 )
 from .grid_mesh import Grid
@@ -126,9 +126,9 @@ def refresh(
                 _seas.pop(item.session_uid, None)
             bake_state.check(item, scene, shown)
         if Wanted.NEIGHBOURS in wanted:
-            needs.look_at(item)
+            portability.look_at(item)
         if wanted & (Wanted.SURFACE | Wanted.FILES):
-            alarm.follow(item)
+            failures.follow(item)
     return missing
 
 
@@ -156,7 +156,7 @@ def _refresh_sea(
         _write_render(settings, plan)
     if Wanted.SURFACE in wanted:
         set_changed(settings, error="", **({} if text is None else {"statistics": text}))
-        alarm.is_well(item)
+        failures.is_well(item)
     return missing
 
 
@@ -192,16 +192,16 @@ def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     settings, file = settings_of(item), None
     if settings.source == "SEQUENCE":
         if settings.sequence_maps.disp is None:
-            alarm.missed(item, _NO_SEQUENCE)
+            failures.missed(item, _NO_SEQUENCE)
         present, frames = scene.frame_current, image_sequence.baked_frames(settings)
         frame = image_sequence.shown_frame(settings, scene, present)
         file = image_sequence.missing_file(settings, frame)
         if file is not None:
             set_changed(settings, missing_file=str(file))
-            alarm.missed(item, alarm.missing_text(settings))
+            failures.missed(item, failures.missing_text(settings))
         elif settings.out_of_range == "WARN" and image_sequence.unbaked_frames(settings, scene, (present,)):
             folder = image_sequence.folder_of(settings)
-            alarm.warned(
+            failures.warned(
                 item, "frames",
                 f"this frame was not baked, {frame} is held; {folder} has {format_frames(frames)}",
             )  # fmt: skip
@@ -228,7 +228,7 @@ def tell(item: bpy.types.Object, error: BaseException) -> None:
     text = str(error) or "Not enough memory for this resolution"
     _seas.pop(item.session_uid, None)
     set_changed(settings_of(item), error=text, statistics="")
-    alarm.refused(item, text)
+    failures.refused(item, text)
 
 
 def _refresh_live(

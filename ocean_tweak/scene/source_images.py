@@ -3,7 +3,7 @@
 
 An image's numbers are taken as they are in its file: whole numbers as shares of the largest of their kind,
 decimals as decimals. Row 0 is the bottom row in both. EXR images are read here as they are outside Blender:
-its own reader takes what is stored of one for the whole picture, and no other channels than R, G, B.
+its own reader takes what is stored of one for the whole image, and no other channels than R, G, B.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 from ..core import ParameterError, Raster
 from ..core.data.raster import LARGEST_SIDE
 from ..core.numerics.memo import MEMO, remembered
-from ..export.pictures import exr_pictures, read_picture, tiff
-from ..export.pictures.checks import UnusableError, opened
-from ..export.pictures.reading import raster_in
+from ..export.images import exr_images, read_raster, tiff
+from ..export.images.checks import UnusableError, opened
+from ..export.images.reading import raster_in
 from .live_image import mark_as_data
 from .stored_paths import image_file, relative
 
@@ -101,8 +101,8 @@ def has_named_channels(image: bpy.types.Image) -> bool:
 def channel_names(image: bpy.types.Image) -> tuple[str, ...]:
     """The channels that its file has; none for other files than EXR images."""
     with _opened_file(image) as stream, contextlib.suppress(UnusableError):
-        if stream is not None and exr_pictures.is_exr(stream):
-            return exr_pictures.channel_names(stream)
+        if stream is not None and exr_images.is_exr(stream):
+            return exr_images.channel_names(stream)
     return ()
 
 
@@ -153,7 +153,7 @@ def open_image(path: Path, channels: int, names: str = "", axes: str = "") -> Ra
     Raises ParameterError, naming the file.
     """
     if path.suffix.lower() == ".npy" or names or axes:
-        return read_picture(path, channels, names, axes)
+        return read_raster(path, channels, names, axes)
     try:
         image = bpy.data.images.load(relative(path), check_existing=True)
     except RuntimeError:
@@ -192,7 +192,7 @@ def made_layer(kind: type, values: tuple[tuple[str, Hashable], ...]) -> object:
 
 def _likeness(image: bpy.types.Image) -> Hashable:
     if image.source not in _SINGLE:
-        raise ParameterError("image", image.name, "must be a single picture, not a movie, sequence or tiles")
+        raise ParameterError("image", image.name, "must be a single image, not a movie, sequence or tiles")
     space = image.colorspace_settings
     return *image.size, image.source, image.filepath, image.is_float, space.name, space.is_data
 
@@ -225,7 +225,7 @@ def _saved_raster(image: bpy.types.Image, channels: int, names: str) -> Raster:
     """Of an image without unsaved changes: by its file where Blender would give other numbers."""
     with _opened_file(image) as stream:
         try:
-            if stream is not None and exr_pictures.is_exr(stream):
+            if stream is not None and exr_images.is_exr(stream):
                 return raster_in(stream, image.name, channels, names)
             if stream is not None and tiff.is_tiff(stream):
                 tiff.number_kind(stream)
@@ -240,8 +240,8 @@ def _painted_raster(image: bpy.types.Image, texels: NDArray[np.float32], channel
     """Of an image with unsaved changes: as Blender has it, but where its file says that this lies."""
     with _opened_file(image) as stream:
         try:
-            if stream is not None and exr_pictures.is_exr(stream):
-                texels = exr_pictures.in_picture(stream, texels)
+            if stream is not None and exr_images.is_exr(stream):
+                texels = exr_images.in_image(stream, texels)
         except UnusableError as error:
             raise _refused(image, str(error)) from None
     return _raster(texels, image.name, channels, names)
@@ -284,7 +284,7 @@ def _raster(texels: NDArray[np.float32], name: str, channels: int, names: str) -
 def _new_image(raster: Raster) -> bpy.types.Image:
     rows, columns, channels = raster.shape
     image = bpy.data.images.new(
-        raster.name or "Picture", columns, rows, alpha=False, float_buffer=True, is_data=True
+        raster.name or "Image", columns, rows, alpha=False, float_buffer=True, is_data=True
     )
     mark_as_data(image)
     texels = np.zeros((rows, columns, 4), np.float32)

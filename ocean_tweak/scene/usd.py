@@ -14,8 +14,8 @@ import bpy
 
 from ..core.data.frames import Frame, format_frames
 from ..core.parameters.shot import Shot
-from ..export.usd.apart import read_package
 from ..export.usd.attributes import ATTRIBUTES
+from ..export.usd.isolated import read_package
 from ..export.usd.options import OPTIONS, command_arguments
 from . import ocean_object, stored_paths
 from .cache_place import bake_name, shown_bake

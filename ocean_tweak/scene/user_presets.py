@@ -55,14 +55,14 @@ def read_preset(path: Path) -> Preset:
 def save(preset: Preset, replace: bool = False) -> str:
     """Keep a preset in the user's folder; returns its key.
 
-    Raises ParameterError where the title is taken and `replace` is off, and for pictures that are too large
+    Raises ParameterError where the title is taken and `replace` is off, and for images that are too large
     for a preset, OSError for what the disk refuses.
     """
     key, text = _key(preset.title), preset.to_json()
     if len(text) > LARGEST:
         raise ParameterError(
             "title", preset.title,
-            f"its pictures make it larger than the {LARGEST // 1000} kB of a preset: export the parameters",
+            f"its images make it larger than the {LARGEST // 1000} kB of a preset: export the parameters",
         )  # fmt: skip
     path = path_of(key)
     if path.exists() and not replace:

@@ -104,7 +104,7 @@ def _finest(parameters: OceanParameters) -> dict[str, float]:
         return {}
     last = parameters.patches[-1]
     spacing = max(last.spacing, 0.5 * last.shortest_wavelength)
-    return {SPACING: spacing, SLOPES: unresolved_slope_variance(parameters.apart)}
+    return {SPACING: spacing, SLOPES: unresolved_slope_variance(parameters.separate)}
 
 
 def _metres(item: bpy.types.Object, scene: bpy.types.Scene | None) -> float:

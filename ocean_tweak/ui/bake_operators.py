@@ -13,14 +13,14 @@ from ..export.cache.locks import Held
 from ..scene import bake_process, bake_versions, cache_place, ocean_object
 from ..scene.bake_process import BakeProcess
 from ..scene.image_sequence import find_sequence
-from ..scene.needs import needs_of
+from ..scene.portability import needs_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from .active_ocean import OfActiveOcean, refuse
-from .beside_window import BesideWindow, StopsProcess
+from .background_operator import BackgroundOperator, StopsProcess
 
 
-class OCEAN_OT_bake(BesideWindow, bpy.types.Operator):
+class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
     """Bake the active ocean over the scene's frames."""
 
     bl_idname = "ocean.bake"

@@ -7,7 +7,7 @@ from bpy.props import IntProperty
 
 from ..core import ParameterError
 from ..scene.camera_surface import add_camera_surface, remove_camera_surface
-from ..scene.needs import neighbours_of
+from ..scene.portability import neighbours_of
 from ..scene.settings import OceanObjectError
 from .active_ocean import OfActiveOcean, refuse
 

@@ -12,7 +12,7 @@ from ..scene import floating
 from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
-from ..scene.needs import has_ocean
+from ..scene.portability import has_ocean
 from ..scene.settings import OceanObjectError, is_ocean
 from .active_ocean import refuse
 

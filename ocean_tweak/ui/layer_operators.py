@@ -53,7 +53,7 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
     """Add a layer."""
 
     bl_idname = "ocean.layer_add"
-    bl_description = "Add a layer: a swell from another direction, a wind field, a picture, a hero wave"
+    bl_description = "Add a layer: a swell from another direction, a wind field, an image, a hero wave"
     bl_label = "Add Layer"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -189,7 +189,7 @@ class OCEAN_MT_layer_add(bpy.types.Menu):
 
     bl_idname = "OCEAN_MT_layer_add"
     bl_label = "Add Layer"
-    bl_description = "Add a layer: a swell from another direction, a wind field, a picture, a hero wave"
+    bl_description = "Add a layer: a swell from another direction, a wind field, an image, a hero wave"
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw an entry a kind; wind fields have several to begin with."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The layers of an ocean as properties: waves by a spectrum, of a wind field, out of a picture, by hand.
+"""The layers of an ocean as properties: waves by a spectrum, of a wind field, out of an image, by hand.
 
 They stand in one list, so that the number of a layer is its number in the parameters and in the paths of
 keys. The settings of a kind follow from the fields of its parameters.
@@ -21,9 +21,9 @@ from bpy.props import (
 )
 
 from ..core import (
+    ImageLayer,
     OceanParameters,
     ParameterError,
-    PictureLayer,
     WaveLayer,
     WindFieldLayer,
     WindKey,
@@ -65,7 +65,7 @@ def _set_fetch_in_km(layer: bpy.types.PropertyGroup, value: float) -> None:
 
 
 #: properties of kinds besides those of their parameters: of a wind field where its wind comes from, with the
-#: recorded keys as JSON and what tells them from others, of a picture its image
+#: recorded keys as JSON and what tells them from others, of an image its image
 _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
     "WIND_FIELD": {
         "source": EnumProperty(
@@ -100,9 +100,9 @@ _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
     },
     "IMAGE": {
         "image": PointerProperty(
-            name="Picture", type=bpy.types.Image, **_SHOWN,
-            description="Picture whose trace the waves bear; without one, white noise. "
-            "It covers one patch, of a colour picture the luminance",
+            name="Image", type=bpy.types.Image, **_SHOWN,
+            description="Image whose trace the waves bear; without one, white noise. "
+            "It covers one patch, of a colour image the luminance",
         ),
         "image_channels": channels_property(),
     },
@@ -170,7 +170,7 @@ def first_waves(layers: bpy.types.bpy_prop_collection) -> bpy.types.PropertyGrou
 
 
 def read(layers: bpy.types.bpy_prop_collection, metres: Fraction) -> list[Any]:
-    """The layers as the parameters have them, not yet validated but for pictures and winds.
+    """The layers as the parameters have them, not yet validated but for images and winds.
 
     Raises ParameterError for an image that cannot be used.
     """
@@ -225,11 +225,11 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
             mask_properties.write(item.group.mask, layer.mask, metres, known_images)
         if isinstance(layer, WindFieldLayer):
             _write_wind(item.wind_field, layer, known_winds, known_images)
-        elif isinstance(layer, PictureLayer):
-            if layer.picture is None:
-                item.picture.image = None
+        elif isinstance(layer, ImageLayer):
+            if layer.image is None:
+                item.image_waves.image = None
             else:
-                _choose_image(item.picture, layer.picture, known_images)
+                _choose_image(item.image_waves, layer.image, known_images)
 
 
 def set_recording(group: bpy.types.PropertyGroup, keys: tuple[WindKey, ...]) -> None:
@@ -247,13 +247,13 @@ def set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
         layers.add()
 
 
-def _picture(group: bpy.types.PropertyGroup) -> dict[str, Any]:
+def _image(group: bpy.types.PropertyGroup) -> dict[str, Any]:
     source = source_images.source_of(group)
-    return {} if source is None else {"picture": source_images.raster_of(source, 1)}
+    return {} if source is None else {"image": source_images.raster_of(source, 1)}
 
 
 #: what kinds with rasters read besides their parameters
-_RASTERS = {"IMAGE": _picture, "WIND_FIELD": lambda group: {"keys": _keys(group)}}
+_RASTERS = {"IMAGE": _image, "WIND_FIELD": lambda group: {"keys": _keys(group)}}
 
 
 def _keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:

@@ -36,7 +36,7 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
         """Read, or change nothing."""
         group = self._mask(context)
         if group is None:
-            return refuse(self, "The active layer has no mask: choose waves, a picture or a wind field")
+            return refuse(self, "The active layer has no mask: choose waves, an image or a wind field")
         try:
             seen = weights_seen(
                 context.active_object, group.mesh, group.vertex_group, context.scene, self.samples

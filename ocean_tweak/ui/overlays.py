@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..core import WindFieldLayer
 from ..core.waves.wind_field.wind import bilinear
-from ..scene import alarm
+from ..scene import failures
 from ..scene.animated import clock_of
 from ..scene.refresh import sea_of_settings
 from ..scene.settings import is_ocean, settings_of
@@ -96,15 +96,15 @@ def wind_now(
     """(places, 2) the layer's wind in m/s at places in m: of the keys around the time alone."""
     if not layer.keys:
         direction = np.array([np.cos(layer.wind_direction), np.sin(layer.wind_direction)])
-        return np.tile(layer.strength * layer.wind_speed * direction, (len(x), 1))
+        return np.tile(layer.wind_scale * layer.wind_speed * direction, (len(x), 1))
     times = np.array([key.time for key in layer.keys])
     after = int(np.clip(np.searchsorted(times, time), 1, max(len(times) - 1, 1)))
     near = layer.rasters[after - 1 : after + 1]
     values = [bilinear(raster, x, y, size) for raster in near]
     if len(near) == 1:
-        return layer.strength * values[0]
+        return layer.wind_scale * values[0]
     share = float(np.clip((time - times[after - 1]) / (times[after] - times[after - 1]), 0.0, 1.0))
-    return layer.strength * ((1.0 - share) * values[0] + share * values[1])
+    return layer.wind_scale * ((1.0 - share) * values[0] + share * values[1])
 
 
 def _draw_wind() -> None:
@@ -134,7 +134,7 @@ def _draw_wind() -> None:
 def trouble_lines(width: float) -> list[str]:
     """What is written, wrapped to a width in pixels at a scale of 1."""
     letters = max(int((width - 2.0 * _MARGIN) / (_LETTER * _SIZE)), 20)
-    return [line for text in alarm.troubles() for line in textwrap.wrap(text, letters)]
+    return [line for text in failures.troubles() for line in textwrap.wrap(text, letters)]
 
 
 def _draw_troubles() -> None:

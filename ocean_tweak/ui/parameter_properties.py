@@ -141,7 +141,7 @@ def _exact_values(group: bpy.types.PropertyGroup) -> dict[str, Any]:
 
 
 def _is_text(field: _Field) -> bool:
-    """Whether its value stands in JSON as it is; pictures are images instead, nested parameters groups."""
+    """Whether its value stands in JSON as it is; images are images instead, nested parameters groups."""
     return "nested" not in field.metadata and field.metadata.get("kind") is not Raster
 
 

@@ -16,7 +16,7 @@ from ..core import OceanParameters
 from ..scene import user_presets
 from ..scene.refinement import has_window, redraw_views
 from ..scene.settings import is_ocean, settings_of
-from .spectrum_picture import SIZE, spectrum_picture
+from .spectrum_plot import SIZE, spectrum_plot
 
 _THUMBNAILS = Path(__file__).parent / "thumbnails"
 _SPECTRUM = "spectrum"
@@ -59,7 +59,7 @@ class Previews:
         if self._drawn != shown:
             picture = self.collection[_SPECTRUM]
             picture.image_size = (SIZE, SIZE)
-            picture.image_pixels_float.foreach_set(np.ascontiguousarray(spectrum_picture(shown)).reshape(-1))
+            picture.image_pixels_float.foreach_set(np.ascontiguousarray(spectrum_plot(shown)).reshape(-1))
             self._drawn = shown
             redraw_views()
 
@@ -90,8 +90,8 @@ def _spectral(parameters: OceanParameters) -> OceanParameters:
     """What the picture depends on: a seed or a choppiness gives no other one."""
     default = OceanParameters()
     return parameters.replace(
-        seed=0, choppiness=1.0, trough_damping=0.0, orbits="DEEP", foam=default.foam, loop_duration=None,
-        amplitudes=default.amplitudes, match_height=False, timing=default.timing,
+        seed=0, choppiness=1.0, trough_damping=0.0, orbital_motion="DEEP", foam=default.foam,
+        loop_duration=None, amplitudes=default.amplitudes, match_height=False, timing=default.timing,
     )  # fmt: skip
 
 

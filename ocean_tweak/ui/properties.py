@@ -41,8 +41,8 @@ from .usd_properties import OCEAN_PG_usd
 
 # frame rate and time stretching are the scene's
 _FROM_SCENE = ("fps", "stretch")
-# patches are always joined, on the samples that are rendered
-_FROM_RESOLUTION = ("joined",)
+# patches are always merged, on the samples that are rendered
+_FROM_RESOLUTION = ("merged_resolution",)
 
 
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
@@ -225,7 +225,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["patches"] = patch_properties.read(self.patches, metres)
         if self.patches:  # the first of them tells the tile
             del data["resolution"], data["domain_size"]
-        data["joined"] = self.resolution if self.patches else 0
+        data["merged_resolution"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None

@@ -5,7 +5,7 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty
 
-from ..scene import ocean_object, stage
+from ..scene import ocean_object, surroundings
 from ..scene.moods import MOODS
 from .active_ocean import refuse
 from .adding import InObjectMode, make_active
@@ -57,14 +57,14 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         """Make it, and say what the scene has kept."""
         old = context.scene
         scene = _new_scene(old) if self.use_new_scene else old
-        wishes = stage.Wishes(
+        wishes = surroundings.Wishes(
             engine=self.engine, camera=self.use_new_camera, world=self.use_new_world, buoy=self.use_buoy
         )
         if self.use_new_world and old.world is not None and not self.use_new_scene:
             old.world.use_fake_user = True
         collection = scene.collection if self.use_new_scene else context.collection
         try:
-            made = stage.build(scene, self.mood, wishes, collection)
+            made = surroundings.build(scene, self.mood, wishes, collection)
         except ocean_object.EXPECTED_ERRORS as error:
             if self.use_new_scene:
                 bpy.data.scenes.remove(scene)
@@ -78,7 +78,7 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         self.report({"INFO"}, self._told(made, scene))
         return {"FINISHED"}
 
-    def _told(self, made: stage.Made, scene: bpy.types.Scene) -> str:
+    def _told(self, made: surroundings.Made, scene: bpy.types.Scene) -> str:
         """What was made, what stayed and went, and how to see the sea where the scene looks elsewhere."""
         parts = [
             translated("{mood}: {engine}, motion blur on").format(

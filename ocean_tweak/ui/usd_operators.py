@@ -13,13 +13,13 @@ from ..core.data.printable import readable_bytes
 from ..export.usd import library
 from ..export.usd.reading import SUFFIXES
 from ..scene import ocean_object, usd
-from ..scene.needs import neighbours_of
+from ..scene.portability import neighbours_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from ..scene.usd import UsdCheck, UsdExport
 from .active_ocean import OfActiveOcean, refuse
 from .adding import InObjectMode, make_active
-from .beside_window import BesideWindow, StopsProcess
+from .background_operator import BackgroundOperator, StopsProcess
 from .usd_properties import draw_choices
 
 _FILTER = ";".join(f"*{suffix}" for suffix in SUFFIXES)
@@ -38,7 +38,7 @@ class _NeedsUsd:
         return super().poll(context)
 
 
-class _UsdBesideWindow(_NeedsUsd, BesideWindow):
+class _UsdBesideWindow(_NeedsUsd, BackgroundOperator):
     """Operators that export an ocean or check its layers: one at a time."""
 
     processes = usd

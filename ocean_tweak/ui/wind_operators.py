@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where winds and pictures come from: force fields are recorded, image files read again."""
+"""Where winds and images come from: force fields are recorded, image files read again."""
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated

@@ -31,14 +31,14 @@ from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.cache.job import sealed
 from ocean_tweak.export.cache.records import file_hash
 from ocean_tweak.export.exr import ExrError, read_header, read_image
-from ocean_tweak.export.pictures import read_picture, with_pictures
-from ocean_tweak.export.usd import apart
+from ocean_tweak.export.images import read_raster, with_rasters
+from ocean_tweak.export.usd import isolated
 from ocean_tweak.export.usd.library import pxr
 from tests.batch import mutations
 from tests.batch.bakery import only_folder, write_sea
 from tests.batch.bakery import run as run_command
+from tests.image_files import exr, png, tiff
 from tests.layers import layers_of
-from tests.picture_files import exr, png, tiff
 
 MEMORY = 2 * 2**30
 #: of the processor; whoever started this limits the time that passes
@@ -69,8 +69,8 @@ class Fuzz:
         return code
 
 
-class Pictures(Fuzz):
-    """Pictures and arrays of one kind, as parameters name them."""
+class Images(Fuzz):
+    """Images and arrays of one kind, as parameters name them."""
 
     def __init__(self, scratch: Path, suffix: str, mutated: mutations.Mutation) -> None:
         super().__init__(scratch)
@@ -80,15 +80,15 @@ class Pictures(Fuzz):
         _WHOLE[suffix](whole)
         self.whole = [path.read_bytes() for path in sorted(whole.iterdir())]
         for path in whole.iterdir():
-            read_picture(path, names="a" if path.stem == "layers" else "")
+            read_raster(path, names="a" if path.stem == "layers" else "")
 
     def attempt(self, chance: random.Random) -> None:
-        """Read as a picture, a wind, or whatever it holds."""
+        """Read as an image, a wind, or whatever it holds."""
         path = self.scratch / f"damaged{self.suffix}"
         path.write_bytes(self.mutated(chance.choice(self.whole), chance))
         names = chance.choice(("", "", "", "a", "Y")) if self.suffix == ".exr" else ""
         with contextlib.suppress(ParameterError):
-            read_picture(path, chance.choice((None, 1, 2)), names)
+            read_raster(path, chance.choice((None, 1, 2)), names)
         if self.suffix == ".exr":  # a map of a bake too
             for read in (read_header, read_image):
                 with contextlib.suppress(ExrError):
@@ -173,9 +173,9 @@ class Parameters(Fuzz):
         super().__init__(scratch)
         ramp = Raster(np.arange(64.0).reshape(8, 8))
         np.save(scratch / "a.npy", ramp.values)
-        pictures = {"pictures": [{"picture": ramp.to_plain(), "filter": "FRACTAL"}, {"noise_resolution": 16}]}
+        images = {"pictures": [{"image": ramp.to_plain(), "filter": "FRACTAL"}, {"noise_resolution": 16}]}
         plain = {"resolution": 16, "domain_size": 100.0}
-        self.whole = [json.dumps(plain | more).encode() for more in (pictures, *_SEAS)]
+        self.whole = [json.dumps(plain | more).encode() for more in (images, *_SEAS)]
         for content in self.whole:
             self._shot(content)
 
@@ -192,7 +192,7 @@ class Parameters(Fuzz):
 
     def _shot(self, content: bytes) -> Shot:
         plain = parse_json(content.decode("utf-8"))
-        return Shot.from_dict(with_pictures(OceanParameters, plain, self.scratch))
+        return Shot.from_dict(with_rasters(OceanParameters, plain, self.scratch))
 
 
 def _is_small(parameters: OceanParameters) -> bool:
@@ -263,7 +263,7 @@ class Usd(Fuzz):
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # OpenUSD says much
             signal.setitimer(signal.ITIMER_PROF, SECONDS)
             signal.setitimer(signal.ITIMER_REAL, 12 * SECONDS)
-            code = 3 if any("memory" in said for said in apart.answer(asked)) else 0
+            code = 3 if any("memory" in said for said in isolated.answer(asked)) else 0
         except BaseException:  # noqa: BLE001 - whatever it is, it was not promised
             traceback.print_exc(file=words)
             words.flush()
@@ -337,11 +337,11 @@ def vouch(folder: Path, changed: Path) -> None:
 KINDS: dict[str, Callable[[Path], Fuzz]] = {
     "json": Parameters,
     "records": Records,
-    "exr": lambda scratch: Pictures(scratch, ".exr", mutations.of_exr),
+    "exr": lambda scratch: Images(scratch, ".exr", mutations.of_exr),
     "usd": Usd,
-    "png": lambda scratch: Pictures(scratch, ".png", mutations.of_png),
-    "tiff": lambda scratch: Pictures(scratch, ".tif", mutations.of_tiff),
-    "npy": lambda scratch: Pictures(scratch, ".npy", mutations.of_npy),
+    "png": lambda scratch: Images(scratch, ".png", mutations.of_png),
+    "tiff": lambda scratch: Images(scratch, ".tif", mutations.of_tiff),
+    "npy": lambda scratch: Images(scratch, ".npy", mutations.of_npy),
     "bake": Bakes,
 }
 

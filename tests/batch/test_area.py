@@ -19,7 +19,9 @@ from ocean_tweak.export.exr import COMPRESSION_ERROR, read_image
 
 #: two patches, one of them turned, under a mask: it has no tile, and no bake but one of an area
 SEA = {
-    "layers": [{"wind_speed": 14.0, "mask": {"x": 100.0, "y": 60.0, "near": 30.0, "far": 120.0}}],
+    "layers": [
+        {"wind_speed": 14.0, "mask": {"x": 100.0, "y": 60.0, "inner_radius": 30.0, "outer_radius": 120.0}}
+    ],
     "patches": [
         {"domain_size": 300.0, "resolution": 64, "shortest_wavelength": 30.0},
         {"domain_size": 77.0, "resolution": 32, "longest_wavelength": 30.0, "rotation": 0.5},

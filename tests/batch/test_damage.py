@@ -148,9 +148,9 @@ def seal_record(folder: Path, frame: int) -> None:
 
 
 def write_frame(folder: Path, job, frame: int) -> None:
-    from ocean_tweak.core.sea.bake import ShotSurfaces
+    from ocean_tweak.core.sea.bake import ShotSeas
 
-    CacheSink(folder, job).write(frame, ShotSurfaces(job.shot).frame(frame, job.outputs))
+    CacheSink(folder, job).write(frame, ShotSeas(job.shot).frame(frame, job.outputs))
 
 
 def rewrite(folder: Path, frame: int, change: Callable[[np.ndarray], np.ndarray]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wind, fetch, swell, gain, choppiness and the ocean's time can be keyed and driven."""
+"""Wind, fetch, swell, amplitude scale, choppiness and the ocean's time can be keyed and driven."""
 
 from fractions import Fraction
 
@@ -128,7 +128,7 @@ def test_renders_show_the_frames_own_wind(ocean_object, make_parameters, core, e
     empty_scene.cycles.samples = 1
     empty_scene.render.resolution_x = empty_scene.render.resolution_y = 16
     empty_scene.frame_start = empty_scene.frame_end = 6
-    empty_scene.render.filepath = str(tmp_path / "picture")
+    empty_scene.render.filepath = str(tmp_path / "image")
     bpy.ops.render.render(animation=True)
     image = item.ocean_tweak.render_maps.disp
     texels = np.empty(64 * 64 * 4, np.float32)

@@ -99,7 +99,7 @@ def test_brightness_stays_when_waves_become_roughness(
 def test_ripples_are_drawn_of_what_the_surface_leaves_out(
     extension, ocean_object, seas, empty_scene, brightness
 ):
-    """The picture gets structure from them."""
+    """The image gets structure from them."""
     ocean = ocean_object.add(empty_scene, seas(4.0, True))
     water = extension("scene.water_material")
     material = water.water_material()

@@ -71,7 +71,7 @@ def normals(mesh):
 
 def under_masks(core, parameters):
     """Two wave layers under one mask each, of which one is everywhere, and the last patch under another."""
-    harbour = core.Mask(x=40.0, y=40.0, near=5.0, far=60.0)
+    harbour = core.Mask(x=40.0, y=40.0, inner_radius=5.0, outer_radius=60.0)
     shore = core.Mask(source="IMAGE", image=core.Raster([[0.2, 1.0, 0.6], [0.0, 0.4, 1.0]]))
     (layer,) = parameters.layers
     lee = core.WaveLayer(wind_speed=5.0, fetch=3e3, wind_direction=-1.0)
@@ -116,7 +116,7 @@ def test_masks_part_patches_into_meshes_with_weights(shown, core, patched, empty
     names = [attribute.name for attribute in points.data.attributes if "weight" in attribute.name]
     assert sorted(names) == [f"ocean_tweak_weight_{number}" for number in (2, 4, 5, 6)]
     settings = ocean.ocean_tweak
-    settings.layers[0].mask.near = 20.0
+    settings.layers[0].mask.inner_radius = 20.0
     bpy.context.view_layer.update()
     settings.layers[0].mask.source = "NONE"
     settings.patches[2].mask.source = "NONE"

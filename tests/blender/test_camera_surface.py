@@ -254,7 +254,9 @@ def test_the_helper(extension, ocean_object, make_parameters, camera, empty_scen
     water.assign(ocean, water.water_material())
     water.describe(ocean, parameters, empty_scene)
     add = extension("scene.camera_surface").add_camera_surface
-    horizon = extension("scene.stage").add_horizon(ocean, parameters, empty_scene, empty_scene.collection, 1)
+    horizon = extension("scene.surroundings").add_horizon(
+        ocean, parameters, empty_scene, empty_scene.collection, 1
+    )
     item = add(ocean, empty_scene, budget=BUDGET)
     assert horizon.hide_viewport
     mesh = evaluated_mesh(item)
@@ -279,7 +281,9 @@ def test_the_helper(extension, ocean_object, make_parameters, camera, empty_scen
 def test_the_button_makes_it_and_takes_it_away(extension, ocean_object, make_parameters, empty_scene, window):
     parameters = make_parameters()
     ocean = ocean_object.add(empty_scene, parameters)
-    horizon = extension("scene.stage").add_horizon(ocean, parameters, empty_scene, empty_scene.collection, 1)
+    horizon = extension("scene.surroundings").add_horizon(
+        ocean, parameters, empty_scene, empty_scene.collection, 1
+    )
     bpy.context.view_layer.objects.active = ocean
     meshes = len(bpy.data.meshes)
     assert not bpy.ops.ocean.remove_camera_surface.poll()

@@ -104,7 +104,7 @@ def test_a_large_scene_takes_no_more_lines_than_a_small_one(everything):
 
 
 def test_what_panels_know_of_other_objects_follows_them(ocean, ocean_object, make_parameters, extension):
-    needs, floating, scene = extension("scene.needs"), extension("scene.floating"), bpy.context.scene
+    needs, floating, scene = extension("scene.portability"), extension("scene.floating"), bpy.context.scene
     other = ocean_object.add(scene, make_parameters(seed=2), name="Lake")
     boat = bpy.data.objects.new("Boat", None)
     scene.collection.objects.link(boat)
@@ -156,7 +156,7 @@ def test_a_spectrum_is_drawn_beside_the_panel_and_the_last_one_only(extension, c
     previews, drawn = extension("ui.previews"), []
     pixels = np.zeros((previews.SIZE, previews.SIZE, 4), np.float32)
     monkeypatch.setattr(previews, "has_window", lambda: True)
-    monkeypatch.setattr(previews, "spectrum_picture", lambda sea: drawn.append(sea.layers[0]) or pixels)
+    monkeypatch.setattr(previews, "spectrum_plot", lambda sea: drawn.append(sea.layers[0]) or pixels)
     layers = [core.WaveLayer(wind_speed=speed) for speed in (9.0, 9.5)]
     for layer in layers:
         previews.PREVIEWS.spectrum(core.OceanParameters(layers=(layer,)))

@@ -16,7 +16,12 @@ SAMPLES = 16
 LAST = 25  # frame
 
 #: what can be keyed, with its range in the core's units (docs/parameters.md), and how far keys go beyond it
-RANGES = {"wind_speed": (0.0, 100.0), "fetch": (0.0, 20e6), "swell": (0.0, 4.0), "gain": (0.0, 100.0)}
+RANGES = {
+    "wind_speed": (0.0, 100.0),
+    "fetch": (0.0, 20e6),
+    "swell": (0.0, 4.0),
+    "amplitude_scale": (0.0, 100.0),
+}
 DIRECTIONS = (-7.0, 7.0)
 CHOPPINESS = (0.0, 4.0)
 TIMES = (-50.0, 50.0)  # s
@@ -34,7 +39,7 @@ def test_what_can_be_keyed_is_what_is_tried_here(ocean):
     assert animatable(layer) - known == {*RANGES, "wind_direction"}
     assert animatable(settings) - known == {"choppiness", "ocean_time"}
     others = (settings.water, settings.foam, settings.timing, layer.mask, layer.wind_field, layer.hero_wave,
-              layer.picture, settings.usd)  # fmt: skip
+              layer.image_waves, settings.usd)  # fmt: skip
     assert not set().union(*map(animatable, others)) - known
     with pytest.raises(TypeError, match="not animatable"):
         settings.water.keyframe_insert("depth")
@@ -52,7 +57,7 @@ def some_layer(core, chance):
     return wave_layer(
         wind_speed=chance.uniform(0.0, 30.0), fetch=10.0 ** chance.uniform(0.0, 6.0),
         wind_direction=chance.uniform(*DIRECTIONS), swell=chance.uniform(0.0, 1.0),
-        limit_fetch=chance.random() < 0.7, gain=chance.uniform(0.0, 2.0),
+        limit_fetch=chance.random() < 0.7, amplitude_scale=chance.uniform(0.0, 2.0),
         **{name: chance.choice(fields[name].metadata["choices"]) for name in ("spectrum", "spreading")},
         definition=chance.choice(("WIND", "WIND", "WIND", "SEA_STATE")),
     )  # fmt: skip

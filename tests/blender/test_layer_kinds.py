@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wind fields and pictures beside wave layers: one list, and nothing lost on the way through Blender."""
+"""Wind fields and images beside wave layers: one list, and nothing lost on the way through Blender."""
 
 import json
 
@@ -27,11 +27,11 @@ def rich(core, make_parameters):
             core.WindFieldLayer(keys=(core.WindKey(vectors=winds[0]),), columns=3, rows=3, life=3.3),
             core.WindFieldLayer(
                 keys=(core.WindKey(time=0.1, vectors=winds[0]), core.WindKey(time=2.3, vectors=winds[1])),
-                columns=2, rows=2, strength=0.9,
+                columns=2, rows=2, wind_scale=0.9,
             ),
-            core.PictureLayer(wind_speed=7.7, noise_resolution=64),
-            core.PictureLayer(
-                picture=core.Raster(chance.normal(size=(7, 5)), "sketch"), filter="FRACTAL", gain=0.3
+            core.ImageLayer(wind_speed=7.7, noise_resolution=64),
+            core.ImageLayer(
+                image=core.Raster(chance.normal(size=(7, 5)), "sketch"), filter="FRACTAL", amplitude_scale=0.3
             ),
         ),
     )  # fmt: skip
@@ -83,7 +83,7 @@ def test_all_kinds_are_linked_and_overridden(ocean, rich, empty_scene, tmp_path)
     assert sea_of(own) == rich
     with pytest.raises(
         ValueError,
-        match="2 wave layers, 3 wind fields, 2 pictures, this sea has 2 wave layers, 3 wind fields:",
+        match="2 wave layers, 3 wind fields, 2 images, this sea has 2 wave layers, 3 wind fields:",
     ):
         own.ocean_tweak.from_parameters(with_layers(rich, IMAGE=()), bpy.context.scene)
 
@@ -190,7 +190,7 @@ def test_keys_follow_their_wave_layers(ocean, core, make_parameters, empty_scene
     layers = tuple(core.WaveLayer(wind_speed=speed) for speed in (5.0, 6.0, 7.0))
     settings.from_parameters(make_parameters(layers=layers), empty_scene)
     settings.layers[2].keyframe_insert("wind_speed", frame=1)
-    settings.layers[0].driver_add("gain")
+    settings.layers[0].driver_add("amplitude_scale")
     paths = lambda: [curve.data_path for curve in extension("scene.animated").curves_of(ocean)]  # noqa: E731
     bpy.ops.ocean.layer_add(kind="WIND_FIELD")
     assert paths() == ["ocean_tweak.layers[2].wind_speed"]
@@ -199,7 +199,9 @@ def test_keys_follow_their_wave_layers(ocean, core, make_parameters, empty_scene
     assert paths() == ["ocean_tweak.layers[1].wind_speed"]
     bpy.ops.ocean.layer_move(direction="DOWN")
     assert paths() == ["ocean_tweak.layers[0].wind_speed"]
-    assert [driver.data_path for driver in ocean.animation_data.drivers] == ["ocean_tweak.layers[1].gain"]
+    assert [driver.data_path for driver in ocean.animation_data.drivers] == [
+        "ocean_tweak.layers[1].amplitude_scale"
+    ]
     settings.active_layer = 0
     bpy.ops.ocean.layer_remove()
     assert paths() == []

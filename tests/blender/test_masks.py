@@ -60,7 +60,7 @@ def test_an_image_masks_its_layer(ocean, mask, core, empty_scene, extension):
     parameters = ocean.ocean_tweak.to_parameters(empty_scene)
     found = parameters.layers[0].mask
     assert found == core.Mask(
-        source="IMAGE", image=core.Raster(texels[..., 0]), near=found.near, far=found.far
+        source="IMAGE", image=core.Raster(texels[..., 0]), inner_radius=found.near, outer_radius=found.far
     )
     assert_alike(read(evaluated_mesh(ocean), SIDE, SIDE), wanted(core, parameters, 1))
     assert not ocean.ocean_tweak.error
@@ -93,17 +93,17 @@ def test_a_distance_is_measured_from_an_object(ocean, mask, core, empty_scene, m
     empty_scene.collection.objects.link(post)
     post.location = (45.0, 27.0, 0.0)
     bpy.context.view_layer.update()
-    mask.near, mask.far = 10.0, 40.0
+    mask.inner_radius, mask.outer_radius = 10.0, 40.0
     mask.object, mask.source = post, "DISTANCE"
     found = ocean.ocean_tweak.to_parameters(empty_scene).layers[0].mask
-    expected = core.Mask(x=40 * metres, y=30 * metres, near=10 * metres, far=40 * metres)
+    expected = core.Mask(x=40 * metres, y=30 * metres, inner_radius=10 * metres, outer_radius=40 * metres)
     assert found == expected
 
 
 def test_it_follows_an_object_that_is_moved_by_hand(ocean, mask, empty_scene):
     post = bpy.data.objects.new("Post", None)
     empty_scene.collection.objects.link(post)
-    mask.near, mask.far = 10.0, 20.0
+    mask.inner_radius, mask.outer_radius = 10.0, 20.0
     mask.object, mask.source = post, "DISTANCE"
     for place in ((30.0, 60.0), (90.0, 20.0)):
         post.location = (*place, 0.0)
@@ -182,21 +182,21 @@ def test_a_patch_has_one_of_its_own(ocean, core, make_parameters, empty_scene):
 def test_parameters_with_masks_come_back(ocean, core, make_parameters, empty_scene):
     image = core.Mask(source="IMAGE", image=core.Raster([[0.0, 0.5], [1.0, 0.25]], "Shore"))
     layers = (
-        core.WaveLayer(mask=core.Mask(x=10.0, y=20.0, near=5.0, far=9.0, inverted=True)),
+        core.WaveLayer(mask=core.Mask(x=10.0, y=20.0, inner_radius=5.0, outer_radius=9.0, inverted=True)),
         core.WaveLayer(mask=image),
     )
-    parameters = with_layers(make_parameters(layers=layers), IMAGE=(core.PictureLayer(mask=image),))
+    parameters = with_layers(make_parameters(layers=layers), IMAGE=(core.ImageLayer(mask=image),))
     settings = ocean.ocean_tweak
     settings.from_parameters(parameters, empty_scene)
     assert settings.to_parameters(empty_scene) == parameters
-    assert settings.layers[1].mask.image == settings.layers[2].picture.mask.image
+    assert settings.layers[1].mask.image == settings.layers[2].image_waves.mask.image
     bare = tuple(dataclasses.replace(layer, mask=None) for layer in layers)
     settings.from_parameters(with_layers(parameters.replace(layers=bare), IMAGE=()), empty_scene)
     assert {layer.mask.source for layer in settings.layers} == {"NONE"}
 
 
 def test_a_baked_masked_sea_is_the_live_one(ocean, mask, core, empty_scene, bake, ocean_object):
-    mask.near, mask.far, mask.source = 10.0, 60.0, "DISTANCE"
+    mask.inner_radius, mask.outer_radius, mask.source = 10.0, 60.0, "DISTANCE"
     parameters = ocean.ocean_tweak.to_parameters(empty_scene)
     sequence = bake(parameters, 1, 2, maps=("disp", "foam", "normal", "vel"))
     ocean_object.use_sequence(ocean, empty_scene, sequence)

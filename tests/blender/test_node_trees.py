@@ -22,7 +22,7 @@ KINDS = {
     "ocean-2-patches": ("nodes.ocean", lambda module: module.ocean_group(2)),
     "patch": ("nodes.patch", lambda module: module.PATCH),
     "patch-points": ("nodes.patch_points", lambda module: module.PATCH_POINTS),
-    "absence": ("nodes.absence", lambda module: module.ABSENCE),
+    "absence": ("nodes.extension_check", lambda module: module.ABSENCE),
     "frame": ("nodes.shown_frame", lambda module: module.SHOWN_FRAME),
     "frame-warnings": ("nodes.frame_warnings", lambda module: module.WARNINGS),
     "grid": ("nodes.grid", lambda module: module.GRID),

@@ -174,7 +174,9 @@ def test_a_horizon_that_both_files_bake_reads_the_shots_points(
     camera.location = (71.3, 52.9, 2.0)
     water.objects.link(camera)
     empty_scene.camera, empty_scene.frame_end = camera, 2
-    item = ocean_object.add(empty_scene, make_parameters(patches=patches, joined=32), collection=water)
+    item = ocean_object.add(
+        empty_scene, make_parameters(patches=patches, merged_resolution=32), collection=water
+    )
     bpy.context.view_layer.objects.active = item
     surface = extension("scene.camera_surface").add_camera_surface(item, empty_scene, budget=2000)
     inputs = {"Finest Spacing": 0.2, "To Horizon": False, "Reach": 6.0, "Fade": False}

@@ -143,7 +143,7 @@ def test_the_sea_shows_the_size_of_the_first_patch(draw, item, core, empty_scene
     assert drawn[drawn.index("Shortest Has") + 1] == "3.2 samples"
     assert drawn[drawn.index("Longest Fits") + 1] == "2 times"
     energy = drawn[drawn.index("Energy") + 1]
-    statistics = core.Ocean(settings.to_parameters(empty_scene).apart).statistics()
+    statistics = core.Ocean(settings.to_parameters(empty_scene).separate).statistics()
     assert energy == f"{100.0 * statistics.patches[1].share:.3g} %"
     # in the sea's box and in the patch's
     assert " ".join(drawn).count("Patch 2: its longest wave, 20 m") == 2
@@ -241,10 +241,10 @@ def test_every_parameter_can_be_reached(draw, item, core):
         drawn.update(draw(item))
     wind.source = "UNIFORM"
     bpy.ops.ocean.layer_add(kind="IMAGE")
-    picture = settings.layers[settings.active_layer].picture
+    image = settings.layers[settings.active_layer].image_waves
     for kind in ("MODIFIED_PIERSON_MOSKOWITZ", "FRACTAL", "WATER_TEXTURE"):
         for animation in ("DISPERSION", "DOMINANT_BAND", "TRANSLATION"):
-            picture.filter, picture.animation = kind, animation
+            image.filter, image.animation = kind, animation
             drawn.update(draw(item))
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
     drawn.update(draw(item))
@@ -252,12 +252,22 @@ def test_every_parameter_can_be_reached(draw, item, core):
     drawn.update(draw(item))
     fields = [
         core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing, core.WindFieldLayer,
-        core.PictureLayer, core.HeroWave, core.Patch,
+        core.ImageLayer, core.HeroWave, core.Patch,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
-    elsewhere = {"layers", "water", "foam", "timing", "id", "muted", "loop_duration", "joined", "mask"}
+    elsewhere = {
+        "layers",
+        "water",
+        "foam",
+        "timing",
+        "id",
+        "muted",
+        "loop_duration",
+        "merged_resolution",
+        "mask",
+    }
     elsewhere |= {"fps", "stretch"}  # the scene's
-    in_lists = {"patches", "keys", "picture"}  # as layers, recordings and images
+    in_lists = {"patches", "keys", "image"}  # as layers, recordings and images
     assert names - elsewhere - in_lists - drawn == set()
     assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
 
@@ -301,10 +311,10 @@ def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     once = {
         "fetch_km", "choppiness", "domain_size", "viewport_resolution", "method", "use_foam",
         "coverage", "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y",
-        "dispersion", "gravity", "trough_damping", "orbits", "start_frame", "use_loop", "loop_frames",
-        "ocean_time", "spectrum", "peak_enhancement", "depth_factor", "definition", "gain", "spreading",
-        "shortest_wavelength", "OCEAN_UL_layers", "cache_folder", "ocean.bake", "ocean.match_sea_state",
-        "OCEAN_MT_presets",
+        "dispersion", "gravity", "trough_damping", "orbital_motion", "start_frame", "use_loop", "loop_frames",
+        "ocean_time", "spectrum", "peak_enhancement", "depth_factor", "definition", "amplitude_scale",
+        "spreading", "shortest_wavelength", "OCEAN_UL_layers", "cache_folder", "ocean.bake",
+        "ocean.match_sea_state", "OCEAN_MT_presets",
     }  # fmt: skip
     assert {name for name in once if drawn.count(name) != 1} == set()
     # in the first panel and in the active layer's, its mask's, the water's or the foam's own

@@ -148,7 +148,7 @@ def test_an_override_keeps_its_patches(patched, three, core, tmp_path):
     scene.collection.objects.link(into.objects[0])
     own = into.objects[0].override_create(remap_local_usages=True)
     for patches, has in ((three.patches[:2], "2"), ((), "none")):
-        other = three.replace(patches=patches, joined=0)
+        other = three.replace(patches=patches, merged_resolution=0)
         with pytest.raises(ValueError, match=f"keeps its patches: it has 3, this sea has {has}"):
             own.ocean_tweak.from_parameters(other, scene)
         assert sea(own) == three
@@ -256,7 +256,7 @@ def test_samples_of_the_mesh_are_not_those_of_a_patch(patched, core, ocean_objec
     settings.resolution = 64
     settings.patches[0].resolution = 40
     assert (sea(patched).joined, sea(patched).patches[0].resolution) == (64, 40)
-    apart = sea(patched).replace(joined=0, patches=sea(patched).patches)
+    apart = sea(patched).replace(merged_resolution=0, patches=sea(patched).patches)
     settings.from_parameters(apart, empty_scene)
     assert settings.resolution == 40
     assert sea(patched) == apart.on_one_grid(40)

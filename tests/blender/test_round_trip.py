@@ -44,10 +44,10 @@ def awkward_sea(core, seed):
     masks = [awkward_mask(core, chance) if index == seed % 4 else None for index in range(1 + seed % 3)]
     layers = [awkward(core.WaveLayer, chance, longest_wavelength=longest, mask=mask) for mask in masks]
     timing = core.Timing(fps=fps, start_frame=9)
-    given = {"resolution": SAMPLES, "joined": 0}
+    given = {"resolution": SAMPLES, "merged_resolution": 0}
     if seed % 2:
         patches = awkward_patches(core, chance)
-        given |= {"joined": SAMPLES, "patches": patches, "domain_size": patches[0].domain_size}
+        given |= {"merged_resolution": SAMPLES, "patches": patches, "domain_size": patches[0].domain_size}
     if seed % 2 or any(masks):
         given["trough_damping"] = 0.0
     return awkward(
@@ -60,10 +60,17 @@ def awkward_sea(core, seed):
 def awkward_mask(core, chance):
     near = chance.uniform(0.0, 50.0)
     if chance.random() < 0.5:
-        return awkward(core.Mask, chance, source="DISTANCE", near=near, far=near + chance.random())
+        return awkward(
+            core.Mask, chance, source="DISTANCE", inner_radius=near, outer_radius=near + chance.random()
+        )
     values = [[chance.random() for _ in range(3)] for _ in range(2)]
     return awkward(
-        core.Mask, chance, source="IMAGE", image=core.Raster(values, f"Coast {near}"), near=near, far=99.1
+        core.Mask,
+        chance,
+        source="IMAGE",
+        image=core.Raster(values, f"Coast {near}"),
+        near=near,
+        outer_radius=99.1,
     )
 
 

@@ -262,7 +262,7 @@ def test_water_for_an_ocean(quick, ocean_object, make_parameters, empty_scene):
 
 
 def test_an_unknown_mood_is_refused(extension, empty_scene):
-    stage = extension("scene.stage")
+    stage = extension("scene.surroundings")
     with pytest.raises(ValueError, match="mood = 'HAPPY'"):
         stage.build(empty_scene, "HAPPY", stage.Wishes())
     assert not empty_scene.objects

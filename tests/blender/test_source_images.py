@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 
-from tests import picture_files
+from tests import image_files
 from tests.layers import layers_of
 
 from .conftest import sea_of
@@ -17,9 +17,9 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 @pytest.fixture
-def picture(ocean):
+def image(ocean):
     bpy.ops.ocean.layer_add(kind="IMAGE")
-    return ocean.ocean_tweak.layers[1].picture
+    return ocean.ocean_tweak.layers[1].image_waves
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def wind(ocean):
 def png(path, values):
     """Write an 8-bit PNG, the top row first: (rows, columns) grey or (rows, columns, 3)."""
     rows = [row.astype(np.uint8).tobytes() for row in values]
-    return picture_files.png(path, 8, 2 if values.ndim == 3 else 0, rows, values.shape[1])
+    return image_files.png(path, 8, 2 if values.ndim == 3 else 0, rows, values.shape[1])
 
 
 def float_image(values, name="decimal"):
@@ -47,10 +47,10 @@ def float_image(values, name="decimal"):
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (4, 7, 3)])
-def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, picture, tmp_path, shape):
+def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, image, tmp_path, shape):
     values = np.random.default_rng(2).integers(0, 256, shape)
-    picture.image = bpy.data.images.load(str(png(tmp_path / "odd.png", values)))
-    raster = layers_of(sea_of(ocean), "IMAGE")[0].picture
+    image.image = bpy.data.images.load(str(png(tmp_path / "odd.png", values)))
+    raster = layers_of(sea_of(ocean), "IMAGE")[0].image
     grey = values if len(shape) == 2 else values @ (0.2126, 0.7152, 0.0722)
     assert raster.shape == (*shape[:2], 1)
     assert np.abs(raster.values[..., 0] - grey[::-1] / 255.0).max() < 1e-6
@@ -58,10 +58,10 @@ def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, picture, tmp_pat
     assert not ocean.ocean_tweak.error
 
 
-def test_decimals_are_themselves(ocean, picture, wind):
+def test_decimals_are_themselves(ocean, image, wind):
     values = np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32) * 40
-    ocean.ocean_tweak.layers[2].picture.image = float_image(values)
-    assert layers_of(sea_of(ocean), "IMAGE")[0].picture.values[..., 0].tolist() == values.tolist()
+    ocean.ocean_tweak.layers[2].image_waves.image = float_image(values)
+    assert layers_of(sea_of(ocean), "IMAGE")[0].image.values[..., 0].tolist() == values.tolist()
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -71,12 +71,12 @@ def test_numbers_of_a_tiff_mean_the_same_here_and_outside(ocean, extension, tmp_
     largest = 1.0 if kind == "f4" else float(np.iinfo(kind).max)
     shares = np.array([[0.0, 0.25, 1.0], [-1.0 if kind[0] in "if" else 0.5, 0.125, 0.75]])
     numbers = np.trunc(shares * largest) if kind != "f4" else shares
-    path = picture_files.tiff(tmp_path / "a.tif", numbers.astype(kind), order)
+    path = image_files.tiff(tmp_path / "a.tif", numbers.astype(kind), order)
     read = extension("scene.source_images").open_image(path, 1)
     assert np.abs(read.values[::-1, :, 0] - numbers / largest).max() < 1e-6
     if (kind, order) != ("u4", ">"):
         pytest.importorskip("PIL")
-        outside = extension("export.pictures").read_picture(path, 1)
+        outside = extension("export.images").read_raster(path, 1)
         assert np.abs(outside.values - read.values).max() < 1e-6
 
 
@@ -86,16 +86,16 @@ def test_numbers_of_a_tiff_mean_the_same_here_and_outside(ocean, extension, tmp_
 )
 def test_pngs_mean_the_same_here_and_outside(ocean, extension, tmp_path, depth, colour, rows):
     pytest.importorskip("PIL")
-    path = picture_files.png(tmp_path / "a.png", depth, colour, [bytes.fromhex(rows)], 1)
+    path = image_files.png(tmp_path / "a.png", depth, colour, [bytes.fromhex(rows)], 1)
     read = extension("scene.source_images").open_image(path, 1)
-    outside = extension("export.pictures").read_picture(path, 1)
+    outside = extension("export.images").read_raster(path, 1)
     assert np.abs(outside.values - read.values).max() < 1e-6
     assert 0.05 < read.values[0, 0, 0] < 0.5
 
 
 @pytest.mark.parametrize("values", [np.array([[-9, 9]], np.int8), np.array([[0.5, 1.0]], np.float64)])
-def test_tiffs_of_which_blender_loses_numbers_are_refused(ocean, picture, tmp_path, values):
-    picture.image = bpy.data.images.load(str(picture_files.tiff(tmp_path / "a.tif", values)))
+def test_tiffs_of_which_blender_loses_numbers_are_refused(ocean, image, tmp_path, values):
+    image.image = bpy.data.images.load(str(image_files.tiff(tmp_path / "a.tif", values)))
     assert "layers.1.image = 'a.tif': holds " in ocean.ocean_tweak.error
     assert "which are not read" in ocean.ocean_tweak.error
 
@@ -104,40 +104,40 @@ PAINTED = np.arange(1.0, 7.0, dtype=np.float32).reshape(2, 3)
 
 
 @pytest.mark.parametrize("packed", [False, True])
-def test_what_an_exr_stores_lies_where_it_was_painted(ocean, picture, tmp_path, packed):
-    """Of a picture of 4 x 4 the part from column 2, row 1 on, a column of which lies outside."""
-    path = picture_files.exr(tmp_path / "a.exr", {"Y": PAINTED}, (2, 1), (4, 4))
-    picture.image = image = bpy.data.images.load(str(path))
+def test_what_an_exr_stores_lies_where_it_was_painted(ocean, image, tmp_path, packed):
+    """Of an image of 4 x 4 the part from column 2, row 1 on, a column of which lies outside."""
+    path = image_files.exr(tmp_path / "a.exr", {"Y": PAINTED}, (2, 1), (4, 4))
+    image.image = image = bpy.data.images.load(str(path))
     if packed:
         image.pack()
         path.unlink()
         bpy.ops.ocean.reload_image()
     expected = np.zeros((4, 4))
     expected[1:3, 2:] = PAINTED[:, :2]
-    assert (layers_of(sea_of(ocean), "IMAGE")[0].picture.values[::-1, :, 0] == expected).all()
+    assert (layers_of(sea_of(ocean), "IMAGE")[0].image.values[::-1, :, 0] == expected).all()
     image.pixels[0:3] = (9.0, 9.0, 9.0)  # painted, in the lowest row that is stored
     image.update()
     expected[2, 2] = 9.0
     ocean.ocean_tweak.seed += 1
-    assert (layers_of(sea_of(ocean), "IMAGE")[0].picture.values[::-1, :, 0] == expected).all()
+    assert (layers_of(sea_of(ocean), "IMAGE")[0].image.values[::-1, :, 0] == expected).all()
 
 
-def test_channels_of_an_exr_are_chosen_by_name(ocean, picture, wind, extension, tmp_path):
+def test_channels_of_an_exr_are_chosen_by_name(ocean, image, wind, extension, tmp_path):
     """In Blender these are multi-layer images, of which it gives no texels at all."""
     factors = {"R": 1, "depth.Z": 2, "gust.u": 3, "gust.v": 4}
     planes = {name: factor * PAINTED for name, factor in factors.items()}
-    image = bpy.data.images.load(str(picture_files.exr(tmp_path / "a.exr", planes)))
+    image = bpy.data.images.load(str(image_files.exr(tmp_path / "a.exr", planes)))
     # the wind's layer comes first, whose property groups are found anew
-    wind, picture = (layer.group for layer in ocean.ocean_tweak.layers[1:])
+    wind, image = (layer.group for layer in ocean.ocean_tweak.layers[1:])
     wind.source, wind.image, wind.image_values, wind.image_speed = "IMAGE", image, "PLAIN", 1.0
-    picture.image = image
+    image.image = image
     assert "layers.1.image = 'a.exr': must have 2 channels, but has 1" in ocean.ocean_tweak.error
-    wind.image_channels, picture.image_channels = "gust", "depth.X"
+    wind.image_channels, image.image_channels = "gust", "depth.X"
     assert "no channel or layer depth.X; it has R, depth.Z, gust.u, gust.v" in ocean.ocean_tweak.error
-    picture.image_channels = "depth.Z"
+    image.image_channels = "depth.Z"
     assert ocean.ocean_tweak.error == ""
     sea = sea_of(ocean)
-    assert (layers_of(sea, "IMAGE")[0].picture.values[::-1, :, 0] == 2 * PAINTED).all()
+    assert (layers_of(sea, "IMAGE")[0].image.values[::-1, :, 0] == 2 * PAINTED).all()
     assert (
         layers_of(sea, "WIND_FIELD")[0].rasters[0].values[::-1] == np.dstack([3 * PAINTED, 4 * PAINTED])
     ).all()
@@ -145,55 +145,55 @@ def test_channels_of_an_exr_are_chosen_by_name(ocean, picture, wind, extension, 
     assert sorted(names) == ["R", "depth.Z", "gust.u", "gust.v"]
     # taking over the same sea changes nothing
     ocean.ocean_tweak.from_parameters(sea, bpy.context.scene)
-    wind, picture = (layer.group for layer in ocean.ocean_tweak.layers[1:])
-    assert (picture.image, picture.image_channels) == (image, "depth.Z")
+    wind, image = (layer.group for layer in ocean.ocean_tweak.layers[1:])
+    assert (image.image, image.image_channels) == (image, "depth.Z")
     assert (wind.image, wind.image_channels) == (image, "gust")
     assert sea_of(ocean) == sea
 
 
-def test_a_choice_of_channels_is_no_matter_to_other_images(ocean, picture):
-    picture.image_channels = "Z"
-    picture.image = float_image(np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32))
+def test_a_choice_of_channels_is_no_matter_to_other_images(ocean, image):
+    image.image_channels = "Z"
+    image.image = float_image(np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32))
     assert ocean.ocean_tweak.error == ""
 
 
-def test_pictures_that_hold_no_waves_are_told_by_name(ocean, picture):
+def test_images_that_hold_no_waves_are_told_by_name(ocean, image):
     flat = np.ones((4, 4), np.float32)
-    picture.image = float_image(flat, "wall")
-    assert "layers.1.picture (wall) = 1.0: everywhere" in ocean.ocean_tweak.error
+    image.image = float_image(flat, "wall")
+    assert "layers.1.image (wall) = 1.0: everywhere" in ocean.ocean_tweak.error
     broken = np.arange(12, dtype=np.float32).reshape(3, 4)
     broken[2, 1] = np.nan
-    picture.image = float_image(broken, "hole")
+    image.image = float_image(broken, "hole")
     assert "raster 'hole' = nan: must be finite everywhere" in ocean.ocean_tweak.error
     assert "row 2, column 1" in ocean.ocean_tweak.error
-    picture.image = None
+    image.image = None
     assert ocean.ocean_tweak.error == ""
 
 
-def test_missing_files_and_movies_are_told_by_name(ocean, picture, tmp_path):
+def test_missing_files_and_movies_are_told_by_name(ocean, image, tmp_path):
     file = png(tmp_path / "gone.png", np.arange(12).reshape(3, 4))
-    picture.image = bpy.data.images.load(str(file))
+    image.image = bpy.data.images.load(str(file))
     file.unlink()
     bpy.ops.ocean.reload_image()
     assert "layers.1.image = 'gone.png': its file cannot be read" in ocean.ocean_tweak.error
-    picture.image.source = "SEQUENCE"
+    image.image.source = "SEQUENCE"
     ocean.ocean_tweak.seed += 1
-    assert "must be a single picture" in ocean.ocean_tweak.error
+    assert "must be a single image" in ocean.ocean_tweak.error
 
 
-def test_a_changed_file_is_read_again_when_asked(ocean, picture, tmp_path):
+def test_a_changed_file_is_read_again_when_asked(ocean, image, tmp_path):
     file = png(tmp_path / "drawn.png", np.arange(12).reshape(3, 4))
-    picture.image = bpy.data.images.load(str(file))
+    image.image = bpy.data.images.load(str(file))
     png(file, np.arange(12)[::-1].reshape(3, 4))
-    assert layers_of(sea_of(ocean), "IMAGE")[0].picture.values[0, 0, 0] == pytest.approx(8 / 255)
+    assert layers_of(sea_of(ocean), "IMAGE")[0].image.values[0, 0, 0] == pytest.approx(8 / 255)
     bpy.ops.ocean.reload_image()
-    assert layers_of(sea_of(ocean), "IMAGE")[0].picture.values[0, 0, 0] == pytest.approx(3 / 255)
+    assert layers_of(sea_of(ocean), "IMAGE")[0].image.values[0, 0, 0] == pytest.approx(3 / 255)
 
 
-def test_painting_shows(ocean, picture, evaluated, empty_scene):
+def test_painting_shows(ocean, image, evaluated, empty_scene):
     values = np.random.default_rng(4).normal(size=(16, 16)).astype(np.float32)
-    picture.filter = "FRACTAL"
-    picture.image = image = float_image(values)
+    image.filter = "FRACTAL"
+    image.image = image = float_image(values)
     before = evaluated(ocean)
     image.pixels[4 * 100] = 30.0
     image.update_tag()
@@ -205,10 +205,10 @@ def test_painting_shows(ocean, picture, evaluated, empty_scene):
     assert np.abs(evaluated(ocean) - painted).max() > 0.01
 
 
-def test_playback_reads_no_image_again(ocean, picture, empty_scene, extension, monkeypatch):
+def test_playback_reads_no_image_again(ocean, image, empty_scene, extension, monkeypatch):
     values = np.random.default_rng(4).normal(size=(16, 16)).astype(np.float32)
-    picture.image = float_image(values)
-    picture.image.pack()
+    image.image = float_image(values)
+    image.image.pack()
     sea_of(ocean)
     images = extension("scene.source_images")
     monkeypatch.setattr(images, "_texels", None)
@@ -219,9 +219,9 @@ def test_playback_reads_no_image_again(ocean, picture, empty_scene, extension, m
     assert layers_of(sea_of(ocean), "IMAGE")[0] is layers_of(sea_of(ocean), "IMAGE")[0]
 
 
-def test_colour_space_of_decimals_is_asked_for(ocean, picture, extension, empty_scene):
+def test_colour_space_of_decimals_is_asked_for(ocean, image, extension, empty_scene):
     image = float_image(np.random.default_rng(4).normal(size=(4, 4)).astype(np.float32), "linear")
-    picture.image = image
+    image.image = image
     panel = extension("ui.panels.layers")
     said = []
     layout = SimpleNamespace(operator=lambda *_args, **_named: None)
@@ -261,23 +261,23 @@ def test_a_wind_too_strong_for_the_patch_is_told(ocean, wind):
     assert "layers.1 = '60 m/s': this wind's waves are 367 m long" in ocean.ocean_tweak.error
 
 
-def test_a_sea_from_a_file_that_names_its_picture(ocean, tmp_path, expected, evaluated, empty_scene, core):
+def test_a_sea_from_a_file_that_names_its_image(ocean, tmp_path, expected, evaluated, empty_scene, core):
     values = np.random.default_rng(6).integers(0, 256, (8, 6, 3))
     png(tmp_path / "sketch.png", values)
     np.save(tmp_path / "wind.npy", np.full((2, 2, 2), 5.0))
     file = tmp_path / "sea.json"
     file.write_text(
         """{"resolution": 32, "domain_size": 90,
-        "pictures": [{"picture": {"file": "sketch.png"}, "filter": "FRACTAL"}],
+        "pictures": [{"image": {"file": "sketch.png"}, "filter": "FRACTAL"}],
         "wind_fields": [{"keys": [{"vectors": {"file": "wind.npy"}}], "columns": 3, "rows": 3}]}"""
     )
     bpy.ops.ocean.import_parameters(filepath=str(file))
     layers = ocean.ocean_tweak.layers
-    assert layers[2].picture.image.filepath == str(tmp_path / "sketch.png")
+    assert layers[2].image_waves.image.filepath == str(tmp_path / "sketch.png")
     assert layers[1].wind_field.image.name == "wind.npy"
     sea = sea_of(ocean)
     grey = values[::-1] @ (0.2126, 0.7152, 0.0722) / 255.0
-    assert np.abs(layers_of(sea, "IMAGE")[0].picture.values[..., 0] - grey).max() < 1e-6
+    assert np.abs(layers_of(sea, "IMAGE")[0].image.values[..., 0] - grey).max() < 1e-6
     assert np.abs(evaluated(ocean) - expected(sea, 1)).max() < 1e-4
 
 

@@ -18,7 +18,7 @@ RESOLUTION = 64
 def ocean(ocean_object, core, empty_scene):
     """Flat water, and a wind field that has nothing yet. Time 0 is at frame 1."""
     field = core.WindFieldLayer(
-        columns=1, rows=1, jitter=0.0, phase_jitter=0.0, start_time=0.0, front="PARALLEL", particles=9,
+        columns=1, rows=1, jitter=0.0, phase_jitter=0.0, start_time=0.0, crest="PARALLEL", particles=9,
         life=50.0, steepness=0.5,
     )  # fmt: skip
     parameters = core.OceanParameters(

@@ -36,7 +36,7 @@ def patched(core, make_parameters):
             domain_size=20.0, longest_wavelength=12.0, shortest_wavelength=3.0, rotation=0.6, resolution=512
         ),
     )
-    return make_parameters(layers=(layer,), patches=patches, joined=32)
+    return make_parameters(layers=(layer,), patches=patches, merged_resolution=32)
 
 
 @pytest.fixture
@@ -181,7 +181,7 @@ def test_what_needs_the_extension_is_named(horizon, extension, tmp_path, capsys)
     """By one list, for the command line and the panel; a bake with points leaves nothing of it."""
     ocean, surface = horizon
     boat_on(ocean, extension)
-    needs_of = extension("scene.needs").needs_of
+    needs_of = extension("scene.portability").needs_of
     assert {need.name for need in needs_of(ocean)} == {ocean.name, surface.name, "Boat"}
     wanted = {need.name: need.text for need in needs_of(ocean)}
     assert (

@@ -42,5 +42,5 @@ def test_a_baked_frame_holds_the_crest(tmp_path: Path) -> None:
     )  # fmt: skip
     row, column = np.unravel_index(np.argmax(height), height.shape)
     assert column == 32
-    assert row in (31, 32)  # rows of a picture begin at its top
+    assert row in (31, 32)  # rows of an image begin at its top
     assert height.max() == pytest.approx(3.5, rel=2e-3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wind fields through the command line: from a picture beside the JSON to baked frames."""
+"""Wind fields through the command line: from an image beside the JSON to baked frames."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_the_example_is_what_its_script_makes() -> None:
 def test_info_tells_of_the_winds_waves(capsys: pytest.CaptureFixture[str]) -> None:
     report = described(capsys, "--params", str(EXAMPLE), "--set", "resolution=128")
     assert 10.0 < report["wind_fields"]["longest_wavelength"] < 30.0
-    assert main(["info", "--params", str(EXAMPLE), "--set", "layers.1.strength=0.1"]) == 0
+    assert main(["info", "--params", str(EXAMPLE), "--set", "layers.1.wind_scale=0.1"]) == 0
     text = capsys.readouterr().out
     assert "the heights above are without them" in text
     assert "is calm and raises no waves" in text
@@ -45,11 +45,11 @@ def test_the_front_crosses_the_patch(tmp_path: Path) -> None:
     assert early[ahead].mean() < 0.2 * late[ahead].mean()
 
 
-def test_a_picture_beside_the_file_is_the_wind(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A red picture, of which green and blue are nothing, is a wind towards +x."""
+def test_an_image_beside_the_file_is_the_wind(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A red image, of which green and blue are nothing, is a wind towards +x."""
     image = pytest.importorskip("PIL.Image")
-    picture = image.new("RGB", (2, 1), (255, 0, 0))
-    picture.save(tmp_path / "wind.png")
+    image = image.new("RGB", (2, 1), (255, 0, 0))
+    image.save(tmp_path / "wind.png")
     wind = {"file": "wind.png", "offset": 0.0, "scale": 8.0}
     sea = {
         "resolution": 64, "domain_size": 40.0, "layers": [{"muted": True}],

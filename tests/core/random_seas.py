@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from ocean_tweak.core import (
     Foam,
     HeroWave,
+    ImageLayer,
     Mask,
     OceanParameters,
     ParameterError,
     Patch,
-    PictureLayer,
     Raster,
     Timing,
     Water,
@@ -72,7 +72,7 @@ SEAS = instances(
     OceanParameters,
     resolution=st.sampled_from([16, 18, 20, 32]),
     layers=st.lists(LAYERS, min_size=1, max_size=3).map(tuple),
-    joined=st.just(0),
+    merged_resolution=st.just(0),
     **COMMON,
 )
 IMAGES = st.integers(1, 4).flatmap(
@@ -85,8 +85,8 @@ MASKS = st.one_of(
     instances(
         Mask,
         source=st.just("DISTANCE"),
-        near=st.floats(0.0, 100.0),
-        far=st.floats(101.0, 1e6),
+        inner_radius=st.floats(0.0, 100.0),
+        outer_radius=st.floats(101.0, 1e6),
         image=st.none(),
     ),
     instances(
@@ -118,15 +118,15 @@ def patched_seas() -> st.SearchStrategy[OceanParameters]:
     )
     layers = st.builds(lambda layer, mask: (dataclasses.replace(layer, mask=mask),), LAYERS, MASKS)
     return instances(
-        OceanParameters, patches=patches, joined=st.sampled_from([0, 16, 48]), layers=layers,
+        OceanParameters, patches=patches, merged_resolution=st.sampled_from([0, 16, 48]), layers=layers,
         trough_damping=st.just(0.0), resolution=st.just(OPEN), domain_size=st.just(OPEN), **COMMON,
     )  # fmt: skip
 
 
 SHARES = st.one_of(st.floats(0.0, 1.0), st.sampled_from([0.0, 1.0]))
-PICTURES = instances(
-    PictureLayer,
-    picture=st.one_of(
+IMAGES = instances(
+    ImageLayer,
+    image=st.one_of(
         st.none(), IMAGES.filter(lambda rows: np.ptp(np.float32(rows)) > 0.0).map(Raster)
     ),
     noise_resolution=st.sampled_from([16, 32]),
@@ -151,8 +151,8 @@ def wind_fields(longest: float, gravity: float) -> st.SearchStrategy[WindFieldLa
         WindFieldLayer,
         wind_speed=SHARES.map(lambda share: share * speed),
         keys=keys,
-        strength=SHARES,
-        calm=st.floats(0.1, 1.0).map(lambda share: max(0.1, share * speed)),
+        wind_scale=SHARES,
+        minimum_wind_speed=st.floats(0.1, 1.0).map(lambda share: max(0.1, share * speed)),
         start_time=st.floats(-200.0, 200.0),
         columns=st.integers(1, 3),
         rows=st.integers(1, 3),
@@ -183,7 +183,7 @@ def any_seas(draw: st.DrawFn) -> OceanParameters:
     if draw(st.booleans()):
         changes["layers"] = tuple(dataclasses.replace(layer, mask=draw(MASKS)) for layer in sea.layers)
     others = {
-        "IMAGE": PICTURES,
+        "IMAGE": IMAGES,
         "WIND_FIELD": wind_fields(sea.domain_size, sea.water.gravity),
         "HERO_WAVE": hero_waves(sea.domain_size),
     }
@@ -197,11 +197,11 @@ def any_seas(draw: st.DrawFn) -> OceanParameters:
         changes["resolution"] = 48
     elif "HERO_WAVE" in kinds:
         changes["patches"] = (dataclasses.replace(sea.patches[0], resolution=48), *sea.patches[1:])
-        changes["joined"] = sea.joined and 48
+        changes["merged_resolution"] = sea.merged_resolution and 48
     if sea.patches and kinds:
         first, *rest = changes.get("patches", sea.patches)
         changes["patches"] = (dataclasses.replace(first, rotation=0.0), *rest)
     try:
         return sea.replace(**changes)
-    except ParameterError:  # a picture that moves on in a loop, a damped sea that is masked
+    except ParameterError:  # an image that moves on in a loop, a damped sea that is masked
         reject()

@@ -16,8 +16,8 @@ import pytest
 from ocean_tweak.core import Foam, Mask, Ocean, OceanParameters, Patch, Timing, WaveLayer, WindFieldLayer
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.parameters.shot import Animation, Shot
-from ocean_tweak.core.sea.bake import ShotSurfaces, bake
-from ocean_tweak.core.sea.on import Places
+from ocean_tweak.core.sea.bake import ShotSeas, bake
+from ocean_tweak.core.sea.regions import Places
 
 MB = 10**6
 PATCHES = (
@@ -62,7 +62,7 @@ def test_a_wind_that_changes_over_many_frames(small_budget: int, no_collector: N
     frames, speeds = range(1, 41), np.linspace(5.0, 15.0, 40).tolist()
     timing = Timing(fps=24, start_frame=1)
     animation = Animation(1, (("layers.0.wind_speed", tuple(speeds)),))
-    surfaces = ShotSurfaces(Shot(sea(timing=timing), animation))
+    surfaces = ShotSeas(Shot(sea(timing=timing), animation))
     tracemalloc.start()
     try:
         surfaces.frame(1, OUTPUTS)
@@ -75,7 +75,7 @@ def test_a_wind_that_changes_over_many_frames(small_budget: int, no_collector: N
         tracemalloc.stop()
     # forty seas of 128² take forty times 0.5 MB; what Python holds beside arrays is little
     assert grown < small_budget + MB // 2
-    assert MEMO.report()["waves"] > MB // 2, "some are kept"
+    assert MEMO.report()["waves"] > 0.3 * MB, "the last is kept"
 
 
 class Counting:
@@ -111,10 +111,14 @@ def test_a_bake_keeps_no_seas_of_frames_gone_by() -> None:
         {"foam": Foam(half_life=0.2)},
         {"trough_damping": 0.5},
         {"layers": (WaveLayer(wind_speed=8.0), WindFieldLayer(wind_speed=6.0))},
-        {"joined": 128, "patches": PATCHES},
-        {"layers": (WaveLayer(wind_speed=9.0, mask=Mask(source="DISTANCE", near=10.0, far=60.0)),)},
+        {"merged_resolution": 128, "patches": PATCHES},
+        {
+            "layers": (
+                WaveLayer(wind_speed=9.0, mask=Mask(source="DISTANCE", inner_radius=10.0, outer_radius=60.0)),
+            )
+        },
     ],
-    ids=["plain", "foam as fine", "troughs", "wind field", "joined", "mask"],
+    ids=["plain", "foam as fine", "troughs", "wind field", "merged_resolution", "mask"],
 )
 def test_a_sea_that_nobody_has_is_gone_at_once(
     small_budget: int, no_collector: None, changes: dict[str, object]

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, Patch, PictureLayer, WaveLayer
+from ocean_tweak.core import ImageLayer, Ocean, OceanParameters, Patch, WaveLayer
 from ocean_tweak.core.foam.threshold import foam_outlook
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.spectral import spectra
@@ -54,7 +54,8 @@ def test_a_calm_is_flat_and_all_that_is_told_of_it_is_sensible(calm: WaveLayer) 
     for found in (Ocean(flat).statistics(), Ocean(one_patch).statistics()):
         assert found.significant_wave_height == 0.0
         assert found.warnings == (
-            "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height",
+            "The sea is flat: no layer has energy. Unmute one, or raise its wind, amplitude scale or wave "
+            "height",
         )
         json.dumps(found.to_dict(), allow_nan=False)
     assert foam_outlook(flat).coverage == 0.0
@@ -131,8 +132,8 @@ def test_energy_that_no_wind_gives_stays_in_a_calm() -> None:
 
 @pytest.mark.parametrize("gain", FILTER_GAINS)
 @pytest.mark.parametrize("animation", ANIMATIONS)
-def test_pictures_of_a_calm_are_flat(gain: str, animation: str) -> None:
-    layer = PictureLayer(filter_gain=gain, wind_speed=0.0, animation=animation, noise_resolution=16)
+def test_images_of_a_calm_are_flat(gain: str, animation: str) -> None:
+    layer = ImageLayer(filter_gain=gain, wind_speed=0.0, animation=animation, noise_resolution=16)
     sea = with_layers(SEA.replace(layers=(WaveLayer(muted=True),)), IMAGE=(layer,))
     fields = Ocean(sea).surface(4.0, ALL)
     assert not fields.displacement.any()

@@ -60,7 +60,7 @@ def test_what_patches_tell_is_not_given_otherwise() -> None:
         with pytest.raises(ParameterError, match=rf"must be {wanted}, which the patches tell: leave it out"):
             OceanParameters(patches=THREE, **given)
     with pytest.raises(ParameterError, match=r"resolution = 128: must be 48, which"):
-        OceanParameters(patches=THREE, joined=48, resolution=128)
+        OceanParameters(patches=THREE, merged_resolution=48, resolution=128)
     same = OceanParameters(patches=THREE, resolution=128, domain_size=600.0)
     assert same == OceanParameters(patches=THREE) == OceanParameters().replace(patches=THREE)
     with pytest.raises(ParameterError, match=r"resolution = None: must be a whole number"):

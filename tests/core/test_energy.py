@@ -92,7 +92,7 @@ def test_far_cells_hold_the_spectrum_itself(mix: float) -> None:
 
 
 def test_gain_multiplies_wave_height(windy: OceanParameters) -> None:
-    doubled = dataclasses.replace(windy, layers=(dataclasses.replace(windy.layers[0], gain=2.0),))
+    doubled = dataclasses.replace(windy, layers=(dataclasses.replace(windy.layers[0], amplitude_scale=2.0),))
     np.testing.assert_allclose(
         Ocean(doubled).surface(1.0).displacement, 2.0 * Ocean(windy).surface(1.0).displacement, atol=1e-5
     )

@@ -33,10 +33,14 @@ SEAS = {
         ),
     ),
     "loop": OceanParameters(
-        resolution=16, domain_size=250.0, loop_duration=Fraction(15), amplitudes="FIXED", dispersion="DEEP"
+        resolution=16,
+        domain_size=250.0,
+        loop_duration=Fraction(15),
+        amplitudes="DETERMINISTIC",
+        dispersion="DEEP",
     ),
     "wide orbits": OceanParameters(
-        resolution=16, domain_size=250.0, orbits="FINITE_DEPTH", water=Water(depth=5.0)
+        resolution=16, domain_size=250.0, orbital_motion="FINITE_DEPTH", water=Water(depth=5.0)
     ),
 }
 
@@ -44,7 +48,11 @@ SEAS = {
 def expected_fields(parameters: OceanParameters, time: float) -> dict[str, np.ndarray]:
     """All outputs from the direct sum, by their definitions."""
     depth = parameters.water.depth
-    coth = (lambda k: 1.0 / np.tanh(k * depth)) if parameters.orbits == "FINITE_DEPTH" else (lambda k: 1.0)
+    coth = (
+        (lambda k: 1.0 / np.tanh(k * depth))
+        if parameters.orbital_motion == "FINITE_DEPTH"
+        else (lambda k: 1.0)
+    )
     sums = direct_sum.fields(
         Ocean(parameters, precision="double").initial_state, time, parameters.choppiness, coth
     )
@@ -167,7 +175,7 @@ def test_a_single_wave() -> None:
 
 
 @pytest.mark.parametrize(
-    "changes", [{}, {"trough_damping": 0.8}, {"loop_duration": 12, "orbits": "FINITE_DEPTH"}]
+    "changes", [{}, {"trough_damping": 0.8}, {"loop_duration": 12, "orbital_motion": "FINITE_DEPTH"}]
 )
 def test_velocity_is_the_rate_of_displacement(changes: dict) -> None:
     """Central differences in time converge to the velocity with the square of the step."""

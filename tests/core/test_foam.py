@@ -121,15 +121,15 @@ HALVES = (
     "changes",
     [
         {"choppiness": 0.0},
-        {"choppiness": 0.0, "patches": HALVES, "joined": 32},
+        {"choppiness": 0.0, "patches": HALVES, "merged_resolution": 32},
         {"layers": (dataclasses.replace(WIND, shortest_wavelength=1e4),)},
         {"layers": (WaveLayer(fetch=1.0),), "domain_size": 100e3},
         {"layers": (dataclasses.replace(WIND, muted=True),)},
-        {"layers": (dataclasses.replace(WIND, gain=0.0),)},
+        {"layers": (dataclasses.replace(WIND, amplitude_scale=0.0),)},
         {"layers": (dataclasses.replace(WIND, mask=Mask(source="IMAGE", image=Raster([[0.0]]))),)},
         {"layers": (WaveLayer(wind_speed=20.0, spectrum="GENERALIZED_AB", generalized_a=0.0),)},
     ],
-    ids=["flat", "joined", "too long", "too short", "muted", "no gain", "masked", "no energy"],
+    ids=["flat", "merged_resolution", "too long", "too short", "muted", "no gain", "masked", "no energy"],
 )  # fmt: skip
 def test_a_sea_without_compression_has_no_foam(changes: dict, precision: str) -> None:
     sea = OceanParameters(resolution=32, layers=(WIND,), foam=Foam(coverage=100.0, half_life=0.5)).replace(
@@ -332,7 +332,7 @@ def test_covariances_of_strains_are_those_of_the_fields() -> None:
     """Waves that run one way each, with the amplitudes of the spectrum: no seed differs from the mean."""
     layer = WaveLayer(spreading="COSINE_SQUARED", swell=0.0, wind_direction=0.7)
     sea = OceanParameters(
-        resolution=32, domain_size=200.0, amplitudes="FIXED", choppiness=0.8, layers=(layer,)
+        resolution=32, domain_size=200.0, amplitudes="DETERMINISTIC", choppiness=0.8, layers=(layer,)
     )
     ocean = Ocean(sea, "double")
     before, now, after = (

@@ -203,7 +203,7 @@ def test_displacement_and_velocity_add_to_the_seas(windy: OceanParameters) -> No
         np.testing.assert_allclose(of_both, of_sea + of_wave, atol=1e-9)
 
 
-@pytest.mark.parametrize("amplitudes", ["GAUSSIAN", "FIXED"])
+@pytest.mark.parametrize("amplitudes", ["RANDOM", "DETERMINISTIC"])
 def test_neither_amplitudes_nor_matched_height_change_a_hero_wave(
     windy: OceanParameters, amplitudes: str
 ) -> None:

@@ -125,9 +125,9 @@ def test_crossing_seas_of_the_reference() -> None:
 
 
 def test_fixed_amplitudes_are_the_spectrum() -> None:
-    state = initial_state(BASE.replace(amplitudes="FIXED", layers=(WIND,)))
+    state = initial_state(BASE.replace(amplitudes="DETERMINISTIC", layers=(WIND,)))
     np.testing.assert_allclose(np.abs(state.h_plus) ** 2, state.expected_plus, rtol=1e-9)
-    statistics = Ocean(BASE.replace(amplitudes="FIXED", layers=(WIND,))).statistics()
+    statistics = Ocean(BASE.replace(amplitudes="DETERMINISTIC", layers=(WIND,))).statistics()
     assert statistics.seed.m0 == pytest.approx(statistics.resolved.m0)
 
 

@@ -201,11 +201,11 @@ def test_foam_gathers_on_the_crests_of_the_wind() -> None:
     time=st.sampled_from([-1e6, -130.0, 0.0, 0.1, 77.0, 1e6]),
     more=st.fixed_dictionaries(
         {
-            "front": st.sampled_from(["ARC", "PARALLEL"]),
+            "crest": st.sampled_from(["ARC", "PARALLEL"]),
             "particles": st.integers(1, 7),
             "split_angle": st.sampled_from([0.0, 0.1, 1.0]),
             "life": st.sampled_from([0.5, 8.0, 100.0]),
-            "calm": st.sampled_from([0.1, 2.0]),
+            "minimum_wind_speed": st.sampled_from([0.1, 2.0]),
             "start_time": st.sampled_from([-1e6, 0.0, 1e6]),
         }
     ),
@@ -243,7 +243,7 @@ def test_bounds_hold_and_are_refused_beyond() -> None:
     with pytest.raises(ParameterError, match=r"layers = 'up to \d+ particles': must have at most 2000000"):
         sea(rows=512, columns=512)
     with pytest.raises(ParameterError, match="waves looked at"):
-        sea(rows=100, columns=100, calm=0.1, life=20.0, particles=1, split_angle=0.0,
+        sea(rows=100, columns=100, minimum_wind_speed=0.1, life=20.0, particles=1, split_angle=0.0,
             keys=keyed((0.0, [[[20.0, 0.0]]]), (1.0, [[[0.0, 0.0]]])))  # fmt: skip
 
 

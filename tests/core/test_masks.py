@@ -10,12 +10,12 @@ import pytest
 
 from ocean_tweak.core import (
     HeroWave,
+    ImageLayer,
     Mask,
     Ocean,
     OceanParameters,
     ParameterError,
     Patch,
-    PictureLayer,
     Places,
     Raster,
     WaveLayer,
@@ -29,7 +29,7 @@ from tests.layers import with_layers
 
 SIZE, SAMPLES = 240.0, 64
 GENERATOR = np.random.default_rng(5)
-HARBOUR = Mask(x=60.0, y=90.0, near=20.0, far=80.0)
+HARBOUR = Mask(x=60.0, y=90.0, inner_radius=20.0, outer_radius=80.0)
 IMAGE = Mask(source="IMAGE", image=Raster(GENERATOR.uniform(size=(5, 7)), "coast"))
 STORM = WaveLayer(wind_speed=12.0, fetch=30e3, wind_direction=0.3)
 RIPPLES = WaveLayer(wind_speed=5.0, fetch=5e3, wind_direction=-1.0)
@@ -203,7 +203,7 @@ def test_a_patch_has_a_mask_of_its_own() -> None:
 @pytest.mark.parametrize("kind", ["IMAGE", "WIND_FIELD"])
 def test_layers_of_all_kinds_have_masks(kind: str) -> None:
     layer = {
-        "IMAGE": PictureLayer(mask=HARBOUR, noise_resolution=64, significant_wave_height=1.0),
+        "IMAGE": ImageLayer(mask=HARBOUR, noise_resolution=64, significant_wave_height=1.0),
         "WIND_FIELD": WindFieldLayer(mask=HARBOUR, wind_speed=14.0),
     }[kind]
     free = dataclasses.replace(layer, mask=None)
@@ -271,8 +271,8 @@ def test_masks_are_json_and_left_out_where_there_are_none() -> None:
     ("changes", "named"),
     [
         ({"source": "IMAGE"}, "image"),
-        ({"near": 90.0}, "near"),
-        ({"far": 0.0}, "far"),
+        ({"inner_radius": 90.0}, "inner_radius"),
+        ({"outer_radius": 0.0}, "outer_radius"),
         ({"x": float("nan")}, "x"),
         ({"source": "OBJECT"}, "source"),
         ({"source": "IMAGE", "image": Raster(np.zeros((2, 2, 2)))}, "image"),

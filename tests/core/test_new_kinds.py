@@ -33,7 +33,7 @@ from ocean_tweak.export.exr import read_image
 from tests.new_kinds import Hump, Ripple, registered
 
 SIZE, SAMPLES, TIME = 100.0, 32, 1.5
-HARBOUR = Mask(x=40.0, y=50.0, near=10.0, far=40.0)
+HARBOUR = Mask(x=40.0, y=50.0, inner_radius=10.0, outer_radius=40.0)
 X, Y = np.array([3.0, 31.0, 47.2, 77.7]), np.array([9.0, 22.0, 55.5, 93.0])
 
 

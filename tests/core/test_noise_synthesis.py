@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures into waves, after Mastin, Watterberg & Mareda (1987): noise, filters, waves of a picture."""
+"""Images into waves, after Mastin, Watterberg & Mareda (1987): noise, filters, waves of an image."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from ocean_tweak.core.data.errors import ParameterError
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.waves.image import animation, filters, source
-from ocean_tweak.core.waves.image.parameters import PictureLayer
+from ocean_tweak.core.waves.image.parameters import ImageLayer
 from ocean_tweak.core.waves.image.state import filtered
-from tests.core.pictures import DEEP, L, N, drawing, elevation, spectrum, state
+from tests.core.images import DEEP, L, N, drawing, elevation, spectrum, state
 
 # The source
 
@@ -94,7 +94,7 @@ def test_moments_of_pierson_moskowitz() -> None:
 
 @pytest.mark.parametrize("direction", [0.0, 0.7, np.pi / 4])
 def test_physical_filter_holds_the_spectrum(direction: float) -> None:
-    layer = PictureLayer(wind_speed=8.0, wind_direction=direction)
+    layer = ImageLayer(wind_speed=8.0, wind_direction=direction)
     grid = WaveVectorGrid(256, 250.0)
     power = filters.filter_power(layer, grid, "DEEP", DEEP)
     m0 = 0.0081 * 9.81**2 / 5 / (2 * np.pi * 0.13 * 9.81 / 8.0) ** 4
@@ -105,7 +105,7 @@ def test_filters_are_even_and_follow_the_wind() -> None:
     """Fig. 7: waves of the peak frequency pass at 45° and 225° and not at 135° and 315°."""
     grid = WaveVectorGrid(256, 2000.0)
     for gain in ("PAPER", "PHYSICAL"):
-        layer = PictureLayer(wind_speed=15.0, wind_direction=np.pi / 4, filter_gain=gain)
+        layer = ImageLayer(wind_speed=15.0, wind_direction=np.pi / 4, filter_gain=gain)
         power = filters.filter_power(layer, grid, "DEEP", DEEP)
         np.testing.assert_allclose(power[1:128, 0], power[:128:-1, 0], rtol=1e-9)
         # f_m is at k = (2π 0.13)² g/U² = 0.0291 or 9.26 modes; at 8.49 p is 8.2, and 2·cos¹⁶·⁴ 45° is 1/145
@@ -114,9 +114,9 @@ def test_filters_are_even_and_follow_the_wind() -> None:
 
 def test_unit_gain_keeps_the_variance_of_noise() -> None:
     for layer in (
-        PictureLayer(wind_speed=10.0, filter_gain="PAPER"),
-        PictureLayer(filter="FRACTAL", fractal_dimension=3.0),
-        PictureLayer(filter="WATER_TEXTURE", texture_wavelength=10.0),
+        ImageLayer(wind_speed=10.0, filter_gain="PAPER"),
+        ImageLayer(filter="FRACTAL", fractal_dimension=3.0),
+        ImageLayer(filter="WATER_TEXTURE", texture_wavelength=10.0),
     ):
         grid = WaveVectorGrid(64, 400.0)
         power = filters.unit_gain(filters.filter_power(layer, grid, "DEEP", DEEP), grid)
@@ -133,7 +133,7 @@ def test_unit_gain_keeps_the_variance_of_noise() -> None:
 @pytest.mark.parametrize(("dimension", "beta"), [(2.1, 3.8), (2.5, 3.0), (3.0, 2.0)])
 def test_slope_of_a_fractal(dimension: float, beta: float) -> None:
     """The power fitted from the field itself falls as 1/k^β, β = 8 - 2D, within 2 %."""
-    layer = PictureLayer(filter="FRACTAL", fractal_dimension=dimension, noise_resolution=256)
+    layer = ImageLayer(filter="FRACTAL", fractal_dimension=dimension, noise_resolution=256)
     power = np.mean([np.abs(spectrum(elevation(state(layer, 256, seed=s)))) ** 2 for s in range(6)], axis=0)
     index = np.fft.fftfreq(256, 1 / 256)
     radius = np.hypot(index, index[:, np.newaxis])
@@ -147,7 +147,7 @@ def test_slope_of_a_fractal(dimension: float, beta: float) -> None:
 
 def test_slope_of_water_texture() -> None:
     """Beyond its peak 1/k^3.8, below it little: a Gaussian that meets it at the peak."""
-    layer = PictureLayer(filter="WATER_TEXTURE", texture_wavelength=20.0)
+    layer = ImageLayer(filter="WATER_TEXTURE", texture_wavelength=20.0)
     grid = WaveVectorGrid(256, 400.0)
     power = filters.filter_power(layer, grid, "DEEP", DEEP)[0]
     peak = 20  # waves a side
@@ -157,20 +157,20 @@ def test_slope_of_water_texture() -> None:
     np.testing.assert_allclose(power[1:peak], np.exp(-4.5 * (1 - np.arange(1, peak) / peak) ** 2), rtol=1e-9)
 
 
-# From picture to sea
+# From image to sea
 
 
-def test_parseval_from_picture_to_sea() -> None:
+def test_parseval_from_image_to_sea() -> None:
     """Energies of modes are the variance of the elevation, at every step."""
-    picture = Raster(drawing(64, 64), "ring")
-    coefficients = source.picture_coefficients(picture)
+    image = Raster(drawing(64, 64), "ring")
+    coefficients = source.image_coefficients(image)
     grid = WaveVectorGrid(64, L)
-    full = np.fft.fft2(picture.values[..., 0].astype(float)) / 64**2
+    full = np.fft.fft2(image.values[..., 0].astype(float)) / 64**2
     nyquist = np.sum(np.abs(full[32]) ** 2) + np.sum(np.abs(full[:, 32]) ** 2) - np.abs(full[32, 32]) ** 2
     held = np.sum(np.abs(coefficients) ** 2 * grid.multiplicity)
-    assert held + nyquist == pytest.approx(picture.values.astype(float).var(), rel=1e-9)
+    assert held + nyquist == pytest.approx(image.values.astype(float).var(), rel=1e-9)
     for animated in animation.RATES:
-        layer = PictureLayer(picture=picture, filter="FRACTAL", animation=animated)
+        layer = ImageLayer(image=image, filter="FRACTAL", animation=animated)
         of = state(layer)
         energy = np.sum((np.abs(of.h_plus) ** 2 + np.abs(of.h_minus) ** 2) * of.grid.multiplicity)
         for time in (0.0, 3.7):
@@ -178,19 +178,19 @@ def test_parseval_from_picture_to_sea() -> None:
 
 
 @pytest.mark.parametrize("name", list(filters.POWERS))
-@pytest.mark.parametrize("gain", [1.0, 0.3])
-def test_height_is_the_one_asked_for(name: str, gain: float) -> None:
-    for picture in (None, Raster(drawing(), "ring")):
-        layer = PictureLayer(
-            picture=picture, filter=name, filter_gain="PAPER", significant_wave_height=2.5, gain=gain,
-            noise_resolution=N, wind_speed=7.0,
+@pytest.mark.parametrize("scale", [1.0, 0.3])
+def test_height_is_the_one_asked_for(name: str, scale: float) -> None:
+    for image in (None, Raster(drawing(), "ring")):
+        layer = ImageLayer(
+            image=image, filter=name, filter_gain="PAPER", significant_wave_height=2.5, noise_resolution=N,
+            wind_speed=7.0, amplitude_scale=scale,
         )  # fmt: skip
-        assert 4 * elevation(state(layer)).std() == pytest.approx(2.5 * gain, rel=1e-9)
+        assert 4 * elevation(state(layer)).std() == pytest.approx(2.5 * scale, rel=1e-9)
 
 
 def test_height_of_the_physical_filter() -> None:
-    """Noise has it on average over seeds, a picture exactly; Hs = 0.02460 U²."""
-    layer = PictureLayer(wind_speed=7.0, noise_resolution=N)
+    """Noise has it on average over seeds, an image exactly; Hs = 0.02460 U²."""
+    layer = ImageLayer(wind_speed=7.0, noise_resolution=N)
     squares = [elevation(state(layer, seed=seed)).var() for seed in range(40)]
     expected = (0.02460 * 7.0**2 / 4) ** 2
     assert np.mean(squares) == pytest.approx(
@@ -198,15 +198,15 @@ def test_height_of_the_physical_filter() -> None:
     )
     matched = state(layer, match=True)
     assert elevation(matched).var() == pytest.approx(expected, rel=0.01)
-    whole = filtered(replace(layer, picture=Raster(drawing())), L, None, "DEEP", DEEP)
+    whole = filtered(replace(layer, image=Raster(drawing())), L, None, "DEEP", DEEP)
     assert whole.m0 == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", list(filters.POWERS))
-def test_a_picture_stands_in_the_sea(name: str) -> None:
-    """At time 0 the elevation is the picture, filtered: correlation 1 with NumPy's own filtering of it."""
-    picture = drawing(N, N).astype(np.float32).astype(np.float64)
-    layer = PictureLayer(picture=Raster(picture, "ring"), filter=name, filter_gain="PAPER", wind_speed=6.0)
+def test_an_image_stands_in_the_sea(name: str) -> None:
+    """At time 0 the elevation is the image, filtered: correlation 1 with NumPy's own filtering of it."""
+    image = drawing(N, N).astype(np.float32).astype(np.float64)
+    layer = ImageLayer(image=Raster(image, "ring"), filter=name, filter_gain="PAPER", wind_speed=6.0)
     kx, ky = (2 * np.pi / L * np.fft.fftfreq(N, 1 / N)[axis] for axis in (np.s_[None, :], np.s_[:, None]))
     k = np.hypot(kx, ky)
     k[0, 0] = 1.0
@@ -219,39 +219,39 @@ def test_a_picture_stands_in_the_sea(name: str) -> None:
         power = filters.directional_power(k, np.arctan2(ky, kx), layer, "DEEP", DEEP)
     power[0, 0] = 0.0
     power[N // 2] = power[:, N // 2] = 0.0
-    by_numpy = np.fft.ifft2(np.fft.fft2(picture) * np.sqrt(power)).real
+    by_numpy = np.fft.ifft2(np.fft.fft2(image) * np.sqrt(power)).real
     correlation = np.corrcoef(by_numpy.ravel(), elevation(state(layer)).ravel())[0, 1]
     # the cells' means around the peak are not the samples taken here
     assert correlation == pytest.approx(1.0, abs=1e-9 if name != "MODIFIED_PIERSON_MOSKOWITZ" else 0.003)
-    phases = spectrum(elevation(state(layer))) * np.conj(np.fft.fft2(picture))
+    phases = spectrum(elevation(state(layer))) * np.conj(np.fft.fft2(image))
     strong = np.abs(phases) > 1e-6 * np.abs(phases).max()
     assert np.max(np.abs(np.angle(phases[strong]))) < 1e-6
 
 
-def test_unfiltered_picture_is_the_picture() -> None:
-    """D = 4 is no filter: β = 0. The first row of the picture has the smallest y."""
-    picture = drawing(N, N)
-    layer = PictureLayer(picture=Raster(picture), filter="FRACTAL", fractal_dimension=4.0)
-    assert np.corrcoef(picture.ravel(), elevation(state(layer)).ravel())[0, 1] > 0.999
-    assert np.corrcoef(picture[::-1].ravel(), elevation(state(layer)).ravel())[0, 1] < 0.5
+def test_unfiltered_image_is_the_image() -> None:
+    """D = 4 is no filter: β = 0. The first row of the image has the smallest y."""
+    image = drawing(N, N)
+    layer = ImageLayer(image=Raster(image), filter="FRACTAL", fractal_dimension=4.0)
+    assert np.corrcoef(image.ravel(), elevation(state(layer)).ravel())[0, 1] > 0.999
+    assert np.corrcoef(image[::-1].ravel(), elevation(state(layer)).ravel())[0, 1] < 0.5
 
 
 @pytest.mark.parametrize("shape", [(40, 40), (41, 63), (300, 200), (1, 9), (7, 1)])
 def test_any_size_is_resampled_periodically(shape: tuple[int, int]) -> None:
-    """Waves of a picture keep their place and shape, whatever its size: they are made anew at the samples."""
+    """Waves of an image keep their place and shape, whatever its size: they are made anew at the samples."""
     rows, columns = shape
     y, x = np.arange(rows)[:, np.newaxis] / rows, np.arange(columns) / columns
     waves = [(0, 2, 1.0, 0.3), (1, 0, 0.5, 1.0), (-2, 3, 0.7, 2.0)]
     kept = [wave for wave in waves if 2 * abs(wave[0]) < rows and 2 * abs(wave[1]) < columns]
-    picture = np.sum([a * np.cos(2 * np.pi * (i * y + j * x) + e) for i, j, a, e in kept], axis=0)
-    layer = PictureLayer(picture=Raster(picture), filter="FRACTAL", fractal_dimension=4.0)
+    image = np.sum([a * np.cos(2 * np.pi * (i * y + j * x) + e) for i, j, a, e in kept], axis=0)
+    layer = ImageLayer(image=Raster(image), filter="FRACTAL", fractal_dimension=4.0)
     Y, X = np.arange(N)[:, np.newaxis] / N, np.arange(N) / N
     expected = np.sum([a * np.cos(2 * np.pi * (i * Y + j * X) + e) for i, j, a, e in kept], axis=0)
     np.testing.assert_allclose(np.corrcoef(expected.ravel(), elevation(state(layer)).ravel())[0, 1], 1.0)
 
 
 def test_resolution_shows_more_of_the_same_sea() -> None:
-    for layer in (PictureLayer(wind_speed=7.0), PictureLayer(filter="FRACTAL", fractal_dimension=3.0)):
+    for layer in (ImageLayer(wind_speed=7.0), ImageLayer(filter="FRACTAL", fractal_dimension=3.0)):
         coarse, fine = (spectrum(elevation(state(layer, n))) for n in (32, 128))
         index = [*range(16), *range(-15, 0)]
         np.testing.assert_allclose(coarse[np.ix_(index, index)], fine[np.ix_(index, index)], atol=1e-12)
@@ -261,20 +261,20 @@ def test_colours_become_their_luminance() -> None:
     colours = np.zeros((8, 8, 3))
     colours[2, 3] = (1.0, 0.0, 0.0)
     colours[5, 1] = (0.0, 1.0, 0.5)
-    layer = PictureLayer(picture=Raster(colours, "dots"))
-    assert layer.picture.shape == (8, 8, 1)
-    assert layer.picture.values[2, 3, 0] == pytest.approx(0.2126)
-    assert layer.picture.values[5, 1, 0] == pytest.approx(0.7152 + 0.0361)
+    layer = ImageLayer(image=Raster(colours, "dots"))
+    assert layer.image.shape == (8, 8, 1)
+    assert layer.image.values[2, 3, 0] == pytest.approx(0.2126)
+    assert layer.image.values[5, 1, 0] == pytest.approx(0.7152 + 0.0361)
     opaque = np.concatenate([colours, np.ones((8, 8, 1))], axis=-1)
-    assert PictureLayer(picture=Raster(opaque)) == layer
+    assert ImageLayer(image=Raster(opaque)) == layer
 
 
 def test_what_holds_no_waves_is_refused_by_name() -> None:
-    with pytest.raises(ParameterError, match=r"picture \(grey\.png\) = 0\.5: everywhere"):
-        PictureLayer(picture=Raster(np.full((4, 4), 0.5), "grey.png"))
+    with pytest.raises(ParameterError, match=r"image \(grey\.png\) = 0\.5: everywhere"):
+        ImageLayer(image=Raster(np.full((4, 4), 0.5), "grey.png"))
     with pytest.raises(ParameterError, match=r"raster 'hole\.exr' = nan: must be finite"):
-        PictureLayer(picture=Raster([[0.0, np.nan]], "hole.exr"))
+        ImageLayer(image=Raster([[0.0, np.nan]], "hole.exr"))
     with pytest.raises(ParameterError, match="2 channels': must have 1"):
-        PictureLayer(picture=Raster(np.arange(8.0).reshape(2, 2, 2), "winds"))
+        ImageLayer(image=Raster(np.arange(8.0).reshape(2, 2, 2), "winds"))
     with pytest.raises(ParameterError, match="noise_resolution = 33: must be an even number"):
-        PictureLayer(noise_resolution=33)
+        ImageLayer(noise_resolution=33)

@@ -16,9 +16,16 @@ from ocean_tweak.core.synthesis.channels import CHANNELS
 SIDE, SAMPLES = 120.0, 32
 WIND = WaveLayer(wind_speed=9.0, fetch=50e3)
 ONE = OceanParameters(resolution=SAMPLES, domain_size=SIDE, seed=2, layers=(WIND,))
-MASKED = ONE.replace(layers=(dataclasses.replace(WIND, mask=Mask(x=20.0, y=30.0, near=10.0, far=40.0)),))
+MASKED = ONE.replace(
+    layers=(dataclasses.replace(WIND, mask=Mask(x=20.0, y=30.0, inner_radius=10.0, outer_radius=40.0)),)
+)
 SEPARATE = ONE.replace(patches=(Patch(SIDE, 0.0, 15.0, 1e6, SAMPLES), Patch(41.0, 0.4, 3.0, 15.0, SAMPLES)))
-SEAS = {"one": ONE, "masked": MASKED, "joined": SEPARATE.on_one_grid(SAMPLES), "separate": SEPARATE}
+SEAS = {
+    "one": ONE,
+    "masked": MASKED,
+    "merged_resolution": SEPARATE.on_one_grid(SAMPLES),
+    "separate": SEPARATE,
+}
 GENERATOR = np.random.default_rng(8)
 
 

@@ -157,7 +157,7 @@ def test_record_of_twenty_minutes() -> None:
     base = OceanParameters(
         resolution=64,
         seed=3,
-        amplitudes="FIXED",
+        amplitudes="DETERMINISTIC",
         water=Water(depth=300.0),
         layers=(WaveLayer(wind_speed=13.0, wind_direction=0.5, fetch=180e3, swell=0.2),),
     )

@@ -23,7 +23,10 @@ def test_json_round_trip_keeps_every_field() -> None:
         choppiness=0.7,
         dispersion="DEEP",
         water=Water(depth=12.5, gravity=3.7, density=1025.0, surface_tension=0.05),
-        layers=(WaveLayer(wind_speed=0.1 + 0.2, wind_direction=math.pi / 4), WaveLayer(swell=1.0, gain=0.5)),
+        layers=(
+            WaveLayer(wind_speed=0.1 + 0.2, wind_direction=math.pi / 4),
+            WaveLayer(swell=1.0, amplitude_scale=0.5),
+        ),
         timing=Timing(fps=Fraction(24000, 1001), start_frame=1001),
     )
     again = OceanParameters.from_json(parameters.to_json())
@@ -118,7 +121,7 @@ def test_rasters_of_a_sea_are_counted_before_they_are_unpacked(monkeypatch: pyte
     with monkeypatch.context() as patched:
         patched.setattr(Raster, "from_plain", unpacked)
         data = {
-            "pictures": [{"picture": plain, "mask": {"source": "IMAGE", "image": plain}}] * 2,
+            "pictures": [{"image": plain, "mask": {"source": "IMAGE", "image": plain}}] * 2,
             "resolution": 32,
         }
         with pytest.raises(ParameterError, match="'400 numbers': must hold at most 350 together"):

@@ -104,7 +104,7 @@ def test_any_invalid_value_is_refused_by_name(cls: type, field: dataclasses.Fiel
         {
             "water": Water(depth=0.1),
             "layers": (WaveLayer(wind_speed=100.0, fetch=20e6),),
-            "orbits": "FINITE_DEPTH",
+            "orbital_motion": "FINITE_DEPTH",
         },
         {"layers": (WaveLayer(fetch=1.0, swell=4.0),)},
         {"layers": (WaveLayer(spreading="MITSUYASU", limit_fetch=False, fetch=20e6, wind_speed=0.1),)},

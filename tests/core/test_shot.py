@@ -13,7 +13,7 @@ import pytest
 from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, Timing, WaveLayer
 from ocean_tweak.core.parameters.fingerprint import frame_fingerprint, shot_fingerprint
 from ocean_tweak.core.parameters.shot import ANIMATED, Animation, Shot
-from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.sea.bake import ShotSeas
 
 SEA = OceanParameters(
     resolution=32, domain_size=120.0, layers=(WaveLayer(wind_speed=9.0), WaveLayer(wind_speed=4.0)),
@@ -76,7 +76,7 @@ def test_ocean_time_slows_the_waves_and_their_velocity() -> None:
         0.0,
         0.0,
     ]
-    fields = ShotSurfaces(shot).frame(2, {"displacement", "velocity"})
+    fields = ShotSeas(shot).frame(2, {"displacement", "velocity"})
     expected = Ocean(SEA).surface(0.25, {"displacement", "velocity"})
     np.testing.assert_array_equal(fields.displacement, expected.displacement)
     np.testing.assert_array_equal(fields.velocity, np.float32(6.0) * expected.velocity)
@@ -84,7 +84,7 @@ def test_ocean_time_slows_the_waves_and_their_velocity() -> None:
 
 def test_frames_of_several_patches_are_several() -> None:
     patches = (Patch(100.0, 0.0, 10.0, resolution=32), Patch(70.0, 0.4, 3.0, 10.0, 48))
-    surfaces = ShotSurfaces(Shot(SEA.replace(patches=patches)))
+    surfaces = ShotSeas(Shot(SEA.replace(patches=patches)))
     made = surfaces.frames(2, {"displacement"})
     assert [fields.displacement.shape for fields in made] == [(32, 32, 3), (48, 48, 3)]
     with pytest.raises(ValueError, match="several patches"):
@@ -95,7 +95,7 @@ def test_velocity_follows_the_clock_between_frames() -> None:
     """Against differences of the surface in scene time."""
     times = tuple(0.3 * math.sin(0.5 * frame) for frame in range(8))
     shot = Shot(SEA, Animation(1, (("ocean_time", times),)))
-    surfaces = ShotSurfaces(shot)
+    surfaces = ShotSeas(shot)
     step = Fraction(1, 512)
     middle = Fraction("3.5")
     before, after = (
@@ -115,16 +115,22 @@ def test_velocity_follows_the_clock_between_frames() -> None:
         ({"first_frame": 1, "samples": {"loop_duration": [1, 2]}}, "speed of every wave"),
         ({"first_frame": 1, "samples": {"dispersion": [1, 2]}}, "speed of every wave"),
         ({"first_frame": 1, "samples": {"layers.0.spectrum": [1, 2]}}, "only layers"),
-        ({"first_frame": 1, "samples": {"layers.x.gain": [1, 2]}}, "only layers"),
-        ({"first_frame": 1, "samples": {"layers.7.gain": [1, 2]}}, "only 2 layers"),
-        ({"first_frame": 1, "samples": {f"layers.{'9' * 5000}.gain": [1, 2]}}, "only layers"),
-        ({"first_frame": 1, "samples": {"layers.0.gain": [1, -2]}}, "layers.0.gain = -2.0: must be from 0"),
-        ({"first_frame": 1, "samples": {"layers.0.gain": [1, "2"]}}, "layers.0.gain.1"),
-        ({"first_frame": 1, "samples": {"layers.0.gain": [1, float("nan")]}}, "finite"),
-        ({"first_frame": 1, "samples": {"layers.0.gain": [1], "choppiness": [1, 1]}}, "as many samples"),
-        ({"first_frame": 1, "samples": {"layers.0.gain": []}}, "from 1 to"),
-        ({"first_frame": 1, "samples": {"layers.0.gain": [10**400]}}, "finite"),
-        ({"first_frame": 10**400, "samples": {"layers.0.gain": [1]}}, "at most"),
+        ({"first_frame": 1, "samples": {"layers.x.amplitude_scale": [1, 2]}}, "only layers"),
+        ({"first_frame": 1, "samples": {"layers.7.amplitude_scale": [1, 2]}}, "only 2 layers"),
+        ({"first_frame": 1, "samples": {f"layers.{'9' * 5000}.amplitude_scale": [1, 2]}}, "only layers"),
+        (
+            {"first_frame": 1, "samples": {"layers.0.amplitude_scale": [1, -2]}},
+            "layers.0.amplitude_scale = -2.0: must be from 0",
+        ),
+        ({"first_frame": 1, "samples": {"layers.0.amplitude_scale": [1, "2"]}}, "layers.0.amplitude_scale.1"),
+        ({"first_frame": 1, "samples": {"layers.0.amplitude_scale": [1, float("nan")]}}, "finite"),
+        (
+            {"first_frame": 1, "samples": {"layers.0.amplitude_scale": [1], "choppiness": [1, 1]}},
+            "as many samples",
+        ),
+        ({"first_frame": 1, "samples": {"layers.0.amplitude_scale": []}}, "from 1 to"),
+        ({"first_frame": 1, "samples": {"layers.0.amplitude_scale": [10**400]}}, "finite"),
+        ({"first_frame": 10**400, "samples": {"layers.0.amplitude_scale": [1]}}, "at most"),
         ({"first_frame": 1, "samples": {"choppiness": 3}}, "must be a list"),
         ({"first_frame": 1, "samples": {}}, "at least one"),
         ({"first_frame": 1.5, "samples": {"choppiness": [1]}}, "whole number"),
@@ -177,5 +183,5 @@ def test_a_stretched_shot_is_slower_and_says_so_only_where_it_is() -> None:
 
 def test_what_can_change_during_a_shot_is_what_the_documentation_says():
     """docs/batch.md: of a layer these five, of the sea choppiness and its time."""
-    of_layers = ("wind_speed", "wind_direction", "fetch", "swell", "gain")
+    of_layers = ("wind_speed", "wind_direction", "fetch", "swell", "amplitude_scale")
     assert (*(f"layers.*.{name}" for name in of_layers), "choppiness", "ocean_time") == ANIMATED

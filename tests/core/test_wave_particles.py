@@ -184,7 +184,7 @@ def test_height_jumps_little_when_a_front_splits() -> None:
 
 
 def test_a_parallel_front_stays_parallel_half_a_radius_apart() -> None:
-    now, classes = one_wave(9.0, front="PARALLEL", wind_direction=0.5 * math.pi)
+    now, classes = one_wave(9.0, crest="PARALLEL", wind_direction=0.5 * math.pi)
     assert len(now.x) == 5
     np.testing.assert_allclose(np.diff(np.sort(now.x)), 0.5 * classes.radii[0])
     np.testing.assert_allclose(now.y, 2000.0 + 9.0 * LENGTH)
@@ -193,5 +193,5 @@ def test_a_parallel_front_stays_parallel_half_a_radius_apart() -> None:
 
 def test_heights_by_steepness_or_by_speed() -> None:
     for choice, expected in (("STEEPNESS", 0.2 * LENGTH / (2 * math.pi)), ("WIND_SPEED", 0.05 * 10.0)):
-        now, _ = one_wave(6.0, height=choice, gain=3.0, particles=1, split_angle=0.0)
+        now, _ = one_wave(6.0, height=choice, amplitude_scale=3.0, particles=1, split_angle=0.0)
         assert now.amplitude[0] == pytest.approx(3.0 * expected)

@@ -23,7 +23,7 @@ def sea(**layer: Any) -> OceanParameters:
 
 def test_a_keyed_wind_survives_json() -> None:
     winds = np.random.default_rng(3).normal(0.0, 5.0, (3, 4, 2))
-    parameters = sea(keys=(WindKey(0.0, Raster(winds)), WindKey(2.5, Raster(CALM))), front="PARALLEL")
+    parameters = sea(keys=(WindKey(0.0, Raster(winds)), WindKey(2.5, Raster(CALM))), crest="PARALLEL")
     back = OceanParameters.from_json(parameters.to_json())
     assert back == parameters
     assert layers_of(back, "WIND_FIELD")[0].id == 0
@@ -54,9 +54,9 @@ def test_a_sea_without_wind_fields_is_written_as_before_there_were_any() -> None
         ({"keys": [{"vectors": {"values": [[[1, 0]]]}}] * 2}, "layers.1.keys.1.time", "above that"),
         ({"keys": [{"vectors": {"values": [[[1e30, 0]]]}}]}, "layers.1", "at most 62.64 m/s"),
         ({"wind_speed": 63.0}, "layers.1", "waves are 404"),
-        ({"wind_speed": 50.0, "strength": 2.0}, "layers.1", "100 m/s"),
+        ({"wind_speed": 50.0, "wind_scale": 2.0}, "layers.1", "100 m/s"),
         ({"particles": 0}, "layers.1.particles", "from 1 to 99"),
-        ({"front": "ROUND"}, "layers.1.front", "ARC, PARALLEL"),
+        ({"crest": "ROUND"}, "layers.1.crest", "ARC, PARALLEL"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_by_name(layer: dict[str, Any], where: str, reason: str) -> None:

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, WaveLayer
+from ocean_tweak.core import ImageLayer, Ocean, OceanParameters, WaveLayer
 from ocean_tweak.core.numerics import random
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.sea import memory
@@ -118,11 +118,11 @@ def test_memory_while_a_state_is_made_is_told() -> None:
     assert 0.7 * memory_need(large).state < kept < 1.1 * memory_need(large).state
 
 
-def test_memory_while_a_picture_is_filtered_is_told() -> None:
-    """Of a picture of many more samples than the sea, beside which all else is small."""
+def test_memory_while_an_image_is_filtered_is_told() -> None:
+    """Of an image of many more samples than the sea, beside which all else is small."""
     plain = OceanParameters(resolution=32, seed=4712)
-    fine = with_layers(plain, IMAGE=(PictureLayer(noise_resolution=1024),))
-    Ocean(with_layers(plain, IMAGE=(PictureLayer(noise_resolution=32),))).prepare()
+    fine = with_layers(plain, IMAGE=(ImageLayer(noise_resolution=1024),))
+    Ocean(with_layers(plain, IMAGE=(ImageLayer(noise_resolution=32),))).prepare()
     tracemalloc.start()
     ocean = Ocean(fine, workers=1)
     ocean.prepare()

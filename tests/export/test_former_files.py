@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import HeroWave, OceanParameters, PictureLayer, WaveLayer, WindFieldLayer
+from ocean_tweak.core import HeroWave, ImageLayer, OceanParameters, WaveLayer, WindFieldLayer
 from ocean_tweak.core.parameters.fingerprint import frame_fingerprint
 from ocean_tweak.core.parameters.former_json import former, modern
 from ocean_tweak.core.parameters.shot import Animation, Shot
@@ -31,15 +31,15 @@ def version(tmp_path: Path) -> Path:
 def test_lists_of_kinds_become_one(shot: Shot) -> None:
     data = json.loads((FORMER / "sea.json").read_text())
     layers = shot.parameters.layers
-    kinds = (WaveLayer, WaveLayer, WindFieldLayer, PictureLayer, PictureLayer, HeroWave)
+    kinds = (WaveLayer, WaveLayer, WindFieldLayer, ImageLayer, ImageLayer, HeroWave)
     assert tuple(map(type, layers)) == kinds
     assert [layer.id for layer in layers] == [0, 4, 0, 0, 1, -1]
-    assert (layers[0].fetch, layers[1].mask.far, layers[5].crest_height) == (30e3, 30.0, 0.8)
+    assert (layers[0].fetch, layers[1].mask.outer_radius, layers[5].crest_height) == (30e3, 30.0, 0.8)
     assert [key.time for key in layers[2].keys] == [0.0, 2.0]
-    assert layers[4].picture.values[1, 3, 0] == 7.0
+    assert layers[4].image.values[1, 3, 0] == 7.0
     assert shot.animation is not None
     assert {*data["animation"]["samples"]} == {path for path, _ in shot.animation.samples}
-    assert OceanParameters.from_dict({"pictures": [{"gain": 2.0}]}).layers[0] == WaveLayer(id=0)
+    assert OceanParameters.from_dict({"pictures": [{"amplitude_scale": 2.0}]}).layers[0] == WaveLayer(id=0)
     assert Shot.from_json(shot.to_json()) == shot
 
 

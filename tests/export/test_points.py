@@ -26,7 +26,7 @@ def sea():
             domain_size=21.0, longest_wavelength=15.0, shortest_wavelength=4.0, rotation=0.9, resolution=SMALL
         ),
     )
-    return OceanParameters(layers=(layer,), patches=patches, joined=32)
+    return OceanParameters(layers=(layer,), patches=patches, merged_resolution=32)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,11 @@ def test_the_small_ones_are_means_over_cells(sea, made):
 
 def test_the_sum_of_the_patches_is_the_sea(sea, made):
     at_corner = [columns(made / f"sea_p{number}_points.0001.ply", "z")[0, 0, 0] for number in (1, 2)]
-    whole = Ocean(sea.replace(joined=0)).surface(0.0, {"displacement"}, on=Places(0.0, 0.0)).displacement
+    whole = (
+        Ocean(sea.replace(merged_resolution=0))
+        .surface(0.0, {"displacement"}, on=Places(0.0, 0.0))
+        .displacement
+    )
     assert sum(at_corner) == pytest.approx(float(np.ravel(whole)[2]), abs=1e-4)
 
 

@@ -32,8 +32,8 @@ SHOT = Shot(
 
 
 @pytest.fixture
-def pictures(tmp_path):
-    """A folder with the pictures that examples name."""
+def images(tmp_path):
+    """A folder with the images that examples name."""
     grey = np.linspace(0, 255, 64, dtype=np.uint8).reshape(8, 8)
     for name in ("lee.png", "sea.png"):
         Image.fromarray(grey).save(tmp_path / name)
@@ -42,9 +42,9 @@ def pictures(tmp_path):
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_examples_of_the_documentation(name, pictures):
+def test_examples_of_the_documentation(name, images):
     text = EXAMPLES[name]
-    path = pictures / "sea.json"
+    path = images / "sea.json"
     path.write_text(text if text.startswith("{") else f"{{{text}}}")
     shot = read_sea(path)
     given = json.loads(path.read_text())
@@ -56,7 +56,7 @@ def test_examples_of_the_documentation(name, pictures):
 
 def test_there_are_examples_of_each_kind():
     assert {name.partition(" ")[0] for name in EXAMPLES} >= {
-        f"docs/{name}.md" for name in ("batch", "cascades", "hero-waves", "masks", "pictures", "wind-fields")
+        f"docs/{name}.md" for name in ("batch", "cascades", "hero-waves", "masks", "images", "wind-fields")
     }
 
 
@@ -73,15 +73,15 @@ def test_what_is_written_is_read(tmp_path, sea):
     assert read_sea(tmp_path / "sea.json") == (sea if isinstance(sea, Shot) else Shot(sea))
 
 
-def test_pictures_are_read_beside_the_file_and_written_into_it(pictures):
-    (pictures / "a.json").write_text('{"pictures": [{"picture": {"file": "sea.png"}}]}')
-    shot = read_sea(pictures / "a.json")
-    (pictures / "other").mkdir()
-    write_sea(pictures / "other" / "b.json", shot)
-    assert read_sea(pictures / "other" / "b.json") == shot
-    shutil.copy(pictures / "a.json", pictures / "other" / "a.json")
-    with pytest.raises(ParameterError, match=r"layers\.1\.picture"):
-        read_sea(pictures / "other" / "a.json")
+def test_images_are_read_beside_the_file_and_written_into_it(images):
+    (images / "a.json").write_text('{"pictures": [{"image": {"file": "sea.png"}}]}')
+    shot = read_sea(images / "a.json")
+    (images / "other").mkdir()
+    write_sea(images / "other" / "b.json", shot)
+    assert read_sea(images / "other" / "b.json") == shot
+    shutil.copy(images / "a.json", images / "other" / "a.json")
+    with pytest.raises(ParameterError, match=r"layers\.1\.image"):
+        read_sea(images / "other" / "a.json")
 
 
 def test_layers_of_usd(tmp_path):
@@ -117,7 +117,7 @@ def test_what_cannot_be_read_or_written_is_told(tmp_path):
     (tmp_path / "sea.json").write_text('{"choppines": 1}')
     with pytest.raises(ParameterError, match="choppines = 1: unknown key; did you mean choppiness"):
         read_sea(tmp_path / "sea.json")
-    (tmp_path / "newer.json").write_text('{"pictures": [{"picture": {"file": "none.png"}}], "format": 7}')
+    (tmp_path / "newer.json").write_text('{"pictures": [{"image": {"file": "none.png"}}], "format": 7}')
     with pytest.raises(ParameterError, match=r"format = 7: .* update the extension"):
         read_sea(tmp_path / "newer.json")
     with pytest.raises(ParameterError, match="must be that of a JSON file"):

@@ -43,7 +43,7 @@ import bpy
 import numpy as np
 from ocean_tweak import cli, registration
 from ocean_tweak.core import OceanParameters
-from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.sea.bake import ShotSeas
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.frame_files import BAKED
@@ -54,7 +54,7 @@ from tools import parameters_doc
 
 sea, folder = Path(sys.argv[1]), Path(sys.argv[2])
 parameters = OceanParameters.from_json(sea.read_text())
-fields = ShotSurfaces(Shot(parameters)).frame(2, {"speed", "velocity"})
+fields = ShotSeas(Shot(parameters)).frame(2, {"speed", "velocity"})
 found = {"field": fields.speed.tolist(), "velocity": fields.velocity.tolist()}
 
 bake = ["--params", str(sea), "--frames", "2", "--maps", "disp,speed", "--out", str(folder)]

@@ -39,7 +39,7 @@ def test_an_arrow_up_is_found(module, source):
         ("scene.render", "bpy.ops.object.modifier_apply()"),
         ("scene.render", '"the scene is one, and cli is not ui."'),
         ("scene.render", 'load("core.parameters")'),
-        ("export.usd.apart", "subprocess.run(module_command(__name__))"),
+        ("export.usd.isolated", "subprocess.run(module_command(__name__))"),
         ("export.usd.library", 'importlib.import_module("pxr")'),
         ("cli", "module_command(package)"),
     ],

@@ -16,7 +16,7 @@ from pxr import Usd
 from ocean_tweak.core import OceanParameters
 from ocean_tweak.core.data.frames import parse_frames
 from ocean_tweak.core.parameters.shot import Shot
-from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.sea.bake import ShotSeas
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.package import Package
 
@@ -48,7 +48,7 @@ def write(top: Path, frames: str = "1001-1004", force: bool = False, **options: 
 def expected(frame: float, step: int = 1, samples: int = SAMPLES) -> SimpleNamespace:
     """What a frame should hold: metres, Z up, a vertex every so many samples, x fastest."""
     sea = Shot(OceanParameters.from_dict({**SEA, "resolution": samples}))
-    fields = ShotSurfaces(sea).frame(parse_frames(str(frame))[0], OUTPUTS)
+    fields = ShotSeas(sea).frame(parse_frames(str(frame))[0], OUTPUTS)
     index = np.arange(0, samples + 1, step)
     row, column = (part.reshape(-1) for part in np.meshgrid(index, index, indexing="ij"))
 

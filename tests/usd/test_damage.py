@@ -12,7 +12,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
 from ocean_tweak.cli import main
-from ocean_tweak.export.usd import apart
+from ocean_tweak.export.usd import isolated
 
 from .conftest import FORMS, write
 
@@ -35,7 +35,7 @@ def assets(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is known to end OpenUSD in no other way is read more quickly here."""
-    monkeypatch.setattr(apart, "lines", lambda _path, asked: apart.answer(asked))
+    monkeypatch.setattr(isolated, "lines", lambda _path, asked: isolated.answer(asked))
 
 
 @pytest.fixture
@@ -136,7 +136,7 @@ def test_openusd_that_breaks_off_ends_nobody_else(
 ) -> None:
     """Some damaged layers end the process that reads them, by a signal."""
     crash = [sys.executable, "-c", "import os; os.abort()"]
-    monkeypatch.setattr(apart, "module_command", lambda _module: crash)
+    monkeypatch.setattr(isolated, "module_command", lambda _module: crash)
     for command in (["usd-verify"], ["info", "--params"]):
         assert main([*command, str(copy / "sea.usd")]) == 1
         said = capsys.readouterr().err

@@ -226,7 +226,7 @@ def side_by_side(seas: dict[str, OceanParameters], time: float) -> Figure:
 
 def li_wang_fronts() -> Figure:
     """Figure 4 b and d."""
-    fronts = li_wang.FRONTS
+    fronts = li_wang.CRESTS
     return side_by_side({"arc (fig. 4b)": fronts["ARC"], "parallel (fig. 4d)": fronts["PARALLEL"]}, 25.0)
 
 

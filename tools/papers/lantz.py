@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ocean_tweak.core import Ocean, OceanParameters, PictureLayer, Raster, Water, WaveLayer
+from ocean_tweak.core import ImageLayer, Ocean, OceanParameters, Raster, Water, WaveLayer
 
 from .measures import bound, direct_sum, seam_steps
 from .pages import Table
@@ -64,7 +64,7 @@ def crests() -> Table:
     rows = [["λ", "second harmonic", "mean below 0", "skewness", "Jacobian at the crest"]]
     side, waves = 8.0 * np.pi, 4
     cosine = np.cos(2.0 * np.pi * waves / 64.0 * np.arange(64))
-    picture = PictureLayer(
+    picture = ImageLayer(
         picture=Raster(np.tile(cosine, (64, 1))), filter="FRACTAL", fractal_dimension=4.0,
         significant_wave_height=4.0 * 0.1 / np.sqrt(2.0),
     )  # fmt: skip

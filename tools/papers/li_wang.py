@@ -34,7 +34,7 @@ def one_origin(**changes: object) -> WindFieldLayer:
 
 
 #: figure 4: the two shapes of a front
-FRONTS = {front: sea(one_origin(front=front)) for front in ("ARC", "PARALLEL")}
+CRESTS = {front: sea(one_origin(crest=front)) for front in ("ARC", "PARALLEL")}
 
 #: figure 5: the same arcs with and without splitting
 SPLITTING = {splitting: sea(one_origin(splitting=splitting, split_angle=0.3)) for splitting in (False, True)}
@@ -44,8 +44,8 @@ SPLITTING = {splitting: sea(one_origin(splitting=splitting, split_angle=0.3)) fo
 WINDS = {
     kind: sea(
         dataclasses.replace(
-            field(10.0), columns=16, rows=16, particles=5, split_angle=0.1, life=8.0, steepness=0.1, calm=2.0,
-            start_time=-120.0,
+            field(10.0), columns=16, rows=16, particles=5, split_angle=0.1, life=8.0, steepness=0.1,
+            minimum_wind_speed=2.0, start_time=-120.0,
         )
     )
     for kind, field in {

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ocean_tweak.core import PictureLayer, Water
+from ocean_tweak.core import ImageLayer, Water
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.waves.image import animation, filters, source
 from ocean_tweak.core.waves.image.state import filtered
@@ -20,12 +20,12 @@ SAMPLES, SIDE = 512, 1800.0
 SEED = 1
 DEEP = Water(depth=11e3)
 
-WIND = PictureLayer(
+WIND = ImageLayer(
     wind_speed=15.0, wind_direction=np.pi / 4, filter_gain="PAPER", noise_resolution=SAMPLES, seed=SEED,
     significant_wave_height=5.5,
 )  # fmt: skip
-MOUNTAINS = PictureLayer(filter="FRACTAL", fractal_dimension=2.1, noise_resolution=SAMPLES, seed=SEED)
-TEXTURE = PictureLayer(
+MOUNTAINS = ImageLayer(filter="FRACTAL", fractal_dimension=2.1, noise_resolution=SAMPLES, seed=SEED)
+TEXTURE = ImageLayer(
     filter="WATER_TEXTURE",
     fractal_dimension=2.1,
     texture_wavelength=30.0,
@@ -39,7 +39,7 @@ def grid() -> WaveVectorGrid:
     return WaveVectorGrid(SAMPLES, SIDE)
 
 
-def filtered_noise(layer: PictureLayer) -> Array:
+def filtered_noise(layer: ImageLayer) -> Array:
     """(512, 512): the white noise after the filter of unit gain, around 128 as the paper's images are."""
     power = filters.unit_gain(filters.filter_power(layer, grid(), "DEEP", DEEP), grid())
     coefficients = source.noise_coefficients(SAMPLES, SEED) * np.sqrt(power * source.noise_variance())
@@ -116,7 +116,7 @@ def slopes() -> Table:
     return rows
 
 
-def fitted_exponent(layer: PictureLayer, shortest: int) -> float:
+def fitted_exponent(layer: ImageLayer, shortest: int) -> float:
     """β of the power of the filtered image, from so many waves a side on."""
     image = filtered_noise(layer)
     power = np.abs(np.fft.rfft2(image - image.mean())) ** 2
@@ -140,7 +140,7 @@ def phases() -> Table:
         "dispersion (eq. 10)": ("DISPERSION", {}),
     }
     for title, (name, more) in settings.items():
-        layer = PictureLayer(wind_speed=15.0, animation=name, **more)  # type: ignore[arg-type]
+        layer = ImageLayer(wind_speed=15.0, animation=name, **more)  # type: ignore[arg-type]
         speeds = []
         for wavelength in (longest, longest / 4.0):
             one = WaveVectorGrid(16, wavelength)

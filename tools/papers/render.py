@@ -83,7 +83,7 @@ def build(
 
     towards : where the waves run, rad counter-clockwise from the view
     """
-    moods, stage = extension.module("scene.moods"), extension.module("scene.stage")
+    moods, stage = extension.module("scene.moods"), extension.module("scene.surroundings")
     layers = tuple(
         layer.changed(wind_direction=moods.VIEW + towards) if layer.kind == "WAVES" else layer
         for layer in sea.layers
@@ -140,7 +140,7 @@ def ray_traced(extension: Extension) -> None:
     mesh.materials.append(_blue_and_mirror())
     scene = bpy.context.scene
     scene.collection.objects.link(bpy.data.objects.new("Sea", mesh))
-    stage, sky = extension.module("scene.stage"), extension.module("scene.sky")
+    stage, sky = extension.module("scene.surroundings"), extension.module("scene.sky")
     seen = sky.Sky(math.radians(18.0), math.radians(60.0), 0.4)
     scene.world = sky.new_world("Sky", seen)
     scene.collection.objects.link(sky.new_sun("Sun", seen))

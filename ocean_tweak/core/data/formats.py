@@ -13,8 +13,9 @@ from typing import Any
 
 from .errors import ParameterError
 
-#: a sea or a shot as JSON: `Shot.to_json`, and so what `write_sea` and the panel write, and presets
-SEA = 1
+#: a sea or a shot as JSON: `Shot.to_json`, and so what `write_sea` and the panel write, and presets. In 1
+#: many fields had other names: see `parameters.former_json`
+SEA = 2
 #: the header of a baked image
 IMAGE = 1
 #: a bake's job, `bake.json`, and the record of each of its frames

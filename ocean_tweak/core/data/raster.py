@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures and grids of vectors as values: immutable, compared by their numbers, and text in JSON.
+"""Images and grids of vectors as values: immutable, compared by their numbers, and text in JSON.
 
 Parameters that hold one stay what parameters are: equal where the sea is equal, and complete by themselves,
 so that a bake on another machine needs no file beside them.
@@ -82,7 +82,7 @@ class Raster:
         return f"Raster({self.name!r}, {rows} x {columns} x {channels}, {self.sha256[:8]})"
 
     def grey(self) -> Raster:
-        """One channel: the luminance of a colour picture; the fourth is transparency, which is left out.
+        """One channel: the luminance of a colour image; the fourth is transparency, which is left out.
 
         Rasters of one or two channels stay as they are.
         """
@@ -154,7 +154,7 @@ def check_numbers(count: int) -> None:
     if count > MOST_NUMBERS:
         raise ParameterError(
             "rasters", f"{count} numbers",
-            f"must hold at most {MOST_NUMBERS} together: make pictures or grids of wind smaller, or fewer",
+            f"must hold at most {MOST_NUMBERS} together: make images or grids of wind smaller, or fewer",
         )  # fmt: skip
 
 

@@ -99,7 +99,7 @@ def switch(default: bool, description: str) -> Any:
 
 
 def raster(description: str, channels: int, optional: bool = True) -> Any:
-    """A dataclass field that is a picture or a grid of vectors with so many channels."""
+    """A dataclass field that is an image or a grid of vectors with so many channels."""
     metadata = {"kind": Raster, "channels": channels, "optional": optional, "description": description}
     return dataclasses.field(default=None, metadata=metadata)
 

@@ -1,19 +1,45 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """JSON of a sea as it was when each kind of layers but waves by a spectrum had a list of its own.
 
-It is still read; and fingerprints are still made of it, so that what was baked from it is known as the same.
+Many fields had other names then. It is still read; and fingerprints are still made of it, so that what was
+baked from it is known as the same.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..data.errors import ParameterError
 from ..data.formats import checked_sea
 from ..waves.contribution import Contribution
+from ..waves.hero.parameters import HeroWave
+from ..waves.image.parameters import ImageLayer
 from ..waves.kinds import KINDS, shown
+from ..waves.spectral import WaveLayer
+from ..waves.wind_field.parameters import WindFieldLayer
 
+#: former names of fields by today's: of the sea itself,
+SEA_NAMES = {"orbital_motion": "orbits", "merged_resolution": "joined"}
+#: of a mask,
+MASK_NAMES = {"inner_radius": "near", "outer_radius": "far"}
+#: and of a kind of layers
+LAYER_NAMES: dict[str, dict[str, str]] = {
+    WaveLayer.kind: {"amplitude_scale": "gain"},
+    ImageLayer.kind: {"amplitude_scale": "gain", "image": "picture"},
+    WindFieldLayer.kind: {
+        "amplitude_scale": "gain",
+        "wind_scale": "strength",
+        "minimum_wind_speed": "calm",
+        "crest": "front",
+    },
+    HeroWave.kind: {},
+}
+#: former values by today's, of the one choice that has others
+_AMPLITUDES = {"RANDOM": "GAUSSIAN", "DETERMINISTIC": "FIXED"}
+
+_Names = Mapping[str, str]
 _LAYER = re.compile(r"layers\.([0-9]+)\.(.+)")
 
 
@@ -28,7 +54,11 @@ def modern(data: Any) -> Any:
     Raises NewerFormatError for one that is newer than this program, ParameterError for a list that is none.
     """
     data = checked_sea(data)
-    if not isinstance(data, dict) or data.keys().isdisjoint(_with_lists()):
+    return _renamed(_in_one_list(data), _reversed) if isinstance(data, dict) else data
+
+
+def _in_one_list(data: dict[str, Any]) -> dict[str, Any]:
+    if data.keys().isdisjoint(_with_lists()):
         return data
     result = {key: value for key, value in data.items() if key not in _with_lists()}
     layers = result.get("layers", [{}])
@@ -44,7 +74,8 @@ def modern(data: Any) -> Any:
 
 
 def former(data: dict[str, Any]) -> dict[str, Any]:
-    """Plain data of a sea or of a shot with a list for each kind that had one."""
+    """Plain data of a sea or of a shot with a list for each kind that had one, and the names of then."""
+    data = _renamed(data, dict)
     lists = {kind.kind: name for name, kind in _with_lists().items()}
     result: dict[str, Any] = {**data, "layers": []}
     places: dict[str, str] = {}
@@ -60,3 +91,61 @@ def former(data: dict[str, Any]) -> dict[str, Any]:
         }
         result["animation"] = {**data["animation"], "samples": samples}
     return result
+
+
+def _reversed(names: _Names) -> dict[str, str]:
+    return {old: new for new, old in names.items()}
+
+
+def _renamed(data: dict[str, Any], direction: Callable[[_Names], dict[str, str]]) -> dict[str, Any]:
+    """The same data with other names.
+
+    direction : of a table of former names by today's: itself, or reversed
+    """
+    layers = data.get("layers", [])
+    names = [_names_of(layer) for layer in layers] if isinstance(layers, list) else []
+    result = _with_names(data, direction(SEA_NAMES))
+    for name in ("layers", "patches"):
+        if isinstance(result.get(name), list):
+            known = names if name == "layers" else [{}] * len(result[name])
+            pairs = zip(result[name], known, strict=True)
+            result[name] = [_entry(entry, direction(own), direction(MASK_NAMES)) for entry, own in pairs]
+    if isinstance(result.get("amplitudes"), str):
+        result["amplitudes"] = direction(_AMPLITUDES).get(result["amplitudes"], result["amplitudes"])
+    animation = result.get("animation")
+    if isinstance(animation, dict) and isinstance(animation.get("samples"), dict):
+        samples = {_path(path, names, direction): values for path, values in animation["samples"].items()}
+        result["animation"] = {**animation, "samples": samples}
+    return result
+
+
+def _names_of(layer: Any) -> _Names:
+    kind = layer.get("kind", KINDS[0].kind) if isinstance(layer, dict) else None
+    return LAYER_NAMES.get(kind, {}) if isinstance(kind, str) else {}
+
+
+def _entry(entry: Any, names: _Names, of_mask: _Names) -> Any:
+    """A layer or a patch, and its mask."""
+    if not isinstance(entry, dict):
+        return entry
+    result = _with_names(entry, names)
+    if isinstance(result.get("mask"), dict):
+        result["mask"] = _with_names(result["mask"], of_mask)
+    return result
+
+
+def _with_names(data: dict[str, Any], names: _Names) -> dict[str, Any]:
+    """The entries of one that has both names stay as they are: the former is told as unknown."""
+    return {
+        names[key] if key in names and names[key] not in data else key: value for key, value in data.items()
+    }
+
+
+def _path(path: str, names: list[_Names], direction: Callable[[_Names], dict[str, str]]) -> str:
+    """The path of samples, of a layer's field or of the sea's."""
+    found = _LAYER.fullmatch(path)
+    if found is None:
+        return direction(SEA_NAMES).get(path, path)
+    number = int(found[1]) if len(found[1]) < 6 else len(names)
+    own = direction(names[number]) if number < len(names) else {}
+    return f"layers.{found[1]}.{own.get(found[2], found[2])}"

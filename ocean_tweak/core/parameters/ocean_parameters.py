@@ -23,21 +23,21 @@ from ..masks import Mask
 from ..spectral.water import Water
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave
-from ..waves.image.parameters import PictureLayer
+from ..waves.image.parameters import ImageLayer
 from ..waves.kinds import KINDS
 from ..waves.spectral import WaveLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
 from .former_json import modern
-from .patch import MOST_PATCHES, Patch, check_joined, check_patches, resampled
+from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, resampled
 
 __all__ = [
     "Foam",
     "HeroWave",
+    "ImageLayer",
     "Mask",
     "OceanParameters",
     "ParameterError",
     "Patch",
-    "PictureLayer",
     "Timing",
     "Water",
     "WaveLayer",
@@ -47,7 +47,7 @@ __all__ = [
 ]
 
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
-AMPLITUDES = ("GAUSSIAN", "FIXED")
+AMPLITUDES = ("RANDOM", "DETERMINISTIC")
 ORBITS = ("DEEP", "FINITE_DEPTH")
 
 #: fields that patches tell, where there are any
@@ -148,20 +148,20 @@ class OceanParameters(Validated):
         "from a frame to days", optional=True,
     )  # fmt: skip
     amplitudes: str = choice(
-        "GAUSSIAN", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
+        "RANDOM", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
     )
     match_height: bool = switch(False, "Scale this seed to the wave height that the spectrum expects")
     trough_damping: float = number(
         0.0, 0.0, 1.0, "", "Takes short waves out of the troughs of the long ones", "a share"
     )
-    orbits: str = choice(
+    orbital_motion: str = choice(
         "DEEP", ORBITS, "Horizontal motion as in deep water, or wider as linear theory has it in finite depth"
     )
     water: Water = nested(Water)
     layers: tuple[Contribution, ...] = nested(Contribution, many=True, kinds=KINDS)
     patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
-    joined: int = integer(
-        0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them apart",
+    merged_resolution: int = integer(
+        0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them separate",
         "as the resolution of a sea", left_out=True,
     )  # fmt: skip
     foam: Foam = nested(Foam)
@@ -169,7 +169,7 @@ class OceanParameters(Validated):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_joined(self.joined, self.patches)
+        check_merged_resolution(self.merged_resolution, self.patches)
         self._settle_tile()
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
@@ -190,12 +190,15 @@ class OceanParameters(Validated):
 
     def _settle_tile(self) -> None:
         """Fill in size and samples of the tile where they are left open: patches tell those of the first, on
-        which pictures and wind fields are. Raises ParameterError where others are given too.
+        which images and wind fields are. Raises ParameterError where others are given too.
         """
         told: dict[str, float] = {}
         if self.patches:
             first = self.patches[0]
-            told = {"resolution": self.joined or first.resolution, "domain_size": first.domain_size}
+            told = {
+                "resolution": self.merged_resolution or first.resolution,
+                "domain_size": first.domain_size,
+            }
         for field in dataclasses.fields(self):
             if field.name not in _TILE:
                 continue
@@ -208,8 +211,10 @@ class OceanParameters(Validated):
 
     @property
     def is_cascade(self) -> bool:
-        """Whether it has several grids: more than one patch, or one that is turned, and not joined."""
-        return not self.joined and (len(self.patches) > 1 or any(patch.rotation for patch in self.patches))
+        """Whether it has several grids: more than one patch, or one that is turned, and not merged."""
+        return not self.merged_resolution and (
+            len(self.patches) > 1 or any(patch.rotation for patch in self.patches)
+        )
 
     @property
     def is_masked(self) -> bool:
@@ -218,9 +223,9 @@ class OceanParameters(Validated):
         return any(layer.mask is not None for layer in own)
 
     @property
-    def is_sum(self) -> bool:
+    def needs_summation(self) -> bool:
         """Whether its waves are added up in places, not as coefficients: those of patches, or under masks."""
-        return bool(self.joined) or self.is_cascade or self.is_masked
+        return bool(self.merged_resolution) or self.is_cascade or self.is_masked
 
     @property
     def band(self) -> tuple[float, float] | None:
@@ -270,11 +275,11 @@ class OceanParameters(Validated):
         """A copy with some fields changed, validated anew.
 
         Of a sea of patches, another resolution is that of the first, and the others keep their ratio to it;
-        of joined ones, it is that of their one grid.
+        of merged ones, it is that of their one grid.
         """
         if self.patches and "patches" not in changes:
-            if "resolution" in changes and self.joined:
-                changes["joined"] = changes["resolution"]
+            if "resolution" in changes and self.merged_resolution:
+                changes["merged_resolution"] = changes["resolution"]
             elif "resolution" in changes:
                 changes["patches"] = resampled(self.patches, changes["resolution"])
             if changes.get("domain_size", self.domain_size) != self.domain_size:
@@ -295,7 +300,9 @@ class OceanParameters(Validated):
         """The same sea on the samples of one grid over the domain, also of several patches."""
         if not self.is_cascade:
             return self.at_resolution(resolution)
-        return self.replace(joined=resolution, patches=self.patches, layers=self._held_by(resolution))
+        return self.replace(
+            merged_resolution=resolution, patches=self.patches, layers=self._held_by(resolution)
+        )
 
     def _held_by(self, resolution: int) -> tuple[Contribution, ...]:
         return tuple(
@@ -303,19 +310,19 @@ class OceanParameters(Validated):
         )
 
     @property
-    def apart(self) -> OceanParameters:
-        """The sea with its patches on grids of their own, where they are joined."""
-        return self.replace(joined=0, patches=self.patches) if self.joined else self
+    def separate(self) -> OceanParameters:
+        """The sea with its patches on grids of their own, where they are merged."""
+        return self.replace(merged_resolution=0, patches=self.patches) if self.merged_resolution else self
 
     @property
     def without_patches(self) -> OceanParameters:
         """The sea of one patch, as large and with as many samples, that has the same spectrum."""
-        return self.replace(patches=(), joined=0)
+        return self.replace(patches=(), merged_resolution=0)
 
     def to_dict(self, brief: bool = False) -> dict[str, Any]:
         """Plain dictionaries, lists and numbers, as they stand in a JSON file.
 
-        brief : of pictures only name, shape and hash: for headers; they cannot be read back
+        brief : of images only name, shape and hash: for headers; they cannot be read back
         """
         return to_plain(self, brief)
 

@@ -101,12 +101,15 @@ def check_bands(patches: Sequence[Patch]) -> None:
         )  # fmt: skip
 
 
-def check_joined(joined: int, patches: Sequence[Patch]) -> None:
+def check_merged_resolution(merged_resolution: int, patches: Sequence[Patch]) -> None:
     """Raise ParameterError for samples of one grid that are not those of a sum of patches."""
-    if joined % 2 or 0 < joined < 16:
-        raise ParameterError("joined", joined, "must be 0 or an even number from 16 to 8192")
-    if joined and not patches:
-        raise ParameterError("joined", joined, "must be 0 in a sea without patches, which is on one grid")
+    if merged_resolution % 2 or 0 < merged_resolution < 16:
+        raise ParameterError(
+            "merged_resolution", merged_resolution, "must be 0 or an even number from 16 to 8192"
+        )
+    if merged_resolution and not patches:
+        what = "must be 0 in a sea without patches, which is on one grid"
+        raise ParameterError("merged_resolution", merged_resolution, what)
 
 
 def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first: Sequence[str]) -> None:

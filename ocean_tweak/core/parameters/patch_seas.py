@@ -28,10 +28,10 @@ def rotations(parameters: OceanParameters) -> tuple[float, ...]:
 def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
     """The parameters of each patch, in axes that lie along its sides; a sea without patches is its only one.
 
-    Masks are left out, and patches are apart even where they are joined. What a patch holds of a layer is for
-    the layer to say; the first keeps the random numbers of a sea of one patch.
+    Masks are left out, and patches are separate even where they are merged. What a patch holds of a layer is
+    for the layer to say; the first keeps the random numbers of a sea of one patch.
     """
-    return tuple(_without_masks(sea) for sea in _patch_seas(parameters.apart))
+    return tuple(_without_masks(sea) for sea in _patch_seas(parameters.separate))
 
 
 def _patch_seas(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
@@ -71,7 +71,7 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
     """The parts of a sea: of each patch, the waves under each mask."""
     found = []
     patches = parameters.patches or (None,)
-    seas = _patch_seas(parameters.apart)
+    seas = _patch_seas(parameters.separate)
     masks = list(dict.fromkeys(layer.mask for layer in parameters.active() if _is_parted(layer)))
     if None in masks:  # first come the waves that are everywhere
         masks.insert(0, masks.pop(masks.index(None)))
@@ -84,8 +84,8 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
     return tuple(found)
 
 
-def joined_bands(parameters: OceanParameters) -> OceanParameters:
-    """A joined sea's patches apart, without the waves shorter than two samples of its one grid.
+def merged_bands(parameters: OceanParameters) -> OceanParameters:
+    """A merged sea's patches on separate grids, without the waves shorter than two samples of its one grid.
 
     The first has the grid's samples, the others as many as reading between them takes. The last that is left
     holds no waves shorter than two of its own samples either; where another follows, bands must meet.
@@ -100,7 +100,7 @@ def joined_bands(parameters: OceanParameters) -> OceanParameters:
     bands = [_readable(patch, end) for patch, end in zip(kept, ends, strict=True)]
     if not first.rotation:
         bands[0] = replace(first, resolution=parameters.resolution)
-    return parameters.replace(joined=0, patches=tuple(bands))
+    return parameters.replace(merged_resolution=0, patches=tuple(bands))
 
 
 def _readable(patch: Patch, end: float) -> Patch:

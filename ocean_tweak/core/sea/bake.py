@@ -19,7 +19,7 @@ from ..parameters.shot import Moment, Shot
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .memory import check_memory, memory_need
 from .ocean import Ocean
-from .on import TILE, Area, Tile
+from .regions import TILE, Area, Tile
 
 
 class FrameSink(Protocol):
@@ -44,7 +44,7 @@ class BakedFrame(NamedTuple):
     seconds: float
 
 
-class ShotSurfaces:
+class ShotSeas:
     """Surfaces of a shot's frames, on one thread; quickest where frames follow each other.
 
     on : where they are wanted: on the tile of each patch, or in an area of all together
@@ -123,14 +123,14 @@ def bake(
     several patches that are not sums of theirs.
     """
     _check(shot.parameters, sink, workers, on)
-    with_memory = ShotSurfaces(shot, on)
+    with_memory = ShotSeas(shot, on)
     wanted = sink.outputs & OF_MEMORY if on == TILE else frozenset()
     own = threading.local()
 
     def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
         started += time.perf_counter()
         if not hasattr(own, "surfaces"):
-            own.surfaces = ShotSurfaces(shot, on)
+            own.surfaces = ShotSeas(shot, on)
         fields, *others = own.surfaces.frames(frame, sink.outputs - wanted)
         if foam is not None:
             fields = fields.including(foam)
@@ -158,7 +158,7 @@ def bake(
 
 
 def _foam(
-    surfaces: ShotSurfaces, frame: Frame, wanted: frozenset[str], tell: Callable[[Frame, str], None]
+    surfaces: ShotSeas, frame: Frame, wanted: frozenset[str], tell: Callable[[Frame, str], None]
 ) -> SurfaceFields:
     for patch in surfaces.sea(frame).patches:
         patch.foam_history.tell = lambda done, count: tell(
@@ -171,7 +171,7 @@ def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile 
     """Raise for what cannot be baked, or not on this machine."""
     is_cascade = parameters.is_cascade and on == TILE
     if is_cascade and parameters.is_masked:
-        raise ValueError("masks: lie over the sea and not over its patches, which repeat; join the patches")
+        raise ValueError("masks: lie over the sea and not over its patches, which repeat; merge the patches")
     if is_cascade and not sink.outputs <= {*ADDING, PARTS}:
         others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS}))
         raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")

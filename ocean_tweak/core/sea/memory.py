@@ -11,12 +11,12 @@ from ..data.printable import readable_bytes
 from ..numerics.machine import usable_memory
 from ..numerics.memo import MEMO, VARIABLE
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import PARTS, joined_bands, parts
+from ..parameters.patch_seas import PARTS, merged_bands, parts
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from ..synthesis.transforms import term
 from ..waves.contribution import Gives, MemoryNeed
 from ..waves.kinds import KINDS
-from .on import TILE, Area, Tile
+from .regions import TILE, Area, Tile
 
 #: float64 arrays of half the plane that live while the initial state is made, beyond what stays
 _TEMPORARY_ARRAYS = 5
@@ -40,7 +40,7 @@ def memory_need(
         return _need_with_parts(parameters, outputs - {PARTS}, precision)
     if isinstance(on, Area):
         return _need_in_area(parameters, outputs, precision, on)
-    if parameters.is_sum:
+    if parameters.needs_summation:
         return _need_of_parts(parameters, outputs, precision)
     n = parameters.resolution
     half_plane = n * (n // 2 + 1)
@@ -74,8 +74,8 @@ def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], preci
 
 def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
     """That of all parts, and on one grid of the components that are added up there."""
-    apart = joined_bands(parameters) if parameters.joined else parameters
-    needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in parts(apart)]
+    separate = merged_bands(parameters) if parameters.merged_resolution else parameters
+    needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in parts(separate)]
     surface = sum(need.surface for need in needs)
     if not parameters.is_cascade:
         keys = max(
@@ -94,9 +94,9 @@ def _need_in_area(
     parameters: OceanParameters, outputs: frozenset[str], precision: str, on: Area
 ) -> MemoryNeed:
     """That of all parts on samples of their own, and of the components that are added up in the area."""
-    apart = joined_bands(parameters) if parameters.joined else parameters
+    separate = merged_bands(parameters) if parameters.merged_resolution else parameters
     waves = (outputs - OF_MEMORY) | ({"cusp"} if outputs & OF_MEMORY else set())
-    needs = [memory_need(part.parameters, waves, precision) for part in parts(apart)]
+    needs = [memory_need(part.parameters, waves, precision) for part in parts(separate)]
     keys = {key for name in waves for key in CHANNELS[name].needs}
     real = 4 if precision == "single" else 8
     numbers = sum(max(1, CHANNELS[name].components) for name in outputs)

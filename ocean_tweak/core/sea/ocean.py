@@ -17,17 +17,17 @@ from numpy.typing import ArrayLike, NDArray
 from ..foam.model import FoamHistory, FoamModel, Whitecaps, whitecaps_at
 from ..foam.threshold import Strains, foam_model, sampled_strains
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import joined_bands, parts, patch_parameters
+from ..parameters.patch_seas import merged_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
 from ..synthesis.channels import CHANNELS, OF_MEMORY, SurfaceFields, checked_outputs
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .memory import check_memory, memory_need
-from .on import TILE, Area, Places, Tile
 from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves
 from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import SurfacePoints, find_points, refine_points
+from .regions import TILE, Area, Places, Tile
 from .statistics import statistics_of_patches
 from .sums import AnywhereSum, TileSum
 
@@ -41,7 +41,7 @@ _NEARLY_FOLDED = 0.1
 class Ocean:
     """The sea of some parameters. Making one is cheap; its waves are made when needed.
 
-    It may be of one patch, of patches that are joined on one grid or separate, under masks or not.
+    It may be of one patch, of patches that are merged on one grid or separate, under masks or not.
 
     parameters : OceanParameters
     precision : "single" for float32 fields, "double" for reference work in float64
@@ -83,7 +83,7 @@ class Ocean:
     @cached_property
     def parts(self) -> tuple[Ocean, ...]:
         """The waves of each patch and under each mask as seas of their own, without that mask and in axes
-        along the patch's sides: turned and weighted, they add up. Joined patches are apart here.
+        along the patch's sides: turned and weighted, they add up. Merged patches are separate here.
         """
         return tuple(Ocean(part.parameters, self.precision, self._workers) for part in parts(self.parameters))
 
@@ -99,7 +99,7 @@ class Ocean:
     @property
     def initial_state(self) -> InitialState:
         """The coefficients of a sea that is one sum of waves. Raises ValueError for another."""
-        if self.parameters.is_sum:
+        if self.parameters.needs_summation:
             raise ValueError(
                 "initial_state: this sea's waves are not one sum but several, or under masks: ask each of "
                 "`patches` where they are separate, or a sea without masks"
@@ -189,7 +189,7 @@ class Ocean:
     def statistics(self) -> Statistics:
         """Wave height, period and wavelength: of the spectrum, as resolved, and of this seed.
 
-        Of joined patches, of the waves that their one grid holds; in all cases without masks.
+        Of merged patches, of the waves that their one grid holds; in all cases without masks.
         """
         parameters = self._added_up
         patches = patch_parameters(parameters)
@@ -239,8 +239,8 @@ class Ocean:
 
     @cached_property
     def _added_up(self) -> OceanParameters:
-        """The sea with patches that are joined apart, as they are added up on their one grid."""
-        return joined_bands(self.parameters) if self.parameters.joined else self.parameters
+        """The sea with merged patches on separate grids, as they are added up on their one grid."""
+        return merged_bands(self.parameters) if self.parameters.merged_resolution else self.parameters
 
     @cached_property
     def _parts(self) -> tuple[PartWaves, ...]:
@@ -262,9 +262,9 @@ class Ocean:
             raise ValueError(
                 f"on = Tile(): patches that are separate, here {len(self.parameters.patches)}, have a tile "
                 "each, in axes of their own: ask those in `patches`, ask for an Area or Places of their sum, "
-                "or join them with `parameters.on_one_grid(samples)`"
+                "or merge them with `parameters.on_one_grid(samples)`"
             )
-        if not self.parameters.is_sum:
+        if not self.parameters.needs_summation:
             return self._parts[0]
         workers = self._workers or default_workers(self.parameters.resolution)
         return TileSum(self.parameters, self._parts, real_type(self.precision), workers)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..foam import threshold as foam_threshold
 from ..masks import weights
-from ..numerics.memo import remembered
+from ..numerics.memo import MEMO, remembered
 from ..parameters.ocean_parameters import Foam, OceanParameters, Timing
 from ..parameters.patch_seas import Part
 from ..statistics.sea_spectrum import SeaSpectrum
@@ -31,6 +31,10 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
 PRECISIONS = {"single": np.complex64, "double": np.complex128}
+
+
+# whoever draws from them holds them; fresh pages for each wind that is tried cost as much as the waves
+MEMO.limit("waves", 64)
 
 
 @remembered("waves")

@@ -15,7 +15,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
 from ..waves.contribution import Contribution, Gives
-from .on import Area
+from .regions import Area
 from .sampling import Key, Summed, unweighted, weighted
 from .surfaces import Field, Values
 

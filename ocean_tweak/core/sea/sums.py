@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parts of a sea added up: on the samples of its one tile, or anywhere, where waves on no grid add to them.
 
-The tile is that of patches that are joined, or of waves under masks. The first patch's own samples are the
+The tile is that of patches that are merged, or of waves under masks. The first patch's own samples are the
 tile's; the others are read between theirs. Waves shorter than two samples of the tile are left out, or they
 would show as longer ones.
 

@@ -81,8 +81,8 @@ class DirectionalSpectrum:
         return replace(model, wind_frequency=self.scales.wind_frequency)
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:
-        """S(ω) in m²·s/rad, any shape, with the layer's gain, band and short-wave cut-off."""
-        spectrum = self.layer.gain**2 * scaled_spectrum(omega, self.layer, self.scales, self.water)
+        """S(ω) in m²·s/rad, any shape, with the layer's amplitude scale, band and short-wave cut-off."""
+        spectrum = self.layer.amplitude_scale**2 * scaled_spectrum(omega, self.layer, self.scales, self.water)
         if not (self.has_band or self.layer.short_wave_cutoff > 0.0):
             return spectrum
         return self.energy_weight(dispersion.wave_number(omega, self.dispersion, self.water)) * spectrum
@@ -152,7 +152,7 @@ class DirectionalSpectrum:
         """S·(dω/dk)/k in m⁴·rad, before band and cut-off."""
         rate = dispersion.group_velocity(k, self.dispersion, self.water)
         spectrum = scaled_spectrum(omega, self.layer, self.scales, self.water)
-        return self.layer.gain**2 * spectrum * rate / k
+        return self.layer.amplitude_scale**2 * spectrum * rate / k
 
     def cell_means(self, grid: WaveVectorGrid) -> tuple[Array, Array]:
         """Ψ averaged over each wave-vector cell, in m⁴, for k and for -k.

@@ -207,7 +207,7 @@ def _mode_peak(energy: Array, grid: WaveVectorGrid, parameters: OceanParameters)
     density of modes there, 2πk (dk/dω) / Δk²: a plain sum would show the lattice.
     """
     usable = grid.usable
-    if not np.any(usable):  # a picture of two samples
+    if not np.any(usable):  # an image of two samples
         return float("nan")
     position = np.log(grid.k[usable]) * _BINS_PER_LOG
     first = int(np.floor(np.min(position))) - _BINS_PER_LOG // 2

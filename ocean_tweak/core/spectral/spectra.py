@@ -234,7 +234,7 @@ def layer_scales(layer: WaveLayer, water: Water) -> LayerScales:
 
 
 def scaled_spectrum(omega: ArrayLike, layer: WaveLayer, scales: LayerScales, water: Water) -> Array:
-    """S(ω) in m²·s/rad of a layer's spectrum, before its gain and its band; any shape."""
+    """S(ω) in m²·s/rad of a layer's spectrum, before its amplitude scale and its band; any shape."""
     alpha, omega_p, gamma = scales.alpha, scales.peak_frequency, scales.peak_enhancement
     if layer.spectrum == "TMA":
         return tma(omega, alpha, omega_p, water, gamma, layer.depth_factor)

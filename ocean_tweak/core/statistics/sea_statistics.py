@@ -37,7 +37,7 @@ Array = NDArray[np.float64]
 __all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
 
 #: said of a sea without waves
-FLAT = "The sea is flat: no layer has energy. Unmute one, or raise its wind, gain or wave height"
+FLAT = "The sea is flat: no layer has energy. Unmute one, or raise its wind, amplitude scale or wave height"
 
 _LEAST_WAVELENGTHS = 3.0
 LEAST_RESOLVED_SHARE = 0.95

@@ -54,9 +54,9 @@ def unresolved_slope_variance(parameters: OceanParameters) -> float:
 
     The grid holds a square of wave vectors: its modes and half a cell around them. Of waves that are no
     spectrum's, what the layers hold and the grid does not. Of a sea of patches, the waves shorter than the
-    last one holds, or than the one grid on which they are joined.
+    last one holds, or than the one grid on which they are merged.
     """
-    if parameters.joined:
+    if parameters.merged_resolution:
         return unresolved_slope_variance(parameters.without_patches)
     if parameters.patches:
         *longer, last = patch_parameters(parameters)

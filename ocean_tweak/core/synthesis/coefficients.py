@@ -91,7 +91,7 @@ def random_phasors(
     grid: WaveVectorGrid, seed: int, amplitudes: str, dtype: type = np.complex128
 ) -> ComplexArray:
     """ν·exp(iε) for k and for -k, (2, N, N//2+1): ε uniform in [0, 2π); ν standard normal
-    (Horvath 2015, eq. 47 and § 7.1.2) or, for FIXED amplitudes, 1 (Chen 2014, eq. 19)."""
+    (Horvath 2015, eq. 47 and § 7.1.2) or, for DETERMINISTIC amplitudes, 1 (Chen 2014, eq. 19)."""
     result: ComplexArray = np.empty((2, *grid.shape[::-1]), dtype)
     along, against = result
     for columns in grid.column_blocks():
@@ -106,7 +106,7 @@ def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
     angle = 2.0 * np.pi * random.uniform(key, _PHASE)
     phasors = np.empty(key.shape, np.complex128)
     phasors.real, phasors.imag = np.cos(angle), np.sin(angle)
-    if amplitudes == "GAUSSIAN":
+    if amplitudes == "RANDOM":
         phasors *= random.normal(key, _NORMAL)
     return phasors
 
@@ -199,7 +199,7 @@ def _add_random_waves(spectrum: DirectionalSpectrum, sea: OceanParameters, to: C
 
 
 def _orbit_depth(parameters: OceanParameters) -> float:
-    return parameters.water.depth if parameters.orbits == "FINITE_DEPTH" else float("inf")
+    return parameters.water.depth if parameters.orbital_motion == "FINITE_DEPTH" else float("inf")
 
 
 def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:

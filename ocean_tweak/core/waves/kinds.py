@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from .contribution import Contribution
 from .hero.parameters import HeroWave
-from .image.parameters import PictureLayer
+from .image.parameters import ImageLayer
 from .spectral import WaveLayer
 from .wind_field.parameters import WindFieldLayer
 
 #: in the order in which their waves are added, on which sums of floats depend; a layer of which JSON does not
 #: say its kind is of the first
-KINDS: list[type[Contribution]] = [WaveLayer, HeroWave, PictureLayer, WindFieldLayer]
+KINDS: list[type[Contribution]] = [WaveLayer, HeroWave, ImageLayer, WindFieldLayer]
 
 
 def shown() -> list[type[Contribution]]:

@@ -59,8 +59,8 @@ class WaveLayer(Contribution):
         0.3, 0.0, 4.0, "", "Draws waves out into long parallel trains; 0 to 1 is the useful range",
         "beyond 4 a wave train is a single direction", useful=(0.0, 1.0), changes=True,
     )  # fmt: skip
-    gain: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's gain",
+    amplitude_scale: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's scale",
         useful=(0.0, 2.0), changes=True,
     )  # fmt: skip
     peak_enhancement: float = number(
@@ -185,7 +185,7 @@ class WaveLayer(Contribution):
 
     def wind(self, sea: OceanParameters) -> Wind | None:
         """The layer's own, at 10 m."""
-        if self.is_calm or self.definition != "WIND" or self.gain == 0.0:
+        if self.is_calm or self.definition != "WIND" or self.amplitude_scale == 0.0:
             return None
         return Wind(wind_at_10_m(self.wind_speed, self.wind_height), self.wind_direction)
 

@@ -25,7 +25,7 @@ from ...core.foam.threshold import foam_outlook
 from ...core.numerics.machine import usable_cores, usable_memory
 from ...core.parameters.patch_seas import PARTS, parts
 from ...core.parameters.shot import OCEAN_TIME, Shot
-from ...core.sea.bake import ShotSurfaces
+from ...core.sea.bake import ShotSeas
 from ...core.sea.memory import TABLES
 from ...core.synthesis.channels import OF_MEMORY, SurfaceFields, is_put_together
 from .job import CacheError, Job
@@ -146,7 +146,7 @@ def _frame_bytes(folder: Path, job: Job, frame: Frame) -> int:
     """Of a frame's files on the disk."""
     trial = _at(job, _TRIAL)
     scale = (job.resolution / trial.resolution) ** 2
-    fields = ShotSurfaces(trial.shot, trial.on).frames(frame, trial.outputs - {PARTS})
+    fields = ShotSeas(trial.shot, trial.on).frames(frame, trial.outputs - {PARTS})
     images = sum(_room(len(data) * scale) for data in _images(folder, trial, frame, fields))
     return images + sum(_room(points.bytes) for points in job.points(folder, frame))
 
@@ -201,10 +201,10 @@ def seconds_of_statistics(parameters: OceanParameters) -> float:
     """What the statistics of a sea take, from trials of others like it."""
 
     def timed(side: int) -> list[float]:
-        few = parameters.at_resolution(min(parameters.resolution, side)).replace(seed=_new_seed()).apart
+        few = parameters.at_resolution(min(parameters.resolution, side)).replace(seed=_new_seed()).separate
         return [cpu_seconds(lambda: Ocean(few).statistics())]
 
-    Ocean(parameters.at_resolution(16).apart).statistics()  # what is made once
+    Ocean(parameters.at_resolution(16).separate).statistics()  # what is made once
     return by_trials(parameters.resolution, 256, timed)[0]
 
 
@@ -226,7 +226,7 @@ def by_trials(resolution: int, larger: int, timed: Callable[[int], Sequence[floa
 
 
 def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
-    surfaces, parameters = ShotSurfaces(job.shot, job.on), job.shot.at(frame).parameters
+    surfaces, parameters = ShotSeas(job.shot, job.on), job.shot.at(frame).parameters
     with_foam, moment = job.outputs & OF_MEMORY, 0.0
 
     def sea() -> None:
@@ -248,7 +248,7 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
     if with_foam:
         looks = foam_outlook(parameters).memory + 1
         # in an area the second would find what the first looked at
-        seas = (surfaces, *(() if job.area is not None else (ShotSurfaces(job.shot),)))
+        seas = (surfaces, *(() if job.area is not None else (ShotSeas(job.shot),)))
         moment = min(cpu_seconds(partial(of.frames, frame, with_foam)) for of in seas) / looks
     if not parameters.patches:
         made()

@@ -18,7 +18,7 @@ from pathlib import Path
 from ...core.data import formats
 from ...core.data.frames import Frame, frame_label
 from ...core.parameters.shot import Shot
-from ...core.sea.on import told_area
+from ...core.sea.regions import told_area
 from ..exr import ExrError, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
 from .job import UID, CacheError, Job, NewerBakeError, maps_for, safe_name

@@ -22,8 +22,8 @@ from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashe
 from ...core.parameters.ocean_parameters import OceanParameters
 from ...core.parameters.patch_seas import PARTS, parts
 from ...core.parameters.shot import Shot
-from ...core.sea.on import TILE, Area, Tile, told_area
 from ...core.sea.placed_waves import check_repeats
+from ...core.sea.regions import TILE, Area, Tile, told_area
 from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
 from ..exr import COMPRESSION_ERROR, ExrSequence
 from ..frame_files import BAKED, POINTS
@@ -158,7 +158,7 @@ class Job:
     def write(self, folder: Path, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[Path]:
         """Write a frame's files, those that `files` names, in its order. Yields each path when it is whole.
 
-        fields : what `core.sea.bake.ShotSurfaces` makes for `outputs`
+        fields : what `core.sea.bake.ShotSeas` makes for `outputs`
         """
         sequences = self.sequences(folder, frame)
         for sequence, own in zip(sequences, fields, strict=False):
@@ -179,7 +179,7 @@ class Job:
             "maps": list(self.maps),
             "compression": self.compression,
             **self._told_area(),
-            "shot": self.shot.to_dict(),
+            "shot": {"format": formats.SEA, **self.shot.to_dict()},
             "made_with": made_with(),
         }
         return sealed(data)
@@ -232,9 +232,9 @@ def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area |
     check_repeats(parameters)
     if parameters.is_cascade and parameters.is_masked:
         raise ParameterError(
-            "joined", parameters.joined,
+            "merged_resolution", parameters.merged_resolution,
             "masks lie over the sea and not over its patches, which repeat: say of how many samples the one "
-            "grid shall be on which the patches are joined, such as 1024",
+            "grid shall be on which the patches are merged, such as 1024",
         )  # fmt: skip
     if POINTS in maps and not parameters.patches:
         raise ParameterError("maps", POINTS, "are of a sea of several patches, and this one has none")
@@ -244,7 +244,7 @@ def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area |
                 "maps", name,
                 "of several patches do not add up, and their sum does not repeat: bake "
                 f"{', '.join(maps_for(parameters))}, of whose sums normals and cusps are made, or join the "
-                "patches on one grid, by joined=1024",
+                "patches on one grid, by merged_resolution=1024",
             )  # fmt: skip
 
 

@@ -14,8 +14,8 @@ from ...core.data.frames import Frame
 from ...core.data.plain_data import to_plain
 from ...core.data.printable import printable
 from ...core.parameters.shot import Moment
-from ...core.sea.bake import ShotSurfaces
-from ...core.sea.on import TILE, Area, Tile
+from ...core.sea.bake import ShotSeas
+from ...core.sea.regions import TILE, Area, Tile
 from ...core.synthesis.channels import MOVING_MAP, unit_of
 from ...core.synthesis.coefficients import propagate
 from ..exr import ExrError, ExrSequence, read_image
@@ -34,7 +34,7 @@ _FLAT = 1e-6
 
 def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]:
     """Read each frame back: record, hashes, header, finite pixels, wave height."""
-    surfaces = ShotSurfaces(job.shot, job.on)
+    surfaces = ShotSeas(job.shot, job.on)
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
@@ -51,7 +51,7 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
 
 def wave_height(sea: Ocean, moment: Moment, on: Tile | Area = TILE) -> float:
     """Hs in m of the waves of a moment: of one sum from their amplitudes, or else of the surface."""
-    if sea.parameters.is_sum or on != TILE:
+    if sea.parameters.needs_summation or on != TILE:
         return _height_of(sea.surface(moment.time, on=on).displacement)
     state = sea.initial_state
     weight = state.grid.multiplicity[0]

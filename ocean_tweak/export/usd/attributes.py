@@ -2,7 +2,7 @@
 """What moves: the attributes of the mesh that change from frame to frame, from the core's fields.
 
 All is 32-bit: USD's own schemas say so of points, velocities, normals and displayColor. Others may be halved:
-then they err by 2⁻¹² of a value at most, less than a step of an 8-bit picture.
+then they err by 2⁻¹² of a value at most, less than a step of an 8-bit image.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ from ...core.data import formats
 from ...core.data.frames import Frame, as_frame, format_frames, frame_label, parse_frames
 from ...core.parameters.fingerprint import fingerprint, hashed, shot_fingerprint
 from ...core.parameters.shot import Shot
-from ...core.sea.on import MOST_SAMPLES, TILE, Area, Tile
 from ...core.sea.placed_waves import check_repeats
+from ...core.sea.regions import MOST_SAMPLES, TILE, Area, Tile
 from .attributes import ATTRIBUTES
 
 FORMS = ("points", "clips", "displacement")
@@ -85,8 +85,8 @@ class Package:
         else:
             check_repeats(parameters)
         if parameters.is_cascade and self.area is None:  # layers have one grid
-            joined = parameters.on_one_grid(parameters.resolution)
-            object.__setattr__(self, "shot", replace(self.shot, parameters=joined))
+            merged = parameters.on_one_grid(parameters.resolution)
+            object.__setattr__(self, "shot", replace(self.shot, parameters=merged))
         self.shot.check(self.frames)
         for resolution in self.resolutions:
             self.at(resolution)

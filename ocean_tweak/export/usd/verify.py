@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.data.frames import Frame, format_frames
-from ...core.sea.bake import ShotSurfaces
-from ...core.sea.on import TILE
+from ...core.sea.bake import ShotSeas
+from ...core.sea.regions import TILE
 from ..exr import COMPRESSION_ERROR, ExrError, read_image
 from .asset import VARIANT_SET, sea_path
 from .attributes import POINTS, Attribute
@@ -194,7 +194,7 @@ def _listed_clips(opened: _Opened) -> dict[Frame, Path]:
 def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]:
     """Every attribute of every mesh against the core's, at the chosen frames."""
     package, edition = opened.package, opened.edition
-    surfaces = ShotSurfaces(package.at(edition.resolution), package.on(edition.resolution))
+    surfaces = ShotSeas(package.at(edition.resolution), package.on(edition.resolution))
     outputs = frozenset().union(*(attribute.outputs for attribute in edition.attributes))
     shown: list[NDArray[np.floating]] = []
     made: list[NDArray[np.floating]] = []
@@ -268,7 +268,7 @@ def _check_images(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
     if not texture:
         yield Problem(None, f"{opened.material} has no displacement image")
         return
-    surfaces = ShotSurfaces(package.shot, package.image_area or TILE)
+    surfaces = ShotSeas(package.shot, package.image_area or TILE)
     for frame in package.frames:
         image = texture.Get(float(frame))
         if image is None or not image.resolvedPath:
@@ -278,7 +278,7 @@ def _check_images(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
     yield from _still_grid(opened)
 
 
-def _image_difference(path: Path, frame: Frame, surfaces: ShotSurfaces) -> Iterator[Problem]:
+def _image_difference(path: Path, frame: Frame, surfaces: ShotSeas) -> Iterator[Problem]:
     try:
         image, metadata = read_image(path)
     except ExrError as error:

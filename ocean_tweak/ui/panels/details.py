@@ -32,7 +32,7 @@ class OCEAN_PT_shape(SubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw orbits, damping and amplitudes."""
         layout, settings = split(self.layout), active_settings(context)
-        for name in ("trough_damping", "orbits", "amplitudes", "match_height"):
+        for name in ("trough_damping", "orbital_motion", "amplitudes", "match_height"):
             layout.prop(settings, name)
 
 

@@ -24,7 +24,7 @@ class OCEAN_UL_layers(bpy.types.UIList):
         self, context: bpy.types.Context, layout: bpy.types.UILayout, _data: object,
         layer: bpy.types.PropertyGroup, _icon: int, _active_data: object, _active_property: str,
     ) -> None:  # fmt: skip
-        """Draw the layer's wind, its waves or its picture."""
+        """Draw the layer's wind, its waves or its image."""
         group, kind = layer.group, kind_of(layer)
         line = layout.row(align=True)
         line.active = not group.muted
@@ -49,8 +49,8 @@ def _wind_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
     return "Wind field, recorded" if group.source == "RECORDING" else "Wind field"
 
 
-def _picture_title(group: bpy.types.PropertyGroup, _scene: bpy.types.Scene) -> str:
-    return "White noise" if group.image is None else f"Picture, {group.image.name}"
+def _image_title(group: bpy.types.PropertyGroup, _scene: bpy.types.Scene) -> str:
+    return "White noise" if group.image is None else f"Image, {group.image.name}"
 
 
 def _hero_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
@@ -61,7 +61,7 @@ def _hero_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
 _TITLES = {
     "WAVES": _waves_title,
     "WIND_FIELD": _wind_title,
-    "IMAGE": _picture_title,
+    "IMAGE": _image_title,
     "HERO_WAVE": _hero_title,
 }
 
@@ -107,7 +107,7 @@ def _draw_waves(
     if layer.definition == "SEA_STATE":
         names = ("significant_wave_height", "peak_period", "wind_direction")
     _props(layout.column(align=True), layer, *names)
-    _props(layout, layer, "gain")
+    _props(layout, layer, "amplitude_scale")
 
 
 def _draw_wind_field(
@@ -127,20 +127,24 @@ def _draw_wind_field(
         _props(layout, group, "objects")
         text = "Record Again" if group.recording_hash else "Record Wind"
         layout.operator(wind_operators.OCEAN_OT_record_wind.bl_idname, text=text, icon="REC")
-    _props(layout, group, "strength", "show_vectors")
+    _props(layout, group, "wind_scale", "show_vectors")
     places = layout.column(align=True)
     _props(places, group, "columns", "rows", "origins")
-    _props(layout, group, "jitter", "phase_jitter", "start_time", "calm")
+    _props(layout, group, "jitter", "phase_jitter", "start_time", "minimum_wind_speed")
     _props(
-        layout, group, "height", "steepness" if group.height == "STEEPNESS" else "height_per_speed", "gain"
+        layout,
+        group,
+        "height",
+        "steepness" if group.height == "STEEPNESS" else "height_per_speed",
+        "amplitude_scale",
     )
-    _props(layout, group, "life", "front", "particles")
-    if group.front == "ARC":
+    _props(layout, group, "life", "crest", "particles")
+    if group.crest == "ARC":
         _props(layout, group, "split_angle", "splitting")
     _props(layout, group, "seed")
 
 
-def _draw_picture(
+def _draw_image(
     layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
 ) -> None:
     draw_image(layout, group)
@@ -160,7 +164,7 @@ def _draw_picture(
         _props(layout, group, "texture_wavelength")
     if not physical:
         _props(layout, group, "significant_wave_height")
-    _props(layout, group, "gain", "wind_direction", "animation")
+    _props(layout, group, "amplitude_scale", "wind_direction", "animation")
     _props(layout, group, *_ANIMATION.get(group.animation, ()))
 
 
@@ -193,7 +197,7 @@ def _draw_hero_wave(
 _DRAWERS = {
     "WAVES": _draw_waves,
     "WIND_FIELD": _draw_wind_field,
-    "IMAGE": _draw_picture,
+    "IMAGE": _draw_image,
     "HERO_WAVE": _draw_hero_wave,
 }
 _ANIMATION = {

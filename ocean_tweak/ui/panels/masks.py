@@ -56,8 +56,8 @@ def _draw_distance(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -
     places.prop(group, "x")
     places.prop(group, "y")
     column = layout.column(align=True)
-    column.prop(group, "near")
-    column.prop(group, "far")
+    column.prop(group, "inner_radius")
+    column.prop(group, "outer_radius")
 
 
 def _lacking(group: bpy.types.PropertyGroup) -> str:

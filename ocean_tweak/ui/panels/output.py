@@ -12,9 +12,9 @@ from ...core.data.printable import readable_bytes
 from ...export.cache.estimate import Estimate
 from ...export.usd import library
 from ...nodes.names import MAP_INPUTS
-from ...scene import alarm, bake_process, bake_versions, stored_paths, usd
+from ...scene import bake_process, bake_versions, failures, stored_paths, usd
 from ...scene.image_sequence import baked_frames
-from ...scene.needs import neighbours_of
+from ...scene.portability import neighbours_of
 from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
 from .. import bake_operators, sequence_operators, usd_operators
@@ -73,7 +73,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         row(column, "Frames", format_frames(baked_frames(settings)))
         row(column, "Maps", ", ".join(name for name in MAP_INPUTS if getattr(settings.sequence_maps, name)))
     if settings.missing_file:
-        message(layout, context, alarm.missing_text(settings), alert=True)
+        message(layout, context, failures.missing_text(settings), alert=True)
     if settings.bake_is_elsewhere:
         layout.operator(bake_operators.OCEAN_OT_take_cache_along.bl_idname, icon="DUPLICATE")
     layout.prop(settings, "out_of_range")

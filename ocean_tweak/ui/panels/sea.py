@@ -11,7 +11,7 @@ from ...core import WaveLayer
 from ...core.sea.memory import beyond_budget
 from ...core.spectral.spectra import wind_at_10_m
 from ...core.statistics import sea_scales
-from ...scene import alarm, refinement
+from ...scene import failures, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
 from ...scene.needs import sharp_under_blur
 from ...scene.refresh import sea_of_settings
@@ -74,7 +74,7 @@ def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw what is wrong with the bake that is shown, and the remedies."""
     settings = active_settings(context)
     if settings.missing_file:
-        message(layout, context, alarm.missing_text(settings), alert=True)
+        message(layout, context, failures.missing_text(settings), alert=True)
     if settings.bake_differs:
         found = parsed(settings.bake_differs)
         shown = "; ".join(_difference(*entry) for entry in found[:_MOST_DIFFERENCES])

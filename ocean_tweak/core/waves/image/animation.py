@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fast the phase of each wave of a picture turns: the three animations of Mastin et al. (1987)."""
+"""How fast the phase of each wave of an image turns: the three animations of Mastin et al. (1987)."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from ...spectral.water import Water
 from .filters import POWERS, peak_frequency, pierson_moskowitz
 
 if TYPE_CHECKING:
-    from .parameters import PictureLayer
+    from .parameters import ImageLayer
 
 Array = NDArray[np.float64]
 
 
-def runs_along(layer: PictureLayer, grid: WaveVectorGrid) -> NDArray[np.bool_]:
+def runs_along(layer: ImageLayer, grid: WaveVectorGrid) -> NDArray[np.bool_]:
     """(N, N//2+1): whether a wave runs along its wave vector k ≥ 0, not against it: the one with the wind.
 
     Of waves square to the wind, one of both is taken, so that k and -k always run the same way.
@@ -31,9 +31,7 @@ def runs_along(layer: PictureLayer, grid: WaveVectorGrid) -> NDArray[np.bool_]:
     return (towards > 0.0) | ((towards == 0.0) & ((grid.kx > 0.0) | (grid.ky > 0.0)))
 
 
-def dominant_band(
-    layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water
-) -> NDArray[np.bool_]:
+def dominant_band(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> NDArray[np.bool_]:
     """(N, N//2+1): wavelengths of which the filter leaves over two thirds of what it leaves of its favourite.
 
     Of the modified Pierson-Moskowitz filter the frequencies count, as eq. 1 has them, and in a calm there is
@@ -51,24 +49,24 @@ def dominant_band(
     return power >= constants.DOMINANT_SHARE
 
 
-def _dispersion(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+def _dispersion(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
     """Each wave at its own speed, after a dispersion relation; the paper takes deep water's (eq. 10)."""
     return dispersion.angular_frequency(grid.k, relation, water)
 
 
-def _dominant_band(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+def _dominant_band(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
     """One rate for the phases of the dominant waves and another for those of all others."""
     band = dominant_band(layer, grid, relation, water)
     return np.where(band, layer.dominant_rate, layer.surrounding_rate)
 
 
-def _translation(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
-    """abs(k·v) for the velocity v along the wind: the picture moves as it is (eq. 9)."""
+def _translation(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+    """abs(k·v) for the velocity v along the wind: the image moves as it is (eq. 9)."""
     vx, vy = (layer.translation_speed * part(layer.wind_direction) for part in (math.cos, math.sin))
     return np.abs(grid.kx * vx + grid.ky * vy)
 
 
-RATES: dict[str, Callable[[PictureLayer, WaveVectorGrid, str, Water], Array]] = {
+RATES: dict[str, Callable[[ImageLayer, WaveVectorGrid, str, Water], Array]] = {
     "DISPERSION": _dispersion,
     "DOMINANT_BAND": _dominant_band,
     "TRANSLATION": _translation,
@@ -76,7 +74,7 @@ RATES: dict[str, Callable[[PictureLayer, WaveVectorGrid, str, Water], Array]] = 
 
 
 def angular_frequency(
-    layer: PictureLayer,
+    layer: ImageLayer,
     grid: WaveVectorGrid,
     relation: str,
     water: Water,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a filter leaves of a picture's energy, over wave vectors. Its square root multiplies magnitudes.
+"""What a filter leaves of an image's energy, over wave vectors. Its square root multiplies magnitudes.
 
 Symbols as in Mastin, Watterberg & Mareda (1987): f in Hz, its peak f_m, U in m/s at 10 m, D the dimension of
-a fractal. All powers are even in k: a picture does not tell a wave from the one that runs against it, and
+a fractal. All powers are even in k: an image does not tell a wave from the one that runs against it, and
 the paper's figure 7 passes 45° and 225° alike.
 """
 
@@ -21,7 +21,7 @@ from ...spectral import constants, dispersion
 from ...spectral.water import Water
 
 if TYPE_CHECKING:
-    from .parameters import PictureLayer
+    from .parameters import ImageLayer
 
 Array = NDArray[np.float64]
 
@@ -80,11 +80,11 @@ def _normalisation() -> tuple[Array, Array]:
     return p, np.array(values)
 
 
-def directional_power(k: Array, theta: Array, layer: PictureLayer, relation: str, water: Water) -> Array:
+def directional_power(k: Array, theta: Array, layer: ImageLayer, relation: str, water: Water) -> Array:
     """The modified Pierson-Moskowitz filter's power, even in k, over k > 0 and the angle to the wind.
 
     PAPER: F(f, θ) in m²·s/rad, eq. 3. PHYSICAL: Ψ = F·(df/dk)/k in m⁴, whose integral over the plane is m0.
-    The means of both directions: of its energy along the wind, a picture gives half to either.
+    The means of both directions: of its energy along the wind, an image gives half to either.
     """
     omega = dispersion.angular_frequency(k, relation, water)
     f, g = omega / (2.0 * np.pi), water.gravity
@@ -97,7 +97,7 @@ def directional_power(k: Array, theta: Array, layer: PictureLayer, relation: str
 
 
 def _modified_pierson_moskowitz(
-    layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water
+    layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water
 ) -> Array:
     """Means over the cells of wave vectors: near the peak the spectrum changes within one."""
 
@@ -124,26 +124,26 @@ def spectral_exponent(D: float) -> float:
     return 8.0 - 2.0 * D
 
 
-def _fractal(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+def _fractal(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
     """1/k^β, 1 for the longest wave (Mastin et al. 1987, fig. 2)."""
     return (np.maximum(grid.k, grid.spacing) / grid.spacing) ** -spectral_exponent(layer.fractal_dimension)
 
 
-def _water_texture(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+def _water_texture(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
     """1/k^β beyond a peak and a Gaussian below it, 1 at the peak (Mastin et al. 1987, fig. 3)."""
     ratio = grid.k * (layer.texture_wavelength / (2.0 * np.pi))
     above = np.maximum(ratio, 1.0) ** -spectral_exponent(layer.fractal_dimension)
     return above * np.exp(-0.5 * (np.minimum(ratio - 1.0, 0.0) / _TEXTURE_WIDTH) ** 2)
 
 
-POWERS: dict[str, Callable[[PictureLayer, WaveVectorGrid, str, Water], Array]] = {
+POWERS: dict[str, Callable[[ImageLayer, WaveVectorGrid, str, Water], Array]] = {
     "MODIFIED_PIERSON_MOSKOWITZ": _modified_pierson_moskowitz,
     "FRACTAL": _fractal,
     "WATER_TEXTURE": _water_texture,
 }
 
 
-def filter_power(layer: PictureLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
+def filter_power(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
     """(N, N//2+1): what the layer's filter leaves of each mode's energy; 0 for the mean and at Nyquist.
 
     relation : name of the dispersion relation, for the filter that is given over frequencies

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves out of a picture."""
+"""Waves out of an image."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ...masks import Mask
 from ..contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
 from .animation import angular_frequency
 from .source import side
-from .state import filtered, peak_wavelength, picture_waves, state_of, wanted_variance
+from .state import filtered, image_waves, peak_wavelength, state_of, wanted_variance
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,31 +35,31 @@ ANIMATIONS = ("DISPERSION", "DOMINANT_BAND", "TRANSLATION")
 #: how far from a whole number of patches a loop's translation may be: rounding, no more
 _WHOLE = 1e-6
 
-#: complex arrays of half a picture's plane that live while it is filtered
+#: complex arrays of half an image's plane that live while it is filtered
 _WORKING_ARRAYS = 3
 
 
 @dataclass(frozen=True)
-class PictureLayer(Contribution):
-    """Waves out of one picture, which is stretched over the patch and filtered there."""
+class ImageLayer(Contribution):
+    """Waves out of one image, which is stretched over the patch and filtered there."""
 
     kind = "IMAGE"
     gives = Gives.COEFFICIENTS | Gives.STATE | Gives.LOOPS
     names = Names(
-        2, "picture", "picture", "Picture", "Waves out of a picture, or out of white noise", "IMAGE_DATA",
-        entry="Picture or Noise",
+        2, "image_waves", "image", "Image", "Waves out of an image, or out of white noise", "IMAGE_DATA",
+        entry="Image or Noise",
     )  # fmt: skip
     former_list = "pictures"
     constant = "each keeps its waves; what can change is how fast they move, by ocean_time"
 
-    picture: Raster | None = raster(
-        "Picture whose phases and magnitudes become the waves'; none for white noise",
+    image: Raster | None = raster(
+        "Image whose phases and magnitudes become the waves'; none for white noise",
         channels=1,
     )  # fmt: skip
     filter: str = choice(
         "MODIFIED_PIERSON_MOSKOWITZ",
         FILTERS,
-        "Which wavelengths and directions of the picture stay: a wind's, a fractal's or a texture's",
+        "Which wavelengths and directions of the image stay: a wind's, a fractal's or a texture's",
     )
     filter_gain: str = choice(
         "PHYSICAL", FILTER_GAINS,
@@ -75,8 +75,8 @@ class PictureLayer(Contribution):
         1.0, 0.0, 100.0, "m", "Wave height Hs of every filter but the physical one: four standard deviations",
         "thrice the largest measured",
     )  # fmt: skip
-    gain: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height", "an artist's gain", useful=(0.0, 2.0)
+    amplitude_scale: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height", "an artist's scale", useful=(0.0, 2.0)
     )
     fractal_dimension: float = number(
         2.1, 2.0, 4.0, "", "D of the filters 1/f^β with β = 8 - 2D: 2 is smooth, 3 rough, 4 no filter at all",
@@ -100,12 +100,12 @@ class PictureLayer(Contribution):
         "a wave of a twentieth of a second",
     )  # fmt: skip
     translation_speed: float = number(
-        1.0, 0.0, 1000.0, "m/s", "Translation: how fast the whole picture moves along the wind",
+        1.0, 0.0, 1000.0, "m/s", "Translation: how fast the whole image moves along the wind",
         "beyond the fastest wave",
     )  # fmt: skip
     noise_resolution: int = integer(
         1024, 16, 2048, "Samples along each side of the white noise, an even number; others are another sea",
-        "from the coarsest sea to the largest picture that is not made smaller",
+        "from the coarsest sea to the largest image that is not made smaller",
     )  # fmt: skip
     muted: bool = muted()
     id: int = identity()
@@ -113,8 +113,8 @@ class PictureLayer(Contribution):
     mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
-        if isinstance(self.picture, Raster):
-            object.__setattr__(self, "picture", _grey(self.picture))
+        if isinstance(self.image, Raster):
+            object.__setattr__(self, "image", _grey(self.image))
         super().__post_init__()
         if self.noise_resolution % 2:
             raise ParameterError(
@@ -127,7 +127,7 @@ class PictureLayer(Contribution):
         return self.filter == "MODIFIED_PIERSON_MOSKOWITZ" and self.filter_gain == "PHYSICAL"
 
     def check(self, sea: OceanParameters, path: str) -> None:
-        """A translation must end where it began when the loop does: another one would bend the picture.
+        """A translation must end where it began when the loop does: another one would bend the image.
 
         It does where it moves by whole patches both ways.
         """
@@ -142,13 +142,13 @@ class PictureLayer(Contribution):
             direction = math.atan2(nearest[1], nearest[0]) if any(nearest) else self.wind_direction
             raise ParameterError(
                 f"{path}.translation_speed", self.translation_speed,
-                f"moves the picture by {moved[0]:.4g} and {moved[1]:.4g} patches in the loop, not by whole "
+                f"moves the image by {moved[0]:.4g} and {moved[1]:.4g} patches in the loop, not by whole "
                 f"ones: take {speed:.9g} m/s towards {direction:.9g} rad, another animation, or no loop",
             )  # fmt: skip
 
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
         """Add its waves: to the sea's own where they have its frequencies, which is no more work a frame."""
-        waves = picture_waves(
+        waves = image_waves(
             self, to.grid, sea.dispersion, sea.water, sea.seed, sea.loop_duration, sea.match_height, to.dtype
         )
         if self.animation == "DISPERSION":
@@ -165,17 +165,17 @@ class PictureLayer(Contribution):
         return angular_frequency(self, grid, sea.dispersion, sea.water)
 
     def state(self, sea: OceanParameters) -> SeaState:
-        """Of all that the picture holds."""
+        """Of all that the image holds."""
         return state_of(sea.alone(self), self)
 
     def longest_random_wave(self, sea: OceanParameters) -> float:
         """That of noise through the physical filter; all others have the height that they are given."""
-        if self.picture is not None or not self.is_physical or not wanted_variance(self, sea.water) > 0.0:
+        if self.image is not None or not self.is_physical or not wanted_variance(self, sea.water) > 0.0:
             return float("nan")
         return peak_wavelength(self, sea.dispersion, sea.water)
 
     def slope_variance(self, sea: OceanParameters, resolution: int | None) -> float:
-        """Of what the picture holds, or of what of it so many samples do."""
+        """Of what the image holds, or of what of it so many samples do."""
         made = filtered(self, sea.domain_size, resolution, sea.dispersion, sea.water, sea.seed)
         return made.slope_variance
 
@@ -195,20 +195,20 @@ class PictureLayer(Contribution):
         return MemoryNeed(half_plane * (3 * 2 * real + 8) * apart, filtering, 0)
 
     def warnings(self, sea: OceanParameters) -> Iterator[str]:
-        """Of a picture of which nothing is left."""
+        """Of an image of which nothing is left."""
         if wanted_variance(self, sea.water) > 0.0 and not self.state(sea).m0 > 0.0:
-            yield f"Picture {self.id}: its filter leaves nothing of it. Take another filter, wind or picture"
+            yield f"Image {self.id}: its filter leaves nothing of it. Take another filter, wind or image"
 
 
-def _grey(picture: Raster) -> Raster:
-    """One channel: the luminance of a colour picture; the fourth is transparency, which is left out.
+def _grey(image: Raster) -> Raster:
+    """One channel: the luminance of a colour image; the fourth is transparency, which is left out.
 
-    Raises ParameterError, naming the picture, where it holds no waves.
+    Raises ParameterError, naming the image, where it holds no waves.
     """
-    picture = picture.grey()
-    if np.ptp(picture.values) == 0.0:
-        what = f"picture ({picture.name})" if picture.name else "picture"
+    image = image.grey()
+    if np.ptp(image.values) == 0.0:
+        what = f"image ({image.name})" if image.name else "image"
         raise ParameterError(
-            what, float(picture.values.flat[0]), "everywhere: it holds no waves; give one with contrast"
+            what, float(image.values.flat[0]), "everywhere: it holds no waves; give one with contrast"
         )
-    return picture
+    return image

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture behind the waves, and its Fourier coefficients."""
+"""The image behind the waves, and its Fourier coefficients."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...numerics import random
 from ...numerics.memo import remembered
 
 if TYPE_CHECKING:
-    from .parameters import PictureLayer
+    from .parameters import ImageLayer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -22,7 +22,7 @@ _Modes = TypeVar("_Modes", NDArray[np.complex128], NDArray[np.float64])
 #: the noise lies this far around its mean, evenly, in whole grey levels
 NOISE_REACH, NOISE_MEAN = 127, 128
 
-#: samples a side of what larger pictures are resampled to
+#: samples a side of what larger images are resampled to
 LARGEST_SIDE = 2048
 
 
@@ -49,23 +49,23 @@ def noise_coefficients(resolution: int, seed: int) -> ComplexArray:
     return _frozen(_transformed(noise, resolution))
 
 
-@remembered("pictures")
-def picture_coefficients(picture: Raster) -> ComplexArray:
-    """(S, S//2+1) of a picture without its mean, S even and at least its longer side; read-only.
+@remembered("images")
+def image_coefficients(image: Raster) -> ComplexArray:
+    """(S, S//2+1) of an image without its mean, S even and at least its longer side; read-only.
 
-    The picture counts as periodic and is stretched to a square, band-limited: its first sample stays the
+    The image counts as periodic and is stretched to a square, band-limited: its first sample stays the
     first, and what is finer than S/2 waves a side is left out.
     """
-    return _frozen(_transformed(picture.values[..., 0].astype(np.float64), _picture_side(picture)))
+    return _frozen(_transformed(image.values[..., 0].astype(np.float64), _image_side(image)))
 
 
-def side(layer: PictureLayer) -> int:
+def side(layer: ImageLayer) -> int:
     """Samples along each side of what a layer's waves are made of."""
-    return layer.noise_resolution if layer.picture is None else _picture_side(layer.picture)
+    return layer.noise_resolution if layer.image is None else _image_side(layer.image)
 
 
-def _picture_side(picture: Raster) -> int:
-    longest = max(picture.shape[:2])
+def _image_side(image: Raster) -> int:
+    longest = max(image.shape[:2])
     return min(LARGEST_SIDE, longest + longest % 2)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a picture to the coefficients of its waves, and to their heights, periods and lengths."""
+"""From an image to the coefficients of its waves, and to their heights, periods and lengths."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ from ...spectral.sea_state import Modes, SeaState, modes_state
 from ...spectral.water import Water
 from .animation import angular_frequency, runs_along
 from .filters import filter_power, peak_frequency, total_energy
-from .source import fitted, noise_coefficients, picture_coefficients
+from .source import fitted, image_coefficients, noise_coefficients
 
 if TYPE_CHECKING:
     from ...parameters.ocean_parameters import OceanParameters
-    from .parameters import PictureLayer
+    from .parameters import ImageLayer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 RealArray = NDArray[np.floating]
 
-#: share of a picture's energy below which a filter has left nothing of it
+#: share of an image's energy below which a filter has left nothing of it
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class Filtered:
-    """A picture after its filter, on a grid of its own or of the sea.
+    """An image after its filter, on a grid of its own or of the sea.
 
     grid : its modes
     coefficients : (N, N//2+1) m, of the elevation at time 0
-    expected : (N, N//2+1) m², mean over all seeds of their squares; of an artist's picture the squares
+    expected : (N, N//2+1) m², mean over all seeds of their squares; of an artist's image the squares
     """
 
     grid: WaveVectorGrid
@@ -56,8 +56,8 @@ class Filtered:
         return float(np.sum(self.grid.k**2 * self.expected * self.grid.multiplicity))
 
 
-class PictureWaves(NamedTuple):
-    """Waves of a picture, arrays as those of the sea's initial state, transposed in memory.
+class ImageWaves(NamedTuple):
+    """Waves of an image, arrays as those of the sea's initial state, transposed in memory.
 
     h_plus, h_minus : waves that run along k and against it, m
     omega : rad/s, ≥ 0, the same for k and -k
@@ -71,32 +71,32 @@ class PictureWaves(NamedTuple):
     expected_minus: RealArray
 
 
-def noise_seed(layer: PictureLayer, sea_seed: int) -> int:
+def noise_seed(layer: ImageLayer, sea_seed: int) -> int:
     """The seed of a layer's noise: its own, or one that follows from the sea's and the layer's id."""
     return layer.seed if layer.seed >= 0 else random.combine(sea_seed, layer.id, 0x71C)
 
 
 def filtered(
-    layer: PictureLayer,
+    layer: ImageLayer,
     domain_size: float,
     resolution: int | None,
     relation: str,
     water: Water,
     sea_seed: int = 0,
 ) -> Filtered:
-    """The elevation that a picture and its filter make at time 0.
+    """The elevation that an image and its filter make at time 0.
 
-    resolution : of the sea; None for all that the picture holds
+    resolution : of the sea; None for all that the image holds
 
     Noise through the physical filter has, over all seeds, the variance of the wind's spectrum. All other
-    elevations have theirs exactly, in all modes of the picture: more resolution of the sea shows more of
+    elevations have theirs exactly, in all modes of the image: more resolution of the sea shows more of
     them, and changes none.
     """
-    noise = layer.picture is None
-    if layer.picture is None:
+    noise = layer.image is None
+    if layer.image is None:
         source = noise_coefficients(layer.noise_resolution, noise_seed(layer, sea_seed))
     else:
-        source = picture_coefficients(layer.picture)
+        source = image_coefficients(layer.image)
     side = len(source)
     if noise and layer.is_physical:
         return _wind_driven(layer, domain_size, resolution or side, relation, water, source)
@@ -106,22 +106,22 @@ def filtered(
     coefficients = source * np.sqrt(power)
     squares = np.abs(coefficients) ** 2
     if np.sum(squares) < _ROUNDING * np.max(power) * np.sum(np.abs(source) ** 2):
-        squares = np.zeros_like(squares)  # what is left is the rounding of the picture's numbers, not a wave
+        squares = np.zeros_like(squares)  # what is left is the rounding of the image's numbers, not a wave
     coefficients *= np.sqrt(_factor(squares, whole, wanted))
     energy = power if noise else squares
     result = Filtered(whole, coefficients, energy * _factor(energy, whole, wanted))
     return result if resolution is None else _on_grid(result, resolution)
 
 
-def wanted_variance(layer: PictureLayer, water: Water) -> float:
+def wanted_variance(layer: ImageLayer, water: Water) -> float:
     """Variance in m² of the elevation that a layer is to have: its wind's or its own height's."""
     if layer.is_physical:
-        return layer.gain**2 * total_energy(layer.wind_speed, water.gravity)
-    return (layer.gain * layer.significant_wave_height / 4.0) ** 2
+        return layer.amplitude_scale**2 * total_energy(layer.wind_speed, water.gravity)
+    return (layer.amplitude_scale * layer.significant_wave_height / 4.0) ** 2
 
 
 def _wind_driven(
-    layer: PictureLayer,
+    layer: ImageLayer,
     domain_size: float,
     resolution: int,
     relation: str,
@@ -131,7 +131,7 @@ def _wind_driven(
     """h = c √(ΨΔkxΔky), with c the noise's coefficients over their expected size 1/N."""
     grid = WaveVectorGrid(resolution, domain_size)
     side = len(source)
-    expected = filter_power(layer, grid, relation, water) * (layer.gain**2 * grid.cell_area)
+    expected = filter_power(layer, grid, relation, water) * (layer.amplitude_scale**2 * grid.cell_area)
     limit = (min(side, resolution) // 2 - 0.5) * grid.spacing
     expected[(grid.kx > limit) | (np.abs(grid.ky) > limit)] = 0.0  # beyond what the noise holds
     return Filtered(grid, side * fitted(source, resolution) * np.sqrt(expected), expected)
@@ -148,8 +148,8 @@ def _factor(energy: Array, grid: WaveVectorGrid, wanted: float) -> float:
     return wanted / total if total > 0.0 else 0.0
 
 
-def picture_waves(
-    layer: PictureLayer,
+def image_waves(
+    layer: ImageLayer,
     grid: WaveVectorGrid,
     relation: str,
     water: Water,
@@ -157,8 +157,8 @@ def picture_waves(
     loop_duration: Fraction | None,
     match_height: bool,
     dtype: type = np.complex128,
-) -> PictureWaves:
-    """Coefficients of a picture's waves on the sea's grid.
+) -> ImageWaves:
+    """Coefficients of an image's waves on the sea's grid.
 
     match_height : whether this seed is to have the expected variance
     """
@@ -170,7 +170,7 @@ def picture_waves(
         )
     along = runs_along(layer, grid)
     real = np.float32 if dtype is np.complex64 else np.float64
-    return PictureWaves(
+    return ImageWaves(
         h_plus=_transposed(made.coefficients, along, dtype),
         h_minus=_transposed(made.coefficients, ~along, dtype),
         omega=np.asfortranarray(angular_frequency(layer, grid, relation, water, loop_duration)),
@@ -184,29 +184,29 @@ def _transposed(values: NDArray[Any], where: NDArray[np.bool_], dtype: type) -> 
     return np.asfortranarray(np.where(where, values, 0.0).astype(dtype, copy=False))
 
 
-@remembered("states of pictures")
-def state_of(sea: OceanParameters, layer: PictureLayer) -> SeaState:
-    """State of all that a picture holds: it takes long, and is asked for often.
+@remembered("states of images")
+def state_of(sea: OceanParameters, layer: ImageLayer) -> SeaState:
+    """State of all that an image holds: it takes long, and is asked for often.
 
     sea : what of a sea acts on it, and no more
     """
     return modes_state([_modes(sea, layer)], sea)
 
 
-def _modes(sea: OceanParameters, layer: PictureLayer) -> Modes:
-    """All that a picture holds, whether the sea's grid resolves it or not, and without the loop."""
+def _modes(sea: OceanParameters, layer: ImageLayer) -> Modes:
+    """All that an image holds, whether the sea's grid resolves it or not, and without the loop."""
     relation, water = sea.dispersion, sea.water
     made = filtered(layer, sea.domain_size, None, relation, water, sea.seed)
     energy = made.expected
     if layer.is_physical and made.m0 > 0.0:
-        # a picture or patch that is too small for some of the wind's waves does not make them any less
+        # an image or patch that is too small for some of the wind's waves does not make them any less
         energy = energy * (wanted_variance(layer, water) / made.m0)
     along = runs_along(layer, made.grid)
     omega = angular_frequency(layer, made.grid, relation, water)
     return Modes(made.grid, np.where(along, energy, 0.0), np.where(along, 0.0, energy), omega)
 
 
-def peak_wavelength(layer: PictureLayer, relation: str, water: Water) -> float:
+def peak_wavelength(layer: ImageLayer, relation: str, water: Water) -> float:
     """Wavelength in m at the peak of the modified Pierson-Moskowitz filter."""
     omega_m = 2.0 * np.pi * peak_frequency(layer.wind_speed, water.gravity)
     return float(2.0 * np.pi / dispersion.wave_number(omega_m, relation, water))

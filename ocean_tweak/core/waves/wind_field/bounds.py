@@ -39,8 +39,8 @@ def check_bounds(layers: Sequence[WindFieldLayer], gravity: float) -> None:
     if births > MOST_BIRTHS:
         raise ParameterError(
             "layers", f"up to {births} waves looked at",
-            f"must be at most {MOST_BIRTHS}: take a stronger calm, fewer columns, rows or origins, or a "
-            "shorter life",
+            f"must be at most {MOST_BIRTHS}: take a higher minimum_wind_speed, fewer columns, rows or "
+            "origins, or a shorter life",
         )  # fmt: skip
     winds = sum(_origins(layer) * len(layer.keys) for layer in layers)
     if winds > MOST_WINDS:
@@ -72,15 +72,15 @@ def most_particles(layer: WindFieldLayer) -> int:
     live on among those of the weaker one. Their particles are counted as divided as their ages allow.
     """
     speed = layer.greatest_speed
-    if layer.muted or speed < layer.calm:
+    if layer.muted or speed < layer.minimum_wind_speed:
         return 0
     at_end = 4.0 * layer.life * layer.split_angle * (_ROUNDING if layer.keys else 1.0)
-    if layer.front == "PARALLEL" or not layer.splitting:
+    if layer.crest == "PARALLEL" or not layer.splitting:
         at_end = 0.0
     most, mean = _divided(at_end)
     waves = layer.life * mean + most
     if len(layer.keys) > 1:
-        waves += layer.life * most * math.log(speed / layer.calm)
+        waves += layer.life * most * math.log(speed / layer.minimum_wind_speed)
     return math.ceil(_origins(layer) * layer.particles * waves)
 
 
@@ -98,8 +98,8 @@ def _divided(ratio: float) -> tuple[int, float]:
 def most_births(layer: WindFieldLayer, gravity: float) -> int:
     """Waves that are looked at to find those that live: none of an origin lives longer than the longest."""
     speed = layer.greatest_speed
-    if layer.muted or speed < layer.calm:
+    if layer.muted or speed < layer.minimum_wind_speed:
         return 0
-    shortest = period(layer.calm if len(layer.keys) > 1 else speed, gravity)
+    shortest = period(layer.minimum_wind_speed if len(layer.keys) > 1 else speed, gravity)
     waves = layer.life * period(speed, gravity) / shortest + 1.0
     return math.ceil(_origins(layer) * waves)

@@ -107,7 +107,7 @@ class Emission:
         wind = self._wind(born, origin)
         speed = np.hypot(wind[:, 0], wind[:, 1])
         age = time - born
-        alive = (speed >= self._layer.calm) & (age >= 0.0)
+        alive = (speed >= self._layer.minimum_wind_speed) & (age >= 0.0)
         alive &= age < self._layer.life * period(speed, self._gravity)
         origin = origin[alive]
         return Births(self._origins.x[origin], self._origins.y[origin], age[alive], wind[alive])
@@ -115,7 +115,7 @@ class Emission:
     def _rate(self, winds: Array) -> Array:
         """1/T in 1/s of winds (…, 2), 0 where it is calm."""
         speed = np.hypot(winds[..., 0], winds[..., 1])
-        blowing = speed >= self._layer.calm
+        blowing = speed >= self._layer.minimum_wind_speed
         return np.divide(1.0, period(speed, self._gravity), out=np.zeros(speed.shape), where=blowing)
 
     def _node_times(self) -> Array:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: neighbours further apart than this share of the radius divide, and those of a parallel front are so far
+#: neighbours further apart than this share of the radius divide, and those of a parallel crest are so far
 SPACING = 0.5
 
 
@@ -98,8 +98,8 @@ def amplitude(speed: Array, layer: WindFieldLayer, gravity: float) -> Array:
     Li & Wang (2016), eq. 5, k_a·V; or by steepness s, s·λ/2π, with which long waves are not the flatter ones.
     """
     if layer.height == "WIND_SPEED":
-        return np.asarray(layer.gain * layer.height_per_speed * speed)
-    return np.asarray(layer.gain * layer.steepness / (2.0 * np.pi) * wavelength(speed, gravity))
+        return np.asarray(layer.amplitude_scale * layer.height_per_speed * speed)
+    return np.asarray(layer.amplitude_scale * layer.steepness / (2.0 * np.pi) * wavelength(speed, gravity))
 
 
 def divisions(travelled: Array, radius: Array, layer: WindFieldLayer) -> NDArray[np.intp]:
@@ -108,7 +108,7 @@ def divisions(travelled: Array, radius: Array, layer: WindFieldLayer) -> NDArray
     Li & Wang (2016), eq. 25 with its small angle, and algorithm 1, corrected: half a radius is the limit
     (the algorithm's quarter of a size, which is 2r), and the distance travelled is C·(t - t_born).
     """
-    if layer.front == "PARALLEL" or not layer.splitting:
+    if layer.crest == "PARALLEL" or not layer.splitting:
         return np.zeros(len(travelled), np.intp)
     ratio = travelled * layer.split_angle / (SPACING * radius)
     powers = 3.0 ** np.arange(32)
@@ -118,7 +118,7 @@ def divisions(travelled: Array, radius: Array, layer: WindFieldLayer) -> NDArray
 def _fan(layer: WindFieldLayer, times: int) -> tuple[Array, Array]:
     """Directions in rad and places aside in radii of a wave's particles, against those of its middle."""
     first = np.arange(layer.particles, dtype=np.float64) - 0.5 * (layer.particles - 1)
-    if layer.front == "PARALLEL":
+    if layer.crest == "PARALLEL":
         return np.zeros(layer.particles), np.asarray(SPACING * first)
     parts = 3**times
     within = (np.arange(parts) - 0.5 * (parts - 1)) / parts

@@ -51,12 +51,12 @@ def wind_wave_outlook(
         if layer.muted:
             continue
         speed = layer.greatest_speed
-        length = wavelength(speed, parameters.water.gravity) if speed >= layer.calm else 0.0
+        length = wavelength(speed, parameters.water.gravity) if speed >= layer.minimum_wind_speed else 0.0
         longest = max(longest, length)
         if length == 0.0:
             warnings.append(
                 f"Wind field {index}: {speed:.3g} m/s is calm and raises no waves. "
-                f"Raise its strength, or lower its calm of {layer.calm:g} m/s"
+                f"Raise its wind_scale, or lower its minimum_wind_speed of {layer.minimum_wind_speed:g} m/s"
             )
         elif length < SHORTEST * spacing:
             warnings.append(

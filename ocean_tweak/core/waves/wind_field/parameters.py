@@ -22,7 +22,7 @@ from .wind_waves import WindWaves
 if TYPE_CHECKING:
     from ...parameters.ocean_parameters import OceanParameters
 
-FRONTS = ("ARC", "PARALLEL")
+CRESTS = ("ARC", "PARALLEL")
 HEIGHTS = ("STEEPNESS", "WIND_SPEED")
 
 #: times at which a wind may be given
@@ -67,12 +67,12 @@ class WindFieldLayer(Contribution):
     )  # fmt: skip
     wind_direction: float = direction("Direction towards which it blows, counter-clockwise from +x")
     keys: tuple[WindKey, ...] = nested(WindKey, many=True, empty=True, most=MOST_KEYS)
-    strength: float = number(1.0, 0.0, 100.0, "", "Multiplies the wind", "an artist's gain")
+    wind_scale: float = number(1.0, 0.0, 100.0, "", "Multiplies the wind", "an artist's scale")
     start_time: float = number(
         -120.0, -1e6, 1e6, "s", "Ocean time at which the wind begins to raise waves; earlier there are none",
         "more than a week either way",
     )  # fmt: skip
-    calm: float = number(
+    minimum_wind_speed: float = number(
         2.0, 0.1, 100.0, "m/s", "Wind below which no wave is born", "waves of a millimetre, to none at all"
     )
     columns: int = integer(16, 1, 512, "Cells along x, each with as many origins of waves", "a cell a metre")
@@ -85,7 +85,7 @@ class WindFieldLayer(Contribution):
         1.0, 0.0, 1.0, "", "How far origins are out of step: 0 is all at once, 1 at any part of the period",
         "a share",
     )  # fmt: skip
-    front: str = choice("ARC", FRONTS, "How a wave begins: as an arc that widens, or straight and parallel")
+    crest: str = choice("ARC", CRESTS, "How a wave begins: as an arc that widens, or straight and parallel")
     particles: int = integer(5, 1, 99, "Particles of a wave at its birth, side by side", "a half circle")
     split_angle: float = number(
         0.1,
@@ -107,10 +107,10 @@ class WindFieldLayer(Contribution):
         "waves break near 0.44",
     )  # fmt: skip
     height_per_speed: float = number(
-        0.05, 0.0, 10.0, "s", "k of the height k·V of a particle, V the wind's speed", "an artist's gain"
+        0.05, 0.0, 10.0, "s", "k of the height k·V of a particle, V the wind's speed", "an artist's scale"
     )
-    gain: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's gain", useful=(0.0, 2.0)
+    amplitude_scale: float = number(
+        1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's scale", useful=(0.0, 2.0)
     )
     muted: bool = muted()
     id: int = identity()
@@ -132,7 +132,7 @@ class WindFieldLayer(Contribution):
     def greatest_speed(self) -> float:
         """The strongest wind anywhere and at any time, m/s; between samples it is never stronger."""
         speeds = [float(np.hypot(*np.moveaxis(raster.values, -1, 0)).max()) for raster in self.rasters]
-        return self.strength * max(speeds, default=self.wind_speed)
+        return self.wind_scale * max(speeds, default=self.wind_speed)
 
     @property
     def rasters(self) -> tuple[Raster, ...]:
@@ -148,7 +148,7 @@ class WindFieldLayer(Contribution):
             raise ParameterError(
                 path, f"{speed:g} m/s",
                 f"this wind's waves are {longest:.4g} m long and the domain {size:g} m: make the domain "
-                f"larger, or the wind at most {fitting:.4g} m/s, by its strength for one",
+                f"larger, or the wind at most {fitting:.4g} m/s, by its wind_scale for one",
             )  # fmt: skip
 
     @classmethod

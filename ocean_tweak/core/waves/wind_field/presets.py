@@ -56,7 +56,7 @@ def wind_field(name: str, domain_size: float, gravity: float) -> WindFieldLayer:
     speed = math.sqrt(domain_size * gravity / _WAVES)
     speed = float(f"{min(max(speed, _LEAST), _STRONGEST):.2g}")
     layer = WIND_FIELDS[name](speed)
-    return dataclasses.replace(layer, calm=min(layer.calm, 0.25 * speed))
+    return dataclasses.replace(layer, minimum_wind_speed=min(layer.minimum_wind_speed, 0.25 * speed))
 
 
 def _of_vectors(vectors: NDArray[np.float64], name: str) -> WindFieldLayer:

@@ -56,15 +56,15 @@ def radius_classes(layers: Iterable[WindFieldLayer], gravity: float) -> RadiusCl
 def _speeds(layer: WindFieldLayer) -> Array:
     """Winds of a layer that raise waves, m/s, at some of the samples of all its times."""
     if not layer.keys:
-        speeds = np.array([layer.strength * layer.wind_speed])
+        speeds = np.array([layer.wind_scale * layer.wind_speed])
     else:
         parts = []
         for raster in layer.rasters:
             vectors = raster.values.reshape(-1, 2)
             some = vectors[:: max(1, len(vectors) // _SAMPLES)].astype(np.float64)
-            parts.append(layer.strength * np.hypot(some[:, 0], some[:, 1]))
+            parts.append(layer.wind_scale * np.hypot(some[:, 0], some[:, 1]))
         speeds = np.concatenate(parts)
-    return speeds[speeds >= layer.calm]
+    return speeds[speeds >= layer.minimum_wind_speed]
 
 
 class Bump(NamedTuple):

@@ -36,11 +36,11 @@ def winds_at(layer: WindFieldLayer, x: Array, y: Array, domain_size: float) -> t
     """The layer's wind at places in m: times (K,) in s, ascending, and vectors (K, places, 2) in m/s."""
     if not layer.keys:
         direction = np.array([np.cos(layer.wind_direction), np.sin(layer.wind_direction)])
-        wind = layer.strength * layer.wind_speed * direction
+        wind = layer.wind_scale * layer.wind_speed * direction
         return np.zeros(1), np.broadcast_to(wind, (1, len(x), 2))
     times = np.array([key.time for key in layer.keys])
     vectors = np.stack([bilinear(raster, x, y, domain_size) for raster in layer.rasters])
-    return times, layer.strength * vectors
+    return times, layer.wind_scale * vectors
 
 
 def bilinear(raster: Raster, x: Array, y: Array, domain_size: float) -> Array:

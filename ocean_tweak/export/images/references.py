@@ -15,16 +15,16 @@ from ...core.data.plain_data import class_of
 from ...core.data.raster import Raster, check_numbers
 from ...core.data.validation import check_count
 from .arrays import AXES
-from .reading import read_picture
+from .reading import read_raster
 
 #: what a JSON file may say in place of a raster; `offset` is taken away before `scale` multiplies
 REFERENCE_KEYS = frozenset({"file", "channels", "axes", "offset", "scale"})
 
-#: from a file, how many channels are wanted, their names and the order of axes; as `read_picture`
+#: from a file, how many channels are wanted, their names and the order of axes; as `read_raster`
 Reader = Callable[[Path, int, str, str], Raster]
 
 
-def with_pictures(kind: type, data: Any, folder: Path, read: Reader = read_picture) -> Any:
+def with_rasters(kind: type, data: Any, folder: Path, read: Reader = read_raster) -> Any:
     """Plain data of a dataclass in which each reference to a file has become the raster's plain data.
 
     kind : the dataclass; its fields of rasters say how many channels they want
@@ -82,12 +82,12 @@ class _Resolver:
     def _referred(self, reference: dict[str, Any], channels: int) -> Raster:
         offset, scale = _checked(reference)
         names, axes = reference.get("channels", ""), reference.get("axes", "")
-        picture = self._read(self._folder / reference["file"], channels, names, axes)
-        self._numbers += picture.values.size
+        image = self._read(self._folder / reference["file"], channels, names, axes)
+        self._numbers += image.values.size
         check_numbers(self._numbers)
         if (offset, scale) == (0.0, 1.0):
-            return picture
-        return Raster(scale * (picture.values.astype(np.float64) - offset), picture.name)
+            return image
+        return Raster(scale * (image.values.astype(np.float64) - offset), image.name)
 
 
 def _checked(reference: dict[str, Any]) -> tuple[float, float]:

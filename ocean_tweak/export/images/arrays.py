@@ -22,10 +22,10 @@ AXES = ("yx", "xy", "yxc", "xyc", "cyx", "cxy", "ycx", "xcy")
 #: bytes of the longest header that is looked at: of a plain array it has a hundred
 _LONGEST_HEADER = 10_000
 
-#: whole numbers that are grey levels, and the largest: as in pictures; all others are themselves
+#: whole numbers that are grey levels, and the largest: as in images; all others are themselves
 _GREYS = {np.dtype(np.uint8): 255.0, np.dtype(np.uint16): 65535.0}
 
-#: of which numbers there are so many: one channel may be the luminance of a colour picture
+#: of which numbers there are so many: one channel may be the luminance of a colour image
 _COUNTS = {1: (1, 3, 4)}
 
 

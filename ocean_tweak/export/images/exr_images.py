@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """EXR images of any program: channels by name, each number where it was painted.
 
-An image's display window is the picture. Its data window is the part of it that is stored: what lies outside
-the picture is cropped, what is missing is 0.
+An image's display window is the image. Its data window is the part of it that is stored: what lies outside
+the image is cropped, what is missing is 0.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ def read_exr(stream: BinaryIO, channels: int | None, names: str) -> NDArray[np.f
         return _placed(np.stack(planes, axis=-1).astype(np.float32), window, display)[::-1]
 
 
-def in_picture(stream: BinaryIO, texels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Texels [y, x, channel] of what an image stores, bottom row first, where this lies in the picture.
+def in_image(stream: BinaryIO, texels: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Texels [y, x, channel] of what an image stores, bottom row first, where this lies in the image.
 
     Raises UnusableError for an image that cannot be used or stores another number of texels.
     """
@@ -108,7 +108,7 @@ def _file(stream: BinaryIO, **options: bool) -> Iterator[Any]:
 
 
 def _measured(stream: BinaryIO) -> tuple[dict[str, tuple[int, str]], _Window]:
-    """From the name of each channel to its part's number and its name there, and the picture's window."""
+    """From the name of each channel to its part's number and its name there, and the image's window."""
     labels: dict[str, tuple[int, str]] = {}
     numbers = 0
     with _file(stream, header_only=True) as file:
@@ -158,14 +158,14 @@ def _chosen(labels: Sequence[str] | dict[str, Any], names: str, channels: int | 
 
 
 def _placed(pixels: NDArray[np.float32], data: _Window, display: _Window) -> NDArray[np.float32]:
-    """Pixels of the data window in the picture, 0 where there are none; row 0 at the top."""
+    """Pixels of the data window in the image, 0 where there are none; row 0 at the top."""
     if data == display:
         return pixels
     low = [max(data.low[axis], display.low[axis]) for axis in (0, 1)]
     high = [min(data.high[axis], display.high[axis]) for axis in (0, 1)]
     if low[0] >= high[0] or low[1] >= high[1]:
-        raise UnusableError("holds nothing inside its picture: its data and display windows lie apart")
-    picture = np.zeros((*display.shape, pixels.shape[2]), np.float32)
+        raise UnusableError("holds nothing inside its image: its data and display windows lie apart")
+    image = np.zeros((*display.shape, pixels.shape[2]), np.float32)
 
     def inside(window: _Window) -> tuple[slice, slice]:
         return (
@@ -173,5 +173,5 @@ def _placed(pixels: NDArray[np.float32], data: _Window, display: _Window) -> NDA
             slice(low[0] - window.low[0], high[0] - window.low[0]),
         )
 
-    picture[inside(display)] = pixels[inside(data)]
-    return picture
+    image[inside(display)] = pixels[inside(data)]
+    return image

@@ -21,7 +21,10 @@ MASKED = {
     "resolution": 32,
     "domain_size": 150.0,
     "layers": [
-        {"wind_speed": 11.0, "mask": {"source": "DISTANCE", "x": 40.0, "y": 50.0, "near": 10.0, "far": 60.0}},
+        {
+            "wind_speed": 11.0,
+            "mask": {"source": "DISTANCE", "x": 40.0, "y": 50.0, "inner_radius": 10.0, "outer_radius": 60.0},
+        },
         {"wind_speed": 4.0, "fetch": 3000.0, "mask": {"source": "IMAGE", "image": {"file": "coast.png"}}},
     ],
     "foam": {"half_life": 0.3},
@@ -65,7 +68,9 @@ def bake(path: Path, out: Path, *more: str) -> Path:
 
 
 def test_joined_patches_have_every_map_and_plain_names(patched: Path, tmp_path: Path) -> None:
-    folder = bake(patched, tmp_path / "cache", "--set", f"joined={SAMPLES}", "--set", "foam.half_life=0.3")
+    folder = bake(
+        patched, tmp_path / "cache", "--set", f"merged_resolution={SAMPLES}", "--set", "foam.half_life=0.3"
+    )
     assert sorted(path.name for path in folder.glob("*.exr")) == sorted(
         f"sea_{name}.{frame:04d}.exr" for name in EVERY_MAP.split(",") for frame in (1, 2)
     )
@@ -110,33 +115,33 @@ def test_another_wave_height_is_seen(
 def test_patches_under_masks_are_baked_joined_only(
     patched: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    mask = ["--set", 'layers.0.mask={"near":10,"far":50}']
+    mask = ["--set", 'layers.0.mask={"inner_radius":10,"outer_radius":50}']
     arguments = ["bake", "--params", str(patched), "--frames", "1", "--out", str(tmp_path / "cache"), *mask]
     assert main(arguments) == 2
-    assert "joined" in capsys.readouterr().err
+    assert "merged_resolution" in capsys.readouterr().err
     assert not list(tmp_path.glob("cache/*/*/*.exr"))
-    assert main([*arguments, "--set", "joined=32"]) == 0
+    assert main([*arguments, "--set", "merged_resolution=32"]) == 0
 
 
 def test_info_tells_of_the_waves_that_the_grid_holds(
     patched: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["info", "--params", str(patched), "--set", "joined=48", "--json"]) == 0
+    assert main(["info", "--params", str(patched), "--set", "merged_resolution=48", "--json"]) == 0
     (report,) = json.loads(capsys.readouterr().out).values()
     whole = report["statistics"]
     assert [patch["resolution"] for patch in whole["patches"]] == [96, 128]
-    assert report["parameters"]["joined"] == 48
+    assert report["parameters"]["merged_resolution"] == 48
 
 
-def test_info_tells_of_masks_and_joined_patches(
+def test_info_tells_of_masks_and_merged_patches(
     patched: Path, masked: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Two samples of 300 m / 48 are 12.5 m."""
-    assert main(["info", "--params", str(patched), "--set", "joined=48"]) == 0
+    assert main(["info", "--params", str(patched), "--set", "merged_resolution=48"]) == 0
     said = capsys.readouterr().out
-    assert "joined on 48² samples, 6.25 m apart: waves from 12.5 m" in said
+    assert "merged on 48² samples, 6.25 m apart: waves from 12.5 m" in said
     assert "masks" not in said
     assert main(["info", "--params", str(masked)]) == 0
     said = capsys.readouterr().out
     assert "masks lie over some of these waves" in said
-    assert "joined" not in said
+    assert "merged_resolution" not in said

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures from a file beside the parameters, through bakes."""
+"""Images from a file beside the parameters, through bakes."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ import OpenEXR
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.export.pictures import read_picture
+from ocean_tweak.export.images import read_raster
 from tests.cli.commands import EXAMPLES, baked_heights
 
 
 def test_the_word_stands_in_the_water(tmp_path: Path) -> None:
-    """At the first frame the example's sea holds its picture, and two seconds later no longer so."""
+    """At the first frame the example's sea holds its image, and two seconds later no longer so."""
     heights = baked_heights(
         tmp_path, "--params", str(EXAMPLES / "from-image.json"), "--frames", "1,49",
         "--set", "resolution=256", "--set", "layers.0.muted=true", "--set", "choppiness=0",
     )  # fmt: skip
-    picture = read_picture(EXAMPLES / "sea.png", 1).values[..., 0].astype(float)
+    image = read_raster(EXAMPLES / "sea.png", 1).values[..., 0].astype(float)
     index = np.fft.fftfreq(256, 1 / 256)
     k = np.hypot(index, index[:, np.newaxis])
     k[0, 0] = 1.0
     # β = 8 - 2·3.2 in power
-    by_numpy = np.fft.ifft2(np.fft.fft2(picture - picture.mean()) * k**-0.8).real
+    by_numpy = np.fft.ifft2(np.fft.fft2(image - image.mean()) * k**-0.8).real
     correlations = [np.corrcoef(by_numpy.ravel(), height.ravel())[0, 1] for height in heights]
     assert correlations[0] > 0.999
     assert correlations[1] < 0.8
     assert 4 * heights[0].std() == pytest.approx(2.5, rel=1e-3)
 
 
-def test_a_picture_that_is_missing_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_image_that_is_missing_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     params = tmp_path / "sea.json"
-    params.write_text(json.dumps({"pictures": [{"picture": {"file": "nowhere.png"}}]}))
+    params.write_text(json.dumps({"pictures": [{"image": {"file": "nowhere.png"}}]}))
     assert main(["info", "--params", str(params)]) == 2
     error = capsys.readouterr().err
-    assert "layers.1.picture.file" in error
+    assert "layers.1.image.file" in error
     assert "nowhere.png" in error
 
 
@@ -62,7 +62,7 @@ def test_what_is_wrong_with_a_file_is_said_in_one_line(
     content[damaged] = bytes(byte ^ 0xFF for byte in content[damaged])
     file.write_bytes(content[:-200] if kind in ("exr", "npy") else content)
     params = tmp_path / "sea.json"
-    params.write_text(json.dumps({"resolution": 16, "pictures": [{"picture": {"file": file.name}}]}))
+    params.write_text(json.dumps({"resolution": 16, "pictures": [{"image": {"file": file.name}}]}))
     assert main(["info", "--params", str(params)]) == 2
     said = capfd.readouterr()
     assert said.out == ""

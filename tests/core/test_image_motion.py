@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the waves of pictures move, after Mastin, Watterberg & Mareda (1987)."""
+"""How the waves of images move, after Mastin, Watterberg & Mareda (1987)."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ocean_tweak.core.data.errors import ParameterError
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.waves.image import animation
-from ocean_tweak.core.waves.image.parameters import PictureLayer
-from tests.core.pictures import DEEP, L, N, drawing, elevation, single_wave, spectrum, state
+from ocean_tweak.core.waves.image.parameters import ImageLayer
+from tests.core.images import DEEP, L, N, drawing, elevation, single_wave, spectrum, state
 from tests.layers import with_layers
 
 
-def phase_advance(layer: PictureLayer, i: int, j: int, time: float) -> float:
+def phase_advance(layer: ImageLayer, i: int, j: int, time: float) -> float:
     """How far the phase of the mode that runs along (j, i) has turned, in rad: ωt."""
     of = state(layer)
     before, after = (spectrum(elevation(of, t))[i, j] for t in (0.0, time))
@@ -37,10 +37,10 @@ def test_phase_speed_under_dispersion(i: int, j: int) -> None:
     assert phase_advance(replace(layer, wind_direction=towards + np.pi), i, j, time) < 0.0
 
 
-def test_translation_moves_the_picture_as_it_is() -> None:
+def test_translation_moves_the_image_as_it_is() -> None:
     """Eq. 9: after 5 s at 10 m/s along (3, 4)/5 all has moved by (30, 40) m."""
-    layer = PictureLayer(
-        picture=Raster(drawing(80, 80)), filter="FRACTAL", fractal_dimension=3.0, animation="TRANSLATION",
+    layer = ImageLayer(
+        image=Raster(drawing(80, 80)), filter="FRACTAL", fractal_dimension=3.0, animation="TRANSLATION",
         translation_speed=10.0, wind_direction=np.arctan2(4.0, 3.0),
     )  # fmt: skip
     of = state(layer, 80)
@@ -54,7 +54,7 @@ def test_translation_moves_the_picture_as_it_is() -> None:
 def test_phase_rates_of_the_dominant_band() -> None:
     """0.05 against 0.003 rad a frame, at 30 frames a second: 1.5 and 0.09 rad/s."""
     grid = WaveVectorGrid(N, 2000.0)
-    layer = PictureLayer(wind_speed=15.0, animation="DOMINANT_BAND")
+    layer = ImageLayer(wind_speed=15.0, animation="DOMINANT_BAND")
     omega = animation.angular_frequency(layer, grid, "DEEP", DEEP)
     f = np.sqrt(9.81 * grid.k) / (2 * np.pi)
     f_m = 0.13 * 9.81 / 15.0
@@ -70,8 +70,8 @@ def test_two_bands_move_apart() -> None:
     n, size = 64, 600.0
     x = np.arange(n) / n
     row = np.cos(2 * np.pi * 3 * x) + np.cos(2 * np.pi * 15 * x)  # 200 m (f_m at 15 m/s: 216 m) and 40 m
-    layer = PictureLayer(
-        picture=Raster(np.tile(row, (n, 1))), filter_gain="PAPER", wind_speed=15.0, animation="DOMINANT_BAND"
+    layer = ImageLayer(
+        image=Raster(np.tile(row, (n, 1))), filter_gain="PAPER", wind_speed=15.0, animation="DOMINANT_BAND"
     )
     of, time = state(layer, n, size), 0.5
     before, after = (np.fft.fft(elevation(of, t)[0]) for t in (0.0, time))
@@ -84,7 +84,7 @@ def test_two_bands_move_apart() -> None:
 
 @pytest.mark.parametrize("animated", ["DISPERSION", "DOMINANT_BAND"])
 def test_loops_close(animated: str) -> None:
-    layer = PictureLayer(picture=Raster(drawing()), filter="FRACTAL", animation=animated)
+    layer = ImageLayer(image=Raster(drawing()), filter="FRACTAL", animation=animated)
     of = state(layer, loop=Fraction(7))
     np.testing.assert_array_equal(elevation(of, Fraction(0)), elevation(of, Fraction(7)))
     assert np.ptp(elevation(of, Fraction(3)) - elevation(of, Fraction(0))) > 0.01
@@ -94,13 +94,13 @@ def test_loops_close(animated: str) -> None:
     )
 
 
-def check_loop(layer: PictureLayer, duration: Fraction | None) -> None:
+def check_loop(layer: ImageLayer, duration: Fraction | None) -> None:
     with_layers(OceanParameters(domain_size=L, resolution=N, loop_duration=duration), IMAGE=(layer,))
 
 
 def test_loops_of_a_translation_close_or_are_refused() -> None:
-    whole = PictureLayer(
-        picture=Raster(drawing()), animation="TRANSLATION", translation_speed=L / 10 * np.sqrt(2),
+    whole = ImageLayer(
+        image=Raster(drawing()), animation="TRANSLATION", translation_speed=L / 10 * np.sqrt(2),
         wind_direction=np.pi / 4,
     )  # fmt: skip
     check_loop(whole, Fraction(10))
@@ -112,7 +112,7 @@ def test_loops_of_a_translation_close_or_are_refused() -> None:
     check_loop(other, None)
     check_loop(replace(other, muted=True), Fraction(10))
     with pytest.raises(
-        ParameterError, match=r"layers\.1\.translation_speed = 21\.0: moves the picture by 1\.05"
+        ParameterError, match=r"layers\.1\.translation_speed = 21\.0: moves the image by 1\.05"
     ) as info:
         check_loop(other, Fraction(10))
     assert "take 20 m/s towards 0 rad" in str(info.value)
@@ -121,7 +121,7 @@ def test_loops_of_a_translation_close_or_are_refused() -> None:
 def test_waves_run_with_the_wind_and_once() -> None:
     """Each wave of the plane runs one way: k and -k are never both counted, nor in the column kx = 0."""
     for direction in (0.0, 1.2, np.pi / 2, -np.pi / 2, np.pi):
-        layer = PictureLayer(filter="FRACTAL", fractal_dimension=3.0, wind_direction=direction)
+        layer = ImageLayer(filter="FRACTAL", fractal_dimension=3.0, wind_direction=direction)
         of = state(layer, 32)
         assert not np.any((of.h_plus != 0) & (of.h_minus != 0))
         np.testing.assert_allclose(of.h_minus[1:16, 0], np.conj(of.h_plus[:16:-1, 0]), atol=1e-12)
@@ -134,9 +134,9 @@ def test_waves_run_with_the_wind_and_once() -> None:
 def test_states_add() -> None:
     """A sea of several states is the sum of their fields, and of their rates."""
     layers = [
-        PictureLayer(wind_speed=6.0),
-        PictureLayer(filter="FRACTAL", animation="TRANSLATION", translation_speed=3.0, wind_direction=0.6),
-        PictureLayer(filter="WATER_TEXTURE", texture_wavelength=9.0, animation="DOMINANT_BAND"),
+        ImageLayer(wind_speed=6.0),
+        ImageLayer(filter="FRACTAL", animation="TRANSLATION", translation_speed=3.0, wind_direction=0.6),
+        ImageLayer(filter="WATER_TEXTURE", texture_wavelength=9.0, animation="DOMINANT_BAND"),
     ]
     parts = [state(layer, 64) for layer in layers]
     together = replace(parts[0], others=tuple(parts[1:]))

@@ -13,7 +13,7 @@ from .modifier_inputs import all_inputs, input_sockets, set_inputs
 from .versioned import GroupKind, check_not_newer, is_stale, node_group
 
 
-def renew_groups(kinds: Iterable[GroupKind]) -> bool:
+def upgrade_groups(kinds: Iterable[GroupKind]) -> bool:
     """Put the present version of each group in the place of an older, on modifiers and inside other groups.
 
     A file with newer groups stays as it is: whoever shows its oceans says so. Inputs and links keep what they

@@ -21,10 +21,10 @@ PATCHES = [
     {"domain_size": SIZE, "shortest_wavelength": 15.0, "resolution": 32},
     {"domain_size": 41.0, "longest_wavelength": 15.0, "rotation": 0.6, "resolution": 64},
 ]
-MASK = {"x": 30.0, "y": 40.0, "near": 5.0, "far": 30.0}
+MASK = {"x": 30.0, "y": 40.0, "inner_radius": 5.0, "outer_radius": 30.0}
 SEAS = {
     "patches": {**SEA, "patches": PATCHES},
-    "joined patches": {**SEA, "patches": PATCHES, "joined": 48},
+    "joined patches": {**SEA, "patches": PATCHES, "merged_resolution": 48},
     "masks": {**SEA, "layers": [{"wind_speed": 12.0, "mask": MASK}, {"wind_speed": 4.0, "fetch": 3e3}]},
 }
 SAMPLES = {"patches": 32, "joined patches": 48, "masks": 32}

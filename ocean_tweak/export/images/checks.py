@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every reader of pictures asks before it reads: whether it is a file, and of which size."""
+"""What every reader of images asks before it reads: whether it is a file, and of which size."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..files import open_file
 
 
 class UnusableError(ValueError):
-    """A picture that cannot be used: the reason, without the name of its file."""
+    """An image that cannot be used: the reason, without the name of its file."""
 
 
 def opened(path: Path) -> BinaryIO:

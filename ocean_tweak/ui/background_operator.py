@@ -16,7 +16,7 @@ from .active_ocean import OfActiveOcean, refuse
 _LOOK = 0.1  # s
 
 
-class BesideWindow(OfActiveOcean):
+class BackgroundOperator(OfActiveOcean):
     """Acts on the active ocean; `begin` starts the process and `conclude` takes its result.
 
     processes : the module that keeps the processes of this kind

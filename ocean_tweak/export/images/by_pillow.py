@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures that the Pillow package reads, as numbers without colour space and transparency."""
+"""Images that the Pillow package reads, as numbers without colour space and transparency."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _ORDERS = {"B": "L", "L": "B", "N": "B" if sys.byteorder == "little" else "L"}
 
 
 def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
-    """The numbers [y, x] or [y, x, channel] of a picture, the first row with the smallest y.
+    """The numbers [y, x] or [y, x, channel] of an image, the first row with the smallest y.
 
     Whole numbers are shares of the largest of their kind, decimals are themselves.
 
@@ -61,7 +61,7 @@ def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
         raise UnusableError(
             "is a TIFF whose kind of numbers Pillow does not read: save it as .exr"
             if is_tiff
-            else f"is not a picture of a kind that is read: {', '.join(FORMATS)}, EXR"
+            else f"is not an image of a kind that is read: {', '.join(FORMATS)}, EXR"
         ) from None
     except (
         OSError, ValueError, SyntaxError, EOFError, IndexError, KeyError, TypeError, AttributeError,
@@ -73,25 +73,25 @@ def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
 
 def _numbers(stream: BinaryIO, kind: int, bits: int) -> NDArray[Any]:
     """Kind and bits are those of a number where a pixel has one of more than 8 bits."""
-    with _opened(stream) as picture:
-        mode, raw = picture.mode, _raw_mode(picture)
+    with _opened(stream) as image:
+        mode, raw = image.mode, _raw_mode(image)
         if ";16" in raw and not mode.startswith("I"):
             return _of_16_bits(stream, raw)
         if raw == "RGBa":  # the numbers as they stand in the file, not divided by transparency
-            _set_raw_mode(picture, "RGBA")
+            _set_raw_mode(image, "RGBA")
         if mode == "F":
-            return np.asarray(picture, np.float32)
+            return np.asarray(image, np.float32)
         if mode.startswith("I"):
-            values = np.asarray(picture)
+            values = np.asarray(image)
             if bits == 32 and kind == tiff.UNSIGNED:
                 values = values.view(np.uint32)  # Pillow takes them for signed
             return np.maximum(values / tiff.largest(kind, bits), -1.0)
         if mode in _GREY:
-            return np.asarray(picture.convert("L")) / 255.0
+            return np.asarray(image.convert("L")) / 255.0
         if mode in ("LA", "La"):
-            return np.asarray(picture)[..., 0] / 255.0
+            return np.asarray(image)[..., 0] / 255.0
         if mode in ("RGB", "RGBA", "RGBX", *_COLOUR):
-            return np.asarray(picture.convert("RGB") if mode in _COLOUR else picture)[..., :3] / 255.0
+            return np.asarray(image.convert("RGB") if mode in _COLOUR else image)[..., :3] / 255.0
         raise UnusableError(f"holds the colours {mode}: save it as grey or as red, green and blue")
 
 
@@ -99,22 +99,22 @@ def _opened(stream: BinaryIO) -> Any:
     from PIL import Image
 
     stream.seek(0)
-    picture = Image.open(stream, formats=FORMATS)
-    check_size(picture.height, picture.width)
-    return picture
+    image = Image.open(stream, formats=FORMATS)
+    check_size(image.height, image.width)
+    return image
 
 
-def _raw_mode(picture: Any) -> str:
+def _raw_mode(image: Any) -> str:
     """How numbers lie in the file, in Pillow's words; "" where it does not say."""
-    arguments = picture.tile[0].args if picture.tile else ""
+    arguments = image.tile[0].args if image.tile else ""
     first = arguments[0] if isinstance(arguments, tuple) and arguments else arguments
     return first if isinstance(first, str) else ""
 
 
-def _set_raw_mode(picture: Any, raw: str) -> None:
-    picture.tile = [
+def _set_raw_mode(image: Any, raw: str) -> None:
+    image.tile = [
         tile._replace(args=raw if isinstance(tile.args, str) else (raw, *tile.args[1:]))
-        for tile in picture.tile
+        for tile in image.tile
     ]
 
 
@@ -122,15 +122,15 @@ def _of_16_bits(stream: BinaryIO, raw: str) -> NDArray[Any]:
     """Numbers of 16 bits in several channels, of which Pillow keeps 8: read twice, each half once."""
     layout, _, order = raw.partition(";16")
     if layout == "LA" and order == "B":  # a PNG's; as four channels of 8 bits its bytes are these
-        with _opened(stream) as picture:
-            _set_raw_mode(picture, "RGBA")
-            pairs = np.asarray(picture).astype(np.uint16)
+        with _opened(stream) as image:
+            _set_raw_mode(image, "RGBA")
+            pairs = np.asarray(image).astype(np.uint16)
         return (pairs[..., 0] * 256 + pairs[..., 1]) / 65535.0
     if layout.upper() not in ("RGB", "RGBA", "RGBX") or order not in _ORDERS:
         raise UnusableError(f"holds numbers as {raw}, of which 8 bits are read: save it as .exr")
     halves = []
     for half in (order, _ORDERS[order]):
-        with _opened(stream) as picture:
-            _set_raw_mode(picture, f"{layout.upper()};16{half}")
-            halves.append(np.asarray(picture)[..., :3].astype(np.uint16))
+        with _opened(stream) as image:
+            _set_raw_mode(image, f"{layout.upper()};16{half}")
+            halves.append(np.asarray(image)[..., :3].astype(np.uint16))
     return (halves[0] * 256 + halves[1]) / 65535.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures written byte by byte from the specifications of their formats, for tests of what reads them."""
+"""Images written byte by byte from the specifications of their formats, for tests of what reads them."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ def exr(
     """An EXR file without compression, the top row first.
 
     channels : arrays of float32, float16 or uint32
-    at : x and y in the picture, downwards, of the first pixel that is stored
-    display : columns and rows of the picture, which begins at 0, 0; by default those of the channels
+    at : x and y in the image, downwards, of the first pixel that is stored
+    display : columns and rows of the image, which begins at 0, 0; by default those of the channels
     sampling : of channels that have a pixel for so many of the others along both axes
     """
     sampling = dict.fromkeys(channels, 1) | dict(sampling or {})

@@ -58,7 +58,7 @@ class _Frame(NamedTuple):
     height: int
 
 
-def spectrum_picture(parameters: OceanParameters) -> Pixels:
+def spectrum_plot(parameters: OceanParameters) -> Pixels:
     """(SIZE, SIZE, 4) float32, row 0 at the bottom, display colours; the picture of a sea's spectrum."""
     picture = np.ones((SIZE, SIZE, 4), np.float32)
     picture[..., :3] = _PAPER

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures and layers of them for tests, and what waves these make."""
+"""Images and layers of them for tests, and what waves these make."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
 from ocean_tweak.core.synthesis.coefficients import InitialState
 from ocean_tweak.core.synthesis.transforms import Synthesis, Z
-from ocean_tweak.core.waves.image.parameters import PictureLayer
-from ocean_tweak.core.waves.image.state import picture_waves
+from ocean_tweak.core.waves.image.parameters import ImageLayer
+from ocean_tweak.core.waves.image.state import image_waves
 
 DEEP = Water(depth=11e3)
 N, L = 128, 200.0
@@ -26,10 +26,10 @@ def drawing(rows: int = 96, columns: int = 96) -> np.ndarray:
     return 0.2 + 0.6 * ring + 0.1 * np.sin(2 * np.pi * x)
 
 
-def state(layer: PictureLayer, n: int = N, size: float = L, seed: int = 3, **more: object) -> InitialState:
+def state(layer: ImageLayer, n: int = N, size: float = L, seed: int = 3, **more: object) -> InitialState:
     grid = WaveVectorGrid(n, size)
     loop = more.pop("loop", None)
-    waves = picture_waves(layer, grid, "DEEP", DEEP, seed, loop, bool(more.pop("match", False)))
+    waves = image_waves(layer, grid, "DEEP", DEEP, seed, loop, bool(more.pop("match", False)))
     return InitialState(
         grid, waves.h_plus, waves.h_minus, waves.omega, waves.expected_plus, waves.expected_minus,
         loop_duration=loop, mirrored=layer.animation != "TRANSLATION",
@@ -52,8 +52,8 @@ def spectrum(field: np.ndarray) -> np.ndarray:
     return np.fft.fft2(field) / field.size
 
 
-def single_wave(i: int, j: int, n: int = 32, **layer: object) -> PictureLayer:
-    """A layer whose picture is one cosine, i waves along y and j along x."""
+def single_wave(i: int, j: int, n: int = 32, **layer: object) -> ImageLayer:
+    """A layer whose image is one cosine, i waves along y and j along x."""
     y, x = np.arange(n)[:, np.newaxis] / n, np.arange(n) / n
-    picture = Raster(np.cos(2 * np.pi * (i * y + j * x)))
-    return PictureLayer(picture=picture, filter="FRACTAL", fractal_dimension=4.0, **layer)
+    image = Raster(np.cos(2 * np.pi * (i * y + j * x)))
+    return ImageLayer(image=image, filter="FRACTAL", fractal_dimension=4.0, **layer)

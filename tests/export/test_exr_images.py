@@ -11,8 +11,8 @@ import OpenEXR
 import pytest
 
 from ocean_tweak.core.data.errors import ParameterError
-from ocean_tweak.export.pictures import read_picture
-from tests.picture_files import exr as exr_by_hand
+from ocean_tweak.export.images import read_raster
+from tests.image_files import exr as exr_by_hand
 
 PAINTED = np.arange(1.0, 17.0, dtype=np.float32).reshape(4, 4)
 
@@ -25,7 +25,7 @@ PAINTED = np.arange(1.0, 17.0, dtype=np.float32).reshape(4, 4)
 def test_what_an_exr_stores_lies_where_it_was_painted(
     tmp_path: Path, at: tuple[int, int], rows: int, columns: int
 ) -> None:
-    """Each pixel by itself: that of the picture at (x, y) is the stored one at (x, y) less `at`, or 0."""
+    """Each pixel by itself: that of the image at (x, y) is the stored one at (x, y) less `at`, or 0."""
     stored = np.arange(1.0, rows * columns + 1.0, dtype=np.float32).reshape(rows, columns)
     expected = np.zeros((4, 4))
     for y in range(4):
@@ -34,13 +34,13 @@ def test_what_an_exr_stores_lies_where_it_was_painted(
             if 0 <= i < rows and 0 <= j < columns:
                 expected[y, x] = stored[i, j]
     path = exr_by_hand(tmp_path / "a.exr", {"Y": stored}, at, (4, 4))
-    np.testing.assert_array_equal(read_picture(path, 1).values[::-1, :, 0], expected)
+    np.testing.assert_array_equal(read_raster(path, 1).values[::-1, :, 0], expected)
 
 
-def test_an_exr_that_stores_nothing_of_its_picture_is_refused(tmp_path: Path) -> None:
+def test_an_exr_that_stores_nothing_of_its_image_is_refused(tmp_path: Path) -> None:
     path = exr_by_hand(tmp_path / "a.exr", {"Y": PAINTED}, (10, 0), (4, 4))
-    with pytest.raises(ParameterError, match="nothing inside its picture"):
-        read_picture(path)
+    with pytest.raises(ParameterError, match="nothing inside its image"):
+        read_raster(path)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_every_way_to_store_an_exr(tmp_path: Path, more: dict[str, Any], kind: t
     values = np.arange(70.0 * 70.0).reshape(70, 70) % 1000
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **more}
     OpenEXR.File(header, {"Y": values.astype(kind)}).write(str(tmp_path / "a.exr"))
-    np.testing.assert_array_equal(read_picture(tmp_path / "a.exr").values[::-1, :, 0], values)
+    np.testing.assert_array_equal(read_raster(tmp_path / "a.exr").values[::-1, :, 0], values)
 
 
 CHANNELS = {
@@ -76,7 +76,7 @@ def test_channels_of_an_exr_are_chosen_by_name(
     tmp_path: Path, names: str, count: int, expected: tuple[int, ...]
 ) -> None:
     path = exr_by_hand(tmp_path / "a.exr", CHANNELS)
-    read = read_picture(path, count, names).values[::-1]
+    read = read_raster(path, count, names).values[::-1]
     np.testing.assert_array_equal(read, np.stack([factor * PAINTED for factor in expected], axis=-1))
 
 
@@ -93,7 +93,7 @@ def test_channels_that_an_exr_lacks_are_told_with_those_that_it_has(
     tmp_path: Path, names: str, count: int, told: str
 ) -> None:
     with pytest.raises(ParameterError, match=told):
-        read_picture(exr_by_hand(tmp_path / "a.exr", CHANNELS), count, names)
+        read_raster(exr_by_hand(tmp_path / "a.exr", CHANNELS), count, names)
 
 
 def test_parts_of_an_exr_are_layers(tmp_path: Path) -> None:
@@ -104,24 +104,24 @@ def test_parts_of_an_exr_are_layers(tmp_path: Path) -> None:
     ]
     OpenEXR.File(parts).write(str(tmp_path / "a.exr"))
     for names in ("depth.Z", "depth"):
-        read = read_picture(tmp_path / "a.exr", 1, names).values[::-1, :, 0]
+        read = read_raster(tmp_path / "a.exr", 1, names).values[::-1, :, 0]
         np.testing.assert_array_equal(read, 2 * PAINTED)
     with pytest.raises(ParameterError, match="several parts"):
-        read_picture(tmp_path / "a.exr", 2, "R,depth.Z")
+        read_raster(tmp_path / "a.exr", 2, "R,depth.Z")
 
 
-def test_of_luminance_and_chroma_the_luminance_is_a_picture(tmp_path: Path) -> None:
+def test_of_luminance_and_chroma_the_luminance_is_an_image(tmp_path: Path) -> None:
     chroma = PAINTED[::2, ::2].copy()
     path = exr_by_hand(
         tmp_path / "a.exr", {"Y": PAINTED, "RY": chroma, "BY": chroma}, sampling={"RY": 2, "BY": 2}
     )
-    np.testing.assert_array_equal(read_picture(path, 1).values[::-1, :, 0], PAINTED)
+    np.testing.assert_array_equal(read_raster(path, 1).values[::-1, :, 0], PAINTED)
     with pytest.raises(ParameterError, match="must have 2 channels"):
-        read_picture(path, 2)
+        read_raster(path, 2)
     with pytest.raises(ParameterError, match="at a part of its resolution"):
-        read_picture(path, 1, "RY")
+        read_raster(path, 1, "RY")
 
 
 def test_a_grey_with_depth_beside_it_is_grey(tmp_path: Path) -> None:
     path = exr_by_hand(tmp_path / "a.exr", {"Y": PAINTED, "Z": 2 * PAINTED})
-    np.testing.assert_array_equal(read_picture(path, 1).values[::-1, :, 0], PAINTED)
+    np.testing.assert_array_equal(read_raster(path, 1).values[::-1, :, 0], PAINTED)

@@ -10,9 +10,9 @@ import pytest
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Places, WaveLayer
 from ocean_tweak.core.foam.threshold import whitecap_coverage
-from ocean_tweak.core.parameters.patch_seas import joined_bands, parts
+from ocean_tweak.core.parameters.patch_seas import merged_bands, parts
 from ocean_tweak.core.parameters.shot import Shot
-from ocean_tweak.core.sea.bake import ShotSurfaces
+from ocean_tweak.core.sea.bake import ShotSeas
 from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.sea.part_waves import PartWaves, strain_covariances
 from ocean_tweak.core.sea.sums import border_shares
@@ -31,23 +31,23 @@ def joined(samples: int, **changes: object) -> OceanParameters:
 
 def test_the_grid_is_that_of_the_first_patch() -> None:
     sea = joined(256)
-    assert (sea.resolution, sea.domain_size, sea.joined) == (256, 600.0, 256)
+    assert (sea.resolution, sea.domain_size, sea.merged_resolution) == (256, 600.0, 256)
     assert not sea.is_cascade
-    assert sea.at_resolution(64).joined == 64
+    assert sea.at_resolution(64).merged_resolution == 64
     assert sea.at_resolution(64).patches == PATCHES
     assert sea.without_patches == OceanParameters(seed=3, layers=(LAYER,), resolution=256, domain_size=600.0)
     assert OceanParameters.from_json(sea.to_json()) == sea
-    assert "joined" not in APART.to_json()
+    assert "merged_resolution" not in APART.to_json()
 
 
 def test_waves_too_short_for_the_grid_are_left_out() -> None:
     """Two samples of a 2.34 m grid are 4.69 m: of the third patch's band from 5 to 0.9 m a part stays."""
-    bands = [patch.band for patch in joined_bands(joined(256)).patches]
+    bands = [patch.band for patch in merged_bands(joined(256)).patches]
     assert bands == [(20.0, 1e6), (5.0, 20.0), (pytest.approx(4.6875), 5.0)]
-    assert [patch.band for patch in joined_bands(joined(128)).patches] == [
+    assert [patch.band for patch in merged_bands(joined(128)).patches] == [
         (20.0, 1e6), (pytest.approx(9.375), 20.0),
     ]  # fmt: skip
-    assert [patch.band for patch in joined_bands(joined(32)).patches] == [(20.0, 1e6)]
+    assert [patch.band for patch in merged_bands(joined(32)).patches] == [(20.0, 1e6)]
 
 
 @pytest.mark.parametrize(
@@ -67,14 +67,14 @@ def test_waves_too_short_for_the_grid_are_left_out() -> None:
     ],
 )
 def test_bands_meet_where_a_patch_in_between_is_coarse(patches: tuple[Patch, ...], ends: list[float]) -> None:
-    bands = joined_bands(OceanParameters(patches=patches, joined=48)).patches
+    bands = merged_bands(OceanParameters(patches=patches, merged_resolution=48)).patches
     assert [patch.shortest_wavelength for patch in bands] == ends
     assert [patch.longest_wavelength for patch in bands] == [1e6, *ends[:-1]]
 
 
 def test_patches_are_read_at_eight_samples_a_wave() -> None:
     """Linear interpolation keeps (2 + cos 2π/8)/3 = 0.902 of the shortest wave's variance along an axis."""
-    for patch in joined_bands(joined(1024)).patches[1:]:
+    for patch in merged_bands(joined(1024)).patches[1:]:
         assert 8.0 <= patch.samples_a_wave < 9.0
 
 
@@ -85,7 +85,7 @@ def test_it_is_the_sum_of_the_waves() -> None:
     sea = OceanParameters(layers=(layer,), patches=patches).on_one_grid(64)
     index = GENERATOR.integers(0, 57, (60, 2))
     places = 120.0 / 64 * index
-    bands = joined_bands(sea)
+    bands = merged_bands(sea)
     sums = summed(bands, *places.T, 1.5)
     first = summed(bands.replace(patches=bands.patches[:1]), *places.T, 1.5)
     found = Ocean(sea, "double").surface(1.5).displacement[index[:, 1], index[:, 0]]
@@ -101,7 +101,7 @@ def test_each_field_is_that_of_the_sum() -> None:
     outputs = {"displacement", "velocity", "slope", "strain", "normal", "cusp", "jacobian", "min_eigenvector"}
     found = Ocean(sea).surface(4.0, outputs)
     along = 600.0 / 128 * np.arange(INSIDE)
-    there = Ocean(joined_bands(sea)).surface(4.0, outputs, on=Places(along, along[:, np.newaxis]))
+    there = Ocean(merged_bands(sea)).surface(4.0, outputs, on=Places(along, along[:, np.newaxis]))
     for name in outputs:
         inside = getattr(found, name)[:INSIDE, :INSIDE]
         np.testing.assert_allclose(inside, getattr(there, name), atol=3e-5, err_msg=name)
@@ -171,8 +171,8 @@ def test_the_variance_is_that_of_the_waves_that_it_holds() -> None:
 
 def test_one_patch_joined_is_that_patch() -> None:
     sea = joined(32)
-    (first,) = joined_bands(sea).patches
-    alone = Ocean(sea.replace(joined=0, patches=(first,)))
+    (first,) = merged_bands(sea).patches
+    alone = Ocean(sea.replace(merged_resolution=0, patches=(first,)))
     np.testing.assert_array_equal(Ocean(sea).surface(1.0).displacement, alone.surface(1.0).displacement)
 
 
@@ -181,7 +181,7 @@ def test_a_first_patch_may_be_turned() -> None:
     sea = OceanParameters(seed=3, layers=(LAYER,), patches=turned).on_one_grid(64)
     found = Ocean(sea).surface(2.0).displacement
     along = 600.0 / 64 * np.arange(57)  # before the border of a tenth of the side
-    there = Ocean(joined_bands(sea)).surface(2.0, on=Places(along, along[:, np.newaxis])).displacement
+    there = Ocean(merged_bands(sea)).surface(2.0, on=Places(along, along[:, np.newaxis])).displacement
     np.testing.assert_allclose(found[:57, :57], there, atol=3e-5)
 
 
@@ -191,7 +191,7 @@ def test_strains_are_as_large_as_the_foam_takes_them_for() -> None:
     for seed in range(10):
         sea = joined(128, seed=seed)
         found += np.mean(Ocean(sea).surface(0.0, {"strain"}).strain.astype(float) ** 2, axis=(0, 1))
-        waves = [PartWaves(part, 600.0, "single", None) for part in parts(joined_bands(sea))]
+        waves = [PartWaves(part, 600.0, "single", None) for part in parts(merged_bands(sea))]
         wanted += np.diag(strain_covariances(waves, (0.0, 0.0))[0])
     np.testing.assert_allclose(found, wanted, rtol=0.02)
 
@@ -227,16 +227,16 @@ def test_the_height_above_a_place_is_that_of_the_mesh() -> None:
 
 def test_a_shot_is_joined_like_its_sea() -> None:
     shot = Shot(joined(64))
-    (fields,) = ShotSurfaces(shot).frames(5, {"displacement", "foam"})
+    (fields,) = ShotSeas(shot).frames(5, {"displacement", "foam"})
     there = Ocean(shot.at(5).parameters).surface(shot.at(5).time, {"displacement", "foam"})
     np.testing.assert_array_equal(fields.displacement, there.displacement)
     np.testing.assert_array_equal(fields.foam, there.foam)
 
 
 @pytest.mark.parametrize(("samples", "patches"), [(15, PATCHES), (33, PATCHES), (64, ())])
-def test_what_cannot_be_joined_is_refused(samples: int, patches: tuple[Patch, ...]) -> None:
-    with pytest.raises(ParameterError, match=r"^joined"):
-        OceanParameters(patches=patches, joined=samples)
+def test_what_cannot_be_merged_is_refused(samples: int, patches: tuple[Patch, ...]) -> None:
+    with pytest.raises(ParameterError, match=r"^merged_resolution"):
+        OceanParameters(patches=patches, merged_resolution=samples)
 
 
 def test_joined_patches_are_one_sea_of_several_sums() -> None:
@@ -249,13 +249,13 @@ def test_joined_patches_are_one_sea_of_several_sums() -> None:
 def test_places_of_joined_patches_have_the_waves_that_the_grid_holds() -> None:
     x, y = GENERATOR.uniform(0.0, 600.0, (2, 50))
     found = Ocean(joined(128)).surface(4.0, on=Places(x, y)).displacement
-    there = Ocean(joined_bands(joined(128))).surface(4.0, on=Places(x, y)).displacement
+    there = Ocean(merged_bands(joined(128))).surface(4.0, on=Places(x, y)).displacement
     np.testing.assert_array_equal(found, there)
     assert np.abs(found - Ocean(APART).surface(4.0, on=Places(x, y)).displacement).max() > 0.01
 
 
 def test_memory_is_told() -> None:
-    apart = memory_need(joined_bands(joined(256)), {"displacement"})
+    apart = memory_need(merged_bands(joined(256)), {"displacement"})
     together = memory_need(joined(256), {"displacement"})
     assert together.state == apart.state
     assert together.surface == apart.surface + 3 * 3 * 256**2 * 4

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture or array of any kind that is read, as a raster."""
+"""An image or array of any kind that is read, as a raster."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 
 from ...core.data.errors import ParameterError
 from ...core.data.raster import LUMINANCE, Raster
-from . import arrays, exr_pictures
+from . import arrays, exr_images
 from .by_pillow import read_by_pillow
 from .checks import UnusableError, opened
 
 
-def read_picture(path: Path, channels: int | None = None, names: str = "", axes: str = "") -> Raster:
-    """The numbers of a picture (EXR, PNG, TIFF, JPEG, …) or of an array (.npy), by what is in the file.
+def read_raster(path: Path, channels: int | None = None, names: str = "", axes: str = "") -> Raster:
+    """The numbers of an image (EXR, PNG, TIFF, JPEG, …) or of an array (.npy), by what is in the file.
 
-    The top row of a picture has the largest y; the first row of an array [y, x] the smallest. Whole numbers
-    of pictures, and unsigned ones of 8 and 16 bits in arrays, are shares of the largest of their kind;
+    The top row of an image has the largest y; the first row of an array [y, x] the smallest. Whole numbers
+    of images, and unsigned ones of 8 and 16 bits in arrays, are shares of the largest of their kind;
     decimals, and all other whole numbers in arrays, are themselves; truth values are 0 and 1.
 
-    channels : how many are wanted: the first so many; one of a colour picture is its luminance. By default
-        all: 1 of a grey picture, 3 of one in colour
+    channels : how many are wanted: the first so many; one of a colour image is its luminance. By default
+        all: 1 of a grey image, 3 of one in colour
     names : channels of an EXR image between commas, or a layer of it; by default R, G, B or Y
     axes : order of an array's axes, of y, x and c; by default as its shape tells
 
@@ -39,9 +39,9 @@ def read_picture(path: Path, channels: int | None = None, names: str = "", axes:
 
 
 def raster_in(stream: BinaryIO, name: str, channels: int | None, names: str = "", axes: str = "") -> Raster:
-    """As `read_picture`, of the bytes of a file of this name. Raises UnusableError, not naming it."""
+    """As `read_raster`, of the bytes of a file of this name. Raises UnusableError, not naming it."""
     suffix = Path(name).suffix.lower()
-    is_array, is_exr = arrays.is_array(stream), exr_pictures.is_exr(stream)
+    is_array, is_exr = arrays.is_array(stream), exr_images.is_exr(stream)
     if not is_array and not is_exr:  # then its name tells what was expected
         is_array, is_exr = suffix == ".npy", suffix == ".exr"
     if names and not is_exr:
@@ -51,7 +51,7 @@ def raster_in(stream: BinaryIO, name: str, channels: int | None, names: str = ""
     if is_array:
         values = arrays.read_array(stream, channels, axes)
     elif is_exr:
-        values = exr_pictures.read_exr(stream, channels, names)
+        values = exr_images.read_exr(stream, channels, names)
     else:
         values = read_by_pillow(stream)
     return Raster(_with_channels(values if values.ndim == 3 else values[..., np.newaxis], channels), name)
