@@ -59,7 +59,7 @@ def test_each_kind_of_sea_is_among_them():
         "wind_fields",
         "hero_waves",
         "patches",
-        "merged_resolution",
+        "joined",  # as those files have it
         "loop_duration",
         "match_height",
     ):
