@@ -139,8 +139,8 @@ def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     for item in oceans_in(scene):
         show(item, scene, Wanted.BAKE)
         bake_state.warn(item)
-        if text := needs.sharp_under_blur(item, scene):
-            alarm.warned(item, "blur", text)
+        if text := portability.sharp_under_blur(item, scene):
+            failures.warned(item, "blur", text)
 
 
 @persistent

@@ -38,14 +38,14 @@ class _NeedsUsd:
         return super().poll(context)
 
 
-class _UsdBesideWindow(_NeedsUsd, BackgroundOperator):
+class _UsdBackgroundOperator(_NeedsUsd, BackgroundOperator):
     """Operators that export an ocean or check its layers: one at a time."""
 
     processes = usd
     busy = "This ocean is being exported or checked: wait, or stop it with Esc"
 
 
-class OCEAN_OT_export_usd(_UsdBesideWindow, bpy.types.Operator):
+class OCEAN_OT_export_usd(_UsdBackgroundOperator, bpy.types.Operator):
     """Write the active ocean as USD layers."""
 
     bl_idname = "ocean.export_usd"
@@ -116,7 +116,7 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
             return refuse(self, str(error).removeprefix("Error: ").strip())
 
 
-class OCEAN_OT_verify_usd(_UsdBesideWindow, bpy.types.Operator):
+class OCEAN_OT_verify_usd(_UsdBackgroundOperator, bpy.types.Operator):
     """Read the USD layers of the active ocean back."""
 
     bl_idname = "ocean.verify_usd"

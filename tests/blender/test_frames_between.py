@@ -161,7 +161,7 @@ def test_what_floats_is_keyed_on_that_slow_motion(extension, baked, empty_scene)
 
 def test_a_bake_without_velocity_is_told_when_blur_is_on(extension, baked, empty_scene, caplog):
     item = baked(maps=("disp",))
-    told = extension("scene.needs").sharp_under_blur
+    told = extension("scene.portability").sharp_under_blur
     begin = extension("scene.handlers").begin_render
     empty_scene.render.use_motion_blur = False
     assert told(item, empty_scene) == ""

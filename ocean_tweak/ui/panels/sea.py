@@ -13,7 +13,7 @@ from ...core.spectral.spectra import wind_at_10_m
 from ...core.statistics import sea_scales
 from ...scene import failures, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
-from ...scene.needs import sharp_under_blur
+from ...scene.portability import sharp_under_blur
 from ...scene.refresh import sea_of_settings
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
