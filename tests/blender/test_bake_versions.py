@@ -50,7 +50,7 @@ def test_what_is_on_disk_is_listed_and_the_next_bake_foreseen(versions, ocean, e
     assert [version.frames for version in listing.versions] == [2, 2, 2]
     assert [version.bytes for version in listing.versions] == list(map(size, versions))
     drawn = " ".join(draw(ocean))
-    assert all(f"{folder.name[:4]}  {size(folder) // 1000}" in drawn for folder in versions)
+    assert all(f"{folder.name[:4]}  {size(folder) / 1000:.3g} kB" in drawn for folder in versions)
     assert drawn.count("ocean.delete_bake") == 3  # two old ones, and both together
     assert "To Come about " in drawn
     assert " free" in drawn

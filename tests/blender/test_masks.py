@@ -10,7 +10,7 @@ import pytest
 from tests.layers import with_layers
 
 from .conftest import DOMAIN, SAMPLES, evaluated_mesh
-from .surfaces import assert_alike, read, wanted
+from .surfaces import ALL_MAPS, assert_alike, read, wanted
 
 SIDE = SAMPLES + 1
 
@@ -60,7 +60,10 @@ def test_an_image_masks_its_layer(ocean, mask, core, empty_scene, extension):
     parameters = ocean.ocean_tweak.to_parameters(empty_scene)
     found = parameters.layers[0].mask
     assert found == core.Mask(
-        source="IMAGE", image=core.Raster(texels[..., 0]), inner_radius=found.near, outer_radius=found.far
+        source="IMAGE",
+        image=core.Raster(texels[..., 0]),
+        inner_radius=found.inner_radius,
+        outer_radius=found.outer_radius,
     )
     assert_alike(read(evaluated_mesh(ocean), SIDE, SIDE), wanted(core, parameters, 1))
     assert not ocean.ocean_tweak.error
@@ -198,7 +201,7 @@ def test_parameters_with_masks_come_back(ocean, core, make_parameters, empty_sce
 def test_a_baked_masked_sea_is_the_live_one(ocean, mask, core, empty_scene, bake, ocean_object):
     mask.inner_radius, mask.outer_radius, mask.source = 10.0, 60.0, "DISTANCE"
     parameters = ocean.ocean_tweak.to_parameters(empty_scene)
-    sequence = bake(parameters, 1, 2, maps=("disp", "foam", "normal", "vel"))
+    sequence = bake(parameters, 1, 2, maps=ALL_MAPS)
     ocean_object.use_sequence(ocean, empty_scene, sequence)
     empty_scene.frame_set(2)
     assert_alike(read(evaluated_mesh(ocean), SIDE, SIDE), wanted(core, parameters, 2))

@@ -181,5 +181,5 @@ def test_the_command_line_sees_the_oceans_of_the_file(
     assert seas == {"Ocean": make_parameters(), "Lake": other}
     assert registration.run_command(["info", "--object", "Lake", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
-    assert {"format": 1, **report["Lake"]["parameters"]} == json.loads(other.to_json())
+    assert {"format": 2, **report["Lake"]["parameters"]} == json.loads(other.to_json())
     assert registration.run_command(["info", "--object", "Pond"]) == 2

@@ -255,7 +255,7 @@ def test_samples_of_the_mesh_are_not_those_of_a_patch(patched, core, ocean_objec
     settings = patched.ocean_tweak
     settings.resolution = 64
     settings.patches[0].resolution = 40
-    assert (sea(patched).joined, sea(patched).patches[0].resolution) == (64, 40)
+    assert (sea(patched).merged_resolution, sea(patched).patches[0].resolution) == (64, 40)
     apart = sea(patched).replace(merged_resolution=0, patches=sea(patched).patches)
     settings.from_parameters(apart, empty_scene)
     assert settings.resolution == 40

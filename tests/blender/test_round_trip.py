@@ -69,7 +69,7 @@ def awkward_mask(core, chance):
         chance,
         source="IMAGE",
         image=core.Raster(values, f"Coast {near}"),
-        near=near,
+        inner_radius=near,
         outer_radius=99.1,
     )
 

@@ -17,7 +17,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 @pytest.fixture
-def image(ocean):
+def waves(ocean):
     bpy.ops.ocean.layer_add(kind="IMAGE")
     return ocean.ocean_tweak.layers[1].image_waves
 
@@ -47,9 +47,9 @@ def float_image(values, name="decimal"):
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (4, 7, 3)])
-def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, image, tmp_path, shape):
+def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, waves, tmp_path, shape):
     values = np.random.default_rng(2).integers(0, 256, shape)
-    image.image = bpy.data.images.load(str(png(tmp_path / "odd.png", values)))
+    waves.image = bpy.data.images.load(str(png(tmp_path / "odd.png", values)))
     raster = layers_of(sea_of(ocean), "IMAGE")[0].image
     grey = values if len(shape) == 2 else values @ (0.2126, 0.7152, 0.0722)
     assert raster.shape == (*shape[:2], 1)
@@ -58,7 +58,7 @@ def test_8_bits_are_shares_of_255_and_the_top_row_is_far(ocean, image, tmp_path,
     assert not ocean.ocean_tweak.error
 
 
-def test_decimals_are_themselves(ocean, image, wind):
+def test_decimals_are_themselves(ocean, waves, wind):
     values = np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32) * 40
     ocean.ocean_tweak.layers[2].image_waves.image = float_image(values)
     assert layers_of(sea_of(ocean), "IMAGE")[0].image.values[..., 0].tolist() == values.tolist()
@@ -94,8 +94,8 @@ def test_pngs_mean_the_same_here_and_outside(ocean, extension, tmp_path, depth, 
 
 
 @pytest.mark.parametrize("values", [np.array([[-9, 9]], np.int8), np.array([[0.5, 1.0]], np.float64)])
-def test_tiffs_of_which_blender_loses_numbers_are_refused(ocean, image, tmp_path, values):
-    image.image = bpy.data.images.load(str(image_files.tiff(tmp_path / "a.tif", values)))
+def test_tiffs_of_which_blender_loses_numbers_are_refused(ocean, waves, tmp_path, values):
+    waves.image = bpy.data.images.load(str(image_files.tiff(tmp_path / "a.tif", values)))
     assert "layers.1.image = 'a.tif': holds " in ocean.ocean_tweak.error
     assert "which are not read" in ocean.ocean_tweak.error
 
@@ -104,10 +104,10 @@ PAINTED = np.arange(1.0, 7.0, dtype=np.float32).reshape(2, 3)
 
 
 @pytest.mark.parametrize("packed", [False, True])
-def test_what_an_exr_stores_lies_where_it_was_painted(ocean, image, tmp_path, packed):
+def test_what_an_exr_stores_lies_where_it_was_painted(ocean, waves, tmp_path, packed):
     """Of an image of 4 x 4 the part from column 2, row 1 on, a column of which lies outside."""
     path = image_files.exr(tmp_path / "a.exr", {"Y": PAINTED}, (2, 1), (4, 4))
-    image.image = image = bpy.data.images.load(str(path))
+    waves.image = image = bpy.data.images.load(str(path))
     if packed:
         image.pack()
         path.unlink()
@@ -122,19 +122,19 @@ def test_what_an_exr_stores_lies_where_it_was_painted(ocean, image, tmp_path, pa
     assert (layers_of(sea_of(ocean), "IMAGE")[0].image.values[::-1, :, 0] == expected).all()
 
 
-def test_channels_of_an_exr_are_chosen_by_name(ocean, image, wind, extension, tmp_path):
+def test_channels_of_an_exr_are_chosen_by_name(ocean, waves, wind, extension, tmp_path):
     """In Blender these are multi-layer images, of which it gives no texels at all."""
     factors = {"R": 1, "depth.Z": 2, "gust.u": 3, "gust.v": 4}
     planes = {name: factor * PAINTED for name, factor in factors.items()}
     image = bpy.data.images.load(str(image_files.exr(tmp_path / "a.exr", planes)))
     # the wind's layer comes first, whose property groups are found anew
-    wind, image = (layer.group for layer in ocean.ocean_tweak.layers[1:])
+    wind, waves = (layer.group for layer in ocean.ocean_tweak.layers[1:])
     wind.source, wind.image, wind.image_values, wind.image_speed = "IMAGE", image, "PLAIN", 1.0
-    image.image = image
+    waves.image = image
     assert "layers.1.image = 'a.exr': must have 2 channels, but has 1" in ocean.ocean_tweak.error
-    wind.image_channels, image.image_channels = "gust", "depth.X"
+    wind.image_channels, waves.image_channels = "gust", "depth.X"
     assert "no channel or layer depth.X; it has R, depth.Z, gust.u, gust.v" in ocean.ocean_tweak.error
-    image.image_channels = "depth.Z"
+    waves.image_channels = "depth.Z"
     assert ocean.ocean_tweak.error == ""
     sea = sea_of(ocean)
     assert (layers_of(sea, "IMAGE")[0].image.values[::-1, :, 0] == 2 * PAINTED).all()
@@ -145,55 +145,55 @@ def test_channels_of_an_exr_are_chosen_by_name(ocean, image, wind, extension, tm
     assert sorted(names) == ["R", "depth.Z", "gust.u", "gust.v"]
     # taking over the same sea changes nothing
     ocean.ocean_tweak.from_parameters(sea, bpy.context.scene)
-    wind, image = (layer.group for layer in ocean.ocean_tweak.layers[1:])
-    assert (image.image, image.image_channels) == (image, "depth.Z")
+    wind, waves = (layer.group for layer in ocean.ocean_tweak.layers[1:])
+    assert (waves.image, waves.image_channels) == (image, "depth.Z")
     assert (wind.image, wind.image_channels) == (image, "gust")
     assert sea_of(ocean) == sea
 
 
-def test_a_choice_of_channels_is_no_matter_to_other_images(ocean, image):
-    image.image_channels = "Z"
-    image.image = float_image(np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32))
+def test_a_choice_of_channels_is_no_matter_to_other_images(ocean, waves):
+    waves.image_channels = "Z"
+    waves.image = float_image(np.random.default_rng(3).normal(size=(6, 3)).astype(np.float32))
     assert ocean.ocean_tweak.error == ""
 
 
-def test_images_that_hold_no_waves_are_told_by_name(ocean, image):
+def test_images_that_hold_no_waves_are_told_by_name(ocean, waves):
     flat = np.ones((4, 4), np.float32)
-    image.image = float_image(flat, "wall")
+    waves.image = float_image(flat, "wall")
     assert "layers.1.image (wall) = 1.0: everywhere" in ocean.ocean_tweak.error
     broken = np.arange(12, dtype=np.float32).reshape(3, 4)
     broken[2, 1] = np.nan
-    image.image = float_image(broken, "hole")
+    waves.image = float_image(broken, "hole")
     assert "raster 'hole' = nan: must be finite everywhere" in ocean.ocean_tweak.error
     assert "row 2, column 1" in ocean.ocean_tweak.error
-    image.image = None
+    waves.image = None
     assert ocean.ocean_tweak.error == ""
 
 
-def test_missing_files_and_movies_are_told_by_name(ocean, image, tmp_path):
+def test_missing_files_and_movies_are_told_by_name(ocean, waves, tmp_path):
     file = png(tmp_path / "gone.png", np.arange(12).reshape(3, 4))
-    image.image = bpy.data.images.load(str(file))
+    waves.image = bpy.data.images.load(str(file))
     file.unlink()
     bpy.ops.ocean.reload_image()
     assert "layers.1.image = 'gone.png': its file cannot be read" in ocean.ocean_tweak.error
-    image.image.source = "SEQUENCE"
+    waves.image.source = "SEQUENCE"
     ocean.ocean_tweak.seed += 1
     assert "must be a single image" in ocean.ocean_tweak.error
 
 
-def test_a_changed_file_is_read_again_when_asked(ocean, image, tmp_path):
+def test_a_changed_file_is_read_again_when_asked(ocean, waves, tmp_path):
     file = png(tmp_path / "drawn.png", np.arange(12).reshape(3, 4))
-    image.image = bpy.data.images.load(str(file))
+    waves.image = bpy.data.images.load(str(file))
     png(file, np.arange(12)[::-1].reshape(3, 4))
     assert layers_of(sea_of(ocean), "IMAGE")[0].image.values[0, 0, 0] == pytest.approx(8 / 255)
     bpy.ops.ocean.reload_image()
     assert layers_of(sea_of(ocean), "IMAGE")[0].image.values[0, 0, 0] == pytest.approx(3 / 255)
 
 
-def test_painting_shows(ocean, image, evaluated, empty_scene):
+def test_painting_shows(ocean, waves, evaluated, empty_scene):
     values = np.random.default_rng(4).normal(size=(16, 16)).astype(np.float32)
-    image.filter = "FRACTAL"
-    image.image = image = float_image(values)
+    waves.filter = "FRACTAL"
+    waves.image = image = float_image(values)
     before = evaluated(ocean)
     image.pixels[4 * 100] = 30.0
     image.update_tag()
@@ -205,10 +205,10 @@ def test_painting_shows(ocean, image, evaluated, empty_scene):
     assert np.abs(evaluated(ocean) - painted).max() > 0.01
 
 
-def test_playback_reads_no_image_again(ocean, image, empty_scene, extension, monkeypatch):
+def test_playback_reads_no_image_again(ocean, waves, empty_scene, extension, monkeypatch):
     values = np.random.default_rng(4).normal(size=(16, 16)).astype(np.float32)
-    image.image = float_image(values)
-    image.image.pack()
+    waves.image = float_image(values)
+    waves.image.pack()
     sea_of(ocean)
     images = extension("scene.source_images")
     monkeypatch.setattr(images, "_texels", None)
@@ -219,9 +219,9 @@ def test_playback_reads_no_image_again(ocean, image, empty_scene, extension, mon
     assert layers_of(sea_of(ocean), "IMAGE")[0] is layers_of(sea_of(ocean), "IMAGE")[0]
 
 
-def test_colour_space_of_decimals_is_asked_for(ocean, image, extension, empty_scene):
+def test_colour_space_of_decimals_is_asked_for(ocean, waves, extension, empty_scene):
     image = float_image(np.random.default_rng(4).normal(size=(4, 4)).astype(np.float32), "linear")
-    image.image = image
+    waves.image = image
     panel = extension("ui.panels.layers")
     said = []
     layout = SimpleNamespace(operator=lambda *_args, **_named: None)
