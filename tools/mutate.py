@@ -28,8 +28,8 @@ from .run_tests import ONE_THREAD
 
 TESTS = Path("tests/core")
 COPIED = (
-    "ocean_tweak", "tests/core", "tests/reference", "pyproject.toml", "examples/horizon.json",
-    "docs/cascades.md",
+    "ocean_tweak", "tests/core", "tests/reference", "tests/layers.py", "tests/new_kinds.py", "pyproject.toml",
+    "examples/horizon.json", "docs/cascades.md",
 )  # fmt: skip
 KINDS = ("constants", "formulas", "named", "structure")
 AT_ONCE = 2
@@ -139,8 +139,7 @@ def first_failure(mutant: Mutant | None, limit: float | None = None) -> str | No
     """
     with tempfile.TemporaryDirectory(prefix="ocean-tweak-mutant-") as name:
         copy = Path(name)
-        for part in COPIED:
-            _copy(ROOT / part, copy / part)
+        copy_into(copy)
         own: tuple[str, ...] = ()
         if mutant is not None:
             (copy / mutants.LARGER).write_text(mutants.LARGER_SOURCE, encoding="utf-8")
@@ -157,6 +156,12 @@ def first_failure(mutant: Mutant | None, limit: float | None = None) -> str | No
         except subprocess.TimeoutExpired:
             return f"no end within {limit:.0f} s"
         return None
+
+
+def copy_into(folder: Path) -> None:
+    """Copy the core and its tests, with all that they import, into an empty folder."""
+    for part in COPIED:
+        _copy(ROOT / part, folder / part)
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -9,7 +9,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from ocean_tweak.core.sea.on import TILE
 
 from ocean_tweak.core import Area, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer
 from ocean_tweak.core.foam.model import FoamHistory, FoamModel, strength_levels
@@ -21,6 +20,7 @@ from ocean_tweak.core.foam.threshold import (
     whitecap_coverage,
 )
 from ocean_tweak.core.numerics.interpolation import resampled
+from ocean_tweak.core.sea.regions import TILE
 from ocean_tweak.core.synthesis.channels import OF_MEMORY
 
 SEA = OceanParameters(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -111,3 +112,20 @@ def test_a_change_without_end_is_noticed(tmp_path: Path) -> None:
     (folder / "test_one.py").write_text("import time\ndef test_a(): time.sleep(60.0)\n")
     with pytest.raises(subprocess.TimeoutExpired):
         mutate._first_failure_of(["test_one.py"], tmp_path, limit=1.0)
+
+
+def test_the_copy_holds_all_that_the_tests_import(tmp_path: Path) -> None:
+    mutate.copy_into(tmp_path)
+    files = [path for path in (tmp_path / mutate.TESTS).glob("test_*.py") if path.name not in mutate.LEFT_OUT]
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "--collect-only",
+        *map(str, files),
+    ]
+    answer = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stdout[-2000:]
