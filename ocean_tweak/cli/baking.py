@@ -114,6 +114,8 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
         ) as hold,
     ):
         left = list(unfinished(folder, job, frames, stop.is_set))
+        if left:
+            job.check_foam()
         todo = tuple(finding.frame for finding in left)
         workers = _worker_count(arguments.workers, job, todo)
         needed = estimate(folder, job, todo, workers)

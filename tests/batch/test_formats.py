@@ -13,9 +13,10 @@ from ocean_tweak.core.data import formats
 from ocean_tweak.core.parameters.fingerprint import fingerprint, shot_fingerprint
 from ocean_tweak.core.parameters.presets import built_in
 from ocean_tweak.core.parameters.shot import Animation, Shot
-from ocean_tweak.export.cache.folders import read_job
-from ocean_tweak.export.cache.job import CacheError, Job
-from ocean_tweak.export.cache.records import FrameRecord
+from ocean_tweak.core.sea.bake import bake
+from ocean_tweak.export.cache.folders import open_folder, read_job
+from ocean_tweak.export.cache.job import CacheError, Job, uid_of
+from ocean_tweak.export.cache.records import CacheSink, FrameRecord
 from ocean_tweak.export.exr import ExrError, read_header, read_image, write_image
 
 NEWER = r"format = 2: was written by a newer Ocean Tweak, and this one reads up to 1: update the extension"
@@ -129,3 +130,60 @@ def test_a_bake_without_newer_numbers_is_read(folder):
     job = read_job(folder)
     assert isinstance(job, Job)
     assert json.loads((folder / "bake.json").read_text())["format"] == 1
+
+
+#: SHA-256 of what the program before made of the same sea, of maps without foam and with it
+FORMER_JOBS = {
+    ("disp", "vel"): "2ed089dfcb9afa8dc907c8591c8ac9d6464b3218ee4d2678de221955159247ce",
+    ("disp", "foam"): "684eee53022efa4750ece843e0a1efb605ddb26dc142700402287cc5a5ec5ec0",
+}
+
+
+def test_only_bakes_with_foam_are_others_where_foam_is():
+    for maps, former in FORMER_JOBS.items():
+        job = Job("sea", "1", Shot(SEA), maps)
+        assert (job.fingerprint == former) == ("foam" not in maps)
+        assert Job("sea", "1", Shot(SEA), maps, foam=1).fingerprint == former
+    assert "foam" not in Job("sea", "1", Shot(SEA), ("disp", "vel")).to_dict()
+    assert Job("sea", "1", Shot(SEA), ("disp", "vel"), foam=1) == Job("sea", "1", Shot(SEA), ("disp", "vel"))
+
+
+@pytest.fixture
+def with_former_foam(tmp_path, monkeypatch):
+    """A bake of two frames whose foam is of the first version, which no file tells."""
+    monkeypatch.setattr(formats, "FOAM", 1)
+    job = Job("sea", uid_of("sea"), Shot(SEA), ("disp", "foam"), "ZIP", (1, 2), foam=1)
+    made = open_folder(tmp_path, job)
+    assert list(bake(job.shot, (1, 2), CacheSink(made, job)))
+    monkeypatch.undo()
+    assert "foam" not in json.loads((made / "bake.json").read_text())
+    return made
+
+
+def test_former_foam_is_known_but_not_made(with_former_foam, capsys):
+    folder = with_former_foam
+    assert read_job(folder).foam == 1
+    assert main(["verify", str(folder)]) == 0
+    assert main(["resume", str(folder)]) == 0, capsys.readouterr().err
+    own = ["--set", "resolution=16", "--name", "sea", "--maps", "disp,foam", "--compression", "ZIP"]
+    (folder / "bake.json").unlink()
+    assert main(["resume", str(folder)]) == 0  # the images tell the job
+    assert read_job(folder).foam == 1
+    (folder / "sea_foam.0002.exr").unlink()
+    capsys.readouterr()
+    assert main(["resume", str(folder), "--frames", "1-2"]) == 1
+    told = capsys.readouterr().err
+    assert "was baked with foam of version 1, which this program shows but no longer makes" in told
+    assert not (folder / "sea_foam.0002.exr").exists()
+    assert main(["bake", *own, "--frames", "1", "--out", str(folder.parents[1])]) == 0
+    (beside,) = folder.parent.glob("v002-*")
+    assert json.loads((beside / "bake.json").read_text())["foam"] == formats.FOAM
+
+
+def test_a_bake_of_newer_foam_is_refused(tmp_path, capsys):
+    own = ["bake", "--set", "resolution=16", "--frames", "1", "--name", "sea", "--maps", "disp,foam"]
+    assert main([*own, "--out", str(tmp_path)]) == 0
+    (folder,) = tmp_path.glob("*/v001-*")
+    changed(folder / "bake.json", foam=formats.FOAM + 1)
+    assert main(["verify", str(folder)]) == 1
+    assert "update the extension" in capsys.readouterr().err

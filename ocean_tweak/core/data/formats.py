@@ -24,6 +24,13 @@ JOB, RECORD = 1, 1
 LAYER = 1
 #: the waves themselves: raised whenever the same parameters give another surface
 SYNTHESIS = 1
+#: the foam: raised whenever the same waves get other foam. Only what holds foam is known by it
+FOAM = 2
+
+
+def told_foam(version: int, has_foam: bool) -> dict[str, int]:
+    """What files and fingerprints tell of their foam; of the first version, as of none, they tell nothing."""
+    return {"foam": version} if has_foam and version > 1 else {}
 
 
 class NewerFormatError(ParameterError):

@@ -86,11 +86,13 @@ def default_of(field: dataclasses.Field[Any]) -> Any:
     return field.metadata["default"] if field.default is OPEN else field.default
 
 
-def choice(default: str, choices: tuple[str, ...], description: str) -> Any:
-    """A dataclass field that is one of the given names."""
-    return dataclasses.field(
-        default=default, metadata={"kind": str, "choices": choices, "description": description}
-    )
+def choice(default: str, choices: tuple[str, ...], description: str, left_out: bool = False) -> Any:
+    """A dataclass field that is one of the given names.
+
+    left_out : where it is the default, JSON has no such key
+    """
+    metadata = {"kind": str, "choices": choices, "description": description, "left_out": left_out}
+    return dataclasses.field(default=default, metadata=metadata)
 
 
 def switch(default: bool, description: str) -> Any:

@@ -23,8 +23,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..numerics.interpolation import resampled
-from ..numerics.memo import MEMO
+from ..numerics.interpolation import between, resampled
+from ..numerics.memo import MEMO, total_bytes
+from .windrows import Windrows
 
 RealArray = NDArray[np.floating]
 Array = NDArray[np.float64]
@@ -34,6 +35,9 @@ LATTICE_RATE = 8
 
 #: foam thinner than this is none
 FAINTEST = 2.0**-9
+
+#: rows of a grid that are drawn out at once
+_ROWS = 64
 
 #: from no foam to full foam the compression rises by this share of the threshold
 _SOFTNESS = 0.25
@@ -48,6 +52,7 @@ class FoamModel:
     drift : x and y in m/s
     spacing : between samples, m
     loop_duration : of the sea, s
+    windrows : in which old foam lies; None where there are none
     """
 
     threshold: float
@@ -55,6 +60,7 @@ class FoamModel:
     drift: tuple[float, float]
     spacing: float
     loop_duration: Fraction | None = None
+    windrows: Windrows | None = None
 
     @property
     def step(self) -> Fraction:
@@ -75,17 +81,24 @@ class FoamModel:
         exact = Fraction(time)
         return exact if self.loop_duration is None else exact % self.loop_duration
 
+    def drifted(self, now: Fraction) -> tuple[float, float]:
+        """x and y in m by which windrows have moved since 0 s; in a loop they stand still."""
+        time = float(now) if self.loop_duration is None else 0.0
+        return self.drift[0] * time, self.drift[1] * time
+
     def strength(self, compression: RealArray) -> Array:
         """c in 0…1."""
         x = np.clip((compression.astype(np.float64) / self.threshold - 1.0) / _SOFTNESS, 0.0, 1.0)
         return x * x * (3.0 - 2.0 * x)
 
 
-def strength_levels(count: int = 8) -> Array:
-    """Compressions over the threshold at which foam is born with 2^-1 … 2^0 of its strength."""
-    strength = 2.0 ** ((np.arange(count) + 0.5) / count - 1.0)
+def births(count: int = 8) -> tuple[Array, Array]:
+    """Strengths c from the faintest to 1, so many to a halving, and the compressions over the threshold at
+    which foam is born with each."""
+    halvings = round(-math.log2(FAINTEST))
+    strength = 2.0 ** ((np.arange(halvings * count) + 0.5) / count - halvings)
     x = 0.5 - np.sin(np.arcsin(1.0 - 2.0 * strength) / 3.0)  # the smoothstep's inverse
-    return 1.0 + _SOFTNESS * x
+    return strength, 1.0 + _SOFTNESS * x
 
 
 class Whitecaps(NamedTuple):
@@ -99,6 +112,15 @@ class Whitecaps(NamedTuple):
     foam: RealArray
     breaking: RealArray
     foam_age: RealArray
+
+    def at(self, x: Array, y: Array, side: float) -> Whitecaps:
+        """Those of a tile, (N, N) samples that repeat after `side` m, read at places in m."""
+        n = len(self.foam)
+        where = between(y * (n / side), x * (n / side), (n, n))
+        here, beside, above, across = ((self.foam[at], self.foam_age[at]) for at in where.corners)
+        u, v = where.u.astype(np.float32), where.v.astype(np.float32)
+        foam, age = _between(_between(here, beside, u), _between(above, across, u), v)
+        return _seen(where.read(self.breaking).astype(np.float32), foam, age)
 
 
 class _Births:
@@ -159,6 +181,7 @@ class FoamHistory:
         self._compression_at = compression_at
         self._resolution = resolution
         self._births: _Births | None = None
+        self._drawing: _Drawing | None = None
         self._last = 0
         self._busy = threading.Lock()
         MEMO.watch("foam", self)
@@ -167,9 +190,8 @@ class FoamHistory:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the births."""
-        births = self._births
-        return 0 if births is None else births.nbytes
+        """Bytes of the births, and of what draws them out."""
+        return total_bytes((self._births, self._drawing))
 
     def whitecaps(self, time: float | Fraction) -> Whitecaps:
         """(N, N) foam at a time."""
@@ -180,8 +202,11 @@ class FoamHistory:
             if model.memory == 0:
                 return _seen(breaking, breaking, np.zeros_like(breaking))
             foam, age = self._births_until(math.floor(now / model.step)).left(now)
-        for axis, drift in enumerate(reversed(model.drift)):
-            foam, age = _shifted(foam, age, axis, -float(now) * drift / model.spacing)
+            drifted, drift = model.drifted(now), [v * float(now) for v in model.drift]
+            foam, age = _moved(foam, age, [a - b for a, b in zip(drift, drifted, strict=True)], model.spacing)
+            if self._drawing is not None:
+                foam, age = self._drawing.drawn_out(foam, age)
+        foam, age = _moved(foam, age, drifted, model.spacing)
         for axis in (0, 1):
             foam, age = _stretched(foam, age, axis, n)
         return _seen(breaking, foam, age)
@@ -204,6 +229,8 @@ class FoamHistory:
         is_new = self._births is None
         self._births, self._last = births, index
         if is_new:
+            if self._model.windrows is not None and self._drawing is None:
+                self._drawing = _Drawing(self._model.windrows, len(compression), self._model.spacing)
             MEMO.trim()
         return births
 
@@ -231,27 +258,85 @@ def whitecaps_at(
         return _seen(breaking, breaking, np.zeros_like(breaking))
     last = math.floor(now / model.step)
     first = last - model.memory + 1
+    count, share = x.size, None
+    if model.windrows is not None:
+        moved_x, moved_y = model.drifted(now)
+        source_x, source_y, share = model.windrows.sources(x - moved_x, y - moved_y)
+        x, y = np.concatenate((x, source_x + moved_x)), np.concatenate((y, source_y + moved_y))
     births = _Births(model, x.shape, first)
     for index in range(first, last + 1):
         then = index * model.step
         age = float(now - then)
         places = x - age * model.drift[0], y - age * model.drift[1]
         births.add(compression_at(*places, model.reduced(then)), index)
-    return _seen(breaking, *births.left(now))
+    left, ages = births.left(now)
+    if model.windrows is None or share is None:
+        return _seen(breaking, left, ages)
+    own, drawn = (left[:count], ages[:count]), (left[count:], ages[count:])
+    return _seen(breaking, *model.windrows.drawn_out(*own, *drawn, share))
+
+
+class _Drawing:
+    """Windrows on the samples of a grid that drifts with them."""
+
+    def __init__(self, windrows: Windrows, samples: int, spacing: float) -> None:
+        self._windrows = windrows
+        along = spacing * np.arange(samples)
+        y, x = np.broadcast_arrays(along[:, np.newaxis], along)
+        source_x, source_y, self._share = windrows.sources(x, y)
+        self._columns, self._rows = (
+            ((source - rest) / spacing).astype(np.float32) for source, rest in ((source_x, x), (source_y, y))
+        )
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all that is kept."""
+        return total_bytes((self._share, self._columns, self._rows))
+
+    def drawn_out(self, foam: RealArray, age: RealArray) -> tuple[RealArray, RealArray]:
+        """Old foam and its age as they lie in the windrows."""
+        result = np.empty_like(foam), np.empty_like(age)
+        for first in range(0, len(foam), _ROWS):
+            part = slice(first, first + _ROWS)
+            drawn = self._read(foam, age, part)
+            made = self._windrows.drawn_out(foam[part], age[part], *drawn, self._share[part])
+            for whole, rows in zip(result, made, strict=True):
+                whole[part] = rows
+        return result
+
+    def _read(self, foam: RealArray, age: RealArray, part: slice) -> tuple[RealArray, RealArray]:
+        """Foam and its age at the sources of some rows; see `_between`."""
+        n = len(foam)
+        row_off, column_off = np.floor(self._rows[part]), np.floor(self._columns[part])
+        v, u = self._rows[part] - row_off, self._columns[part] - column_off
+        number = np.arange(n)
+        i = number[part, np.newaxis] + row_off.astype(np.intp)
+        j = number + column_off.astype(np.intp)
+        corners = [((i + up) % n, (j + right) % n) for up in (0, 1) for right in (0, 1)]
+        here, beside, above, across = ((foam[at], age[at]) for at in corners)
+        return _between(_between(here, beside, u), _between(above, across, u), v)
 
 
 def _breaking(model: FoamModel, compression: RealArray) -> RealArray:
     """c of the present, float32."""
-    strength = model.strength(compression).astype(np.float32)
-    strength[strength < FAINTEST] = 0.0
-    return strength
+    return model.strength(compression).astype(np.float32)
 
 
 def _seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
     """What breaks now over what is left."""
     foam = np.maximum(old, breaking)
-    foam[foam < FAINTEST] = 0.0
+    for share in (foam, breaking):
+        share[share < FAINTEST] = 0.0
     return Whitecaps(foam, breaking, np.where((breaking > 0.0) | (foam == 0.0), np.float32(0.0), age))
+
+
+def _moved(
+    foam: RealArray, age: RealArray, by: Sequence[float], spacing: float
+) -> tuple[RealArray, RealArray]:
+    """Periodic foam and its age moved by x and y in m; see `_between`."""
+    for axis, metres in enumerate(reversed(by)):
+        foam, age = _shifted(foam, age, axis, -metres / spacing)
+    return foam, age
 
 
 def _shifted(foam: RealArray, age: RealArray, axis: int, shift: float) -> tuple[RealArray, RealArray]:

@@ -15,19 +15,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..numerics import random
-from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.ocean_parameters import FOAM_LAWS, OceanParameters
 from ..spectral import constants
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import Wind
-from .model import FoamModel, strength_levels
+from .model import FoamModel, births
+from .windrows import windrows
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 2**18
-
 #: compression from which foam may be born: below it are roundings of float32 fields, and of a sea without any
 LEAST_COMPRESSION = 1e-6
+
+#: directions of the gradient over which means are taken; levels of compression, and how far they reach in
+#: standard deviations of the direction that is compressed most
+_DIRECTIONS, _LEVELS, _REACH = 4096, 400, 9.0
+#: the lowest level over the highest
+_LOWEST = 1e-5
+#: of the range in which the threshold is looked for
+_HALVINGS = 40
 
 
 def foam_wind(parameters: OceanParameters) -> Wind | None:
@@ -36,12 +42,31 @@ def foam_wind(parameters: OceanParameters) -> Wind | None:
     return max(winds, key=lambda wind: wind.speed) if winds else None
 
 
-def whitecap_coverage(wind_speed: float) -> float:
-    """Share of the sea under whitecaps for a wind in m/s at 10 m: 3.84·10⁻⁶ U^3.41, at most 1.
+def callaghan_2008(wind_speed: float) -> float:
+    """Share of the sea under whitecaps, Callaghan, de Leeuw, Cohen & O'Dowd (2008), eq. 1 and 2.
 
-    Monahan & O'Muircheartaigh (1980).
+    wind_speed : m/s at 10 m. It was measured from 3.7 to 23 m/s; beyond, it is the upper curve.
     """
-    return min(1.0, constants.WHITECAP_FACTOR * wind_speed**constants.WHITECAP_EXPONENT)
+    slow = constants.CALLAGHAN_SLOW_FACTOR * max(0.0, wind_speed - constants.CALLAGHAN_LEAST) ** 3
+    fast = constants.CALLAGHAN_FAST_FACTOR * (wind_speed + constants.CALLAGHAN_FAST_OFFSET) ** 3
+    return slow if wind_speed <= constants.CALLAGHAN_FAST_FROM else fast
+
+
+def monahan_1980(wind_speed: float) -> float:
+    """Share of the sea under whitecaps, Monahan & O'Muircheartaigh (1980): 3.84·10⁻⁶ U^3.41.
+
+    wind_speed : m/s at 10 m. It was measured up to 20 m/s; beyond, it gives twice what others saw.
+    """
+    return constants.WHITECAP_FACTOR * wind_speed**constants.WHITECAP_EXPONENT
+
+
+#: a name in FOAM_LAWS → the law
+_LAWS = dict(zip(FOAM_LAWS, (callaghan_2008, monahan_1980), strict=True))
+
+
+def whitecap_coverage(wind_speed: float, law: str = FOAM_LAWS[0]) -> float:
+    """Share of the sea under whitecaps, 0…1, for a wind in m/s at 10 m, by one of FOAM_LAWS."""
+    return min(1.0, _LAWS[law](wind_speed))
 
 
 class FoamOutlook(NamedTuple):
@@ -64,47 +89,55 @@ def foam_outlook(parameters: OceanParameters) -> FoamOutlook:
 
 def _coverage(parameters: OceanParameters) -> float:
     wind = foam_wind(parameters)
-    return min(1.0, parameters.foam.coverage * whitecap_coverage(wind.speed)) if wind is not None else 0.0
+    foam = parameters.foam
+    return min(1.0, foam.coverage * whitecap_coverage(wind.speed, foam.law)) if wind is not None else 0.0
 
 
 @dataclass(frozen=True)
 class Strains:
-    """Strains of a random sea at some points: compression (1 - minimum eigenvalue) and its rate in 1/s."""
+    """How often a random sea is compressed by how much; arrays by level.
 
-    compression: Array
-    rate: Array
+    level : compression (1 - minimum eigenvalue), ascending
+    share : of the places at rest that are compressed by more
+    area : of the horizontal plane that these cover; compressed places cover less
+    crossings : how often in a second a place comes to be compressed by more
+    """
 
-    def threshold(self, coverage: float, duration: float, rises: Array) -> float:
+    level: Array
+    share: Array
+    area: Array
+    crossings: Array
+
+    def covered(self, threshold: float, half_life: float) -> float:
+        """The mean of the foam over the horizontal plane, new and old, with this threshold.
+
+        The share of the plane where F > f is that where the present c is, and of the rest where a birth has
+        left as much: one of strength c does for T log₂(c/f) seconds. Births are crossings of the compression
+        at which c begins to be born, rare and so independent; old foam lies on waves of any phase.
+        """
+        strength, rise = births()
+        octaves = np.diff(np.log2(strength), prepend=2.0 * np.log2(strength[0]) - np.log2(strength[1]))
+        share, area, crossings = (
+            np.interp(threshold * rise, self.level, field)
+            for field in (self.share, self.area, self.crossings)
+        )
+        later = half_life * np.cumsum((crossings * octaves)[::-1])[::-1] / np.maximum(1.0 - share, 1e-3)
+        covered = 1.0 - (1.0 - area) * np.exp(-later)
+        return float(np.sum(covered * strength * octaves)) * math.log(2.0)
+
+    def threshold(self, coverage: float, half_life: float) -> float:
         """The compression from which foam is to be born, so that it covers a share of the sea.
 
-        A point counts as covered while its foam is at least half as dense as it can be. Foam is born with
-        a strength that rises with the compression; it covers for `duration` s when it was born at full
-        strength, shorter otherwise. By Rice (1944) a level is crossed upwards at the mean of the positive
-        rates there times the compression's density; rare crossings are independent. It is never below
-        LEAST_COMPRESSION, so that a sea without compression has no foam.
-
-        coverage : 0…1
-        rises : compressions over the threshold at which the strength is 2^-1 … 2^0, evenly spaced in the
-            exponent
+        It is never below LEAST_COMPRESSION, so that a sea without compression has no foam.
         """
-        order = np.argsort(self.compression)
-        compression, rising = self.compression[order], np.maximum(self.rate[order], 0.0)
-        rank = np.arange(_SAMPLES)
-        above = 1.0 - (rank + 0.5) / _SAMPLES
-        # crossings at each point: the mean over its neighbours, fewer of them towards the rare end
-        half = np.maximum(8, (0.2 * _SAMPLES * above).astype(np.int64))
-        low, high = (np.clip(rank + sign * half, 0, _SAMPLES - 1) for sign in (-1, 1))
-        sums = np.concatenate(([0.0], np.cumsum(rising)))
-        crossings = (
-            (sums[high + 1] - sums[low]) / _SAMPLES / np.maximum(compression[high] - compression[low], 1e-12)
-        )
-        candidates = np.linspace(compression[_SAMPLES // 2], compression[-1], 2000)
-        levels = candidates[:, np.newaxis] * rises
-        now = np.interp(levels[:, 0], compression, above)
-        later = np.interp(levels, compression, crossings).mean(axis=1) * duration
-        covered = 1.0 - (1.0 - now) * np.exp(-later / np.maximum(1.0 - now, 1e-3))
-        enough = np.nonzero(covered >= coverage)[0]
-        return max(LEAST_COMPRESSION, float(candidates[enough[-1]] if len(enough) else candidates[0]))
+        low, high = np.log(self.level[0]), np.log(self.level[-1])
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            if self.covered(math.exp(middle), half_life) > coverage:
+                low = middle
+            else:
+                high = middle
+        return max(LEAST_COMPRESSION, math.exp(low))
 
 
 def strain_covariances(
@@ -148,23 +181,58 @@ def strain_covariances(
     return gradient, change
 
 
-def sampled_strains(of_gradient: Array, of_rates: Array) -> Strains:
-    """Random strains with the covariances that `strain_covariances` gives."""
-    gradient, change = (_correlated(c, stream) for c, stream in ((of_gradient, 0), (of_rates, 8)))
-    half_difference, shear = 0.5 * (gradient[0] - gradient[1]), gradient[2]
-    root = np.hypot(half_difference, shear)
-    compression = root - 0.5 * (gradient[0] + gradient[1])
-    across = half_difference * 0.5 * (change[0] - change[1]) + shear * change[2]
-    rate = across / np.maximum(root, 1e-30) - 0.5 * (change[0] + change[1])
-    return Strains(compression, rate)
+def gaussian_strains(of_gradient: Array, of_rates: Array) -> Strains:
+    """Strains whose gradient and its rate have the covariances that `strain_covariances` gives.
+
+    The compression is as large as the gradient, r times that of its direction, and r of a Gaussian gradient
+    has the chi distribution of three numbers: so shares are means over directions of its tails, also far out.
+    By Rice (1944) a level is crossed upwards at the mean of the positive rates there, a Gaussian's of the
+    direction alone, times the compression's density.
+    """
+    xx, yy, xy = _root(of_gradient) @ _directions()
+    half_difference = 0.5 * (xx - yy)
+    root = np.hypot(half_difference, xy)
+    compression = root - 0.5 * (xx + yy)
+    turning = half_difference / np.maximum(root, 1e-300), xy / np.maximum(root, 1e-300)
+    change = np.stack((0.5 * turning[0] - 0.5, -0.5 * turning[0] - 0.5, turning[1]))
+    rate = np.sqrt(np.maximum(np.einsum("ip,ij,jp->p", change, of_rates, change), 0.0))
+    is_compressed = compression > _LOWEST * LEAST_COMPRESSION
+    compression, rate, xx, yy, xy = (part[is_compressed] for part in (compression, rate, xx, yy, xy))
+    highest = max(_REACH * float(compression.max(initial=0.0)), LEAST_COMPRESSION / _LOWEST)
+    level = np.geomspace(_LOWEST * highest, highest, _LEVELS)
+    radius = np.minimum(level[:, np.newaxis] / compression, _RADII[-1])
+    beyond = [np.interp(radius, _RADII, tail) for tail in _TAILS]
+    share = np.sum(beyond[0], axis=1) / _DIRECTIONS
+    # the mean of the Jacobian 1 + tr + det there, of which tr grows with r and det with r²
+    area = share + np.sum(beyond[1] * (xx + yy) + beyond[2] * (xx * yy - xy * xy), axis=1) / _DIRECTIONS
+    density = math.sqrt(2.0 / math.pi) * radius**2 * np.exp(-0.5 * radius**2) / compression
+    crossings = np.sum(density * rate, axis=1) / (math.sqrt(2.0 * math.pi) * _DIRECTIONS)
+    return Strains(level, share, np.maximum(area, 0.0), crossings)
 
 
-def _correlated(covariance: Array, stream: int) -> Array:
-    """(3, samples) Gaussian numbers with a covariance (3, 3)."""
+def _root(covariance: Array) -> Array:
+    """(3, 3) matrix that makes numbers of a covariance from independent ones."""
     values, vectors = np.linalg.eigh(covariance)
-    key = np.arange(_SAMPLES, dtype=np.uint64)
-    independent = np.stack([random.normal(key, stream + 2 * i) for i in range(3)])
-    return vectors @ (np.sqrt(np.maximum(values, 0.0))[:, np.newaxis] * independent)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
+
+
+def _directions() -> Array:
+    """(3, _DIRECTIONS) unit vectors, evenly over the sphere: Fibonacci's spiral."""
+    number = np.arange(_DIRECTIONS) + 0.5
+    z = 1.0 - 2.0 * number / _DIRECTIONS
+    longitude = math.pi * (1.0 + math.sqrt(5.0)) * number
+    return np.stack((np.sqrt(1.0 - z * z) * np.cos(longitude), np.sqrt(1.0 - z * z) * np.sin(longitude), z))
+
+
+def _chi_tails() -> tuple[Array, Array, Array, Array]:
+    """Radii, and the means of 1, r and r² beyond each, of the length r of three standard normal numbers."""
+    r = np.linspace(0.0, 14.0, 2801)
+    normal = math.sqrt(2.0 / math.pi) * np.exp(-0.5 * r * r)
+    beyond = np.array([math.erfc(radius / math.sqrt(2.0)) for radius in r])
+    return r, beyond + r * normal, (r * r + 2.0) * normal, 3.0 * beyond + (r**3 + 3.0 * r) * normal
+
+
+_RADII, *_TAILS = _chi_tails()
 
 
 def foam_model(
@@ -177,17 +245,19 @@ def foam_model(
     spacing : of those samples, m
     """
     foam, wind = parameters.foam, foam_wind(parameters)
-    drift, threshold = (0.0, 0.0), math.inf
+    drift, threshold, rows = (0.0, 0.0), math.inf, None
     if wind is not None:
+        rows = windrows(wind.speed, wind.direction, parameters.domain_size, parameters.seed)
         speed = foam.drift * wind.speed
         drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
     coverage = _coverage(parameters)
     if coverage > 0.0:
-        threshold = strains_of(drift).threshold(coverage, foam.half_life, strength_levels())
+        threshold = strains_of(drift).threshold(coverage, foam.half_life)
     return FoamModel(
         threshold=threshold,
         half_life=foam.half_life,
         drift=drift,
         spacing=spacing,
         loop_duration=parameters.loop_duration,
+        windrows=rows,
     )

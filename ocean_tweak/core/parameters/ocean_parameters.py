@@ -49,6 +49,8 @@ __all__ = [
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
 AMPLITUDES = ("RANDOM", "DETERMINISTIC")
 ORBITS = ("DEEP", "FINITE_DEPTH")
+#: by whose measurements foam covers the sea
+FOAM_LAWS = ("CALLAGHAN_2008", "MONAHAN_1980")
 
 #: fields that patches tell, where there are any
 _TILE = ("resolution", "domain_size")
@@ -63,6 +65,11 @@ class Foam(Validated):
     coverage: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the share of the sea under foam; 1 is what the wind leaves at sea",
         "from none to all of a light breeze's sea",
+    )  # fmt: skip
+    law: str = choice(
+        FOAM_LAWS[0], FOAM_LAWS, "Whose measurements tell what the wind leaves at sea: Callaghan and others"
+        " (2008), from 3.7 to 23 m/s, or Monahan and O'Muircheartaigh (1980), below 20 m/s and twice as much"
+        " in a storm", left_out=True,
     )  # fmt: skip
     half_life: float = number(
         2.5, 0.0, 60.0, "s", "Time in which foam fades to a half; 0 keeps it where it is born",

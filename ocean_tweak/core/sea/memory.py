@@ -24,6 +24,9 @@ _TEMPORARY_ARRAYS = 5
 #: bytes a sample of an area: where it lies, between which samples of a part, and what is read there
 _READING = 80
 
+#: bytes a sample of an area where foam is made: births there and where old foam is drawn from
+_LOOKING_BACK = 96
+
 #: bytes of the tables from which a state is made, whatever the resolution
 TABLES = 48 * 2**20
 
@@ -101,18 +104,22 @@ def _need_in_area(
     real = 4 if precision == "single" else 8
     numbers = sum(max(1, CHANNELS[name].components) for name in outputs)
     a_sample = _READING + (2 * numbers + (len(needs) + 1) * len(keys)) * real
+    surface = sum(need.surface for need in needs)
+    if outputs & OF_MEMORY:
+        surface += _foam_bytes(parameters)
+        a_sample += _LOOKING_BACK
     return MemoryNeed(
         sum(need.state for need in needs),
         max(need.building for need in needs),
-        sum(need.surface for need in needs) + a_sample * on.resolution**2,
+        surface + a_sample * on.resolution**2,
     )
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:
-    """The fields themselves; births with their times, a compression and temporaries at the foam's own
-    resolution."""
+    """The fields themselves; births with their times, what draws them out, a compression and temporaries at
+    the foam's own resolution."""
     own = parameters.foam.resolution or parameters.resolution
-    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 56 * own**2
+    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 80 * own**2
 
 
 def _columns(group: Iterable[str], gradient: bool) -> int:

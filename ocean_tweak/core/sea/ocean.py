@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..foam.model import FoamHistory, FoamModel, Whitecaps, whitecaps_at
-from ..foam.threshold import Strains, foam_model, sampled_strains
+from ..foam.threshold import Strains, foam_model, gaussian_strains
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import merged_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
@@ -117,7 +117,8 @@ class Ocean:
 
         on : where they are wanted. On a tile, arrays are (N, N) [y, x], in an area (resolution, resolution),
             at places as the places are, with the field's channels behind. In areas and at places parts are
-            bilinear between their samples and add up before a normal or eigenvalue is made of them.
+            bilinear between their samples and add up before a normal or eigenvalue is made of them; foam of a
+            sea that has a tile is that of the tile.
         out : arrays to fill, by output; their shape and dtype must be those of the field, and their last
             axis contiguous. Other outputs get new arrays.
 
@@ -137,9 +138,7 @@ class Ocean:
             fields = self._arrays(wanted, x.shape, out or {})
             self._anywhere.fill(x.ravel(), y.ravel(), time, wanted - OF_MEMORY, fields)
             if wanted & OF_MEMORY:
-                sea = self._of_foam
-                compression_at = sea._anywhere.compression_at
-                _fill(fields, whitecaps_at(sea.foam_model, compression_at, x.ravel(), y.ravel(), time))
+                _fill(fields, self._whitecaps_at(x.ravel(), y.ravel(), time))
         return SurfaceFields(float(time), fields)
 
     def frame(
@@ -227,6 +226,13 @@ class Ocean:
 
         return FoamHistory(sea.foam_model, cusp_at, self.parameters.resolution)
 
+    def _whitecaps_at(self, x: Array, y: Array, time: float | Fraction) -> Whitecaps:
+        """Foam at flat places in m: that of the tile, or of what has none from the places' own past."""
+        if not (self.parameters.is_cascade or self._placed):
+            return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
+        sea = self._of_foam
+        return whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
+
     @property
     def _of_foam(self) -> Ocean:
         """The sea at the resolution at which foam is made."""
@@ -300,7 +306,7 @@ class Ocean:
         gradient, rates = strain_covariances(self._parts, drift, between_samples)
         for of_gradient, of_rates in placed_strain_covariances(self.parameters, drift):
             gradient, rates = gradient + of_gradient, rates + of_rates
-        return sampled_strains(gradient, rates)
+        return gaussian_strains(gradient, rates)
 
     def _points_of_tile(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool

@@ -67,6 +67,13 @@ CALM = 1e-12
 WHITECAP_FACTOR = 3.84e-6
 WHITECAP_EXPONENT = 3.41
 
+# Whitecaps, Callaghan, de Leeuw, Cohen & O'Dowd (2008): share of the sea, wind at 10 m in m/s
+CALLAGHAN_LEAST = 3.70
+CALLAGHAN_SLOW_FACTOR = 3.18e-5
+CALLAGHAN_FAST_FROM = 10.18
+CALLAGHAN_FAST_FACTOR = 4.82e-6
+CALLAGHAN_FAST_OFFSET = 1.98
+
 # Modified Pierson-Moskowitz filter, Mastin, Watterberg & Mareda (1987), eq. 2 and 5
 MASTIN_PEAK = 0.13  # f_m U / g, U at 10 m
 MASTIN_SHAPE = 9.77

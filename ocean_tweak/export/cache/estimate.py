@@ -52,8 +52,9 @@ _PROCESS, _LEAST = 67 * 2**20, 88 * 2**20
 _WRITING, _PUT_TOGETHER = 20, 29
 #: bytes a sample of a part while its points are written
 _POINTS = 480
-#: bytes a sample of foam: births and what is worked with, as far as that meets the peak of the rest
-_FOAM = 24
+#: bytes a sample of foam: births, what draws them out and what is worked with, as far as that meets the peak
+#: of the rest
+_FOAM = 40
 
 #: bytes a sample while the waves are made and measured
 _STATISTICS = 40
@@ -126,7 +127,7 @@ def process_memory(job: Job) -> int:
     if job.outputs & OF_MEMORY:  # made for the next frame meanwhile
         own = parameters.foam.resolution or parameters.resolution
         coarse = Ocean(parameters.at_resolution(own)).memory({"cusp"})
-        making += coarse.surface + _FOAM * own**2 + 4 * samples
+        making += coarse.surface + _FOAM * own**2 + 4 * len(job.outputs & OF_MEMORY) * samples
         making += coarse.state if own != parameters.resolution else 0
     return max(_LEAST, _PROCESS + need.state + max(need.building - TABLES, making))
 

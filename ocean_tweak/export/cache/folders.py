@@ -134,9 +134,10 @@ def recovered_job(folder: Path) -> Job:
         except (ExrError, ValueError, KeyError):
             continue
         for maps in _all_choices(maps_for(shot.parameters, area)):
-            job = Job(name, uid, shot, maps, compression, area=area)
-            if job.fingerprint[:8] == match[2]:
-                return job
+            for foam in range(formats.FOAM, 0, -1):
+                job = Job(name, uid, shot, maps, compression, area=area, foam=foam)
+                if job.fingerprint[:8] == match[2]:
+                    return job
     raise CacheError(problem)
 
 

@@ -24,7 +24,7 @@ from ...core.parameters.patch_seas import PARTS, parts
 from ...core.parameters.shot import Shot
 from ...core.sea.placed_waves import check_repeats
 from ...core.sea.regions import TILE, Area, Tile, told_area
-from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, SurfaceFields, channels_of
+from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, OF_MEMORY, SurfaceFields, channels_of
 from ..exr import COMPRESSION_ERROR, ExrSequence
 from ..frame_files import BAKED, POINTS
 from ..points import PointSequence
@@ -52,6 +52,7 @@ class Job:
     compression : a key of COMPRESSION_ERROR
     frames : those that are asked for
     area : the square where the sea is baked; None for its own tile, or those of its patches
+    foam : version of the foam in its maps; without such maps it is of no account
 
     Raises ParameterError for what would name files elsewhere, and for maps that cannot be made.
     """
@@ -63,6 +64,7 @@ class Job:
     compression: str = "PXR24"
     frames: tuple[Frame, ...] = field(default=(), compare=False)
     area: Area | None = None
+    foam: int = field(default=formats.FOAM, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(name for name in BAKED if name in self.maps))
@@ -71,6 +73,8 @@ class Job:
         if not UID.fullmatch(self.uid):
             raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
         _check_maps(self.maps, self.shot.parameters, self.area)
+        if not self.outputs & OF_MEMORY:
+            object.__setattr__(self, "foam", formats.FOAM)
 
     @cached_property
     def fingerprint(self) -> str:
@@ -83,12 +87,24 @@ class Job:
                 "maps": list(self.maps),
                 "compression": self.compression,
                 **self._told_area(),
+                **self._told_foam(),
             }
         )
 
     def frame_fingerprint(self, frame: Frame) -> str:
         """SHA-256 of what a frame is made from."""
         return frame_fingerprint(self.shot, frame, **self._told_area())
+
+    def check_foam(self) -> None:
+        """Raise CacheError where its frames hold foam of an earlier version, which is made no longer."""
+        if self.foam != formats.FOAM:
+            raise CacheError(
+                f"{self.home} was baked with foam of version {self.foam}, which this program shows but no "
+                f"longer makes (its own is {formats.FOAM}): bake the sea anew, beside what is there"
+            )
+
+    def _told_foam(self) -> dict[str, int]:
+        return formats.told_foam(self.foam, bool(self.outputs & OF_MEMORY))
 
     def _told_area(self) -> dict[str, Any]:
         return {} if self.area is None else {"area": self.area.to_dict()}
@@ -179,6 +195,7 @@ class Job:
             "maps": list(self.maps),
             "compression": self.compression,
             **self._told_area(),
+            **self._told_foam(),
             "shot": {"format": formats.SEA, **self.shot.to_dict()},
             "made_with": made_with(),
         }
@@ -189,7 +206,7 @@ class Job:
         """A job from plain data. Raises ValueError naming what is wrong."""
         if not isinstance(data, dict):
             raise ValueError("is not a JSON object")
-        for key, known in (("format", formats.JOB), ("synthesis", formats.SYNTHESIS)):
+        for key, known in (("format", formats.JOB), ("synthesis", formats.SYNTHESIS), ("foam", formats.FOAM)):
             formats.check_format(data, known, key)
         if data.get("format") != formats.JOB or data.get("synthesis") != formats.SYNTHESIS:
             raise ValueError(
@@ -209,7 +226,7 @@ class Job:
             raise ValueError(f"has the frames {shown(frames)}")
         job = cls(
             name, uid, Shot.from_dict(data.get("shot")), tuple(maps), compression,
-            parse_frames(frames) if frames else (), told_area(data),
+            parse_frames(frames) if frames else (), told_area(data), foam=data.get("foam", 1),
         )  # fmt: skip
         if job.fingerprint != data.get("fingerprint"):
             raise ValueError("was changed: its fingerprint is not that of its contents")

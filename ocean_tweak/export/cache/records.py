@@ -123,8 +123,9 @@ class CacheSink:
     def write(self, frame: Frame, *fields: SurfaceFields) -> tuple[Path, ...]:
         """Write the frame from the fields of each patch, and of each part where points are wanted.
 
-        All or nothing. Returns the files' paths.
+        All or nothing. Returns the files' paths. Raises CacheError for a job whose frames are made no longer.
         """
+        self.job.check_foam()
         record = record_path(self.folder, frame)
         # an old record must not vouch for new files
         record.unlink(missing_ok=True)

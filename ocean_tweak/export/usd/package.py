@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +19,8 @@ from ...core.parameters.fingerprint import fingerprint, hashed, shot_fingerprint
 from ...core.parameters.shot import Shot
 from ...core.sea.placed_waves import check_repeats
 from ...core.sea.regions import MOST_SAMPLES, TILE, Area, Tile
-from .attributes import ATTRIBUTES
+from ...core.synthesis.channels import OF_MEMORY
+from .attributes import ATTRIBUTES, outputs_of
 
 FORMS = ("points", "clips", "displacement")
 UP_AXES = ("Z", "Y")
@@ -45,6 +46,7 @@ class Package:
     variants : resolutions to choose from, the first one by default; none for the sea's own alone
     area : the square that the mesh shows, with as many quads along each side as it has samples; None for the
         sea's tile
+    foam : version of the foam in its attributes; without such attributes it is of no account
 
     Raises ParameterError naming what does not fit.
     """
@@ -61,6 +63,7 @@ class Package:
     proxy: int = 64
     variants: tuple[int, ...] = ()
     area: Area | None = None
+    foam: int = field(default=formats.FOAM, kw_only=True)
 
     def __post_init__(self) -> None:
         _check_choice("form", self.form, FORMS)
@@ -167,8 +170,12 @@ class Package:
                 "half": self.half,
                 "proxy": self.proxy,
                 **self._told_area(),
+                **self._told_foam(),
             }
         )
+
+    def _told_foam(self) -> dict[str, int]:
+        return formats.told_foam(self.foam, bool(outputs_of(self.attributes) & OF_MEMORY))
 
     def _told_area(self) -> dict[str, str]:
         return {} if self.area is None else {"area": " ".join(self.area.words())}
@@ -190,12 +197,14 @@ class Package:
             "proxy": self.proxy,
             "variants": ",".join(map(str, self.variants)),
             **self._told_area(),
+            **self._told_foam(),
         }
 
     @classmethod
     def from_record(cls, data: dict[str, Any]) -> Package:
         """The package that `record` described. Raises ValueError or KeyError for what is none."""
         formats.check_format(data, formats.LAYER)
+        formats.check_format(data, formats.FOAM, "foam")
         across, along = str(data["tiles"]).split("x")
         package = cls(
             data["name"],
@@ -210,6 +219,7 @@ class Package:
             proxy=int(data["proxy"]),
             variants=tuple(map(int, _listed(data["variants"]))),
             area=Area.of_words(data["area"].split()) if "area" in data else None,
+            foam=data.get("foam", 1),
         )
         if package.fingerprint != data["fingerprint"]:
             raise ValueError("was changed: its fingerprint is not that of its parameters")

@@ -73,7 +73,7 @@ class OCEAN_PT_foam(SubPanel, bpy.types.Panel):
         layout, settings = split(self.layout), active_settings(context)
         column = layout.column()
         column.active = settings.use_foam and settings.source == "LIVE"
-        for name in ("coverage", "half_life", "drift"):
+        for name in ("law", "coverage", "half_life", "drift"):
             column.prop(settings.foam, name)
         column.prop(settings.foam, "resolution", text="Foam Res.")
 
