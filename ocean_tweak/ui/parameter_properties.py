@@ -19,6 +19,7 @@ import bpy
 import numpy as np
 
 from ..core.data.errors import ParameterError
+from ..core.data.plain_data import to_plain
 from ..core.data.raster import Raster
 from ..core.data.validation import default_of
 from ..scene import bake_versions, stored_paths
@@ -105,8 +106,10 @@ def write(
     data : as it stands in a JSON file; nested parameters in it have groups of their own
     metres : in a Blender unit
     """
-    own = [field.name for field in dataclasses.fields(kind) if _is_text(field)]
-    group.exact = json.dumps({name: data[name] for name in own if name not in without})
+    own = [field for field in dataclasses.fields(kind) if _is_text(field) and field.name not in without]
+    # JSON leaves some fields out where they are the default
+    data = {field.name: to_plain(default_of(field)) for field in own} | data
+    group.exact = json.dumps({field.name: data[field.name] for field in own})
     for field in _plain_fields(kind, without):
         setattr(group, field.name, _to_blender(field, data[field.name], metres))
 

@@ -123,7 +123,7 @@ def test_damaged_and_foreign_files_are_named(tmp_path: Path, image: np.ndarray) 
 
 
 def test_maps_hold_what_they_say(tmp_path: Path) -> None:
-    parameters = OceanParameters(resolution=32, domain_size=100.0, layers=(WaveLayer(wind_speed=20.0),))
+    parameters = OceanParameters(resolution=32, domain_size=100.0, layers=(WaveLayer(wind_speed=25.0),))
     sink = ExrSequence(tmp_path, "sea", parameters, "ZIP", tuple(MAPS))
     fields = Ocean(parameters).frame(30, sink.outputs)
     paths = sink.write(30, fields)
