@@ -1,52 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The images of the water material, packed into the file: what is finer than any grid, and gusts of wind."""
+"""The images of the water material, packed into the file: what is finer than any grid, and gusts of wind.
+
+They hold weights of cubic B-splines, which both engines draw alike. With any other interpolation EEVEE
+averages the pattern of far water before the shader has made foam of it, and Cycles does not.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .surface_detail import foam_lace, gusts, ripple_slopes
+from .surface_detail import foam_lace, gradient, gusts, ripple_slopes, spline_weights
 
 _KEY = "ocean_tweak_image"
 _RESOLUTION = 512
 _GUST_RESOLUTION = 128
 
 
-def detail_image() -> bpy.types.Image:
-    """Slopes of ripples in red and green, the lace of foam in blue."""
-    return _image("Ocean Tweak Detail", 1, _detail)
+def ripple_image() -> bpy.types.Image:
+    """Slopes of ripples in red and green."""
+    return _image("Ocean Tweak Ripples", 1, lambda: ripple_slopes(_RESOLUTION))
+
+
+def lace_image() -> bpy.types.Image:
+    """The lace of foam in red, and in green and blue how it changes along x and y over a whole side."""
+    return _image("Ocean Tweak Lace", 1, _lace)
 
 
 def gust_image() -> bpy.types.Image:
-    """Where gusts ruffle the water, evenly distributed over 0…1, in all channels."""
-    return _image("Ocean Tweak Gusts", 1, _gusts)
+    """Where gusts ruffle the water, in red, evenly distributed over 0…1."""
+    return _image("Ocean Tweak Gusts", 2, lambda: [gusts(_GUST_RESOLUTION)])
 
 
-def _detail() -> NDArray[np.float32]:
-    pixels = np.ones((_RESOLUTION, _RESOLUTION, 4), np.float32)
-    pixels[..., :2] = np.moveaxis(ripple_slopes(_RESOLUTION), 0, -1)
-    pixels[..., 2] = foam_lace(_RESOLUTION)
-    return pixels
+def _lace() -> Iterable[NDArray[np.float64]]:
+    lace = foam_lace(_RESOLUTION)
+    return lace, *gradient(lace)
 
 
-def _gusts() -> NDArray[np.float32]:
-    pixels = np.ones((_GUST_RESOLUTION, _GUST_RESOLUTION, 4), np.float32)
-    pixels[..., :3] = gusts(_GUST_RESOLUTION)[..., np.newaxis]
-    return pixels
-
-
-def _image(name: str, version: int, make: Callable[[], NDArray[np.float32]]) -> bpy.types.Image:
+def _image(name: str, version: int, make: Callable[[], Iterable[NDArray[np.float64]]]) -> bpy.types.Image:
     """The file's image of this name and version; made when it has none."""
     tag = f"{name} {version}"
     for image in bpy.data.images:
         if image.library is None and image.get(_KEY) == tag:
             return image
-    pixels = make()
-    side = len(pixels)
+    channels = [spline_weights(field) for field in make()]
+    side = len(channels[0])
+    pixels = np.zeros((side, side, 4), np.float32)
+    pixels[..., 3] = 1.0
+    pixels[..., : len(channels)] = np.moveaxis(channels, 0, -1)
     image = bpy.data.images.new(name, side, side, alpha=False, float_buffer=True, is_data=True)
     image.pixels.foreach_set(pixels.reshape(-1))
     image.update()

@@ -46,7 +46,7 @@ class Shading:
         )  # fmt: skip
         socket.default_value = plug.default
         if plug.socket_type == "NodeSocketFloat":
-            socket.min_value = 0.0
+            socket.min_value = min(0.0, plug.default)
         if plug.socket_type == "NodeSocketVector":
             socket.hide_value = True
 

@@ -16,8 +16,12 @@ Array = NDArray[np.float64]
 #: the wavelengths of the ripples as waves in the pattern; all have the same slope variance per octave
 FEWEST_WAVES, MOST_WAVES = 8, 128
 
-#: cells of the foam's lace along a side, and the weight of each size
-_LACE = ((9, 0.55), (23, 0.30), (61, 0.15))
+#: cells of the foam's lace along a side, and the weight of each number of cells
+LACE_CELLS = 11
+_LACE = ((LACE_CELLS, 1.0), (29, 0.3))
+#: logarithm of how much larger than the mean a cell can be, and how many cells far it then reaches
+_SIZES = 0.9
+_REACH = 2
 
 
 def ripple_slopes(resolution: int, seed: int = 0) -> Array:
@@ -38,15 +42,32 @@ def ripple_slopes(resolution: int, seed: int = 0) -> Array:
 def foam_lace(resolution: int, seed: int = 1) -> Array:
     """(N, N) in 0…1, evenly distributed: a share F of foam covers where this is below F.
 
-    The walls between cells of several sizes are covered first, as in foam that thins out.
+    The walls between cells of many sizes are covered first, as in foam that thins out.
     """
     place = (np.arange(resolution) + 0.5) / resolution
     x, y = np.meshgrid(place, place)
-    bend_x, bend_y = (0.009 * _smooth_noise(resolution, seed + number) for number in (10, 11))
-    height = 0.05 * _smooth_noise(resolution, seed + 12)
+    bend_x, bend_y = (0.01 * _smooth_noise(resolution, seed + number) for number in (10, 11))
+    height = 0.04 * _smooth_noise(resolution, seed + 12)
     for number, (cells, weight) in enumerate(_LACE):
         height += weight * _wall_distance(x + bend_x, y + bend_y, cells, seed + number)
     return _evened(height)
+
+
+def gradient(field: Array) -> Array:
+    """(2, N, N): how a periodic field changes along x and y over a whole side, by central differences."""
+    steps = [np.roll(field, -1, axis) - np.roll(field, 1, axis) for axis in (1, 0)]
+    return np.stack(steps) * 0.5 * len(field)
+
+
+def spline_weights(field: Array) -> Array:
+    """(N, N): what a periodic cubic B-spline must weigh, to have the field's values on the samples.
+
+    A B-spline mixes a sample with its neighbours by 1/6, 2/3, 1/6 along each axis (Unser 1999).
+    """
+    angle = 2.0 * np.pi * np.fft.fftfreq(len(field))
+    mixed = (2.0 + np.cos(angle)) / 3.0
+    modes = np.fft.rfft2(field) / (mixed[:, np.newaxis] * mixed[: len(field) // 2 + 1])
+    return np.asarray(np.fft.irfft2(modes, s=field.shape))
 
 
 def gusts(resolution: int, seed: int = 2) -> Array:
@@ -62,16 +83,24 @@ def _evened(field: Array) -> Array:
 
 
 def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:
-    """How far from the wall to the next cell a point is, about 0…1: a periodic Worley (1996) pattern."""
+    """How far from the wall to the next cell a point is, about 0…1.
+
+    A periodic pattern of Worley (1996), in which each cell measures distances by a size of its own: so walls
+    are arcs of circles (Apollonius), and cells small and large.
+    """
     column, row = np.floor(x * cells), np.floor(y * cells)
     nearest, next_nearest = (np.full(x.shape, np.inf) for _ in range(2))
-    for shift_y in (-1, 0, 1):
-        for shift_x in (-1, 0, 1):
+    reach = range(-_REACH, _REACH + 1)
+    corner = np.arange(cells)
+    draws = [_uniform(corner, corner[:, np.newaxis], seed, stream) for stream in range(3)]
+    sizes = np.exp(_SIZES * (2.0 * draws[2] - 1.0))
+    for shift_y in reach:
+        for shift_x in reach:
             of_x, of_y = column + shift_x, row + shift_y
-            corner_x, corner_y = np.mod(of_x, cells), np.mod(of_y, cells)
-            point_x = of_x + _uniform(corner_x, corner_y, seed, 0)
-            point_y = of_y + _uniform(corner_x, corner_y, seed, 1)
-            distance = np.hypot(x * cells - point_x, y * cells - point_y)
+            corner_x, corner_y = (np.mod(of, cells).astype(np.int64) for of in (of_x, of_y))
+            point_x = of_x + draws[0][corner_y, corner_x]
+            point_y = of_y + draws[1][corner_y, corner_x]
+            distance = np.hypot(x * cells - point_x, y * cells - point_y) / sizes[corner_y, corner_x]
             next_nearest = np.minimum(next_nearest, np.maximum(nearest, distance))
             nearest = np.minimum(nearest, distance)
     return np.asarray(next_nearest - nearest)

@@ -5,11 +5,6 @@ The surface reflects by Fresnel's equations; its roughness is the slope variance
 a part of which is drawn as ripples near the camera, and what the mesh says that it has left out. Beneath it,
 light comes back from the water and from the bottom. Foam lies over it. Lengths are metres, whatever the
 scene's unit scale.
-
-The body is the two-flow model of irradiance: R = 0.33 b/(a + b) over deep water (Morel & Prieur 1977; Gordon
-1975), with the bottom R + (bottom - R) exp(-2(a + b) depth) (Maritorena, Morel & Gentili 1994). What of it
-leaves the water is (1 - r)R/(1 - rR), r = 0.47 the share that a flat surface throws back down from below
-(Saunderson 1942).
 """
 
 from __future__ import annotations
@@ -20,25 +15,30 @@ from typing import NamedTuple
 import bpy
 
 from .building import Panel, Plug, Socket
-from .names import CUSP, FOAM, SHORTEST_WAVE, SLOPE_VARIANCE
+from .names import SHORTEST_WAVE, SLOPE_VARIANCE
 from .shading import Shading
 from .surface_detail import FEWEST_WAVES, MOST_WAVES
 from .versioned import GroupKind
-from .water_foam import foam_cover, foam_shader
-from .water_pattern import DEPTH, SLOPES, Place, gust, place, slopes, tile
-
-_THROWN_BACK = 0.47
-_SURFACE_FACTOR = 0.33
+from .water_foam import foam_at, foam_cover, foam_shader
+from .water_light import body, coefficients, crest_glow
+from .water_pattern import SLOPES, Place, gust, place, ripples
 
 #: ripples: size of their tile in samples of the mesh, turn in rad, share of the slope variance
-_RIPPLES = ((16.0, 0.0, 0.36), (8.3, 0.42, 0.27), (3.1, -0.35, 0.17))
+_RIPPLES = ((16.0, 0.0, 0.44), (8.3, 0.42, 0.34), (3.1, -0.35, 0.22))
 #: turns in rad of the tiles for waves that a surface around the camera leaves out: each tile has as many
 #: octaves, the first from two samples on
 _LEFT_OUT = (0.21, -0.27)
 _OCTAVES = math.log2(MOST_WAVES / FEWEST_WAVES)
+#: how quickly ripples become roughness beyond their distance
+_FALL = 3.0
 #: of the largest ripples of an ocean of 400 m and 512 samples, m: Ripple Distance is meant for these
 _USUAL_TILE = 12.5
-_GUST_SIZE = 240.0  # m
+#: sizes of gusts, m, and the share of the largest
+_GUSTS = ((1400.0, 0.6), (310.0, 0.4))
+#: what gusts do to the slope variance
+_GUSTY = (0.15, 1.85)
+#: least roughness of water, which keeps the sun's reflections from being points
+_SMOOTHEST = 0.03
 #: what waves that the mesh leaves out add to alpha², of their slope variance σ². Far water is as bright as
 #: its slopes along the line of sight are steep in the mean: GGX has E|s| = alpha, and with Gaussian slopes of
 #: the variance σ²/2 besides alpha + σ²/4alpha, so alpha² grows by σ²/2 (without other roughness by σ²/π)
@@ -62,6 +62,7 @@ WATER_PANEL = Panel(
         ("Bottom Color", "NodeSocketColor", (0.42, 0.37, 0.27, 1.0), "What lies under shallow water"),
         ("Bubbles", "NodeSocketFloat", 0.06, "Backscatter in a metre of water under fresh foam"),
         ("Crest Light", "NodeSocketFloat", 0.15, "Share of it in sharp crests, which light shines into"),
+        ("Crest Glow", "NodeSocketFloat", 1.0, "Multiplies the sun's light that shines through sharp crests"),
         (
             "Transmission", "NodeSocketFloat", 0.0,
             "1 lets the camera see what is under water, with the group's Volume on the material's output",
@@ -73,10 +74,14 @@ FOAM_PANEL = Panel(
     (
         ("Foam Amount", "NodeSocketFloat", 1.0, "Multiplies the ocean's foam"),
         ("Foam Map", "NodeSocketFloat", 0.0, "Foam from an image, instead of or above the ocean's own"),
-        ("Foam Color", "NodeSocketColor", (0.83, 0.85, 0.85, 1.0), "Of dense foam"),
-        ("Foam Roughness", "NodeSocketFloat", 0.65, "Of foam's own surface"),
+        ("Foam Color", "NodeSocketColor", (0.90, 0.91, 0.91, 1.0), "Of dense foam"),
+        ("Foam Roughness", "NodeSocketFloat", 0.8, "Of foam's own surface"),
         ("Foam Size", "NodeSocketFloat", 6.0, "Of the pattern that foam thins out by, in metres"),
-        ("Foam Streaks", "NodeSocketFloat", 0.0, "Thin old foam in lines along the wind, as from 7 Bft on"),
+        ("Foam Relief", "NodeSocketFloat", 1.0, "How high fresh foam is piled up"),
+        (
+            "Foam Streaks", "NodeSocketFloat", -1.0,
+            "How far old foam is drawn out along the wind, 0 to 1; -1 lets the wind decide, from 7 Bft on",
+        ),
     ),
 )  # fmt: skip
 SURFACE_PANEL = Panel(
@@ -90,6 +95,20 @@ SURFACE_PANEL = Panel(
         (
             "Normal Map", "NodeSocketVector", (0.0, 0.0, 0.0),
             "Normal in the ocean's own axes, as the normal files hold it; unlinked, it is the mesh's",
+        ),
+    ),
+)  # fmt: skip
+LIGHT_PANEL = Panel(
+    "Light",
+    (
+        (
+            "Sun Direction", "NodeSocketVector", (0.0, 0.0, 1.0),
+            "Towards the sun, in the world; an ocean scene links it to its lamp",
+        ),
+        ("Sun Light", "NodeSocketColor", (0.0, 0.0, 0.0, 1.0), "The sun's irradiance; black: no crest glows"),
+        (
+            "Pixel Angle", "NodeSocketFloat", 0.0006,
+            "What a pixel of the camera sees, in radians: patterns below it fade into their mean",
         ),
     ),
 )  # fmt: skip
@@ -127,41 +146,51 @@ class _Ripples(NamedTuple):
 
 def _build(tree: bpy.types.NodeTree) -> None:
     shade = Shading(tree)
-    given = shade.interface(OUTPUTS, (WATER_PANEL, FOAM_PANEL, SURFACE_PANEL, AIR_PANEL)).outputs
-    at = place(shade)
-    foam = shade.math("MULTIPLY", shade.value(FOAM), given["Foam Amount"])
-    foam = shade.math("MAXIMUM", foam, given["Foam Map"], clamp=True)
-    normal, roughness = _surface(shade, given, at)
-    absorption, backscatter = _coefficients(shade, given, foam)
+    given = shade.interface(OUTPUTS, (WATER_PANEL, FOAM_PANEL, SURFACE_PANEL, LIGHT_PANEL, AIR_PANEL)).outputs
+    at = place(shade, given)
+    foam = foam_at(shade, given)
+    slope, roughness = _waves(shade, given, at)
+    absorption, backscatter = coefficients(shade, given, foam)
     through = given["Transmission"]
     inputs = {
-        "Base Color": shade.mix_vectors(through, _body(shade, given, absorption, backscatter), (1.0,) * 3),
-        "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
+        "Base Color": shade.mix_vectors(through, body(shade, given, absorption, backscatter), (1.0,) * 3),
+        "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"],
+        "Normal": _normal(shade, given, slope), "Emission Color": crest_glow(shade, given, absorption),
+        "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     cover = foam_cover(shade, given, at, foam)
-    shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, cover, normal))
+    piled = _normal(shade, given, cover.slope)
+    shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, foam, cover, piled))
     hazy = _in_haze(shade, given, at, shown)
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
 
 
-def _surface(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket, Socket]:
-    """The normal with the ripples near the camera, and the roughness of those that are not drawn."""
+def _waves(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket, Socket]:
+    """The slopes of the ripples near the camera, and the roughness of those that are not drawn."""
     variance = shade.math("MULTIPLY", shade.value(SLOPES, "OBJECT"), given["Slopes"])
-    uneven = shade.smooth(gust(shade, at, _GUST_SIZE), 0.0, 1.0, 0.25, 1.75)
-    variance = shade.math("MULTIPLY", variance, shade.mix(given["Gusts"], 1.0, uneven))
-    ripples = []
+    variance = shade.math("MULTIPLY", variance, shade.mix(given["Gusts"], 1.0, _gusty(shade, at)))
+    tiles = []
     for samples, turn, share in _RIPPLES:
         size = shade.math("MULTIPLY", at.spacing, samples)
         reach = shade.math("MULTIPLY", given["Ripple Distance"], samples / _RIPPLES[0][0])
-        ripples.append(_Ripples(size, turn, share, reach))
-    pattern, left = _drawn(shade, given, at, variance, ripples)
+        tiles.append(_Ripples(size, turn, share, reach))
+    pattern, left = _drawn(shade, given, at, variance, tiles)
     lost = shade.math("MULTIPLY", shade.value(SLOPE_VARIANCE), given["Slopes"])
     more, lost = _drawn(shade, given, at, lost, _left_out(shade, given, at))
     total = shade.vector("ADD", pattern, more)
     left = shade.math("ADD", left, shade.math("MULTIPLY", lost, _BELL_SHARE))
-    roughness = shade.math("POWER", shade.math("MAXIMUM", left, 0.0), 0.25)
-    return _normal(shade, given, total), shade.math("MINIMUM", roughness, 1.0)
+    roughness = shade.math("POWER", shade.math("MAXIMUM", left, _SMOOTHEST**4), 0.25)
+    return total, shade.math("MINIMUM", roughness, 1.0)
+
+
+def _gusty(shade: Shading, at: Place) -> Socket:
+    """What gusts do to the slope variance: cat's paws on calm water, of several sizes."""
+    felt = None
+    for size, share in _GUSTS:
+        part = shade.math("MULTIPLY", gust(shade, at, size), share)
+        felt = part if felt is None else shade.math("ADD", felt, part)
+    return shade.smooth(felt, 0.2, 0.8, *_GUSTY)
 
 
 def _left_out(shade: Shading, given: dict[str, Socket], at: Place) -> list[_Ripples]:
@@ -174,27 +203,27 @@ def _left_out(shade: Shading, given: dict[str, Socket], at: Place) -> list[_Ripp
         "LOGARITHM", shade.math("DIVIDE", shortest, shade.math("MULTIPLY", at.spacing, 2.0)), 2.0
     )
     whole = shade.math("MAXIMUM", octaves, 1e-3)
-    ripples = []
+    tiles = []
     for number, turn in enumerate(_LEFT_OUT):
         held = shade.math("SUBTRACT", octaves, number * _OCTAVES)
         held = shade.math("MINIMUM", shade.math("MAXIMUM", held, 0.0), _OCTAVES)
         size = shade.math("MULTIPLY", at.spacing, 2.0 * FEWEST_WAVES * 2.0 ** (_OCTAVES * (number + 1)))
         reach = shade.math("MULTIPLY", given["Ripple Distance"], shade.math("DIVIDE", size, _USUAL_TILE))
-        ripples.append(_Ripples(size, turn, shade.math("DIVIDE", held, whole), reach))
-    return ripples
+        tiles.append(_Ripples(size, turn, shade.math("DIVIDE", held, whole), reach))
+    return tiles
 
 
 def _drawn(
-    shade: Shading, given: dict[str, Socket], at: Place, variance: Socket, ripples: list[_Ripples]
+    shade: Shading, given: dict[str, Socket], at: Place, variance: Socket, tiles: list[_Ripples]
 ) -> tuple[Socket, Socket]:
     """The slopes of what is drawn of a variance, and what is left of that for the roughness."""
     total, drawn = None, 0.0
-    for size, turn, share, reach in ripples:
+    for size, turn, share, reach in tiles:
         ratio = shade.math("DIVIDE", at.distance, reach)
-        near = shade.math("DIVIDE", 1.0, shade.math("MULTIPLY_ADD", ratio, ratio, 1.0))
+        near = shade.math("DIVIDE", 1.0, shade.math("ADD", shade.math("POWER", ratio, _FALL), 1.0))
         part = shade.math("MULTIPLY", shade.math("MULTIPLY", near, share), given["Ripples"], clamp=True)
         strength = shade.math("SQRT", shade.math("MULTIPLY", variance, part))
-        pattern = slopes(shade, tile(shade, at, size, turn, _travelled(shade, given, size)), strength)
+        pattern = ripples(shade, at, size, turn, _travelled(shade, given, size), strength)
         total = pattern if total is None else shade.vector("ADD", total, pattern)
         drawn = shade.math("ADD", drawn, part)
     return total, shade.math("MULTIPLY", variance, shade.math("SUBTRACT", 1.0, drawn, clamp=True))
@@ -207,7 +236,7 @@ def _travelled(shade: Shading, given: dict[str, Socket], size: Socket) -> Socket
 
 
 def _normal(shade: Shading, given: dict[str, Socket], slope: Socket) -> Socket:
-    """The mesh's normal, or the map's, tilted by the slopes of the ripples; in world space."""
+    """The mesh's normal, or the map's, tilted by slopes along the ocean's x and y; in world space."""
     mapped = given["Normal Map"]
     is_mapped = shade.math("GREATER_THAN", shade.number("LENGTH", mapped), 0.5)
     to_world = {"convert_from": "OBJECT", "convert_to": "WORLD"}
@@ -216,32 +245,6 @@ def _normal(shade: Shading, given: dict[str, Socket], slope: Socket) -> Socket:
     smooth = shade.mix_vectors(is_mapped, own, turned.outputs[0])
     tilt = shade.node("ShaderNodeVectorTransform", {0: slope}, vector_type="VECTOR", **to_world)
     return shade.vector("NORMALIZE", shade.vector("SUBTRACT", smooth, tilt.outputs[0]))
-
-
-def _coefficients(shade: Shading, given: dict[str, Socket], foam: Socket) -> tuple[Socket, Socket]:
-    """Absorption and backscatter per metre, with the bubbles under foam and in crests."""
-    crest = shade.smooth(shade.value(CUSP), 0.15, 0.75)
-    bubbles = shade.math("MAXIMUM", foam, shade.math("MULTIPLY", crest, given["Crest Light"]))
-    amount = shade.math("MULTIPLY", bubbles, given["Bubbles"])
-    return given["Absorption"], shade.vector(
-        "ADD", given["Backscatter"], shade.combine(amount, amount, amount)
-    )
-
-
-def _body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatter: Socket) -> Socket:
-    """Colour of the light that comes back out of the water."""
-    lost = shade.vector("MAXIMUM", shade.vector("ADD", absorption, backscatter), (1e-9, 1e-9, 1e-9))
-    deep = shade.scale(shade.vector("DIVIDE", backscatter, lost), _SURFACE_FACTOR)
-    own = shade.value(DEPTH, "OBJECT")
-    depth = shade.mix(shade.math("GREATER_THAN", given["Water Depth"], 0.0), own, given["Water Depth"])
-    # a mesh that is no ocean has no depth: then it is deep
-    depth = shade.mix(shade.math("GREATER_THAN", depth, 0.0), 1e4, depth)
-    thickness = shade.separate(shade.scale(lost, shade.math("MULTIPLY", depth, -2.0)))
-    seen = shade.combine(*(shade.math("EXPONENT", part) for part in thickness))
-    difference = shade.vector("SUBTRACT", given["Bottom Color"], deep)
-    below = shade.vector("MULTIPLY_ADD", difference, seen, deep)
-    kept = shade.vector("MULTIPLY_ADD", below, (-_THROWN_BACK,) * 3, (1.0,) * 3)
-    return shade.vector("DIVIDE", shade.scale(below, 1.0 - _THROWN_BACK), kept)
 
 
 def _in_haze(shade: Shading, given: dict[str, Socket], at: Place, surface: Socket) -> Socket:
@@ -265,4 +268,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 3, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 4, _build, "ShaderNodeTree")

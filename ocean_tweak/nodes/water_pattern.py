@@ -13,55 +13,61 @@ from typing import NamedTuple
 import bpy
 
 from .building import Socket
-from .detail_image import detail_image, gust_image
+from .detail_image import gust_image, lace_image, ripple_image
 from .names import TEXTURE_COORDINATES
 from .shading import Shading
+from .surface_detail import LACE_CELLS
 
 #: custom properties of an ocean, read by the material; lengths in metres
 DOMAIN = "ocean_tweak_domain_size"
 SPACING = "ocean_tweak_sample_spacing"
 SLOPES = "ocean_tweak_slope_variance"
 WIND = "ocean_tweak_wind_direction"
+WIND_SPEED = "ocean_tweak_wind_speed"
 DEPTH = "ocean_tweak_water_depth"
 METRES = "ocean_tweak_metres_per_unit"
 
 #: what is taken for a mesh that is no ocean, m
 _OTHER_DOMAIN = 100.0
 _OTHER_SPACING = 0.5
+#: cosine of the angle between normal and view, below which a footprint grows no more
+_LEAST_FACING = 0.02
 
 
 class Place(NamedTuple):
     """What a shaded point knows of its ocean; lengths in m.
 
     rest : point of the water at rest, in periods of the domain
+    world : point of the world
     domain, spacing : of the domain and of its samples
     wind : rad, of the wind, counter-clockwise from x
     metres : in a Blender unit
     distance : from the camera
+    footprint : what a pixel of the camera covers here, as a length
     """
 
     rest: Socket
+    world: Socket
     domain: Socket
     spacing: Socket
     wind: Socket
     metres: Socket
     distance: Socket
+    footprint: Socket
 
 
 class Tile(NamedTuple):
     """A pattern as it lies at a point.
 
-    red_green : of the detail image
-    lace : blue
+    colour : of its image
     along : the tile's x axis in the ocean's, unit length
     """
 
-    red_green: Socket
-    lace: Socket
+    colour: Socket
     along: Socket
 
 
-def place(shade: Shading) -> Place:
+def place(shade: Shading, given: dict[str, Socket]) -> Place:
     """The shaded point's."""
     domain = shade.value(DOMAIN, "OBJECT")
     is_ocean = shade.math("GREATER_THAN", domain, 0.0)
@@ -69,48 +75,77 @@ def place(shade: Shading) -> Place:
     metres = shade.mix(shade.math("GREATER_THAN", own, 0.0), 1.0, own)
     position = shade.node("ShaderNodeTexCoord").outputs["Object"]
     otherwise = shade.scale(position, shade.math("DIVIDE", metres, _OTHER_DOMAIN))
-    distance = shade.node("ShaderNodeCameraData").outputs["View Distance"]
+    rest = shade.mix_vectors(is_ocean, otherwise, shade.attribute(TEXTURE_COORDINATES).outputs["Vector"])
+    distance = shade.math("MULTIPLY", shade.node("ShaderNodeCameraData").outputs["View Distance"], metres)
+    geometry = shade.node("ShaderNodeNewGeometry").outputs
+    facing = shade.number("DOT_PRODUCT", geometry["Normal"], geometry["Incoming"])
+    facing = shade.math("MAXIMUM", shade.math("ABSOLUTE", facing), _LEAST_FACING)
+    across = shade.math("MULTIPLY", distance, given["Pixel Angle"])
     return Place(
-        rest=shade.mix_vectors(is_ocean, otherwise, shade.attribute(TEXTURE_COORDINATES).outputs["Vector"]),
+        # tiles are whole in a period: what is left of one is as good, and precise however far away
+        rest=shade.vector("FRACTION", rest),
+        world=shade.scale(geometry["Position"], metres),
         domain=shade.mix(is_ocean, _OTHER_DOMAIN, domain),
         spacing=shade.mix(is_ocean, _OTHER_SPACING, shade.value(SPACING, "OBJECT")),
         wind=shade.value(WIND, "OBJECT"),
         metres=metres,
-        distance=shade.math("MULTIPLY", distance, metres),
+        distance=distance,
+        footprint=shade.math("DIVIDE", across, shade.math("SQRT", facing)),
     )
 
 
-def tile(
-    shade: Shading,
-    at: Place,
-    size: Socket | float,
-    turn: float,
-    travel: Socket | float = 0.0,
-    stretch: float = 1.0,
-) -> Tile:
-    """The detail image laid over the water.
+def ripples(shade: Shading, at: Place, size: Socket, turn: float, travel: Socket, strength: Socket) -> Socket:
+    """Slopes of a tile of ripples along the ocean's x and y, as a vector.
 
     size : of the tile along the wind, m, as near as whole numbers come
     turn : rad, away from the wind
     travel : m that the pattern has gone along its x axis
-    stretch : whole number, by which the tile is narrower across
+    strength : root mean square of the slopes
     """
-    axis, (u, v) = _laid(shade, at, size, turn)
-    u = shade.math("SUBTRACT", u, shade.math("DIVIDE", travel, size))
-    colour = _read(shade, detail_image(), u, shade.math("MULTIPLY", v, stretch))
-    return Tile(colour, shade.separate(colour)[2], shade.vector("NORMALIZE", axis))
+    laid = _tile(shade, at, ripple_image(), size, turn, travel)
+    along, across, _ = shade.separate(laid.colour)
+    return shade.scale(_turned(shade, laid.along, along, across), strength)
+
+
+class Lace(NamedTuple):
+    """The lace of foam as it lies at a point.
+
+    height : 0…1, evenly distributed: a share F of foam covers what is below F
+    slope : its gradient along the ocean's x and y, over the size of a cell
+    """
+
+    height: Socket
+    slope: Socket
+
+
+def lace(shade: Shading, at: Place, cell: Socket | float, turn: float, stretch: int = 1) -> Lace:
+    """The lace with cells of this length along the wind, in m; they are `stretch` times as narrow across."""
+    size = shade.math("MULTIPLY", cell, float(LACE_CELLS))
+    laid = _tile(shade, at, lace_image(), size, turn, 0.0, float(stretch))
+    height, along, across = shade.separate(laid.colour)
+    slope = _turned(shade, laid.along, along, shade.math("MULTIPLY", across, float(stretch)))
+    # the narrow side of a cell is what a pile of foam is high by
+    return Lace(height, shade.scale(slope, 1.0 / (LACE_CELLS * stretch)))
 
 
 def gust(shade: Shading, at: Place, size: float) -> Socket:
-    """How much of a gust there is, 0…1; the pattern's bumps are an eighth to a third of `size` m."""
-    _, (u, v) = _laid(shade, at, size, 0.9)
-    return shade.separate(_read(shade, gust_image(), u, v))[0]
+    """How much of a gust there is, 0…1; the pattern's bumps are an eighth to a third of `size` m.
+
+    Gusts are the air's: they lie on the world, and do not repeat with the domain.
+    """
+    return shade.separate(_read(shade, gust_image(), shade.scale(at.world, 1.0 / size)))[0]
 
 
-def _laid(
-    shade: Shading, at: Place, size: Socket | float, turn: float
-) -> tuple[Socket, tuple[Socket, Socket]]:
-    """A tile's x axis in periods of the domain, and the point in tiles."""
+def _tile(
+    shade: Shading,
+    at: Place,
+    image: bpy.types.Image,
+    size: Socket | float,
+    turn: float,
+    travel: Socket | float,
+    stretch: float = 1.0,
+) -> Tile:
+    """An image laid over the water; `stretch` is a whole number, by which it is narrower across."""
     periods = shade.math("MAXIMUM", shade.math("DIVIDE", at.domain, size), 1.0)
     angle = shade.math("ADD", at.wind, turn)
     a, b = (
@@ -118,22 +153,19 @@ def _laid(
         for name in ("COSINE", "SINE")
     )
     axis, across = shade.combine(a, b), shade.combine(shade.math("MULTIPLY", b, -1.0), a)
-    return axis, (
-        shade.number("DOT_PRODUCT", at.rest, axis),
-        shade.number("DOT_PRODUCT", at.rest, across),
-    )
+    u, v = (shade.number("DOT_PRODUCT", at.rest, each) for each in (axis, across))
+    u = shade.math("SUBTRACT", u, shade.math("DIVIDE", travel, size))
+    point = shade.combine(u, shade.math("MULTIPLY", v, stretch))
+    return Tile(_read(shade, image, point), shade.vector("NORMALIZE", axis))
 
 
-def _read(shade: Shading, image: bpy.types.Image, u: Socket, v: Socket) -> Socket:
-    inputs = {"Vector": shade.combine(u, v)}
-    settings = {"image": image, "interpolation": "Linear", "extension": "REPEAT"}
-    return shade.node("ShaderNodeTexImage", inputs, **settings).outputs[0]
+def _read(shade: Shading, image: bpy.types.Image, point: Socket) -> Socket:
+    settings = {"image": image, "interpolation": "Cubic", "extension": "REPEAT"}
+    return shade.node("ShaderNodeTexImage", {"Vector": point}, **settings).outputs[0]
 
 
-def slopes(shade: Shading, of: Tile, strength: Socket) -> Socket:
-    """The ripples' slopes along the ocean's x and y, as a vector; `strength` is their root mean square."""
-    along, across, _ = shade.separate(of.red_green)
-    x, y, _ = shade.separate(of.along)
+def _turned(shade: Shading, axis: Socket, along: Socket, across: Socket) -> Socket:
+    """A vector along the ocean's x and y from its parts along an axis and across."""
+    x, y, _ = shade.separate(axis)
     side = shade.combine(shade.math("MULTIPLY", y, -1.0), x)
-    both = shade.vector("ADD", shade.scale(of.along, along), shade.scale(side, across))
-    return shade.scale(both, strength)
+    return shade.vector("ADD", shade.scale(axis, along), shade.scale(side, across))

@@ -40,10 +40,11 @@ _HORIZONS = {
     ),
 }  # fmt: skip
 
-#: a closed cloud's radiance over sin(elevation), brightest where it thins out at the horizon
+#: a closed cloud's radiance over sin(elevation): about three times as bright overhead as low down (Moon and
+#: Spencer 1942), which makes foam as bright as the sky behind it; at the horizon it thins out
 _OVERCAST = (
-    (0.0, (0.44, 0.485, 0.52)), (0.05, (0.40, 0.45, 0.49)), (0.16, (0.31, 0.36, 0.405)),
-    (0.42, (0.27, 0.315, 0.36)), (1.0, (0.25, 0.295, 0.34)),
+    (0.0, (0.36, 0.40, 0.43)), (0.05, (0.32, 0.36, 0.395)), (0.16, (0.27, 0.31, 0.35)),
+    (0.42, (0.43, 0.48, 0.53)), (1.0, (0.70, 0.76, 0.82)),
 )  # fmt: skip
 _GLOW = (1.0, 0.90, 0.76)
 _OVERCAST_HAZE = (0.46, 0.50, 0.53)

@@ -92,7 +92,7 @@ def build(
     place = camera_place(chosen, parameters)
     camera = new_camera(chosen, place, ocean, scene)
     target.objects.link(camera)
-    kept = _set_up(scene, chosen, wishes, camera, target, is_empty)
+    kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
     if not chosen.rings:
         add_camera_surface(ocean, scene)
     if wishes.buoy:
@@ -199,6 +199,7 @@ def _set_up(
     mood: Mood,
     wishes: Wishes,
     camera: bpy.types.Object,
+    material: bpy.types.Material,
     collection: bpy.types.Collection,
     is_empty: bool,
 ) -> tuple[str, ...]:
@@ -209,7 +210,9 @@ def _set_up(
     if wishes.world or is_plain(scene.world):
         sky = mood.sky()
         scene.world = new_world(f"{mood.label} Sky", sky)
-        collection.objects.link(new_sun("Ocean Sun", sky))
+        sun = new_sun("Ocean Sun", sky)
+        collection.objects.link(sun)
+        water_material.light_by(material, sun)
     else:
         kept.append(f"world {scene.world.name}")
     set_engine(scene, wishes.engine)

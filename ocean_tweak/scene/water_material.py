@@ -17,7 +17,8 @@ from ..core.statistics.unresolved_slopes import total_slope_variance, unresolved
 from ..nodes.shading import Shading
 from ..nodes.versioned import is_stale, node_group
 from ..nodes.water import WATER
-from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND
+from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND, WIND_SPEED
+from .material_drivers import follow_lamp, follow_pixel_angle, follow_seconds
 from .units import metres_per_unit
 
 _KEY = "ocean_tweak_material"
@@ -38,7 +39,7 @@ WATERS: dict[str, tuple[str, str, dict[str, object]]] = {
         "Stormy", "Green-grey, full of bubbles, with streaks of foam",
         {
             "Absorption": (0.36, 0.080, 0.070, 1.0), "Backscatter": (0.0040, 0.0065, 0.0070, 1.0),
-            "Foam Streaks": 0.5, "Crest Light": 0.4, "Foam Size": 9.0,
+            "Crest Light": 0.4,
         },
     ),
 }  # fmt: skip
@@ -93,6 +94,7 @@ def _values(
         SPACING: parameters.domain_size / parameters.resolution,
         SLOPES: unresolved_slope_variance(parameters),
         WIND: wind.direction if wind is not None else 0.0,
+        WIND_SPEED: wind.speed if wind is not None else 0.0,
         DEPTH: parameters.water.depth,
         METRES: _metres(item, scene),
     }
@@ -160,6 +162,20 @@ def set_air(material: bpy.types.Material, visibility: float, haze: tuple[float, 
     inputs["Haze Color"].default_value = (*haze, 1.0)
 
 
+def light_by(material: bpy.types.Material, sun: bpy.types.Object) -> None:
+    """Let a sun lamp shine through the crests of the water, wherever it turns and however bright it is."""
+    group, tree = _group(material), material.node_tree
+    nodes = []
+    for name in ("Sun Direction", "Sun Light"):
+        node = next((node for node in tree.nodes if node.label == name), None)
+        if node is None:
+            node = tree.nodes.new("ShaderNodeCombineXYZ")
+            node.label = name
+            tree.links.new(node.outputs[0], group.inputs[name])
+        nodes.append(node)
+    follow_lamp(*nodes, sun)
+
+
 def _group(material: bpy.types.Material) -> bpy.types.Node:
     return next(node for node in material.node_tree.nodes if node.type == "GROUP")
 
@@ -168,25 +184,14 @@ def _fill(material: bpy.types.Material, values: Mapping[str, object]) -> None:
     if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
         material.use_nodes = True
     shade = Shading(material.node_tree)
-    seconds = shade.node("ShaderNodeValue", label="Seconds")
-    _drive_time(seconds)
-    group = shade.node("ShaderNodeGroup", {"Time": seconds.outputs[0], **values}, node_tree=node_group(WATER))
+    driven = {"Seconds": ("Time", follow_seconds), "Pixel Angle": ("Pixel Angle", follow_pixel_angle)}
+    inputs: dict[str, object] = {**values}
+    for label, (name, follow) in driven.items():
+        inputs[name] = shade.node("ShaderNodeValue", label=label).outputs[0]
+        follow(inputs[name])
+    group = shade.node("ShaderNodeGroup", inputs, node_tree=node_group(WATER))
     shown = shade.node("ShaderNodeOutputMaterial")
     shade.tree.links.new(group.outputs["Surface"], shown.inputs["Surface"])
     # or Cycles takes the haze for a lamp and sorts millions of triangles
     material.cycles.emission_sampling = "NONE"
     material.diffuse_color = (0.02, 0.08, 0.12, 1.0)
-
-
-def _drive_time(node: bpy.types.Node) -> None:
-    """Let a value be the scene's seconds.
-
-    An expression as simple as this one is evaluated without Python, so in a file nobody has trusted yet.
-    """
-    driver = node.outputs[0].driver_add("default_value").driver
-    for name, path in (("rate", "render.fps"), ("base", "render.fps_base")):
-        variable = driver.variables.new()
-        variable.name, variable.type = name, "CONTEXT_PROP"
-        variable.targets[0].context_property = "ACTIVE_SCENE"
-        variable.targets[0].data_path = path
-    driver.expression = "frame * base / rate"

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light that has been in the water: what comes back from it, from its bubbles and bottom, and through crests.
+
+The body is the two-flow model of irradiance: R = 0.33 b/(a + b) over deep water (Morel & Prieur 1977; Gordon
+1975), with the bottom R + (bottom - R) exp(-2(a + b) depth) (Maritorena, Morel & Gentili 1994). What of it
+leaves the water is (1 - r)R/(1 - rR), r = 0.47 the share that a flat surface throws back down from below
+(Saunderson 1942).
+
+A crest between the eye and a low sun scatters its light forward, by the phase function of Blasi, Le Saëc &
+Schlick (1993), and absorbs some on the way through the crest, which is shorter the sharper the crest is.
+"""
+
+from __future__ import annotations
+
+from .building import Socket
+from .names import CUSP
+from .shading import Shading
+from .water_foam import Foam
+from .water_pattern import DEPTH
+
+_THROWN_BACK = 0.47
+_SURFACE_FACTOR = 0.33
+
+#: bubbles live longer than the foam above them: of what there was, F to this power is left where foam has F
+_BUBBLES_LEFT = 0.5
+#: of old foam's bubbles beside fresh foam's
+_OLD_BUBBLES = 0.55
+#: cusps between which a crest is sharp
+_SHARP = (0.12, 0.65)
+#: way of light in m through a round crest and a sharp one
+_WAYS = (7.0, 1.2)
+#: how much more of the light goes on forward than aside: k of the phase function
+_FORWARD = 0.72
+#: sine of the slope away from the sun between which light comes through
+_AWAY = (0.05, 0.45)
+#: share of the light on a crest's back that is scattered in it
+_SCATTERED = 0.35
+
+
+def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, Socket]:
+    """Absorption and backscatter per metre, with the bubbles under foam and in crests."""
+    left = shade.math("MULTIPLY", shade.math("POWER", foam.share, _BUBBLES_LEFT),
+                      shade.mix(foam.youth, _OLD_BUBBLES, 1.0))  # fmt: skip
+    bubbles = shade.math("MAXIMUM", left, shade.math("MULTIPLY", sharpness(shade), given["Crest Light"]))
+    amount = shade.math("MULTIPLY", bubbles, given["Bubbles"])
+    return given["Absorption"], shade.vector(
+        "ADD", given["Backscatter"], shade.combine(amount, amount, amount)
+    )
+
+
+def sharpness(shade: Shading) -> Socket:
+    """How sharp a crest is, 0…1."""
+    return shade.smooth(shade.value(CUSP), *_SHARP)
+
+
+def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatter: Socket) -> Socket:
+    """Colour of the light that comes back out of the water."""
+    lost = shade.vector("MAXIMUM", shade.vector("ADD", absorption, backscatter), (1e-9, 1e-9, 1e-9))
+    deep = shade.scale(shade.vector("DIVIDE", backscatter, lost), _SURFACE_FACTOR)
+    own = shade.value(DEPTH, "OBJECT")
+    depth = shade.mix(shade.math("GREATER_THAN", given["Water Depth"], 0.0), own, given["Water Depth"])
+    # a mesh that is no ocean has no depth: then it is deep
+    depth = shade.mix(shade.math("GREATER_THAN", depth, 0.0), 1e4, depth)
+    seen = _left_after(shade, lost, shade.math("MULTIPLY", depth, 2.0))
+    difference = shade.vector("SUBTRACT", given["Bottom Color"], deep)
+    below = shade.vector("MULTIPLY_ADD", difference, seen, deep)
+    kept = shade.vector("MULTIPLY_ADD", below, (-_THROWN_BACK,) * 3, (1.0,) * 3)
+    return shade.vector("DIVIDE", shade.scale(below, 1.0 - _THROWN_BACK), kept)
+
+
+def crest_glow(shade: Shading, given: dict[str, Socket], absorption: Socket) -> Socket:
+    """Radiance of the sun's light that shines through crests from behind."""
+    sun = shade.vector("NORMALIZE", given["Sun Direction"])
+    x, y, _ = shade.separate(sun)
+    level = shade.combine(x, y)
+    geometry = shade.node("ShaderNodeNewGeometry").outputs
+    turned_away = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", geometry["Normal"], level), -1.0)
+    through = shade.smooth(turned_away, *_AWAY)
+    towards = shade.math("MULTIPLY", shade.number("DOT_PRODUCT", geometry["Incoming"], sun), -1.0)
+    nearer = shade.math("MULTIPLY_ADD", towards, -_FORWARD, 1.0)
+    phase = shade.math("DIVIDE", (1.0 - _FORWARD**2) / 12.566, shade.math("MULTIPLY", nearer, nearer))
+    # a sun overhead meets no crest's back
+    meets = shade.number("LENGTH", level)
+    sharp = sharpness(shade)
+    way = shade.mix(sharp, *_WAYS)
+    strength = shade.math(
+        "MULTIPLY", shade.math("MULTIPLY", phase, through), shade.math("MULTIPLY", meets, sharp)
+    )
+    strength = shade.math("MULTIPLY", shade.math("MULTIPLY", strength, given["Crest Glow"]), _SCATTERED)
+    seen = shade.vector("MULTIPLY", given["Sun Light"], _left_after(shade, absorption, way))
+    return shade.scale(seen, strength)
+
+
+def _left_after(shade: Shading, lost: Socket, way: Socket) -> Socket:
+    """Share of light that is left after a way in m, of which a metre loses so much, by colour."""
+    parts = shade.separate(shade.scale(lost, shade.math("MULTIPLY", way, -1.0)))
+    return shade.combine(*(shade.math("EXPONENT", part) for part in parts))
