@@ -50,7 +50,7 @@ def _image(name: str, version: int, make: Callable[[], Iterable[NDArray[np.float
     side = len(channels[0])
     pixels = np.zeros((side, side, 4), np.float32)
     pixels[..., 3] = 1.0
-    pixels[..., : len(channels)] = np.moveaxis(channels, 0, -1)
+    pixels[..., : len(channels)] = np.stack(channels, axis=-1)
     image = bpy.data.images.new(name, side, side, alpha=False, float_buffer=True, is_data=True)
     image.pixels.foreach_set(pixels.reshape(-1))
     image.update()

@@ -13,9 +13,6 @@ DISPLACEMENT, VELOCITY, FOAM, CUSP, BREAKING, FOAM_AGE, NORMAL = (
     for name in ("displacement", "velocity", "foam", "cusp", "breaking", "foam_age", "normal")
 )
 
-#: point attributes of white water besides FOAM: how strongly the crest breaks, 0…1, and the foam's age in s
-BREAKING, FOAM_AGE = "breaking", "foam_age"
-
 #: point attribute of a surface around the camera: mean square slope of the waves that it leaves out
 SLOPE_VARIANCE = "slope_variance"
 

@@ -91,7 +91,7 @@ def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:
     column, row = np.floor(x * cells), np.floor(y * cells)
     nearest, next_nearest = (np.full(x.shape, np.inf) for _ in range(2))
     reach = range(-_REACH, _REACH + 1)
-    corner = np.arange(cells)
+    corner = np.arange(float(cells))
     draws = [_uniform(corner, corner[:, np.newaxis], seed, stream) for stream in range(3)]
     sizes = np.exp(_SIZES * (2.0 * draws[2] - 1.0))
     for shift_y in reach:

@@ -27,6 +27,7 @@ _YOUNG = (0.35, 0.45, 0.20, 0.0, 0.0)
 _OLD = (0.12, 0.28, 0.60, 0.0, 0.0)
 _DRAWN_OUT = (0.10, 0.14, 0.05, 0.33, 0.38)
 _YOUTH = 0.8  # s, in which foam loses half of what it had while it was made
+_BREAKS = 0.2  # strength of breaking from which foam is new
 _GROWTH = (0.5, 9.0)  # s, between which holes grow
 _FADING = 2.5  # s, half-life of foam that says nothing of its age
 _STREAKS = (
@@ -72,16 +73,17 @@ class Cover(NamedTuple):
 def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
     """What the mesh says of foam.
 
-    A mesh that knows foam but not its age (an older bake) has the age that has thinned it out.
+    Foam whose age is not told (an older bake, one without the map) has the age that has thinned it out.
     """
     own = shade.math("MULTIPLY", shade.value(FOAM), given["Foam Amount"])
     share = shade.math("MAXIMUM", own, given["Foam Map"], clamp=True)
-    breaking, told = shade.value(BREAKING), shade.value(FOAM_AGE)
+    told = shade.value(FOAM_AGE)
     halvings = shade.math("LOGARITHM", shade.math("MAXIMUM", share, 1e-3), 0.5)
-    is_told = shade.math("GREATER_THAN", shade.math("ADD", breaking, told), 0.0)
+    is_told = shade.math("GREATER_THAN", told, 0.0)
     age = shade.mix(is_told, shade.math("MULTIPLY", halvings, _FADING), told)
-    youth = shade.math("POWER", 0.5, shade.math("DIVIDE", age, _YOUTH))
-    return Foam(share, shade.math("MAXIMUM", youth, breaking, clamp=True), age)
+    by_age = shade.math("POWER", 0.5, shade.math("DIVIDE", age, _YOUTH))
+    by_birth = shade.smooth(shade.value(BREAKING), 0.0, _BREAKS)
+    return Foam(share, shade.math("MAXIMUM", by_age, by_birth), age)
 
 
 def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> Cover:
