@@ -68,7 +68,7 @@ def cover(square, inputs, empty_scene, extension, tmp_path):
 
     def look(share, age=None, breaking=0.0, wind=BREEZE, height=50.0, side=SIDE, engine="CYCLES"):
         camera.location.z, camera.data.ortho_scale = height, side
-        extension("scene.stage").set_engine(empty_scene, engine)
+        extension("scene.surroundings").set_engine(empty_scene, engine)
         square["ocean_tweak_wind_speed"] = wind
         told = {"foam": share} if age is None else {"foam": share, "foam_age": age, "breaking": breaking}
         for attribute in list(square.data.attributes):
