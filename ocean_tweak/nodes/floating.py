@@ -27,7 +27,8 @@ RIDE_INPUTS = (
         "Waterline", "NodeSocketFloat", 0.0,
         "Across what floats: shorter waves do not move it. 0 follows the surface at a point",
     ),
-    Plug("Draft", "NodeSocketFloat", 0.0, "How deep the origin lies below the surface"),
+    Plug("Draft", "NodeSocketFloat", 0.0, "How deep it sits: from its lowest point up to the surface"),
+    Plug("Keel", "NodeSocketFloat", 0.0, "How far below the origin its lowest point is"),
     Plug("Tilt", "NodeSocketFloat", 1.0, "How much it tilts with the surface: 0 stays upright"),
     Plug("Drift", "NodeSocketFloat", 0.0, "How much it goes along with the water: 0 stays above its place"),
 )  # fmt: skip
@@ -41,6 +42,7 @@ AS_ONE = Plug(
 _RANGES = {
     "Waterline": ("DISTANCE", 0.0, 1e6),
     "Draft": ("DISTANCE", -1e6, 1e6),
+    "Keel": ("DISTANCE", -1e6, 1e6),
     "Tilt": ("FACTOR", 0.0, 1.0),
     "Drift": ("FACTOR", 0.0, 1.0),
 }
@@ -96,12 +98,13 @@ def _build_ride(tree: bpy.types.NodeTree) -> None:
         build.switch("VECTOR", is_disc, along_x, combined(build, 1.0, 0.0, slope_x)),
         build.switch("VECTOR", is_disc, along_y, combined(build, 0.0, 1.0, slope_y)),
     )
-    draft = combined(build, 0.0, 0.0, build.math("MULTIPLY", build.given("Draft"), size))
+    origin = build.math("SUBTRACT", build.given("Draft"), build.given("Keel"))
+    depth = combined(build, 0.0, 0.0, build.math("MULTIPLY", origin, size))
     build.finish_with(
         {
             "Stencil": stencil,
             "Points": discs.points,
-            "Position": spaces.point_of_asker(build.vector("SUBTRACT", discs.mean(point), draft)),
+            "Position": spaces.point_of_asker(build.vector("SUBTRACT", discs.mean(point), depth)),
             "Rotation": _tilt(build, spaces.normal_of_asker(), spaces.normal_of_asker(*tangents)),
         }
     )
@@ -257,6 +260,6 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
 
 
 STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
-RIDE = GroupKind("Ocean Tweak Ride", 1, _build_ride)
-FLOAT = GroupKind("Float on Ocean", 1, _build_float)
-CARRIER = GroupKind("Float on Ocean Carrier", 1, _build_carrier)
+RIDE = GroupKind("Ocean Tweak Ride", 2, _build_ride)
+FLOAT = GroupKind("Float on Ocean", 2, _build_float)
+CARRIER = GroupKind("Float on Ocean Carrier", 2, _build_carrier)

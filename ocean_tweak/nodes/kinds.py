@@ -9,6 +9,7 @@ from . import (
     camera_grid,
     camera_patch,
     camera_surface,
+    contact,
     extension_check,
     floating,
     frame_warnings,
@@ -46,4 +47,8 @@ ALL_KINDS = (
     camera_patch.CAMERA_PATCH,
     camera_surface.CAMERA_SURFACE,
     water.WATER,
+    contact.CONTACT,
+    contact.WET_BAND,
+    contact.COLLAR,
+    contact.RIPPLE_NORMAL,
 )

@@ -26,6 +26,9 @@ SLOPE, STRAIN = CHANNELS["slope"].attribute, CHANNELS["strain"].attribute
 #: point attributes of an ocean's mesh by which patches 1, 2, … are multiplied; 1 where there is none
 WEIGHT = "ocean_tweak_weight_{}"
 
+#: point attribute of what touches the water: 1 at the surface, 0 at the top of the wet band, linear
+WET = "wet"
+
 #: corner attribute: position / domain size + ½ / samples, going on over the repeats
 TEXTURE_COORDINATES = "st"
 

@@ -7,12 +7,13 @@ from pathlib import Path
 
 import bpy
 
+from ..nodes.contact import WET_BAND
 from ..nodes.floating import FLOAT
 from ..nodes.ocean import ocean_group
 from ..nodes.sample import SAMPLE
 from ..nodes.versioned import node_group
 from ..nodes.water import WATER
-from . import water_material
+from . import contact, water_material
 from .preferences import user_folder
 
 #: what Blender's asset browser calls it
@@ -23,6 +24,7 @@ _GROUPS = {
     SAMPLE: "Height, normal, foam and motion of an ocean above any position",
     FLOAT: "Lets instances, or a geometry as a whole, ride an ocean",
     WATER: "Shader of sea water with foam",
+    WET_BAND: "Shader values of what the water has made wet",
 }
 
 
@@ -46,7 +48,8 @@ def install() -> Path:
         for block in marked:
             block.asset_mark()
             block.asset_data.description, block.asset_data.author = assets[block], LIBRARY
-        bpy.data.libraries.write(str(path), set(assets), fake_user=True, compress=True)
+        with contact.set_aside():
+            bpy.data.libraries.write(str(path), set(assets), fake_user=True, compress=True)
     except RuntimeError as error:
         raise OSError(f"{path}: {error}") from error
     finally:

@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A navigation buoy: a turned body with a mast and a lamp, with its waterline at the origin."""
+"""A navigation buoy: a turned body with a mast and a lamp, with its waterline at the origin.
+
+Its paint and its hull have a wet band where the water has been.
+"""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
+
+from ..nodes.contact import WET_BAND
+from ..nodes.versioned import node_group
 
 #: radius and height in m from below to above, with the number of the material of the band that follows
 _PROFILE = (
@@ -16,8 +22,8 @@ _PROFILE = (
 _SEGMENTS = 48
 _KEY = "ocean_tweak_buoy"
 
-#: of the hull at the waterline, m
-DIAMETER = 2.2
+#: of the hull at the waterline, and of its keel below that, m
+DIAMETER, DRAFT = 2.2, 1.2
 
 #: name, linear colour, roughness, light of its own
 _MATERIALS = (
@@ -69,8 +75,14 @@ def _material(
     if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
         material.use_nodes = True
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    shader.inputs["Base Color"].default_value = (*colour, 1.0)
-    shader.inputs["Roughness"].default_value = roughness
+    wet = material.node_tree.nodes.new("ShaderNodeGroup")
+    wet.node_tree, wet.location = node_group(WET_BAND), (shader.location.x - 240.0, shader.location.y)
+    for name, socket, value in (
+        ("Color", "Base Color", (*colour, 1.0)),
+        ("Roughness", "Roughness", roughness),
+    ):
+        wet.inputs[name].default_value = value
+        material.node_tree.links.new(wet.outputs[name], shader.inputs[socket])
     shader.inputs["Emission Color"].default_value = (*colour, 1.0)
     shader.inputs["Emission Strength"].default_value = light
     material.diffuse_color = (*colour, 1.0)

@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 
 import bpy
 
-from . import float_keys, floating, handlers
+from . import contact, float_keys, floating, handlers
 from .floating import FloatError, Ride
 from .floating_place import Water, place_on, water_at
+from .hull import Hull
 from .units import metres_per_unit, time_stretch
 from .view_layers import evaluated, taking_part
 
@@ -22,6 +23,7 @@ class _Rider:
 
     carrier : stands where the object would be on land
     was_live : whether the carrier was there before
+    hull : of the object, where the water is to touch it
     track : where the object was so far
     """
 
@@ -30,15 +32,17 @@ class _Rider:
     was_live: bool
     ocean: bpy.types.Object
     ride: Ride
+    hull: Hull | None
     track: float_keys.Track
 
 
 class FloatBake:
     """A bake that can be done a frame at a time, and given up.
 
-    An object that floats already keeps its ocean and ride, others get the given ones. Keys are written by
-    `finish`, after `advance` was called once for each of `frames`; `cancel` leaves everything as it was. The
-    scene's frame goes along, so that parents, animation and the ocean's settings are those of each frame.
+    An object that floats already keeps its ocean, ride and collar, others get the given ones. Keys are
+    written by `finish`, after `advance` was called once for each of `frames`; `cancel` leaves everything as
+    it was. The scene's frame goes along, so that parents, animation and the ocean's settings are those of
+    each frame.
 
     Raises FloatError for what cannot float, and OceanObjectError or ParameterError for an ocean without a
     surface.
@@ -49,8 +53,9 @@ class FloatBake:
         scene: bpy.types.Scene,
         items: Iterable[bpy.types.Object],
         ocean: bpy.types.Object,
-        ride: Ride,
+        ride: Callable[[bpy.types.Object], Ride],
         frames: range,
+        is_wet: bool = False,
     ) -> None:
         chosen = floating.outermost(items)
         for item in chosen:
@@ -59,17 +64,18 @@ class FloatBake:
             raise FloatError("The first frame lies after the last one")
         self.frames, self.done = frames, 0
         self._scene, self._frame = scene, (scene.frame_current, scene.frame_subframe)
-        self._riders = [self._begin(item, ocean, ride) for item in chosen]
+        self._riders = [self._begin(item, ocean, ride(item), is_wet) for item in chosen]
         self._taking_part = ExitStack()
         self._taking_part.enter_context(taking_part(scene, *{rider.ocean for rider in self._riders}))
 
-    def _begin(self, item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride) -> _Rider:
+    def _begin(self, item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride, is_wet: bool) -> _Rider:
         carrier = floating.carrier_of(item)
         if carrier is None:
+            hull = floating.own_hull(item) if is_wet else None
             carrier = floating.place_carrier(item, self._scene)
-            return _Rider(item, carrier, False, ocean, ride, float_keys.Track(item))
+            return _Rider(item, carrier, False, ocean, ride, hull, float_keys.Track(item))
         known, ride = floating.ride_of(carrier)
-        return _Rider(item, carrier, True, known or ocean, ride, float_keys.Track(item))
+        return _Rider(item, carrier, True, known or ocean, ride, None, float_keys.Track(item))
 
     def advance(self) -> None:
         """Go on by one frame. Raises what a missing or broken image raises."""
@@ -92,7 +98,9 @@ class FloatBake:
         for rider in self._riders:
             if not rider.was_live:
                 floating.remove_carrier(rider.carrier)
-            floating.sink(rider.item)
+            floating.take_off(rider.item)
+            if rider.hull is not None:
+                contact.touch(rider.item, rider.ocean, rider.hull, rider.ride.level)
             rider.track.write(self.frames[0] / stretch, 1 / stretch)
         self._go_back()
         return len(self._riders)

@@ -16,7 +16,8 @@ import bpy
 from ..nodes.floating import CARRIER, TRANSFORM
 from ..nodes.modifier_inputs import get_input, set_input
 from ..nodes.versioned import is_of_kind, node_group
-from . import float_keys
+from . import contact, float_keys
+from .hull import Hull, hull_of
 from .settings import OceanObjectError, is_ocean, oceans_in
 from .units import metres_per_unit
 
@@ -41,40 +42,92 @@ class Ride:
     """How an object floats.
 
     waterline : across it, Blender units; waves shorter than this do not move it
-    draft : of its origin below the surface, Blender units
+    draft : how deep its lowest point lies below the surface, Blender units
+    keel : how far that is below its origin, Blender units
     tilt : 0 stays upright, 1 tilts as the surface does
     drift : 0 stays above its place, 1 goes along with the water
     """
 
     waterline: float = 0.0
     draft: float = 0.0
+    keel: float = 0.0
     tilt: float = 1.0
     drift: float = 0.0
 
+    @property
+    def level(self) -> float:
+        """How high above its origin the water stands, Blender units."""
+        return self.draft - self.keel
+
 
 def float_on(
-    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, ride: Ride | None = None
+    item: bpy.types.Object,
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    ride: Ride | None = None,
+    is_wet: bool = False,
 ) -> bpy.types.Object:
     """Let an object float on an ocean, or on another one than before. Returns its carrier, which moves it.
+
+    is_wet : whether it gets a collar of foam and a wet band, where the water cuts it
 
     Raises FloatError for what cannot float there.
     """
     check(item, ocean)
+    ride = ride or Ride()
     carrier = carrier_of(item)
-    if carrier is None:
+    if carrier is None and float_keys.is_baked(item):
         float_keys.unbake(item)
+        bpy.context.view_layer.update()
+    if is_wet:
+        contact.touch(item, ocean, own_hull(item), ride.level)
+    if carrier is None:
         carrier = place_carrier(item, scene)
         attach = _attach_by_attribute if bpy.app.version >= (5, 0) else _attach_by_rider
         attach(item, carrier)
-    let_ride(carrier, ocean, ride or Ride())
+    let_ride(carrier, ocean, ride)
     return carrier
 
 
+def own_hull(item: bpy.types.Object) -> Hull | None:
+    """The hull of an object as it stands without floating; None where it has none."""
+    carrier = carrier_of(item)
+    upright = item if carrier is None else carrier
+    return hull_of(item, upright.matrix_world, bpy.context.evaluated_depsgraph_get())
+
+
+def ride_by_size(hull: Hull | None) -> Ride:
+    """How something of this size floats: it feels no waves shorter than its beam, and has a ship's draft."""
+    return Ride() if hull is None else Ride(waterline=hull.beam, draft=hull.draft, keel=hull.keel)
+
+
+def touch_water(item: bpy.types.Object, ocean: bpy.types.Object) -> bool:
+    """Let an object touch the water where it floats, or stands; whether there is any.
+
+    ocean : of what does not float
+    """
+    carrier, hull = carrier_of(item), own_hull(item)
+    if carrier is not None:
+        known, ride = ride_of(carrier)
+        return contact.touch(item, known or ocean, hull, ride.level)
+    if contact.touches(item) and float_keys.is_baked(item):
+        return contact.touch(item, ocean, hull, contact.level_of(item))
+    level = ocean.matrix_world.translation.z - item.matrix_world.translation.z
+    return contact.touch(item, ocean, hull, level)
+
+
 def sink(item: bpy.types.Object) -> None:
-    """Let an object float no more, live or baked: it is back where it was before.
+    """Let an object float no more, live or baked: it is back where it was before, and dry.
 
     Of a carrier: let whatever it carries float no more.
     """
+    for each in list(carried_by(item)) if is_carrier(item) else [item]:
+        contact.part(each)
+    take_off(item)
+
+
+def take_off(item: bpy.types.Object) -> None:
+    """As `sink`, but the water goes on to touch it."""
     carrier = item if is_carrier(item) else carrier_of(item)
     for each in list(carried_by(item)) if is_carrier(item) else [item]:
         for constraint in [each.constraints[name] for name in _constraints_of(each)]:

@@ -21,6 +21,7 @@ from . import (
     bake_state,
     cache_place,
     command_process,
+    contact,
     failures,
     former_settings,
     live_image,
@@ -167,6 +168,7 @@ def look_around(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None =
 
 def _look_around() -> None:
     portability.look()
+    contact.refresh()
     failures.keep_only(all_oceans())
 
 
@@ -222,6 +224,7 @@ def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
     former_settings.take_over()
     stored_values.mend_all()
     stored_paths.follow_import(imported)
+    contact.refresh()
     show_that_it_runs()
 
 
@@ -238,6 +241,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     show_that_it_runs()
     live_image.forget_all()
     source_images.forget_all()
+    contact.refresh()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if is_live(item) else Wanted.NOTES)
 

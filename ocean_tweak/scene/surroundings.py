@@ -20,7 +20,7 @@ from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
 from . import ocean_object, startup_file, water_material
-from .buoy import DIAMETER, new_buoy
+from .buoy import DIAMETER, DRAFT, new_buoy
 from .camera_surface import add_camera_surface
 from .floating import Ride, float_on
 from .moods import MOODS, VIEW, Mood
@@ -190,7 +190,8 @@ def _add_buoy(
     buoy.location = np.array(ocean.location) + offset / metres
     collection.objects.link(buoy)
     scene.view_layers.update()
-    float_on(buoy, ocean, scene, Ride(waterline=DIAMETER / metres, tilt=0.8))
+    ride = Ride(waterline=DIAMETER / metres, draft=DRAFT / metres, keel=DRAFT / metres, tilt=0.8)
+    float_on(buoy, ocean, scene, ride, is_wet=True)
     return buoy
 
 

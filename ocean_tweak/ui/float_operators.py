@@ -5,10 +5,10 @@ import time
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
-from bpy.props import FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core import ParameterError
-from ..scene import floating
+from ..scene import contact, floating
 from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
@@ -32,43 +32,16 @@ def floatable(context: bpy.types.Context) -> list[bpy.types.Object]:
     return list(chosen)
 
 
-class _Rides:
-    """Operators that let the selected objects float."""
+#: what an object's size may say
+_OF_SIZE = ("waterline", "draft")
+
+
+class _OnOcean:
+    """Operators on the selected objects and an ocean."""
 
     ocean: StringProperty(
         name="Ocean", description="The ocean to float on; empty for the active one, else the first by name"
     )
-    waterline: FloatProperty(
-        name="Waterline",
-        min=0.0,
-        soft_max=1000.0,
-        unit="LENGTH",
-        description="Across what floats: waves shorter than this do not move it. "
-        "0 follows the surface at the object's origin",
-    )
-    draft: FloatProperty(
-        name="Draft",
-        unit="LENGTH",
-        soft_min=-100.0,
-        soft_max=100.0,
-        description="How deep the object's origin lies below the surface",
-    )
-    tilt: FloatProperty(
-        name="Tilt",
-        default=1.0,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
-        description="How much it tilts with the surface: 0 stays upright",
-    )
-    drift: FloatProperty(
-        name="Drift",
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
-        description="How much it goes along with the water's to and fro: 0 stays above its place",
-    )
-    shown = ("waterline", "draft", "tilt", "drift")
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -85,14 +58,66 @@ class _Rides:
             return True
         return False
 
-    @property
-    def ride(self) -> Ride:
-        """How they shall float."""
-        return Ride(self.waterline, self.draft, self.tilt, self.drift)
-
     def chosen_ocean(self, context: bpy.types.Context) -> bpy.types.Object:
         """The ocean of that name, the active one or the first. Raises FloatError."""
         return floating.chosen_ocean(context.scene, context.active_object, self.ocean)
+
+
+class _Rides(_OnOcean):
+    """Operators that let the selected objects float."""
+
+    use_size: BoolProperty(
+        name="From Size",
+        default=True,
+        description="Take waterline and draft from each object's bounds: it feels no waves shorter than its "
+        "beam, and sits a third of that deep, as ships do, but at most half its height",
+    )
+    waterline: FloatProperty(
+        name="Waterline",
+        min=0.0,
+        soft_max=1000.0,
+        unit="LENGTH",
+        description="Across what floats: waves shorter than this do not move it. "
+        "0 follows the surface at the object's origin",
+    )
+    draft: FloatProperty(
+        name="Draft",
+        unit="LENGTH",
+        soft_min=-100.0,
+        soft_max=100.0,
+        description="How deep it sits: from its lowest point up to the surface",
+    )
+    tilt: FloatProperty(
+        name="Tilt",
+        default=1.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+        description="How much it tilts with the surface: 0 stays upright",
+    )
+    drift: FloatProperty(
+        name="Drift",
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+        description="How much it goes along with the water's to and fro: 0 stays above its place",
+    )
+    use_contact: BoolProperty(
+        name="Contact with Water",
+        default=True,
+        description="Put a collar of foam and ripples on the water around it, and let its meshes know where "
+        "they are wet",
+    )
+    shown = ("use_size", *_OF_SIZE, "tilt", "drift", "use_contact")
+
+    def ride_of(self, item: bpy.types.Object) -> Ride:
+        """How an object shall float; what a script gives goes before the size, unless it asks for both."""
+        hull, asked = floating.own_hull(item), self.properties.is_property_set
+        values = vars(floating.ride_by_size(hull)) | {"tilt": self.tilt, "drift": self.drift}
+        for name in _OF_SIZE:
+            if not self.use_size or (asked(name) and not asked("use_size")):
+                values[name] = getattr(self, name)
+        return Ride(**values)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the settings."""
@@ -100,7 +125,9 @@ class _Rides:
         layout.use_property_split = True
         layout.prop_search(self, "ocean", context.scene, "objects", icon="MOD_OCEAN")
         for name in self.shown:
-            layout.prop(self, name)
+            row = layout.row()
+            row.active = not (self.use_size and name in _OF_SIZE)
+            row.prop(self, name)
 
 
 class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
@@ -123,7 +150,7 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
             return refuse(self, error)
         for item in floating.outermost(floatable(context)):
             try:
-                floating.float_on(item, ocean, context.scene, self.ride)
+                floating.float_on(item, ocean, context.scene, self.ride_of(item), self.use_contact)
                 done += 1
             except FloatError as error:
                 refused.append(str(error))
@@ -224,7 +251,9 @@ class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
         frames = range(self.frame_start, self.frame_end + 1)
         try:
             ocean = self.chosen_ocean(context)
-            self._bake = FloatBake(context.scene, floatable(context), ocean, self.ride, frames)
+            self._bake = FloatBake(
+                context.scene, floatable(context), ocean, self.ride_of, frames, self.use_contact
+            )
         except _EXPECTED_ERRORS as error:
             refuse(self, error)
             return False
@@ -264,10 +293,43 @@ class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class OBJECT_OT_ocean_contact(_OnOcean, bpy.types.Operator):
+    """Let the selected objects touch the water that they stand or float in."""
+
+    bl_idname = "object.ocean_tweak_contact"
+    bl_description = (
+        "Put a collar of foam and ripples on the water around the selected objects, floating or not, and let "
+        "their meshes know where they are wet. Done again, it fits the collars to what was moved or changed"
+    )
+    bl_label = "Contact with Water"
+    bl_options = {"REGISTER", "UNDO"}
+
+    use_contact: BoolProperty(
+        name="Touch", default=True, description="Switched off, the water leaves them alone"
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Touch or part."""
+        try:
+            ocean = self.chosen_ocean(context)
+        except FloatError as error:
+            return refuse(self, error)
+        items = floating.outermost(floatable(context))
+        if not self.use_contact:
+            for item in items:
+                contact.part(item)
+            return {"FINISHED"}
+        dry = [item.name for item in items if not floating.touch_water(item, ocean)]
+        if dry:
+            text = f"The water of {ocean.name} does not cut {', '.join(dry)}: move it into the water"
+            self.report({"WARNING" if len(dry) < len(items) else "ERROR"}, text)
+        return {"FINISHED"} if len(dry) < len(items) else {"CANCELLED"}
+
+
 def draw_object_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """Draw the entries in the Object menu."""
     self.layout.separator()
-    for operator in (OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove):
+    for operator in CLASSES:
         self.layout.operator(operator.bl_idname)
 
 
@@ -275,4 +337,6 @@ def _floats(item: bpy.types.Object) -> bool:
     return floating.is_carrier(item) or floating.carrier_of(item) is not None or is_baked(item)
 
 
-CLASSES = (OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove)
+CLASSES = (
+    OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove, OBJECT_OT_ocean_contact,
+)  # fmt: skip

@@ -6,7 +6,7 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import EnumProperty
 
 from ..core import ParameterError
-from ..scene import asset_library, water_material
+from ..scene import asset_library, contact, water_material
 from ..scene.settings import settings_of
 from .active_ocean import OfActiveOcean, refuse
 
@@ -35,6 +35,7 @@ class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
             return refuse(self, error)
         water_material.assign(item, water_material.water_material(self.water))
         water_material.describe(item, parameters, scene)
+        contact.refresh()
         return {"FINISHED"}
 
 

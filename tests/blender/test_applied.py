@@ -146,7 +146,9 @@ def test_what_showed_the_sea_and_what_floats_on_it(extension, ocean_object, make
     on_still = boat.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z
     assert on_still == pytest.approx(height, abs=1e-3)
     other = ocean_object.add(empty_scene, make_parameters(), name="Other")
-    bake = extension("scene.float_bake").FloatBake(empty_scene, [boat], other, floating.Ride(), range(1, 3))
+    bake = extension("scene.float_bake").FloatBake(
+        empty_scene, [boat], other, lambda _: floating.Ride(), range(1, 3)
+    )
     with pytest.raises(floating.FloatError, match="Ocean is no ocean any more"):
         bake.advance()
     bake.cancel()

@@ -4,7 +4,7 @@
 import bpy
 import pytest
 
-NAMES = {"Ocean Tweak", "Ocean Sample", "Float on Ocean", "Ocean Tweak Water"}
+NAMES = {"Ocean Tweak", "Ocean Sample", "Float on Ocean", "Ocean Tweak Water", "Ocean Tweak Wet Band"}
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ WITHOUT_OCEAN = {
     "ocean.convert", "ocean.delete_preset", "ocean.rename_preset", "ocean.import_preset",
     "ocean.export_preset", "ocean.import_usd", "ocean.stop_usd", "ocean.verify_usd",
     "object.ocean_tweak_float", "object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove",
+    "object.ocean_tweak_contact",
 }  # fmt: skip
 
 

@@ -173,7 +173,9 @@ def test_esc_leaves_everything_as_it_was(ocean, buoy, extension, empty_scene):
     buoy.animation_data_create().action = action
     empty_scene.frame_set(3)
     things, matrix = set(bpy.data.objects), buoy.matrix_world.copy()
-    bake = extension("scene.float_bake").FloatBake(empty_scene, [buoy], ocean, floating.Ride(), range(1, 10))
+    bake = extension("scene.float_bake").FloatBake(
+        empty_scene, [buoy], ocean, lambda _: floating.Ride(), range(1, 10)
+    )
     bake.advance()
     bake.advance()
     assert (bake.done, empty_scene.frame_current) == (2, 2)

@@ -149,6 +149,7 @@ class Layout:
         module, _, function = name.partition(".")
         assert hasattr(bpy.types, f"{module.upper()}_OT_{function}")
         self.drawn.append(name)
+        return SimpleNamespace()
 
 
 def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, extension):
@@ -159,16 +160,17 @@ def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, exten
         panel.draw(SimpleNamespace(layout=Layout(texts)), bpy.context)
         return texts
 
+    touch = "object.ocean_tweak_contact"
     buttons = ["object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove"]
     select()
     assert drawn() == ["object.ocean_tweak_float", *buttons]
     select(buoy)
-    assert drawn() == ["object.ocean_tweak_float", *buttons]
+    assert drawn() == ["object.ocean_tweak_float", touch, *buttons]
     bpy.ops.object.ocean_tweak_float()
-    inputs = ["Ocean", "Waterline", "Draft", "Tilt", "Drift"]
-    assert drawn() == ["Move Buoy Float", *inputs, *buttons]
+    inputs = ["Ocean", "Waterline", "Draft", "Keel", "Tilt", "Drift"]
+    assert drawn() == ["Move Buoy Float", *inputs, touch, *buttons]
     select(bpy.data.objects["Buoy Float"])
-    assert drawn() == [*inputs, *buttons]
+    assert drawn() == [*inputs, touch, *buttons]
 
 
 @pytest.mark.parametrize(("menu", "function"), [("VIEW3D_MT_object", "draw_object_menu"),

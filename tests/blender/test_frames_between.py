@@ -151,7 +151,9 @@ def test_what_floats_is_keyed_on_that_slow_motion(extension, baked, empty_scene)
         return result
 
     live = heights()
-    bake = extension("scene.float_bake").FloatBake(empty_scene, [boat], item, floating.Ride(), frames)
+    bake = extension("scene.float_bake").FloatBake(
+        empty_scene, [boat], item, lambda _: floating.Ride(), frames
+    )
     for _ in frames:
         bake.advance()
     bake.finish()

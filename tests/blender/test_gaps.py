@@ -106,7 +106,7 @@ def test_what_floats_on_a_bake_with_gaps_stays_on_it(baked, extension, empty_sce
     extension("scene.floating").float_on(boat, item, empty_scene)
     live = {frame: height_of(boat, empty_scene, frame) for frame in range(-4, 7)}
     ride = extension("scene.floating").Ride()
-    bake = extension("scene.float_bake").FloatBake(empty_scene, [boat], item, ride, range(-4, 7))
+    bake = extension("scene.float_bake").FloatBake(empty_scene, [boat], item, lambda _: ride, range(-4, 7))
     for _ in bake.frames:
         bake.advance()
     bake.finish()

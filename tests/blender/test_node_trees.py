@@ -41,6 +41,10 @@ KINDS = {
     "carrier": ("nodes.floating", lambda module: module.CARRIER),
     "horizon": ("nodes.horizon", lambda module: module.HORIZON),
     "water": ("nodes.water", lambda module: module.WATER),
+    "contact": ("nodes.contact", lambda module: module.CONTACT),
+    "wet-band": ("nodes.contact", lambda module: module.WET_BAND),
+    "collar": ("nodes.contact", lambda module: module.COLLAR),
+    "ripple-normal": ("nodes.contact", lambda module: module.RIPPLE_NORMAL),
 }
 
 

@@ -135,7 +135,9 @@ def test_what_floats_keeps_to_the_sea_when_it_is_baked_to_keys(stretched, live, 
     floating = extension("scene.floating")
     floating.float_on(boat, item, scene)
     before = [height_of(boat, scene, frame) for frame in range(1, 9)]
-    bake = extension("scene.float_bake").FloatBake(scene, [boat], item, floating.Ride(), range(1, 9))
+    bake = extension("scene.float_bake").FloatBake(
+        scene, [boat], item, lambda _: floating.Ride(), range(1, 9)
+    )
     for _ in bake.frames:
         bake.advance()
     bake.finish()

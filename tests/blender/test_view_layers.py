@@ -84,7 +84,8 @@ def test_floating_on_it_is_baked_with_the_animation(
     floating, baking = extension("scene.floating"), extension("scene.float_bake")
 
     def keys():
-        bake = baking.FloatBake(empty_scene, [boat], ocean, floating.Ride(), range(10, 12))
+        ride = floating.Ride()
+        bake = baking.FloatBake(empty_scene, [boat], ocean, lambda _: ride, range(10, 12))
         for _ in bake.frames:
             bake.advance()
         bake.finish()

@@ -3,9 +3,10 @@
 
 import bpy
 
+from ...nodes.contact import LOOK_INPUTS
 from ...nodes.floating import RIDE_INPUTS
 from ...nodes.modifier_inputs import input_property
-from ...scene import floating
+from ...scene import contact, floating
 from .. import float_operators
 from .drawing import SidebarPanel, split
 
@@ -36,12 +37,32 @@ class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
                     column.prop_search(owner, name, bpy.data, "objects", text=plug.name, icon="MOD_OCEAN")
                 else:
                     column.prop(owner, name, text=plug.name)
+        if item is not None:
+            _contact(layout, item if carrier != item else next(floating.carried_by(item), item))
         column = layout.column(align=True)
         bake, remove = (
             float_operators.OBJECT_OT_ocean_float_bake, float_operators.OBJECT_OT_ocean_float_remove,
         )  # fmt: skip
         column.operator(bake.bl_idname, text="Bake to Keyframes", icon="KEYINGSET")
         column.operator(remove.bl_idname, text="Remove", icon="X")
+
+
+def _contact(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
+    """Draw the collar and the wet band of an object, and the button that makes or takes them."""
+    touches = contact.touches(item)
+    if touches:
+        for collar in contact.collars_of(item):
+            column = layout.column(align=True)
+            column.label(text="Foam and Ripples Around It")
+            for name, *_ in LOOK_INPUTS:
+                column.prop(collar.inputs[name], "default_value", text=name)
+        modifier = contact.modifier_of(item)
+        if modifier is not None:
+            owner, name = input_property(modifier, "Wet Band")
+            layout.prop(owner, name, text="Wet Band")
+    text = "Leave Water Alone" if touches else float_operators.OBJECT_OT_ocean_contact.bl_label
+    button = layout.operator(float_operators.OBJECT_OT_ocean_contact.bl_idname, text=text, icon="MOD_OCEAN")
+    button.use_contact = not touches
 
 
 CLASSES = (OCEAN_PT_float,)

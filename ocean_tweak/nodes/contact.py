@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where something touches the water: the wet band on it, and the collar of foam and ripples around it.
+
+The wet band is a point attribute that geometry nodes write on what touches the water, and a shader group that
+reads it. The collar is a shader group in the water's material. It knows the thing by the coordinates of its
+object and its waterline as a superellipse: no mesh reads another, so nothing depends on itself, and whatever
+shows the water shows the collar.
+
+Ripples of length λ run outwards as waves in deep water do, ω² = 2πg/λ. The distance from the waterline is
+that of the first order, (f - 1)/|∇f|, f being 1 on it (Taubin 1991).
+"""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+
+from .building import Builder, Panel, Plug, Socket, output
+from .fields import coordinates
+from .names import WET
+from .sample import OCEAN_INPUT, Spaces
+from .shading import Shading
+from .surface import SURFACE
+from .versioned import GroupKind, node_group
+from .water_pattern import METRES
+
+_GRAVITY = 9.81  # m/s²
+#: of ripples: wavelength as a share of the longest, and slope
+_TRAINS = ((1.0, 0.2), (0.43, 0.13))
+_SCATTER = 5.0  # rad, by which they are out of step around the hull
+#: of the foam's width: how far it reaches where the noise is least, and how much farther where it is greatest
+_NARROW, _WIDE = 0.25, 1.7
+
+CONTACT_INPUTS = (
+    OCEAN_INPUT,
+    Plug("Wet Band", "NodeSocketFloat", 0.25, "How high above the water it is wet, in Blender units"),
+)
+_VERTEX_INPUTS = (
+    ("Vector", "NodeSocketVector", (0.0, 0.0, 0.0), "The water's place in the coordinates of the object"),
+    ("Location", "NodeSocketVector", (0.0, 0.0, 0.0), "Makes its waterline the origin, in metres"),
+    ("Rotation", "NodeSocketVector", (0.0, 0.0, 0.0), "Makes it stand upright"),
+    ("Scale", "NodeSocketVector", (1.0, 1.0, 1.0), "Makes metres of its units"),
+)
+#: of a collar, that an artist changes
+LOOK_INPUTS = (
+    ("Foam", "NodeSocketFloat", 0.7, "At the waterline, 0 to 1"),
+    ("Foam Width", "NodeSocketFloat", 0.25, "In metres; it is thinned out over about twice as much"),
+    ("Ripples", "NodeSocketFloat", 1.0, "Multiplies their height"),
+    ("Ripple Length", "NodeSocketFloat", 0.5, "Of the longest, from crest to crest, in metres"),
+)
+_HULL_INPUTS = (
+    ("Half Length", "NodeSocketFloat", 1.0, "Of the waterline along x, in metres"),
+    ("Half Beam", "NodeSocketFloat", 1.0, "Of the waterline along y, in metres"),
+    ("Fullness", "NodeSocketFloat", 2.0, "Of the waterline: 1 is a rhombus, 2 an ellipse, more a box"),
+)
+_CHAIN = (
+    ("Foam Map", "NodeSocketFloat", 0.0, "Foam of the collars before"),
+    ("Height", "NodeSocketFloat", 0.0, "Ripples of the collars before, in metres"),
+    ("Time", "NodeSocketFloat", 0.0, "Seconds"),
+)
+_COLLAR_OUTPUTS = (
+    Plug("Foam Map", "NodeSocketFloat", None, "Foam with that of this collar"),
+    Plug("Height", "NodeSocketFloat", None, "Ripples with those of this collar, in metres"),
+)
+
+
+def _build_contact(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, CONTACT_INPUTS)
+    spaces = Spaces(build, build.given("Ocean"))
+    own = output(build.add("GeometryNodeInputPosition"), "Position")
+    place = spaces.point_of_ocean(own)
+    surface = build.group(node_group(SURFACE), {"Geometry": spaces.mesh, "Position": place})
+    above = build.vector("SUBTRACT", place, output(surface, "Point"))
+    part = build.math(
+        "DIVIDE", coordinates(build, above)[2], build.math("MAXIMUM", build.given("Wet Band"), 1e-6)
+    )
+    # not clamped: between vertices far apart it is still right
+    build.finish(build.store(build.given("Geometry"), WET, build.math("SUBTRACT", 1.0, part), "FLOAT"))
+
+
+def _build_wet(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    outputs = (
+        Plug("Color", "NodeSocketColor", None, "Darker where it is wet"),
+        Plug("Roughness", "NodeSocketFloat", None, "Less where it is wet"),
+    )
+    inputs = (
+        ("Color", "NodeSocketColor", (0.8, 0.8, 0.8, 1.0), "Of the dry surface"),
+        ("Roughness", "NodeSocketFloat", 0.5, "Of the dry surface"),
+        ("Darkening", "NodeSocketFloat", 0.6, "Share of the colour's light that water on it takes"),
+        ("Wet Roughness", "NodeSocketFloat", 0.07, "Of the film of water"),
+        ("Drips", "NodeSocketFloat", 9.0, "Along the upper edge, in the length of the object"),
+    )
+    given = shade.interface(outputs, (Panel("Wet Band", inputs),)).outputs
+    at = shade.node("ShaderNodeTexCoord").outputs["Generated"]
+    ragged = shade.noise(at, given["Drips"], Detail=2.0)
+    height = shade.math("MULTIPLY_ADD", shade.math("SUBTRACT", ragged, 0.5), 0.6, shade.value(WET))
+    wet = shade.smooth(height, 0.0, 0.45)
+    kept = shade.math("SUBTRACT", 1.0, shade.math("MULTIPLY", wet, given["Darkening"]))
+    shade.finish(
+        {
+            "Color": shade.scale(given["Color"], kept),
+            "Roughness": shade.mix(wet, given["Roughness"], given["Wet Roughness"]),
+        }
+    )
+
+
+def _build_collar(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    panels = (
+        Panel("Look", LOOK_INPUTS),
+        Panel("Hull", (*_VERTEX_INPUTS, *_HULL_INPUTS)),
+        Panel("Chain", _CHAIN),
+    )
+    given = shade.interface(_COLLAR_OUTPUTS, panels).outputs
+    # where the object was deleted, Blender gives the water's own coordinates
+    own = shade.node("ShaderNodeTexCoord").outputs["Object"]
+    is_there = shade.math("GREATER_THAN", shade.number("DISTANCE", own, given["Vector"]), 1e-4)
+    mapped = {name: given[name] for name, *_ in _VERTEX_INPUTS}
+    place = shade.node("ShaderNodeMapping", mapped, vector_type="POINT").outputs[0]
+    away = _distance(shade, given, place)
+    uneven = _uneven(shade, given, place)
+    foam = shade.math("MULTIPLY", is_there, _foam(shade, given, away, uneven))
+    ripples = shade.math("MULTIPLY", is_there, _ripples(shade, given, away, uneven))
+    shade.finish(
+        {
+            "Foam Map": shade.math("MAXIMUM", given["Foam Map"], foam),
+            "Height": shade.math("ADD", given["Height"], ripples),
+        }
+    )
+
+
+def _distance(shade: Shading, given: dict[str, Socket], place: Socket) -> Socket:
+    """From the waterline in m, below 0 within."""
+    full = given["Fullness"]
+    sizes = given["Half Length"], given["Half Beam"]
+    shares = [
+        shade.math("DIVIDE", shade.math("ABSOLUTE", part), size)
+        for part, size in zip(shade.separate(place), sizes, strict=False)
+    ]
+    powers = [shade.math("POWER", share, full) for share in shares]
+    total = shade.math("MAXIMUM", shade.math("ADD", *powers), 1e-6)
+    form = shade.math("POWER", total, shade.math("DIVIDE", 1.0, full))
+    less = shade.math("SUBTRACT", full, 1.0)
+    outer = shade.math("POWER", form, less)
+    slopes = [
+        shade.math("DIVIDE", shade.math("DIVIDE", shade.math("POWER", share, less), size), outer)
+        for share, size in zip(shares, sizes, strict=True)
+    ]
+    steep = shade.math("SQRT", shade.math("ADD", *(shade.math("MULTIPLY", each, each) for each in slopes)))
+    return shade.math("DIVIDE", shade.math("SUBTRACT", form, 1.0), shade.math("MAXIMUM", steep, 1e-6))
+
+
+def _uneven(shade: Shading, given: dict[str, Socket], place: Socket) -> Socket:
+    """0…1, differs around the hull and from moment to moment."""
+    x, y, _ = shade.separate(shade.scale(place, shade.math("DIVIDE", 0.6, given["Ripple Length"])))
+    moving = shade.combine(x, y, shade.math("MULTIPLY", given["Time"], 0.35))
+    return shade.smooth(shade.noise(moving, 1.0, Detail=2.0), 0.3, 0.7)
+
+
+def _foam(shade: Shading, given: dict[str, Socket], away: Socket, uneven: Socket) -> Socket:
+    reach = shade.math("MULTIPLY", given["Foam Width"], shade.mix(uneven, _NARROW, _WIDE))
+    outside = shade.math("DIVIDE", shade.math("MAXIMUM", away, 0.0), shade.math("MAXIMUM", reach, 1e-6))
+    return shade.math(
+        "MULTIPLY", given["Foam"], shade.math("EXPONENT", shade.math("MULTIPLY", outside, -1.0))
+    )
+
+
+def _ripples(shade: Shading, given: dict[str, Socket], away: Socket, uneven: Socket) -> Socket:
+    """Their height, m."""
+    longest = shade.math("MAXIMUM", given["Ripple Length"], 1e-3)
+    total: Socket | float = 0.0
+    for share, slope in _TRAINS:
+        length = shade.math("MULTIPLY", longest, share)
+        number = shade.math("DIVIDE", 2.0 * math.pi, length)
+        frequency = shade.math("SQRT", shade.math("MULTIPLY", number, _GRAVITY))
+        phase = shade.math("MULTIPLY_ADD", number, away, shade.math("MULTIPLY", uneven, _SCATTER))
+        phase = shade.math("SUBTRACT", phase, shade.math("MULTIPLY", frequency, given["Time"]))
+        height = shade.math("MULTIPLY", shade.math("COSINE", phase), shade.math("DIVIDE", slope, number))
+        total = shade.math("ADD", total, height)
+    reach = shade.math("DIVIDE", shade.math("MAXIMUM", away, 0.0), shade.math("MULTIPLY", longest, -2.5))
+    near = shade.math("MULTIPLY", shade.math("EXPONENT", reach), given["Ripples"])
+    return shade.math("MULTIPLY", total, near)
+
+
+def _build_ripple_normal(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    outputs = (Plug("Normal Map", "NodeSocketVector", None, "In the ocean's own axes"),)
+    inputs = (("Height", "NodeSocketFloat", 0.0, "Of the ripples, in metres"),)
+    given = shade.interface(outputs, (Panel("Ripples", inputs),)).outputs
+    metres = shade.math("MAXIMUM", shade.value(METRES, "OBJECT"), 1e-6)
+    bumps = {"Height": given["Height"], "Distance": shade.math("DIVIDE", 1.0, metres), "Strength": 1.0}
+    bent = shade.node("ShaderNodeBump", bumps).outputs[0]
+    to_ocean = {"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "OBJECT"}
+    shade.finish({"Normal Map": shade.node("ShaderNodeVectorTransform", {0: bent}, **to_ocean).outputs[0]})
+
+
+CONTACT = GroupKind("Ocean Contact", 1, _build_contact)
+WET_BAND = GroupKind("Ocean Tweak Wet Band", 1, _build_wet, "ShaderNodeTree")
+COLLAR = GroupKind("Ocean Tweak Collar", 1, _build_collar, "ShaderNodeTree")
+RIPPLE_NORMAL = GroupKind("Ocean Tweak Ripple Normal", 1, _build_ripple_normal, "ShaderNodeTree")

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The size and shape of what floats: its bounds, from which it gets a draft, and its waterline."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Quaternion
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Edges = NDArray[np.int32]
+
+#: ships have a beam of 2.3 to 3.8 drafts (Schneekluth & Bertram 1998)
+_BEAM_OF_DRAFT = 3.0
+_FULLEST = 8.0
+#: points of a waterline, fewer of which tell no shape
+_LEAST_POINTS = 6
+
+
+@dataclass(frozen=True)
+class Waterline:
+    """Where the water's surface cuts a hull, as a superellipse; Blender units, in the hull's upright axes.
+
+    middle : x and y
+    half_length, half_beam : along x and y
+    fullness : exponent: 1 is a rhombus, 2 an ellipse, more a box
+    """
+
+    middle: tuple[float, float]
+    half_length: float
+    half_beam: float
+    fullness: float
+
+
+@dataclass(frozen=True)
+class Hull:
+    """What of an object, and of its children, is to float.
+
+    Its upright axes have z upwards and the object's own heading; the object's origin is theirs.
+
+    scale : of the object's own coordinates
+    tilt : from these, scaled, to the upright axes
+    vertices : (N, 3) in the upright axes, Blender units
+    edges : (M, 2) of their numbers
+    """
+
+    scale: tuple[float, float, float]
+    tilt: Quaternion
+    vertices: Array
+    edges: Edges
+
+    @property
+    def keel(self) -> float:
+        """How far below the origin the lowest point is."""
+        return float(-self.vertices[:, 2].min())
+
+    @property
+    def beam(self) -> float:
+        """The smaller one of the two horizontal sizes."""
+        return float(np.ptp(self.vertices[:, :2], axis=0).min())
+
+    @property
+    def draft(self) -> float:
+        """How deep it sits where nobody says so: a third of its beam, at most half of its height."""
+        return min(self.beam / _BEAM_OF_DRAFT, 0.5 * float(np.ptp(self.vertices[:, 2])))
+
+    def waterline(self, level: float) -> Waterline | None:
+        """Its waterline where water stands at a height above the origin; None where none cuts it."""
+        above = self.vertices[:, 2] - level
+        first, second = above[self.edges].T
+        cut = self.edges[first * second < 0.0]
+        if len(cut) < _LEAST_POINTS:
+            return None
+        first, second = above[cut].T
+        share = (first / (first - second))[:, np.newaxis]
+        points = self.vertices[cut[:, 0]] * (1.0 - share) + self.vertices[cut[:, 1]] * share
+        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        if not np.all(half > 0.0):
+            return None
+        return Waterline(tuple(middle), *half, _fullness(np.abs(points[:, :2] - middle) / half))
+
+
+def hull_of(
+    item: bpy.types.Object, upright: Matrix, depsgraph: bpy.types.Depsgraph | None = None
+) -> Hull | None:
+    """An object's hull; None for one without any vertices, of its own or of its children.
+
+    upright : the object's place in the world where it does not float
+    depsgraph : that has evaluated its modifiers; None takes its mesh without them
+    """
+    parts = [_vertices(part, item, depsgraph) for part in (item, *item.children_recursive)]
+    parts = [(vertices, edges) for vertices, edges in parts if len(vertices)]
+    if not parts:
+        return None
+    counts = np.cumsum([0, *(len(vertices) for vertices, _ in parts)])
+    vertices = np.concatenate([vertices for vertices, _ in parts])
+    edges = np.concatenate([edges + first for (_, edges), first in zip(parts, counts, strict=False)])
+    _, turned, _ = upright.decompose()
+    scale = item.matrix_world.to_scale()
+    heading = Quaternion((turned.w, 0.0, 0.0, turned.z))
+    tilt = heading.normalized().inverted() @ turned if heading.magnitude > 1e-6 else turned
+    matrix = np.array(tilt.to_matrix()) * np.array(scale)
+    return Hull(tuple(scale), tilt, vertices @ matrix.T, edges)
+
+
+def meshes_of(item: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """The object and its children, as far as they are meshes that are rendered."""
+    return (part for part in (item, *item.children_recursive) if part.type == "MESH" and not part.hide_render)
+
+
+def _vertices(
+    part: bpy.types.Object, item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None
+) -> tuple[Array, Edges]:
+    """Of an object's mesh, in the coordinates of another."""
+    if part not in meshes_of(item):
+        return np.empty((0, 3)), np.empty((0, 2), np.int32)
+    mesh = part.data if depsgraph is None else part.evaluated_get(depsgraph).data
+    flat, ends = np.empty(3 * len(mesh.vertices), np.float32), np.empty(2 * len(mesh.edges), np.int32)
+    mesh.vertices.foreach_get("co", flat)
+    mesh.edges.foreach_get("vertices", ends)
+    matrix = np.array(item.matrix_world.inverted_safe() @ part.matrix_world)
+    return flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3], ends.reshape(-1, 2)
+
+
+def _fullness(points: Array) -> float:
+    """The exponent n for which u^n + v^n is nearest to 1 on (N, 2) points of the outline."""
+    exponents = np.linspace(1.0, _FULLEST, 71)
+    form = np.sum(points[np.newaxis] ** exponents[:, np.newaxis, np.newaxis], axis=-1)
+    off = np.abs(form ** (1.0 / exponents[:, np.newaxis]) - 1.0).mean(axis=1)
+    return float(exponents[off.argmin()])
