@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..numerics.interpolation import between, resampled
+from ..numerics.interpolation import between, resampled, wrapped
 from ..numerics.memo import MEMO, total_bytes
 from .windrows import Windrows
 
@@ -156,13 +156,16 @@ class _Births:
     def left(self, now: Fraction) -> tuple[RealArray, RealArray]:
         """F of what is left by now, and its age in s; what is remembered beyond the faintest is none."""
         model = self._model
-        foam = np.exp2((self._latest - float(now)) / model.half_life).astype(np.float32)
-        foam[foam < FAINTEST] = 0.0
+        halvings = self._latest - float(now)
+        halvings /= model.half_life
+        foam = np.exp2(halvings.astype(np.float32))
+        foam *= foam >= FAINTEST
         last = math.floor(now / model.step)
         # counted from the present, so that it does not depend on where the history began
-        moments = (last - self._first) - self._moments
-        age = (float(now - last * model.step) + moments * float(model.step)).astype(np.float32)
-        age[foam == 0.0] = 0.0
+        age = ((last - self._first) - self._moments).astype(np.float32)
+        age *= np.float32(model.step)
+        age += np.float32(now - last * model.step)
+        age *= foam > 0.0
         return foam, age
 
 
@@ -284,50 +287,50 @@ class _Drawing:
         along = spacing * np.arange(samples)
         y, x = np.broadcast_arrays(along[:, np.newaxis], along)
         source_x, source_y, self._share = windrows.sources(x, y)
-        self._columns, self._rows = (
-            ((source - rest) / spacing).astype(np.float32) for source, rest in ((source_x, x), (source_y, y))
-        )
+        column, row = np.floor(source_x / spacing), np.floor(source_y / spacing)
+        self._u = (source_x / spacing - column).astype(np.float32)
+        self._v = (source_y / spacing - row).astype(np.float32)
+        # of the sample before each source, where rows have one more, the first again
+        self._first = (row % samples * (samples + 1) + column % samples).astype(np.int32)
 
     @property
     def nbytes(self) -> int:
         """Bytes of all that is kept."""
-        return total_bytes((self._share, self._columns, self._rows))
+        return total_bytes((self._share, self._u, self._v, self._first))
 
     def drawn_out(self, foam: RealArray, age: RealArray) -> tuple[RealArray, RealArray]:
         """Old foam and its age as they lie in the windrows."""
+        n = len(foam)
+        fields = wrapped(foam).ravel(), wrapped(age).ravel()
         result = np.empty_like(foam), np.empty_like(age)
-        for first in range(0, len(foam), _ROWS):
+        for first in range(0, n, _ROWS):
             part = slice(first, first + _ROWS)
-            drawn = self._read(foam, age, part)
+            at = self._first[part].astype(np.intp)
+            here, beside, above, across = (
+                [np.take(field[offset:], at) for field in fields] for offset in (0, 1, n + 1, n + 2)
+            )
+            u = self._u[part]
+            drawn = _between(_between(here, beside, u), _between(above, across, u), self._v[part])
             made = self._windrows.drawn_out(foam[part], age[part], *drawn, self._share[part])
             for whole, rows in zip(result, made, strict=True):
                 whole[part] = rows
         return result
 
-    def _read(self, foam: RealArray, age: RealArray, part: slice) -> tuple[RealArray, RealArray]:
-        """Foam and its age at the sources of some rows; see `_between`."""
-        n = len(foam)
-        row_off, column_off = np.floor(self._rows[part]), np.floor(self._columns[part])
-        v, u = self._rows[part] - row_off, self._columns[part] - column_off
-        number = np.arange(n)
-        i = number[part, np.newaxis] + row_off.astype(np.intp)
-        j = number + column_off.astype(np.intp)
-        corners = [((i + up) % n, (j + right) % n) for up in (0, 1) for right in (0, 1)]
-        here, beside, above, across = ((foam[at], age[at]) for at in corners)
-        return _between(_between(here, beside, u), _between(above, across, u), v)
-
 
 def _breaking(model: FoamModel, compression: RealArray) -> RealArray:
     """c of the present, float32."""
-    return model.strength(compression).astype(np.float32)
+    result = np.zeros(compression.shape, np.float32)
+    found = compression > model.threshold
+    result[found] = model.strength(compression[found])
+    return result
 
 
 def _seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
     """What breaks now over what is left."""
     foam = np.maximum(old, breaking)
-    for share in (foam, breaking):
-        share[share < FAINTEST] = 0.0
-    return Whitecaps(foam, breaking, np.where((breaking > 0.0) | (foam == 0.0), np.float32(0.0), age))
+    foam *= foam >= FAINTEST
+    breaking = breaking * (breaking >= FAINTEST)
+    return Whitecaps(foam, breaking, age * ((foam > 0.0) & (breaking == 0.0)))
 
 
 def _moved(
@@ -343,6 +346,8 @@ def _shifted(foam: RealArray, age: RealArray, axis: int, shift: float) -> tuple[
     """Periodic foam and its age read `shift` samples on along an axis; see `_between`."""
     whole = math.floor(shift)
     share = np.float32(shift - whole)
+    if shift == 0.0:
+        return foam, age
     near = np.roll(foam, -whole, axis), np.roll(age, -whole, axis)
     return near if share == 0.0 else _between(near, [np.roll(field, -1, axis) for field in near], share)
 

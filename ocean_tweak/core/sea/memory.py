@@ -119,7 +119,7 @@ def _foam_bytes(parameters: OceanParameters) -> int:
     """The fields themselves; births with their times, what draws them out, a compression and temporaries at
     the foam's own resolution."""
     own = parameters.foam.resolution or parameters.resolution
-    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 80 * own**2
+    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 84 * own**2
 
 
 def _columns(group: Iterable[str], gradient: bool) -> int:

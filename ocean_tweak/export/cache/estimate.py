@@ -54,7 +54,7 @@ _WRITING, _PUT_TOGETHER = 20, 29
 _POINTS = 480
 #: bytes a sample of foam: births, what draws them out and what is worked with, as far as that meets the peak
 #: of the rest
-_FOAM = 40
+_FOAM = 44
 
 #: bytes a sample while the waves are made and measured
 _STATISTICS = 40
