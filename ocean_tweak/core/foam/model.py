@@ -120,10 +120,10 @@ class Whitecaps(NamedTuple):
         here, beside, above, across = ((self.foam[at], self.foam_age[at]) for at in where.corners)
         u, v = where.u.astype(np.float32), where.v.astype(np.float32)
         foam, age = _between(_between(here, beside, u), _between(above, across, u), v)
-        return _seen(where.read(self.breaking).astype(np.float32), foam, age)
+        return seen(where.read(self.breaking).astype(np.float32), foam, age)
 
 
-class _Births:
+class Births:
     """At each place the birth of which there is most left, by now and at any later time."""
 
     def __init__(self, model: FoamModel, shape: tuple[int, ...], first: int) -> None:
@@ -183,7 +183,7 @@ class FoamHistory:
         self._model = model
         self._compression_at = compression_at
         self._resolution = resolution
-        self._births: _Births | None = None
+        self._births: Births | None = None
         self._drawing: _Drawing | None = None
         self._last = 0
         self._busy = threading.Lock()
@@ -201,9 +201,9 @@ class FoamHistory:
         model, n = self._model, self._resolution
         now = model.reduced(time)
         with self._busy:
-            breaking = resampled(_breaking(model, self._compression_at(now)), n)
+            breaking = resampled(breaking_of(model, self._compression_at(now)), n)
             if model.memory == 0:
-                return _seen(breaking, breaking, np.zeros_like(breaking))
+                return seen(breaking, breaking, np.zeros_like(breaking))
             foam, age = self._births_until(math.floor(now / model.step)).left(now)
             drifted, drift = model.drifted(now), [v * float(now) for v in model.drift]
             foam, age = _moved(foam, age, [a - b for a, b in zip(drift, drifted, strict=True)], model.spacing)
@@ -212,9 +212,9 @@ class FoamHistory:
         foam, age = _moved(foam, age, drifted, model.spacing)
         for axis in (0, 1):
             foam, age = _stretched(foam, age, axis, n)
-        return _seen(breaking, foam, age)
+        return seen(breaking, foam, age)
 
-    def _births_until(self, index: int) -> _Births:
+    def _births_until(self, index: int) -> Births:
         first = index - self._model.memory + 1
         if self._births is None or not self._last <= index:
             self._births = None
@@ -225,7 +225,7 @@ class FoamHistory:
         for step in range(first, index + 1):
             compression = self._compression_at(self._model.reduced(step * self._model.step))
             if births is None:
-                births = _Births(self._model, compression.shape, first)
+                births = Births(self._model, compression.shape, first)
             births.add(compression, step, self._moved(step))
             self.tell(step - first + 1, index + 1 - first)
         assert births is not None
@@ -242,41 +242,6 @@ class FoamHistory:
         time, spacing = float(index * self._model.step), self._model.spacing
         x, y = (round(-time * v / spacing) for v in self._model.drift)
         return y, x
-
-
-#: gives the compression of the sea at places in m, at a time in s
-CompressionAt = Callable[[Array, Array, Fraction], RealArray]
-
-
-def whitecaps_at(
-    model: FoamModel, compression_at: CompressionAt, x: Array, y: Array, time: float | Fraction
-) -> Whitecaps:
-    """(places,) foam at rest positions x and y in m, without a grid that could keep births.
-
-    Each place looks back along its own drift: so the foam of a sum repeats with none of its patches.
-    """
-    now = model.reduced(time)
-    breaking = _breaking(model, compression_at(x, y, now))
-    if model.memory == 0:
-        return _seen(breaking, breaking, np.zeros_like(breaking))
-    last = math.floor(now / model.step)
-    first = last - model.memory + 1
-    count, share = x.size, None
-    if model.windrows is not None:
-        moved_x, moved_y = model.drifted(now)
-        source_x, source_y, share = model.windrows.sources(x - moved_x, y - moved_y)
-        x, y = np.concatenate((x, source_x + moved_x)), np.concatenate((y, source_y + moved_y))
-    births = _Births(model, x.shape, first)
-    for index in range(first, last + 1):
-        then = index * model.step
-        age = float(now - then)
-        places = x - age * model.drift[0], y - age * model.drift[1]
-        births.add(compression_at(*places, model.reduced(then)), index)
-    left, ages = births.left(now)
-    if model.windrows is None or share is None:
-        return _seen(breaking, left, ages)
-    own, drawn = (left[:count], ages[:count]), (left[count:], ages[count:])
-    return _seen(breaking, *model.windrows.drawn_out(*own, *drawn, share))
 
 
 class _Drawing:
@@ -317,7 +282,7 @@ class _Drawing:
         return result
 
 
-def _breaking(model: FoamModel, compression: RealArray) -> RealArray:
+def breaking_of(model: FoamModel, compression: RealArray) -> RealArray:
     """c of the present, float32."""
     result = np.zeros(compression.shape, np.float32)
     found = compression > model.threshold
@@ -325,7 +290,7 @@ def _breaking(model: FoamModel, compression: RealArray) -> RealArray:
     return result
 
 
-def _seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
+def seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
     """What breaks now over what is left."""
     foam = np.maximum(old, breaking)
     foam *= foam >= FAINTEST

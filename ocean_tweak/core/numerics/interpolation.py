@@ -94,9 +94,14 @@ def wrapped(field: RealArray, dtype: type | None = None) -> RealArray:
     n = len(field)
     result = np.empty((n + 1, n + 1, *field.shape[2:]), dtype or field.dtype)
     result[:n, :n] = field
-    result[n, :n] = field[0]
-    result[:, n] = result[:, 0]
+    close(result)
     return result
+
+
+def close(field: RealArray) -> None:
+    """Make the last row and column of an (N+1, N+1, …) field the first ones again."""
+    field[-1, :-1] = field[0, :-1]
+    field[:, -1] = field[:, 0]
 
 
 def stretched(field: RealArray, axis: int, samples: int) -> RealArray:

@@ -87,24 +87,42 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
 def merged_bands(parameters: OceanParameters) -> OceanParameters:
     """A merged sea's patches on separate grids, without the waves shorter than two samples of its one grid.
 
-    The first has the grid's samples, the others as many as reading between them takes. The last that is left
-    holds no waves shorter than two of its own samples either; where another follows, bands must meet.
+    The first has the grid's samples, the others as many as reading between them takes.
     """
-    shortest = 2.0 * parameters.domain_size / parameters.resolution
-    first, *others = parameters.patches
-    kept = [first, *(patch for patch in others if patch.longest_wavelength > shortest)]
-    if len(kept) > 1 and kept[-1].longest_wavelength <= 2.0 * kept[-1].spacing:
-        kept.pop()
-    ends = [patch.shortest_wavelength for patch in kept]
-    ends[-1] = max(ends[-1], shortest, 2.0 * kept[-1].spacing)
-    bands = [_readable(patch, end) for patch, end in zip(kept, ends, strict=True)]
+    first = parameters.patches[0]
+    bands = list(_bands_above(parameters.patches, 2.0 * parameters.domain_size / parameters.resolution))
     if not first.rotation:
         bands[0] = replace(first, resolution=parameters.resolution)
     return parameters.replace(merged_resolution=0, patches=tuple(bands))
 
 
-def _readable(patch: Patch, end: float) -> Patch:
-    wanted = 2 * math.ceil(0.5 * _SAMPLES_A_WAVE * patch.domain_size / end)
+def waves_above(parameters: OceanParameters, shortest: float, samples_a_wave: float) -> OceanParameters:
+    """A sea's patches apart, without the waves shorter than so many m, each with so many samples along the
+    shortest that it holds.
+    """
+    bands = tuple(_bands_above(parameters.patches, shortest, samples_a_wave))
+    return parameters.replace(joined=0, patches=bands)
+
+
+def _bands_above(
+    patches: Sequence[Patch], shortest: float, samples_a_wave: float = _SAMPLES_A_WAVE
+) -> Iterator[Patch]:
+    """The patches that hold waves longer than that, and no shorter ones.
+
+    The last that is left holds no waves shorter than two of its own samples either; where another follows,
+    bands must meet.
+    """
+    first, *others = patches
+    kept = [first, *(patch for patch in others if patch.longest_wavelength > shortest)]
+    if len(kept) > 1 and kept[-1].longest_wavelength <= 2.0 * kept[-1].spacing:
+        kept.pop()
+    ends = [patch.shortest_wavelength for patch in kept]
+    ends[-1] = max(ends[-1], shortest, 2.0 * kept[-1].spacing)
+    yield from (_readable(patch, end, samples_a_wave) for patch, end in zip(kept, ends, strict=True))
+
+
+def _readable(patch: Patch, end: float, samples_a_wave: float) -> Patch:
+    wanted = 2 * math.ceil(0.5 * samples_a_wave * patch.domain_size / end)
     return replace(patch, shortest_wavelength=end, resolution=min(max(wanted, _FEWEST), _MOST))
 
 

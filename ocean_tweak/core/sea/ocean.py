@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..foam.model import FoamHistory, FoamModel, Whitecaps, whitecaps_at
+from ..foam.drifting import DriftingFoam, whitecaps_at
+from ..foam.model import FoamHistory, FoamModel, Whitecaps
 from ..foam.threshold import Strains, foam_model, gaussian_strains
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import merged_bands, parts, patch_parameters
@@ -233,6 +234,26 @@ class Ocean:
         sea = self._of_foam
         return whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
 
+    def new_drifting_foam(self, x: Array, y: Array) -> DriftingFoam:
+        """Foam at places on no tile, which drift along with it.
+
+        x, y : (places,) where they are at time 0, at rest, m
+        """
+        sea = self._of_foam
+        return DriftingFoam(sea.foam_model, sea._anywhere.compression_at, x, y)
+
+    @cached_property
+    def divergence_variance(self) -> float:
+        """Mean square of Dx by x + Dy by y, of the waves between the samples, without masks."""
+        (xx, yy, _), _ = self._strain_covariances((0.0, 0.0))
+        return float(xx[0] + 2.0 * xx[1] + yy[1])
+
+    @cached_property
+    def mean_breaking(self) -> float:
+        """The mean over the horizontal plane of how strongly crests break at a time."""
+        model = self.foam_model
+        return self._strains(model.drift).covered(model.threshold, 0.0)
+
     @property
     def _of_foam(self) -> Ocean:
         """The sea at the resolution at which foam is made."""
@@ -302,11 +323,14 @@ class Ocean:
 
     def _strains(self, drift: tuple[float, float]) -> Strains:
         """Of all parts together, as a point with this drift meets them."""
+        return gaussian_strains(*self._strain_covariances(drift))
+
+    def _strain_covariances(self, drift: tuple[float, float]) -> tuple[Array, Array]:
         between_samples = self.parameters.is_cascade or bool(self._placed)
         gradient, rates = strain_covariances(self._parts, drift, between_samples)
         for of_gradient, of_rates in placed_strain_covariances(self.parameters, drift):
             gradient, rates = gradient + of_gradient, rates + of_rates
-        return gaussian_strains(gradient, rates)
+        return gradient, rates
 
     def _points_of_tile(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool

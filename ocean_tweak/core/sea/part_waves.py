@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..foam import threshold as foam_threshold
 from ..masks import weights
+from ..numerics.interpolation import close
 from ..numerics.memo import MEMO, remembered
 from ..parameters.ocean_parameters import Foam, OceanParameters, Timing
 from ..parameters.patch_seas import Part
@@ -108,17 +109,25 @@ class PartWaves:
 
             self._synthesis.fill(time, needed, write, most)
 
-    def components(self, time: float | Fraction, wanted: Iterable[Key]) -> dict[Key, RealArray]:
-        """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t"."""
+    def components(
+        self, time: float | Fraction, wanted: Iterable[Key], closed: bool = False
+    ) -> dict[Key, RealArray]:
+        """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t".
+
+        closed : whether they are (N+1, N+1), the last row and column the first ones again
+        """
         keys = frozenset(wanted)
         n, dtype = self.parameters.resolution, real_type(self.precision)
-        made: dict[Key, RealArray] = {key: np.empty((n, n), dtype) for key in keys}
+        side = n + 1 if closed else n
+        made: dict[Key, RealArray] = {key: np.empty((side, side), dtype) for key in keys}
 
         def write(block: slice, rows: Rows) -> None:
             for component, derivative in keys:
-                rows.position(component, derivative, out=made[component, derivative][block])
+                rows.position(component, derivative, out=made[component, derivative][:n, :n][block])
 
         self._synthesis.fill(time, keys, write)
+        for field in made.values() if closed else ():
+            close(field)
         return made
 
     def exact_field(self, time: float | Fraction) -> Field:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..masks import Weights
-from ..numerics.interpolation import Reader, wrapped
+from ..numerics.interpolation import Reader
+from ..numerics.memo import total_bytes
 from ..synthesis.transforms import X, Y, Z
 
 Array = NDArray[np.float64]
@@ -84,16 +85,21 @@ def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray
 class Grid:
     """Periodic components of some waves, read in the sea's axes.
 
-    components : (N, N) each, in axes of their own
+    components : (N+1, N+1) each, in axes of their own, the last row and column the first ones again
     size : of the square that they fill, m
     rotation : of its axes against the sea's, rad counter-clockwise
     """
 
     def __init__(self, components: Components, size: float, rotation: float) -> None:
-        self._resolution = len(next(iter(components.values()), ()))
-        self._fields = {key: wrapped(field).ravel() for key, field in components.items()}
+        self._resolution = len(next(iter(components.values()), (0,))) - 1
+        self._fields = {key: field.reshape(-1) for key, field in components.items()}
         self._size = size
         self._rotation = rotation
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the components."""
+        return total_bytes(self._fields.values())
 
     def read(self, x: Array, y: Array, weights: Weights | None = None) -> dict[Key, RealArray]:
         """At places in m, of one flat shape, times weights of theirs."""

@@ -14,14 +14,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..masks import Mask, Weights, weights, weights_on_grid
-from ..numerics.memo import MEMO, total_bytes
+from ..numerics.memo import MEMO
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import Part
 from ..synthesis.channels import CHANNELS, memory_groups
@@ -76,7 +75,9 @@ class TileSum:
     ) -> dict[Key, RealArray]:
         """The (N, N) components of a part."""
         wanted = needs if waves.is_on_tile else unweighted(closed(needs))
-        components = waves.components(time, unweighted(wanted) if waves.part.masks else wanted)
+        if waves.part.masks:
+            wanted = unweighted(wanted)
+        components = waves.components(time, wanted, closed=not waves.is_on_tile)
         on_tile = components if waves.is_on_tile else self._read(components, waves.part)
         masks = waves.part.masks
         found = weights_on_grid(masks, self._side, self._samples, self._dtype) if masks else None
@@ -164,7 +165,7 @@ class AnywhereSum:
     ) -> None:
         """Fill the arrays of outputs that have no memory, whose first axes hold the flat x and y in m."""
         needs = frozenset().union(*(CHANNELS[name].needs for name in wanted))
-        sums = self._sums(x, y, time, needs, self._components(time, needs))
+        sums = self._sums(x, y, time, needs, [self._grid(waves, time, needs) for waves in self._parts])
         for name in wanted:
             components = CHANNELS[name].components
             made: RealArray = np.empty((x.size, components) if components else x.size, fields[name].dtype)
@@ -173,14 +174,17 @@ class AnywhereSum:
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 of the channel cusp; the strains it is made of are remembered, for the next
-        frame's foam looks back at them too.
+        frame's foam looks back at them too, and so may other seas of the same patches.
         """
         needs = CHANNELS["cusp"].needs
-        key = (self._parameters, self._precision, time)
-        strains = MEMO.get(_STRAINS, key, lambda: _Strains(self._components(time, needs)))
         compression = np.empty(x.shape, np.float32)
-        CHANNELS["cusp"].write(self._sums(x, y, time, needs, strains.of_parts), compression)
+        grids = [self._strains(waves, time, needs) for waves in self._parts]
+        CHANNELS["cusp"].write(self._sums(x, y, time, needs, grids), compression)
         return compression
+
+    def _strains(self, waves: PartWaves, time: Fraction, needs: Iterable[Key]) -> Grid:
+        key = (waves.parameters, waves.part.rotation, bool(waves.part.masks), self._precision, time)
+        return MEMO.get(_STRAINS, key, lambda: self._grid(waves, time, needs))
 
     def exact_field(self, time: float | Fraction) -> Field:
         """The band-limited surface. Raises ValueError with trough damping, which leaves no sum of waves."""
@@ -203,15 +207,13 @@ class AnywhereSum:
     def _placed_fields(self, time: float | Fraction) -> list[Field]:
         return [waves.field(time) for waves in self._placed]
 
-    def _components(self, time: float | Fraction, needs: Iterable[Key]) -> list[Components]:
-        """Of each part on its own samples."""
+    def _grid(self, waves: PartWaves, time: float | Fraction, needs: Iterable[Key]) -> Grid:
+        """What is read of a part: its components on its own samples."""
         wanted = closed(needs)
-        if not wanted:
-            return [{} for _ in self._parts]
-        return [
-            waves.components(time, unweighted(wanted) if waves.part.masks else wanted)
-            for waves in self._parts
-        ]
+        if wanted and waves.part.masks:
+            wanted = unweighted(wanted)
+        components = waves.components(time, wanted, closed=True) if wanted else {}
+        return Grid(components, waves.part.parameters.domain_size, waves.part.rotation)
 
     def _sums(
         self,
@@ -219,26 +221,13 @@ class AnywhereSum:
         y: Array,
         time: float | Fraction,
         needs: Iterable[Key],
-        components: Sequence[Components],
+        grids: Sequence[Grid],
     ) -> Summed:
         known: dict[tuple[Mask, ...], Weights] = {}
         found = []
-        for waves, of_part in zip(self._parts, components, strict=True):
+        for waves, grid in zip(self._parts, grids, strict=True):
             part = waves.part
             if part.masks and part.masks not in known:
                 known[part.masks] = weights(part.masks, self._parameters.domain_size, x, y)
-            grid = Grid(of_part, part.parameters.domain_size, part.rotation)
             found.append(grid.read(x, y, known.get(part.masks)))
         return Summed([*found, *(waves.at(x, y, time, needs) for waves in self._placed)])
-
-
-@dataclass(frozen=True)
-class _Strains:
-    """Strains of a moment, of each part on its own samples."""
-
-    of_parts: list[Components]
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all."""
-        return total_bytes(field for components in self.of_parts for field in components.values())
