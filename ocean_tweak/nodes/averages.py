@@ -15,12 +15,12 @@ import bpy
 
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, coordinates, named_attribute
-from .names import CUSP, DISPLACEMENT, FOAM, SLOPE, STRAIN, VELOCITY
+from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, SLOPE, STRAIN, VELOCITY
 from .surface import CELL
 from .versioned import GroupKind, node_group
 
-#: slopes along x and y and the sum of their squares; foam and cusp of an ocean, strain of a patch: three
-#: numbers are read at once
+#: slopes along x and y and the sum of their squares; foam, cusp and breaking of an ocean, strain of a patch:
+#: three numbers are read at once
 SLOPES, OTHERS = "ocean_tweak_slopes", "ocean_tweak_others"
 #: what is averaged
 MOVING = (DISPLACEMENT, VELOCITY, SLOPES)
@@ -37,7 +37,7 @@ IS_MOVING = Plug("Moving", "NodeSocketBool", True, "Displacement, velocity and s
 
 
 def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
-    """An ocean's mesh with what is averaged: foam and cusp, and where that is wanted how it moves."""
+    """An ocean's mesh with what is averaged: of its foam, and where that is wanted how it moves."""
     normal = output(build.add("GeometryNodeInputNormal"), "Normal")
     x, y, z = coordinates(build, normal)
     up = build.math("MAXIMUM", z, _LEAST_UPWARDS)
@@ -49,8 +49,8 @@ def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
     )  # fmt: skip
     sloped = build.store(ocean, SLOPES, output(of_point, "Value"), "FLOAT_VECTOR")
     either = build.switch("GEOMETRY", moving, ocean, sloped)
-    foam, cusp = (output(named_attribute(build, name, "FLOAT"), "Attribute") for name in (FOAM, CUSP))
-    return build.store(either, OTHERS, combined(build, foam, cusp), "FLOAT_VECTOR")
+    others = (output(named_attribute(build, name, "FLOAT"), "Attribute") for name in (FOAM, CUSP, BREAKING))
+    return build.store(either, OTHERS, combined(build, *others), "FLOAT_VECTOR")
 
 
 def patch_carried(build: Builder, patch: Socket) -> Socket:

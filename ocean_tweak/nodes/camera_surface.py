@@ -15,16 +15,19 @@ import bpy
 
 from ..core.parameters.patch import MOST_PATCHES
 from .averaged import AVERAGED
-from .averages import OTHERS, SLOPES, ocean_carried
+from .averages import CARRIED, OTHERS, SLOPES, ocean_carried
 from .building import Builder, Plug, Socket, output
+from .camera_foam import CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
 from .camera_patch import CAMERA_PATCH
 from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
 from .frame_warnings import joined_text
 from .names import (
+    BREAKING,
     CUSP,
     DISPLACEMENT,
     FOAM,
+    FOAM_AGE,
     SHORTEST_WAVE,
     SLOPE_VARIANCE,
     TEXTURE_COORDINATES,
@@ -32,7 +35,7 @@ from .names import (
     WEIGHT,
 )
 from .sample import OCEAN_INPUT, Spaces
-from .surface import GRID_FACTS
+from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
 
 EARTH_RADIUS = 6_371_000.0  # m
@@ -44,6 +47,8 @@ SHORTEST_CELLS = 4.0
 PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
 #: of what does not repeat
 AREA_INPUT = "Area"
+#: of foam on rings around a camera
+FOAM_INPUT = "Foam"
 
 INPUTS = (
     OCEAN_INPUT,
@@ -70,6 +75,10 @@ INPUTS = (
         "Points over the domain with the weights of patches; none takes those of the ocean's mesh",
     ),
     Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, and is 0 along its sides"),
+    Plug(
+        FOAM_INPUT, "NodeSocketObject", None,
+        "Points with foam on rings around a camera; none shows that of the ocean's mesh",
+    ),
 )  # fmt: skip
 
 
@@ -79,11 +88,15 @@ class _Sea(NamedTuple):
     facts : of its mesh
     corner : its first vertex at rest
     eye : the camera, from the corner
+    foam : points on rings around the camera
+    of_foam : what is known of them
     """
 
     facts: bpy.types.Node
     corner: Socket
     eye: Socket
+    foam: Socket
+    of_foam: bpy.types.Node
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
@@ -112,7 +125,9 @@ def _sea(build: Builder, spaces: Spaces) -> _Sea:
     facts = build.group(node_group(GRID_FACTS), {"Geometry": spaces.mesh})
     corner = output(facts, "Corner")
     eye = build.vector("SUBTRACT", spaces.point_of_ocean(_camera(build)), corner)
-    return _Sea(facts, corner, eye)
+    given = {"Object": build.given(FOAM_INPUT)}
+    foam = output(build.add("GeometryNodeObjectInfo", given, transform_space="ORIGINAL"), "Geometry")
+    return _Sea(facts, corner, eye, foam, build.group(node_group(RING_FACTS), {"Foam": foam}))
 
 
 def _camera(build: Builder) -> Socket:
@@ -169,7 +184,7 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
 
 
 def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
-    """The grid with what it shows: foam and cusp of the ocean's mesh, the rest of the patches or of the mesh.
+    """The grid with what it shows: the patches, or the ocean's mesh; foam on rings, or that of the mesh.
 
     Under the names of what is averaged are, in the ocean's axes, displacement, velocity, slopes with the
     variance that they lack, and strain.
@@ -178,25 +193,69 @@ def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
     is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
     facts = {name: output(sea.facts, name) for name in ("Columns", "Rows", "Spacing")}
     shared = {**facts, "Size": size, "Fade": build.given("Fade")}
-    position = output(build.add("GeometryNodeInputPosition"), "Position")
-    mesh = ocean_carried(build, output(sea.facts, "Geometry"), is_one)
-    own = {"Surface": mesh, "Place": position, "Moving": is_one}
-    grid = output(build.group(node_group(AVERAGED), {"Geometry": grid, **shared, **own}), "Geometry")
-    foam, cusp, _ = coordinates(build, _told(build, OTHERS))
-    for name, value in ((FOAM, foam), (CUSP, cusp)):
-        grid = build.store(grid, name, value, "FLOAT")
-    x, y, squares = coordinates(build, _told(build, SLOPES))
-    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
-    lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
-    grid = build.store(grid, SLOPES, combined(build, x, y, lost), "FLOAT_VECTOR")
-    # a mesh's normals are of its present shape already
-    grid = build.store(grid, OTHERS, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
+    own = _of_mesh(build, grid, sea, shared, is_one)
+    has_rings = build.logic("NIMPLY", output(sea.of_foam, "Is There"), is_one)
+    grid = build.switch("GEOMETRY", has_rings, own, _of_rings(build, grid, sea, size))
     whole = {**shared, **_weights(build, sea), "Ocean": build.given("Ocean"), "Corner": sea.corner}
     for number, name in enumerate(PATCH_INPUTS, start=1):
         inputs = {**whole, "Patch": build.given(name), "Weight": WEIGHT.format(number)}
         grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
     inputs = {**whole, "Patch": build.given(AREA_INPUT), "Repeats": False}
-    return output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
+    grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
+    return build.switch("GEOMETRY", is_one, build.store(grid, CUSP, _cusp(build), "FLOAT"), grid)
+
+
+def _of_mesh(
+    build: Builder, grid: Socket, sea: _Sea, shared: dict[str, Socket], is_moving: Socket
+) -> Socket:
+    """The grid with the foam of the ocean's mesh, and where that moves it, how."""
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    mesh = ocean_carried(build, output(sea.facts, "Geometry"), is_moving)
+    own = {"Surface": mesh, "Place": position, "Moving": is_moving}
+    grid = output(build.group(node_group(AVERAGED), {"Geometry": grid, **shared, **own}), "Geometry")
+    values = coordinates(build, _told(build, OTHERS))
+    for name, value in zip((FOAM, CUSP, BREAKING), values, strict=True):
+        grid = build.store(grid, name, value, "FLOAT")
+    # a mean of births would be the age of none of them
+    read_there = {
+        "Geometry": output(sea.facts, "Geometry"),
+        "Value": output(named_attribute(build, FOAM_AGE, "FLOAT"), "Attribute"),
+        "Place": build.vector("DIVIDE", position, shared["Spacing"]),
+        **{name: shared[name] for name in ("Columns", "Rows")},
+    }
+    age, _, _ = coordinates(build, output(build.group(node_group(CELL), read_there), "Value"))
+    grid = build.store(grid, FOAM_AGE, age, "FLOAT")
+    x, y, squares = coordinates(build, _told(build, SLOPES))
+    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
+    grid = build.store(grid, SLOPES, combined(build, x, y, lost), "FLOAT_VECTOR")
+    # a mesh's normals are of its present shape already
+    return build.store(grid, OTHERS, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
+
+
+def _of_rings(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
+    """The grid with foam on rings, and without any waves so far."""
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    inputs = {
+        "Foam": sea.foam,
+        "Rings": output(sea.of_foam, "Rings"),
+        "Place": build.vector("ADD", position, sea.corner),
+        "Size": size,
+    }
+    grid = output(build.group(node_group(CAMERA_FOAM), {"Geometry": grid, **inputs}), "Geometry")
+    for name in CARRIED:
+        grid = build.store(grid, name, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
+    return grid
+
+
+def _cusp(build: Builder) -> Socket:
+    """How far the sum of the strains compresses the surface: what a cusp is, `core.synthesis.channels`."""
+    xx, yy, shear = coordinates(build, _told(build, OTHERS))
+    half_sum, half_difference = (
+        build.math("MULTIPLY", build.math(operation, xx, yy), 0.5) for operation in ("ADD", "SUBTRACT")
+    )
+    root = alone(build, "LENGTH", combined(build, half_difference, shear))
+    return build.math("MAXIMUM", build.math("SUBTRACT", root, half_sum), 0.0)
 
 
 def _weights(build: Builder, sea: _Sea) -> dict[str, Socket]:
@@ -266,15 +325,22 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
         "units: raise Vertex Budget or Finest Spacing, or ask for less Reach",
     )  # fmt: skip
     below = "The camera is under water: the surface reaches as far as it is seen from 2 m above"
+    old = joined_text(
+        build,
+        "Foam around the camera is that of frame", output(sea.of_foam, "Frame"),
+        "as the Ocean Tweak extension does not run here: shown is that of the ocean's own mesh, on coarser "
+        "samples",
+    )  # fmt: skip
     is_below = build.compare("LESS_THAN", coordinates(build, sea.eye)[2], 0.0, "FLOAT")
     shown = [
         output(build.add("GeometryNodeWarning", {"Show": show, "Message": text}, warning_type=kind), "Show")
         for show, text, kind in (
             (build.compare("LESS_THAN", reached, reach, "FLOAT"), short, "WARNING"),
             (build.logic("AND", is_below, build.given("To Horizon")), below, "INFO"),
+            (output(sea.of_foam, "Is Of Another Frame"), old, "WARNING"),
         )
     ]
-    return build.logic("OR", *shown)
+    return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 3, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 4, _build)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from . import (
     averaged,
     averages,
+    camera_foam,
     camera_grid,
     camera_patch,
     camera_surface,
@@ -45,6 +46,9 @@ ALL_KINDS = (
     averages.AVERAGES,
     averaged.AVERAGED,
     camera_patch.CAMERA_PATCH,
+    camera_foam.RING_FACTS,
+    camera_foam.RING,
+    camera_foam.CAMERA_FOAM,
     camera_surface.CAMERA_SURFACE,
     water.WATER,
     contact.CONTACT,

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geometry nodes that read foam on rings around a camera, as `core.sea.foam_rings` makes it.
+
+Rings lie in one another, ring n with cells 2ⁿ times as large as the first one's. Their places are the points
+of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. One point more, the last,
+has what is beyond all rings, and stands at x = the frame that the foam is of.
+"""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+
+from ..core.sea.foam_rings import INNER, OUTER, SAMPLES
+from .building import Builder, Input, Plug, Socket, output
+from .fields import alone, combined, coordinates, named_attribute, sample_index, whole_number
+from .names import BREAKING, FOAM, FOAM_AGE
+from .versioned import GroupKind, node_group
+
+#: attribute of the places: foam, breaking and age
+RING_FOAM = "ocean_tweak_ring_foam"
+#: cells of a ring, at the least, that a cell of the grid may be as large as without a coarser ring being read
+_GRID_CELLS = 2.5
+
+_POINTS = Plug("Foam", "NodeSocketGeometry", None, "The rings' places, and the point beyond them")
+_RINGS = Plug("Rings", "NodeSocketInt", 1, "How many there are")
+_PLACE = Plug("Place", "NodeSocketVector", None, "Of the grid's vertices at rest, in the ocean's space")
+
+_FACTS_OUTPUTS = (
+    Plug("Is There", "NodeSocketBool", None, "Whether there is foam of the frame that is shown"),
+    Plug("Is Of Another Frame", "NodeSocketBool", None, "Whether there is foam, but of another frame"),
+    Plug("Frame", "NodeSocketInt", None, "That it is of"),
+    _RINGS,
+)
+
+
+def _build_facts(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, (_POINTS,), _FACTS_OUTPUTS)
+    points = build.given("Foam")
+    count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
+    rings = build.integer("DIVIDE_FLOOR", count, SAMPLES**2)
+    known = build.compare("GREATER_THAN", rings, 0)
+    frame, _, _ = coordinates(build, _position(build, points, build.integer("SUBTRACT", count, 1)))
+    now = output(build.add("GeometryNodeInputSceneTime"), "Frame")
+    off = build.math("ABSOLUTE", build.math("SUBTRACT", now, frame), None)
+    present = build.compare("LESS_THAN", off, 1.0, "FLOAT")
+    build.finish_with(
+        {
+            "Is There": build.logic("AND", known, present),
+            "Is Of Another Frame": build.logic("NIMPLY", known, present),
+            "Frame": whole_number(build, frame, "ROUND"),
+            "Rings": rings,
+        }
+    )
+
+
+def _build_ring(tree: bpy.types.NodeTree) -> None:
+    inputs = (
+        _POINTS,
+        _RINGS,
+        _PLACE,
+        Plug("Ring", "NodeSocketInt", 0, "That is read; there is one more than there are, beyond all"),
+        Plug("Spacing", "NodeSocketFloat", 0.25, "Of the first ring's cells"),
+    )
+    outputs = (Plug("Value", "NodeSocketVector", None, "Foam, breaking and age at the vertex"),)
+    build = Builder(tree, inputs, outputs)
+    points, rings = build.given("Foam"), build.given("Rings")
+    last = build.integer("SUBTRACT", rings, 1)
+    ring = build.integer("MINIMUM", build.given("Ring"), last)
+    first = build.integer("MULTIPLY", ring, SAMPLES**2)
+    size = build.math("MULTIPLY", build.given("Spacing"), build.math("POWER", 2.0, ring))
+    away = build.vector("SUBTRACT", build.given("Place"), _position(build, points, first))
+    cell = build.scaled(away, build.math("DIVIDE", 1.0, size))
+    column, row = (_held(build, along, SAMPLES - 2.0) for along in coordinates(build, cell)[:2])
+    part = build.vector("SUBTRACT", cell, combined(build, column, row))
+    part = build.vector("MAXIMUM", build.vector("MINIMUM", part, (1.0, 1.0, 1.0)), (0.0, 0.0, 0.0))
+    index = build.integer("ADD", build.integer("ADD", build.integer("MULTIPLY", row, SAMPLES), column), first)
+    value = output(named_attribute(build, RING_FOAM, "FLOAT_VECTOR"), "Attribute")
+
+    def told(number: Input) -> Socket:
+        return sample_index(build, points, value, number, "FLOAT_VECTOR")
+
+    corners = [told(index if not step else build.integer("ADD", index, step)) for step in _CORNERS]
+    part_x, part_y, _ = coordinates(build, part)
+    south, north = (_mixed(build, *corners[pair : pair + 2], part_x) for pair in (0, 2))
+    within = _mixed(build, south, north, part_y)
+    beyond = told(build.integer("MULTIPLY", rings, SAMPLES**2))
+    is_beyond = build.compare("GREATER_THAN", build.given("Ring"), last)
+    build.finish_with({"Value": build.switch("VECTOR", is_beyond, within, beyond)})
+
+
+#: of a cell, from its first place: the next along x, along y, and along both
+_CORNERS = (0, 1, SAMPLES, SAMPLES + 1)
+
+
+def _build(tree: bpy.types.NodeTree) -> None:
+    inputs = (
+        Plug("Geometry", "NodeSocketGeometry", None, "The grid"),
+        _POINTS,
+        _RINGS,
+        _PLACE,
+        Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
+    )
+    outputs = (Plug("Geometry", "NodeSocketGeometry", None, "The grid with its foam"),)
+    build = Builder(tree, inputs, outputs)
+    points, rings = build.given("Foam"), build.given("Rings")
+    first, second = (_position(build, points, index) for index in (0, 1))
+    spacing = coordinates(build, build.vector("SUBTRACT", second, first))[0]
+    number = _ring_number(build, first, spacing, rings)
+    low = alone(build, "FLOOR", number, "ShaderNodeMath")
+    values = []
+    for offset in (0, 1):
+        ring = build.integer("ADD", whole_number(build, low, "ROUND"), offset)
+        given = {"Foam": points, "Rings": rings, "Ring": ring, "Spacing": spacing}
+        given["Place"] = build.given("Place")
+        values.append(output(build.group(node_group(RING), given), "Value"))
+    mixed = _mixed(build, *values, build.math("SUBTRACT", number, low))
+    read = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
+    read.capture_items.new("VECTOR", "Value")
+    build.tree.links.new(mixed, read.inputs["Value"])
+    grid = output(read, "Geometry")
+    parts = coordinates(build, read.outputs["Value"])
+    for name, value in zip((FOAM, BREAKING, FOAM_AGE), parts, strict=True):
+        grid = build.store(grid, name, value, "FLOAT")
+    build.finish(grid)
+
+
+def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) -> Socket:
+    """Which ring counts at a vertex: a fraction is between two, the number of rings is beyond them all.
+
+    Ring n counts up to INNER of its cells from the middle, and the next one alone from OUTER on; of a grid
+    that is coarse for that, a later one.
+    """
+    half = build.math("MULTIPLY", spacing, SAMPLES / 2)
+    middle = build.vector("ADD", first, combined(build, half, half))
+    off = build.vector("SUBTRACT", build.given("Place"), middle)
+    x, y, _ = coordinates(build, alone(build, "ABSOLUTE", off))
+    inner = build.math("MULTIPLY", spacing, float(INNER))
+    away = build.math("DIVIDE", build.math("MAXIMUM", x, y), inner)
+    octave = build.math("LOGARITHM", build.math("MAXIMUM", away, 1e-3), 2.0)
+    whole = alone(build, "FLOOR", octave, "ShaderNodeMath")
+    part = build.math("DIVIDE", build.math("SUBTRACT", octave, whole), math.log2(OUTER / INNER))
+    by_place = build.math("ADD", whole, build.math("MINIMUM", part, 1.0))
+    coarse = build.math("DIVIDE", build.given("Size"), build.math("MULTIPLY", spacing, _GRID_CELLS))
+    by_size = build.math("LOGARITHM", build.math("MAXIMUM", coarse, 1e-3), 2.0)
+    number = build.math("MAXIMUM", build.math("MAXIMUM", by_place, by_size), 0.0)
+    return build.math("MINIMUM", number, rings)
+
+
+def _held(build: Builder, along: Socket, most: float) -> Socket:
+    """The whole number of a cell, within the ring."""
+    low = build.math("MAXIMUM", alone(build, "FLOOR", along, "ShaderNodeMath"), 0.0)
+    return whole_number(build, build.math("MINIMUM", low, most), "ROUND")
+
+
+def _mixed(build: Builder, first: Socket, second: Socket, share: Socket) -> Socket:
+    return build.vector("ADD", first, build.scaled(build.vector("SUBTRACT", second, first), share))
+
+
+def _position(build: Builder, points: Socket, index: Input) -> Socket:
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    return sample_index(build, points, position, index, "FLOAT_VECTOR")
+
+
+RING_FACTS = GroupKind("Ocean Tweak Foam Facts", 1, _build_facts)
+RING = GroupKind("Ocean Tweak Foam Ring", 1, _build_ring)
+CAMERA_FOAM = GroupKind("Ocean Tweak Camera Foam", 1, _build)
