@@ -105,8 +105,9 @@ def _build(tree: bpy.types.NodeTree) -> None:
     outputs = (Plug("Geometry", "NodeSocketGeometry", None, "The grid with its foam"),)
     build = Builder(tree, inputs, outputs)
     points, rings = build.given("Foam"), build.given("Rings")
-    first, second = (_position(build, points, index) for index in (0, 1))
-    spacing = coordinates(build, build.vector("SUBTRACT", second, first))[0]
+    first, last = (_position(build, points, index) for index in (0, SAMPLES - 1))
+    width = coordinates(build, build.vector("SUBTRACT", last, first))[0]
+    spacing = build.math("DIVIDE", width, SAMPLES - 1.0)
     number = _ring_number(build, first, spacing, rings)
     low = alone(build, "FLOOR", number, "ShaderNodeMath")
     values = []

@@ -205,9 +205,7 @@ def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
     return build.switch("GEOMETRY", is_one, build.store(grid, CUSP, _cusp(build), "FLOAT"), grid)
 
 
-def _of_mesh(
-    build: Builder, grid: Socket, sea: _Sea, shared: dict[str, Socket], is_moving: Socket
-) -> Socket:
+def _of_mesh(build: Builder, grid: Socket, sea: _Sea, shared: dict[str, Socket], is_moving: Socket) -> Socket:
     """The grid with the foam of the ocean's mesh, and where that moves it, how."""
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     mesh = ocean_carried(build, output(sea.facts, "Geometry"), is_moving)

@@ -6,7 +6,7 @@ the patch's own axes and is turned as the patch is. They are live, or nodes read
 the bake that moves the ocean's own mesh has them.
 
 Of a sea under masks, a patch is as many meshes as it has masks. Their weights are on points over the domain.
-Waves that do not repeat are on one mesh more, over a square around the camera.
+Waves that do not repeat are on one mesh more, over a square around the camera, and so is foam, on rings.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from ..core.parameters.patch_seas import Part, parts
 from ..core.sea.placed_waves import placed_fields
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
-from ..nodes.camera_surface import AREA_INPUT, PATCH_INPUTS
+from ..nodes.camera_surface import AREA_INPUT, FOAM_INPUT, PATCH_INPUTS
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
-from . import evaluation, patch_points, vertex_attributes
+from . import evaluation, foam_rings, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
 from .plan import Plan, camera_surface_of, surface_modifier
 from .settings import OceanObjectError, is_ocean, settings_of
 from .vertex_attributes import RealArray
 
-_NUMBER, _MASKS, _AREA = "ocean_tweak_patch", "ocean_tweak_masks", "ocean_tweak_area"
+_NUMBER, _MASKS, _AREA, _FOAM = (f"ocean_tweak_{name}" for name in ("patch", "masks", "area", "foam_rings"))
 #: cells of the weights along each side of the domain
 _WEIGHTS = 256
 
@@ -49,19 +49,28 @@ def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
     return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
 
 
-def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
+def refresh(
+    ocean: bpy.types.Object,
+    plan: Plan,
+    points: Points | None,
+    scene: bpy.types.Scene,
+    patient: bool,
+) -> bool:
     """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
 
     points : baked ones that they read
+    patient : otherwise foam is shown without its history where that would take long
+
+    Returns whether they show all that they will.
 
     Raises MemoryError for a patch too large, OceanObjectError for masks that part the sea too often.
     """
     # a linked ocean shows what its own file holds: Blender drops changes to it
     if ocean.library is not None:
-        return
+        return True
     surface = camera_surface_of(ocean)
     parameters = plan.parameters if points is None else points.parameters
-    made, weighted = {}, None
+    made, weighted, is_complete = {}, None, True
     if surface is None:
         remove(ocean)
     elif not parameters.patches:
@@ -77,17 +86,22 @@ def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
         weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
-        area, modifier = _refreshed_area(ocean, plan), surface_modifier(surface)
-        if get_input(modifier, AREA_INPUT) != area:
+        inputs |= {"Weights": weighted, AREA_INPUT: _refreshed_area(ocean, plan)}
+        wanted = foam_rings.around(surface, plan, points, scene)
+        inputs[FOAM_INPUT] = foam = _foam_object(ocean, wanted is not None)
+        modifier = surface_modifier(surface)
+        if any(get_input(modifier, name) != inputs[name] for name in (AREA_INPUT, FOAM_INPUT)):
             surface.update_tag()  # Blender does not see that it is shown otherwise from now on
-        set_inputs(modifier, {**inputs, "Weights": weighted, AREA_INPUT: area})
+        set_inputs(modifier, inputs)
+        if wanted is not None and foam.data.library is None:
+            is_complete = wanted.write(foam.data, patient)
+    return is_complete
 
 
 def are_live(ocean: bpy.types.Object) -> bool:
-    """Whether an ocean has patches that no files move, or waves that do not repeat."""
-    return shows_area(ocean) or any(
-        patch_points.modifier_of(item) is None for item in patches_of(ocean).values()
-    )
+    """Whether an ocean has patches that no files move, waves that do not repeat, or foam around a camera."""
+    is_shown = shows_area(ocean) or any(_FOAM in child for child in ocean.children)
+    return is_shown or any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
 
 
 def shows_area(ocean: bpy.types.Object) -> bool:
@@ -107,7 +121,7 @@ def remove_left() -> None:
 
 
 def _is_ours(item: bpy.types.Object) -> bool:
-    return any(key in item for key in (_NUMBER, _MASKS, _AREA))
+    return any(key in item for key in (_NUMBER, _MASKS, _AREA, _FOAM))
 
 
 def _refreshed(
@@ -148,6 +162,18 @@ def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | N
         cells = area.resolution - 1
         grid = Grid(area.size * cells / area.resolution * plan.scale, cells, cells)
         _write(item.data, grid, placed_fields(plan.placed.whole, area, plan.time), plan, area.corner)
+    return item
+
+
+def _foam_object(ocean: bpy.types.Object, is_wanted: bool) -> bpy.types.Object | None:
+    """The points of foam around the camera; None where there are none."""
+    present = next((child for child in ocean.children if _FOAM in child), None)
+    if not is_wanted:
+        _remove(iter((present,) if present is not None else ()))
+        return None
+    item = present or _new(ocean, "Foam", _FOAM, "")
+    if item.data.users > 1:  # of a duplicate
+        item.data = item.data.copy()
     return item
 
 

@@ -11,6 +11,7 @@ import bpy
 
 from ..core import OceanParameters
 from ..core.parameters.patch_seas import Part
+from ..core.parameters.shot import Moment, Shot
 from ..export.cache.folders import JOB_FILE
 from ..export.frame_files import POINTS, SMALL_POINTS, files_start, image_file_of
 from ..export.points import MOST_IN_WINDOW
@@ -19,7 +20,7 @@ from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.shown_frame import frame_values
 from ..nodes.versioned import is_of_kind, node_group
 from .bake_state import told_by
-from .image_sequence import baked_frames, baked_stretch
+from .image_sequence import baked_frames, baked_stretch, shown_frame
 from .modifiers import is_of_library, set_changed
 from .plan import Plan, seconds_per_file, velocity_scale
 from .settings import OceanSettings
@@ -36,6 +37,7 @@ class Points:
     folder : as the path of its displacement image has it, so that it moves along with the .blend file
     name : that the files begin with
     parameters : of the sea that was baked
+    moment : of it that is shown
     frames : those that have files, ascending
     files_per_frame : of the animation
     seconds_per_file : of the scene
@@ -46,6 +48,7 @@ class Points:
     folder: str
     name: str
     parameters: OceanParameters
+    moment: Moment
     frames: tuple[int, ...]
     files_per_frame: float
     seconds_per_file: float
@@ -59,11 +62,12 @@ def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Po
     if found is None:
         return None
     folder, name, here = found
-    parameters = _baked_parameters(here)
-    if parameters is None:
+    shot = _baked_shot(here)
+    if shot is None:
         return None
+    shown = shot.at(shown_frame(settings, scene, scene.frame_current))
     return Points(
-        folder, name, parameters, baked_frames(settings),
+        folder, name, shot.parameters, shown, baked_frames(settings),
         files_per_frame=float(baked_stretch(settings)),
         seconds_per_file=seconds_per_file(settings, scene),
         scale=plan.scale,
@@ -127,7 +131,7 @@ def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
     return None if file is None else (folder, file.name, image_file(image).parent)
 
 
-def _baked_parameters(folder: Path) -> OceanParameters | None:
-    """The sea that a bake with points has; None for another bake, or none."""
+def _baked_shot(folder: Path) -> Shot | None:
+    """What a bake with points is of; None for another bake, or none."""
     told = told_by(folder / JOB_FILE)
-    return told.shot.parameters if told.shot is not None and POINTS in told.maps else None
+    return told.shot if POINTS in told.maps else None

@@ -177,14 +177,23 @@ def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.
     own = repeating(plan.parameters) if surface is not None else plan.parameters
     if surface is None or own is plan.parameters:
         return plan
-    camera = get_input(surface_modifier(surface), "Camera") or scene.camera or surface
-    place = ocean.matrix_world.inverted_safe() @ camera.matrix_world.translation
+    place = camera_place(surface, scene, plan.scale)
     size = _AROUND * own.domain_size
     cells = min(_AROUND * plan.viewport.samples, _AREA_CELLS)
     cell = size / cells  # a camera that moves shows the same samples
-    corner = (cell * round((along / plan.scale - 0.5 * size) / cell) for along in place[:2])
+    corner = (cell * round((along - 0.5 * size) / cell) for along in place)
     area = Area(size + cell, cells + 1, tuple(corner))
     return dataclasses.replace(plan, parameters=own, placed=Placed(plan.parameters, area))
+
+
+def camera_place(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> tuple[float, float]:
+    """x and y in m, in the ocean's space, of the camera around which a surface shows it.
+
+    scale : Blender units in a metre
+    """
+    camera = get_input(surface_modifier(surface), "Camera") or scene.camera or surface
+    x, y, _ = surface.parent.matrix_world.inverted_safe() @ camera.matrix_world.translation
+    return x / scale, y / scale
 
 
 def surface_modifier(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:

@@ -17,10 +17,10 @@ from typing import Any
 import bpy
 
 from ..core import OceanParameters
-from . import bake_state, evaluation
+from . import bake_state, evaluation, foam_rings, patch_points
 from .modifiers import set_changed
-from .plan import plan_for
-from .refresh import EXPECTED_ERRORS, Wanted, refresh, tell
+from .plan import camera_surface_of, plan_for
+from .refresh import EXPECTED_ERRORS, Wanted, is_live, refresh, tell
 from .settings import OceanSettings, all_oceans, scene_of, settings_of
 
 # s without a change after which all samples are shown
@@ -44,9 +44,17 @@ def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], o
 
 def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
     """What makes the foam that the viewport lacks; raises as `_waves_job`."""
-    plan = plan_for(item, settings_of(item), scene)
-    maker = evaluation.surfaces_of(plan.viewport_sea()).foam_of(plan.is_whole)
-    return lambda: maker.at(plan.time)
+    settings = settings_of(item)
+    plan, jobs = plan_for(item, settings, scene), list[Callable[[], object]]()
+    if is_live(item):
+        maker = evaluation.surfaces_of(plan.viewport_sea()).foam_of(plan.is_whole)
+        jobs.append(lambda: maker.at(plan.time))
+    surface = camera_surface_of(item)
+    if surface is not None:
+        points = patch_points.points_of(settings, plan, scene)
+        around = foam_rings.around(surface, plan, points, scene)
+        jobs += [around.make] if around is not None else []
+    return lambda: [job() for job in jobs]
 
 
 def _statistics_job(
@@ -156,12 +164,12 @@ def show(
     # the frame of a render from the window is made on another thread: it is complete, and timers belong here
     in_window = threading.current_thread() is threading.main_thread()
     missing = _show_now(item, scene, now & ~Wanted.HISTORY if in_window else now, shown)
-    if not in_window or Wanted.SURFACE not in wanted:
+    if not in_window or not wanted & (Wanted.SURFACE | Wanted.PATCHES):
         return
     if Wanted.BY_HAND in wanted:
         _outstanding.due[uid] = time.monotonic() + PAUSE
         _outstanding.note(uid, Wanted.SAMPLES | Wanted.STATISTICS, True)
-    elif not (_is_playing() or _has_statistics(item, scene)):
+    elif Wanted.SURFACE in wanted and not (_is_playing() or _has_statistics(item, scene)):
         _outstanding.note(uid, Wanted.STATISTICS, True)
     _outstanding.note(uid, Wanted.HISTORY, Wanted.HISTORY in missing)
     if uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):

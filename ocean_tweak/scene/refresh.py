@@ -92,7 +92,7 @@ def of_a_frame(item: bpy.types.Object) -> Wanted:
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
     if patch_objects.are_live(item):
-        wanted |= Wanted.PATCHES
+        wanted |= Wanted.PATCHES | Wanted.HISTORY
     return wanted
 
 
@@ -151,7 +151,9 @@ def _refresh_sea(
         # a render from the window runs the frame handler on its own thread
         set_changed(scene.render, use_lock_interface=True)
     if Wanted.PATCHES in wanted:
-        patch_objects.refresh(item, plan, patch_points.points_of(settings, plan, scene))
+        points = patch_points.points_of(settings, plan, scene)
+        if not patch_objects.refresh(item, plan, points, scene, Wanted.HISTORY in wanted):
+            missing |= Wanted.HISTORY
     if Wanted.RENDER in wanted and plan.has_own_render and not is_baked:
         _write_render(settings, plan)
     if Wanted.SURFACE in wanted:

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Foam on rings around the camera: points that the surface around the camera reads.
+
+It is made where somebody waits for it; in a window the history of another moment or of another place follows,
+and until then there is foam where crests break now.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass
+from fractions import Fraction
+
+import bpy
+import numpy as np
+
+from ..core import OceanParameters
+from ..core.foam.threshold import foam_outlook
+from ..core.numerics.memo import MEMO
+from ..core.sea.foam_rings import FINEST, SAMPLES, FoamRings, Place, Rings
+from ..core.sea.placed_waves import repeating
+from ..nodes.camera_foam import RING_FOAM
+from .patch_points import Points
+from .plan import Plan, camera_place
+from .units import time_stretch
+
+# s after the foam that was made last, within which the next one is quickly made
+_IS_NEAR = Fraction(1)
+# m that a camera may be away from where rings lie, before those of a window follow it
+_FOLLOWS = 32 * FINEST
+_RINGS = "foam rings"
+
+
+class _Maker:
+    """The rings of a sea, and around which place they lie: it drifts along with the foam."""
+
+    def __init__(self, parameters: OceanParameters) -> None:
+        self._parameters = parameters
+        self._rings = FoamRings(parameters)
+        self._place: tuple[Fraction, Place] | None = None
+        self._busy = threading.Lock()
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the rings."""
+        return self._rings.nbytes
+
+    def at(self, time: Fraction, place: Place) -> Rings:
+        """Rings around a place, with their history."""
+        with self._busy:
+            made = self._rings.at(time, place)
+            self._place = time, place
+        MEMO.put(_RINGS, self._parameters, self)  # it has grown
+        return made
+
+    def follow(self, time: Fraction, place: Place) -> None:
+        """Make rings around another place or moment, and only then let go of those that are shown."""
+        rings = FoamRings(self._parameters)
+        rings.at(time, place)
+        with self._busy:
+            self._rings, self._place = rings, (time, place)
+
+    def at_once(self, time: Fraction, place: Place) -> tuple[Rings, bool]:
+        """Rings that are quickly made, and whether they are those of the time and around the place."""
+        last = self._place
+        if last is None or not 0 <= time - last[0] <= _IS_NEAR or self._busy.locked():
+            return self._rings.at(time, place, history=False), False
+        is_here = math.dist(last[1], place) <= _FOLLOWS
+        return self.at(time, last[1]), is_here
+
+
+@dataclass(frozen=True)
+class Around:
+    """Foam that is wanted around a camera.
+
+    sea : of several patches
+    time : s
+    place : of the camera
+    frame : of the scene, in which it is shown
+    scale : Blender units in a metre
+    """
+
+    sea: OceanParameters
+    time: Fraction
+    place: Place
+    frame: float
+    scale: float
+
+    def write(self, mesh: bpy.types.Mesh, patient: bool) -> bool:
+        """Put it on the points of a mesh; returns whether it is all that it will be.
+
+        patient : otherwise it is shown without its history where that would take long
+        """
+        maker = _maker(self.sea)
+        if patient:
+            rings, is_complete = maker.at(self.time, self.place), True
+        else:
+            rings, is_complete = maker.at_once(self.time, self.place)
+        _fill(mesh, rings, self)
+        return is_complete
+
+    def make(self) -> None:
+        """Let it be quickly made from now on; touches no data of Blender and may run on any thread."""
+        _maker(self.sea).follow(self.time, self.place)
+
+
+def around(
+    surface: bpy.types.Object, plan: Plan, points: Points | None, scene: bpy.types.Scene
+) -> Around | None:
+    """The foam that a surface around a camera wants; None where there is none, or a mesh's own is all.
+
+    plan, points : of the ocean and of its bake, if it has one
+    """
+    sea, time = (plan.parameters, plan.time) if points is None else points.moment[:2]
+    sea = repeating(sea)
+    if not sea.patches or "foam" not in plan.channels or foam_outlook(sea).coverage == 0.0:
+        return None
+    place = Place(*camera_place(surface, scene, plan.scale))
+    return Around(sea, time, place, float(plan.frame / time_stretch(scene)), plan.scale)
+
+
+def _maker(sea: OceanParameters) -> _Maker:
+    return MEMO.get(_RINGS, sea, lambda: _Maker(sea))
+
+
+def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:
+    """Points ring after ring, x fastest, and the one beyond them, at x = the frame of the scene."""
+    count = len(rings.foam) * SAMPLES**2 + 1
+    if len(mesh.vertices) != count:
+        mesh.clear_geometry()
+        mesh.vertices.add(count)
+    places = np.zeros((count, 3), np.float32)
+    values = np.empty((count, 3), np.float32)
+    along = np.arange(SAMPLES)
+    for number, (corner, foam) in enumerate(zip(rings.corners, rings.foam, strict=True)):
+        block = slice(number * SAMPLES**2, (number + 1) * SAMPLES**2)
+        x, y = (shown.scale * (first + FINEST * 2.0**number * along) for first in corner)
+        places[block, 0], places[block, 1] = (part.ravel() for part in np.meshgrid(x, y))
+        values[block] = np.stack(foam, axis=-1).reshape(-1, 3)
+    values[-1], places[-1, 0] = rings.beyond, shown.frame
+    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
+    attribute = mesh.attributes.get(RING_FOAM) or mesh.attributes.new(RING_FOAM, "FLOAT_VECTOR", "POINT")
+    attribute.data.foreach_set("vector", values.reshape(-1))
+    mesh.update_tag()
