@@ -35,9 +35,11 @@ from . import (
     stored_values,
 )
 from .animated import is_animated, shown_settings
+from .plan import camera_has_moved, camera_surface_of, forget_cameras
 from .refinement import show
 from .refresh import Wanted, is_live, of_a_frame
 from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, shown_oceans, was_ocean
+from .units import metres_per_unit
 
 # scene settings that change an ocean and have no update callback of ours
 _FOLLOWED = (
@@ -82,6 +84,17 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
     for item in _evaluated_oceans(scene, depsgraph):
         if is_animated(item):
             show(item, scene, of_a_frame(item) & ~Wanted.FILES, shown_settings(item, depsgraph))
+
+
+@_loud
+def refresh_around_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let what lies around a camera follow it: in a render, and after a jump, only now is it known where to."""
+    for item in oceans_in(scene) if depsgraph is not None else ():
+        surface = camera_surface_of(item)
+        scale = float(1 / metres_per_unit(scene))
+        if surface is not None and camera_has_moved(surface, scene, depsgraph, scale):
+            shown = shown_settings(item, depsgraph) if is_animated(item) else None
+            show(item, scene, Wanted.PATCHES | Wanted.HISTORY, shown)
 
 
 @_loud
@@ -264,6 +277,7 @@ def refresh_all_oceans() -> None:
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_pre", refresh_on_frame_change),
     ("frame_change_post", refresh_animated),
+    ("frame_change_post", refresh_around_camera),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
     ("depsgraph_update_post", look_around),
@@ -334,6 +348,7 @@ def _forget_all() -> None:
     failures.forget_all()
     refinement.forget_all()
     refresh.forget_all()
+    forget_cameras()
     portability.forget_all()
     MEMO.drop()
     live_image.forget_all()

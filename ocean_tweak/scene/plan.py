@@ -6,8 +6,10 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 import bpy
+from mathutils import Vector
 
 from ..core import Area, OceanParameters
 from ..core.numerics.machine import usable_memory
@@ -28,8 +30,22 @@ VIEWPORT_FOAM = 128
 _LEAST_SAMPLES = 16
 #: domains along each side of the square of what does not repeat, and cells of it, at most
 _AROUND, _AREA_CELLS = 2, 512
+# m that a camera may be away from what was made around it
+_FAR_MOVED = 9.0
 # bytes that a vertex of a grid with all its attributes takes, counting one copy for the evaluation
 _VERTEX_BYTES = 200
+
+
+class _Seen(NamedTuple):
+    """Where an evaluation has a camera, and where its object's own matrix has it at that time."""
+
+    stale: tuple[float, ...]
+    place: Vector
+
+
+# by the session uid of the surface around it: where a camera was last seen, and what was last made for
+_seen: dict[int, _Seen] = {}
+_used: dict[int, Vector] = {}
 
 
 @dataclass(frozen=True)
@@ -191,9 +207,37 @@ def camera_place(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float
 
     scale : Blender units in a metre
     """
-    camera = get_input(surface_modifier(surface), "Camera") or scene.camera or surface
-    x, y, _ = surface.parent.matrix_world.inverted_safe() @ camera.matrix_world.translation
+    camera = _camera_of(surface, scene)
+    place = camera.matrix_world.translation
+    seen = _seen.get(surface.session_uid)
+    if seen is not None and seen.stale == tuple(place):
+        place = seen.place
+    x, y, _ = surface.parent.matrix_world.inverted_safe() @ place
+    _used[surface.session_uid] = place.copy()
     return x / scale, y / scale
+
+
+def camera_has_moved(
+    surface: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scale: float
+) -> bool:
+    """Whether an evaluation has the camera of a surface elsewhere than what lies around it was made for.
+
+    In a render only the evaluation knows where a camera is: from now on `camera_place` goes by it.
+    """
+    camera, uid = _camera_of(surface, scene), surface.session_uid
+    place = camera.evaluated_get(depsgraph).matrix_world.translation.copy()
+    _seen[uid] = _Seen(tuple(camera.matrix_world.translation), place)
+    return uid in _used and (_used[uid] - place).length > _FAR_MOVED * scale
+
+
+def forget_cameras() -> None:
+    """Another file is opened, or the extension is disabled."""
+    _seen.clear()
+    _used.clear()
+
+
+def _camera_of(surface: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object:
+    return get_input(surface_modifier(surface), "Camera") or scene.camera or surface
 
 
 def surface_modifier(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
