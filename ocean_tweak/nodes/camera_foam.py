@@ -83,7 +83,7 @@ def _build_ring(tree: bpy.types.NodeTree) -> None:
 
     corners = [told(index if not step else build.integer("ADD", index, step)) for step in _CORNERS]
     part_x, part_y, _ = coordinates(build, part)
-    south, north = (_mixed(build, *corners[pair : pair + 2], part_x) for pair in (0, 2))
+    south, north = (_mixed(build, corners[pair], corners[pair + 1], part_x) for pair in (0, 2))
     within = _mixed(build, south, north, part_y)
     beyond = told(build.integer("MULTIPLY", rings, SAMPLES**2))
     is_beyond = build.compare("GREATER_THAN", build.given("Ring"), last)
@@ -116,7 +116,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
         given = {"Foam": points, "Rings": rings, "Ring": ring, "Spacing": spacing}
         given["Place"] = build.given("Place")
         values.append(output(build.group(node_group(RING), given), "Value"))
-    mixed = _mixed(build, *values, build.math("SUBTRACT", number, low))
+    mixed = _mixed(build, values[0], values[1], build.math("SUBTRACT", number, low))
     read = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
     read.capture_items.new("VECTOR", "Value")
     build.tree.links.new(mixed, read.inputs["Value"])

@@ -88,7 +88,7 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
 
 @_loud
 def refresh_around_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Let what lies around a camera follow it: in a render, and after a jump, only now is it known where to."""
+    """Let what lies around a camera follow it: of a render, and after a jump, its place is known only now."""
     for item in oceans_in(scene) if depsgraph is not None else ():
         surface = camera_surface_of(item)
         scale = float(1 / metres_per_unit(scene))

@@ -93,7 +93,7 @@ def refresh(
         if any(get_input(modifier, name) != inputs[name] for name in (AREA_INPUT, FOAM_INPUT)):
             surface.update_tag()  # Blender does not see that it is shown otherwise from now on
         set_inputs(modifier, inputs)
-        # between whole frames foam stays: it would look back anew each time, and changes less than a place can tell
+        # between whole frames foam stays: going back in time it would be made from nothing
         is_needed = plan.is_whole or (foam is not None and not foam.data.vertices)
         if wanted is not None and foam.data.library is None and is_needed:
             is_complete = wanted.write(foam.data, patient)

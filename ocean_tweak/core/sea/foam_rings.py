@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ..foam.model import DriftingFoam, Whitecaps
 from ..foam.threshold import foam_outlook
-from ..parameters.ocean_parameters import Foam, OceanParameters
+from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import waves_above
 from .ocean import Ocean
 
@@ -82,7 +82,7 @@ class _Ring:
     def __init__(self, parameters: OceanParameters, spacing: float) -> None:
         self.spacing = spacing
         # foam that is made coarser elsewhere is coarse by the rings alone here
-        sea = parameters.replace(foam=_in_full(parameters.foam), patches=parameters.patches)
+        sea = parameters.replace(foam=replace(parameters.foam, resolution=0), patches=parameters.patches)
         self.sea = Ocean(waves_above(sea, _CELLS_A_WAVE * spacing, _SAMPLES_A_WAVE))
 
     def around(self, place: Place, time: Fraction) -> tuple[int, int]:
@@ -98,10 +98,6 @@ class _Ring:
         along = self.spacing * np.arange(SAMPLES)
         x, y = np.meshgrid(*(number * self.spacing + along for number in first))
         return self.sea.new_drifting_foam(x.ravel(), y.ravel())
-
-
-def _in_full(foam: Foam) -> Foam:
-    return Foam(coverage=foam.coverage, half_life=foam.half_life, drift=foam.drift)
 
 
 class FoamRings:
