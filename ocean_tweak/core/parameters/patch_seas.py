@@ -101,7 +101,7 @@ def waves_above(parameters: OceanParameters, shortest: float, samples_a_wave: fl
     shortest that it holds.
     """
     bands = tuple(_bands_above(parameters.patches, shortest, samples_a_wave))
-    return parameters.replace(joined=0, patches=bands)
+    return parameters.replace(merged_resolution=0, patches=bands)
 
 
 def _bands_above(
