@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Foam of the surface around the camera: on the crests of the summed patches, wherever the camera is."""
+
+import numpy as np
+import pytest
+
+from . import camera_views
+from .camera_views import moved_to, numbers
+from .conftest import evaluated_mesh
+
+# fixtures for the tests here
+camera = camera_views.camera
+
+NAMES = ("foam", "breaking", "foam_age")
+
+
+@pytest.fixture
+def parameters(core, make_parameters):
+    layer = core.WaveLayer(wind_speed=12.0, fetch=8e3, wind_direction=0.4)
+    patches = (
+        core.Patch(domain_size=120.0, shortest_wavelength=12.0, resolution=40),
+        core.Patch(
+            domain_size=31.0, longest_wavelength=12.0, shortest_wavelength=3.0, rotation=0.9, resolution=48
+        ),
+    )
+    return make_parameters(layers=(layer,), patches=patches, foam=core.Foam(half_life=0.3, coverage=4.0))
+
+
+@pytest.fixture
+def shown(extension, ocean_object, parameters, camera, empty_scene):
+    """An ocean of two patches, away from the world's origin, with a surface around the camera."""
+    ocean = ocean_object.add(empty_scene, parameters)
+    ocean.location = (-40.0, 25.0, 0.0)
+    item = extension("scene.camera_surface").add_camera_surface(ocean, empty_scene, budget=60_000)
+    settings = {"Finest Spacing": 0.25, "To Horizon": False, "Reach": 1500.0, "Curvature": False}
+    extension("nodes.modifier_inputs").set_inputs(item.modifiers[0], settings)
+    empty_scene.frame_set(9)
+    return ocean, item
+
+
+def foam_of(item):
+    """Places at rest in the ocean's space, and foam, breaking and age there."""
+    mesh = evaluated_mesh(item)
+    rest = numbers(mesh, "position", 3) - numbers(mesh, "displacement", 3)
+    return mesh, rest[:, :2], np.concatenate([numbers(mesh, name, 1) for name in NAMES], axis=1)
+
+
+def eye_of(ocean, camera):
+    return np.array(ocean.matrix_world.inverted() @ camera.matrix_world.translation)[:2]
+
+
+def expected_foam(extension, parameters, time, place, x, y, number=0):
+    """One ring between its places, by the core and arithmetic."""
+    rings = extension("core.sea.foam_rings")
+    made = rings.FoamRings(parameters).at(time, rings.Place(*place))
+    cell = rings.FINEST * 2.0**number
+    column, row = (x - made.corners[number][0]) / cell, (y - made.corners[number][1]) / cell
+    j, i = np.floor(column).astype(int), np.floor(row).astype(int)
+    u, v = (column - j)[:, np.newaxis], (row - i)[:, np.newaxis]
+    field = np.stack(made.foam[number], axis=-1)
+    south = field[i, j] * (1 - u) + field[i, j + 1] * u
+    north = field[i + 1, j] * (1 - u) + field[i + 1, j + 1] * u
+    return south * (1 - v) + north * v
+
+
+def test_vertices_have_the_foam_of_their_ring(shown, extension, parameters, camera):
+    ocean, item = shown
+    _, rest, found = foam_of(item)
+    place = eye_of(ocean, camera)
+    time = parameters.timing.time(9)
+    off = np.abs(rest - place).max(axis=1)
+    for number, low, high in ((0, 0.0, 16.0), (1, 26.0, 36.0), (2, 52.0, 70.0)):
+        ring = (off >= low) & (off < high)
+        assert np.count_nonzero(ring) > 500
+        expected = expected_foam(extension, parameters, time, place, *rest[ring].T, number)
+        # places are rounded to a float; an age may change by a second from one place to the next
+        np.testing.assert_allclose(found[ring, :2], expected[:, :2], atol=0.02)
+        np.testing.assert_allclose(found[ring, 2], expected[:, 2], atol=0.2)
+    far = off > 1200.0
+    assert np.ptp(found[far], axis=0) == pytest.approx(0.0, abs=1e-6)
+    assert 0.0 < found[far][0, 1] < found[far][0, 0] < 1.0
+
+
+def test_crests_break_where_the_surface_that_is_drawn_is_compressed(shown, core, parameters, camera):
+    """Against the compression of the sum of all waves, straight from the core."""
+    ocean, item = shown
+    mesh, rest, found = foam_of(item)
+    close = np.abs(rest - eye_of(ocean, camera)).max(axis=1) < 18.0
+    x, y = rest[close].T
+    cusp = core.Ocean(parameters).surface(parameters.timing.time(9), {"cusp"}, on=core.Places(x, y)).cusp
+    breaking = found[close, 1] > 0.5
+    assert 10 < np.count_nonzero(breaking) < 0.2 * len(x)
+    share = np.mean(breaking)
+    assert np.mean(cusp[breaking] > np.quantile(cusp, 1.0 - 2.0 * share)) > 0.7
+    # and the cusp of the surface is that of the sum
+    np.testing.assert_allclose(numbers(mesh, "cusp", 1)[close, 0], cusp, atol=0.1)
+
+
+def test_foam_stays_where_it_is_when_the_camera_moves(shown, camera, empty_scene):
+    ocean, item = shown
+    _, rest, before = foam_of(item)
+    place = eye_of(ocean, camera)
+    moved_to(camera, camera.location.x + 5.0, camera.location.y - 3.0, 6.0)
+    empty_scene.frame_set(9)
+    _, rest_after, after = foam_of(item)
+    keys = {tuple(key): index for index, key in enumerate(np.round(rest_after / 0.25).astype(int))}
+    pairs = [
+        (index, keys[key])
+        for index, key in enumerate(map(tuple, np.round(rest / 0.25).astype(int)))
+        if key in keys and np.abs(rest[index] - place).max() < 12.0
+    ]
+    first, second = np.array(pairs).T
+    assert len(first) > 500
+    np.testing.assert_allclose(after[second, :2], before[first, :2], atol=0.02)
+
+
+def test_foam_follows_a_camera_that_jumps(shown, camera, empty_scene):
+    """The camera's own matrix is that of the frame before while a frame begins."""
+    ocean, _ = shown
+    for frame, x in ((9, 31.0), (10, 431.0)):
+        camera.location.x = x
+        camera.keyframe_insert("location", frame=frame)
+    empty_scene.frame_set(9)
+    empty_scene.frame_set(10)
+    (points,) = [child for child in ocean.children if child.name.endswith("Foam")]
+    middle = np.array(points.data.vertices[0].co)[:2] + 24.0
+    np.testing.assert_allclose(middle, eye_of(ocean, camera), atol=2.0)
+    assert eye_of(ocean, camera)[0] == pytest.approx(471.0, abs=0.1)
+
+
+def test_foam_of_another_frame_is_not_shown(shown, extension, empty_scene):
+    """Where the extension does not run: the foam of the ocean's own mesh, and a warning."""
+    ocean, item = shown
+    with extension("scene.handlers").asleep():
+        empty_scene.frame_set(12)
+        _, _, found = foam_of(item)
+        (told,) = item.modifiers[0].node_warnings
+        assert "frame 9" in " ".join(told.message.split())
+        assert "Ocean Tweak" in told.message
+        own = numbers(evaluated_mesh(ocean), "foam", 1)
+        assert own.max() > 0.0
+        assert found[:, 0].max() <= own.max() + 1e-6
+    empty_scene.frame_set(9)
+    evaluated_mesh(item)
+    assert not item.modifiers[0].node_warnings
+
+
+def test_points_come_and_go_with_the_foam(shown, extension, empty_scene):
+    ocean, item = shown
+    get = extension("nodes.modifier_inputs").get_input
+    (points,) = [child for child in ocean.children if child.name.endswith("Foam")]
+    assert get(item.modifiers[0], "Foam") == points
+    assert points.hide_viewport
+    assert points.hide_render
+    ocean.ocean_tweak.use_foam = False
+    assert get(item.modifiers[0], "Foam") is None
+    assert not [child for child in ocean.children if child.name.endswith("Foam")]
+    assert numbers(evaluated_mesh(item), "foam", 1).max() == 0.0
+    ocean.ocean_tweak.use_foam = True
+    assert get(item.modifiers[0], "Foam") is not None
+    extension("scene.camera_surface").remove_camera_surface(ocean)
+    assert not [child for child in ocean.children if child.name.endswith("Foam")]
+
+
+def test_motion_blur_keeps_the_foam_of_the_frame(shown, empty_scene):
+    _, item = shown
+    before = foam_of(item)[2]
+    empty_scene.frame_set(9, subframe=0.25)
+    np.testing.assert_array_equal(np.sort(foam_of(item)[2][:, 0]), np.sort(before[:, 0]))
