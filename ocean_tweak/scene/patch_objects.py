@@ -106,6 +106,11 @@ def are_live(ocean: bpy.types.Object) -> bool:
     return is_shown or any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
 
 
+def has_foam(ocean: bpy.types.Object) -> bool:
+    """Whether foam is made around a camera, of a baked sea too."""
+    return any(_FOAM in child for child in ocean.children)
+
+
 def shows_area(ocean: bpy.types.Object) -> bool:
     """Whether waves that do not repeat are shown around a camera."""
     return any(_AREA in child for child in ocean.children)
