@@ -20,7 +20,7 @@ import pytest
 
 from ocean_tweak.cli import main, progress
 from ocean_tweak.cli.progress import Progress
-from ocean_tweak.core.foam.model import _Births
+from ocean_tweak.core.foam.model import Births
 from ocean_tweak.core.sea.bake import BakedFrame
 from ocean_tweak.export import logs
 from tests.batch.bakery import ROOT, SOON, command, each_json_line, images, only_folder, run, write_sea
@@ -76,7 +76,7 @@ def test_what_takes_long_is_told_meanwhile(
 ) -> None:
     """A frame's foam looks back, which counts as the frame's time, and its maps are written one by one."""
     monkeypatch.setattr(progress, "_SILENCE", 0.0)
-    monkeypatch.setattr(_Births, "add", slow_birth)
+    monkeypatch.setattr(Births, "add", slow_birth)
     command = bake(
         sea, tmp_path / "c", "--maps", "disp,foam", "--workers", "1", "--set", "foam.half_life=0.1"
     )
@@ -90,7 +90,7 @@ def test_what_takes_long_is_told_meanwhile(
     assert seconds > 0.05 * count
 
 
-def slow_birth(self: _Births, *arguments: Any, add: Callable[..., None] = _Births.add) -> None:
+def slow_birth(self: Births, *arguments: Any, add: Callable[..., None] = Births.add) -> None:
     time.sleep(0.05)
     add(self, *arguments)
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Area, Foam, Ocean, OceanParameters, Patch, Places
-from ocean_tweak.core.foam.model import FoamModel, whitecaps_at
+from ocean_tweak.core.foam.drifting import whitecaps_at
+from ocean_tweak.core.foam.model import FoamModel
 from ocean_tweak.core.synthesis.channels import OF_WAVES
 from tests.core.patched_seas import LAYER, SEA, THREE, small, summed
 from tests.core.test_fields import outputs_from

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam at places on no grid, which drift along with it: so the foam of a sum repeats with none of its patches."""
+"""Foam at places on no grid, which drift with it: so the foam of a sum repeats with none of its patches."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CompressionAt = Callable[[Array, Array, Fraction], RealArray]
 
 
 class DriftingFoam:
-    """Births of foam at some places, and where old foam lies in windrows, at the places that it is drawn from.
+    """Births of foam at some places; where it lies in windrows, also at the places that it is drawn from.
 
     Whoever wants the foam of a time first lets what is `missing` be remembered. Times ascend, or it begins
     anew; in a loop, where windrows stand still and foam drifts past them, it always does.

@@ -25,7 +25,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..foam.model import DriftingFoam, Whitecaps
+from ..foam.drifting import DriftingFoam
+from ..foam.model import Whitecaps
 from ..foam.threshold import foam_outlook
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import waves_above
