@@ -13,14 +13,14 @@ from ocean_tweak.core.sea.foam_rings import FINEST, INNER, SAMPLES, FoamRings, P
 from tests.core.patched_seas import summed
 
 # soon forgotten: each frame alone looks back over its memory
-FOAM = Foam(half_life=0.3, coverage=4.0)
+FOAM = Foam(half_life=0.3, coverage=2.0)
 TIME = Fraction(25, 8)
 
 
 @pytest.fixture(scope="module")
 def sea():
-    """Two turned patches with few enough waves to add them up one by one; foam on an eighth of it."""
-    layer = WaveLayer(wind_speed=12.0, fetch=8e3, wind_direction=0.4)
+    """Two turned patches with few enough waves to add them up one by one; foam in windrows."""
+    layer = WaveLayer(wind_speed=18.0, fetch=3e3, wind_direction=0.4)
     patches = (Patch(120.0, 0.3, 12.0, 1e6, 40), Patch(31.0, -0.9, 3.0, 12.0, 32))
     return OceanParameters(seed=3, layers=(layer,), patches=patches, foam=FOAM)
 
