@@ -141,8 +141,8 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         lines.append("  masks lie over some of these waves; all numbers are without them")
     coverage, earlier = foam_outlook(parameters)
     if coverage > 0.0:
-        share = f"{100.0 * coverage:.2g} %"
-        lines.append(f"  foam on {share} of the sea; a frame by itself looks back at {earlier} moments")
+        share = f"{100.0 * coverage:.2g} % of the sea by {parameters.foam.law}"
+        lines.append(f"  foam on {share}; a frame by itself looks back at {earlier} moments")
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.loop_duration or 0)
