@@ -64,7 +64,7 @@ def build(extension, parameters) -> None:
     height = core.Ocean(parameters.replace(resolution=64)).statistics().significant_wave_height
     key = next(name for limit, name in MOODS if height <= limit)
     mood = dataclasses.replace(moods.MOODS[key], eye=2.0, least_eye=0.0, crest_distance=18.0)
-    made = stage.build(scene, key, stage.Wishes(buoy=False))
+    made = stage.build(scene, key, stage.Wishes(afloat=False))
     of_mood = mood.sea(parameters.timing)
     turn = of_mood.layers[0].wind_direction
     turned = tuple(

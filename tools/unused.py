@@ -19,7 +19,6 @@ PACKAGE = "ocean_tweak"
 #: what nothing in the program calls → why it is there
 PUBLIC = {
     "__getattr__": "`ocean_tweak.read_sea` and `write_sea` (README)",
-    "core.sea.ocean.Ocean.height_at": "the surface above a place, for scripts (README)",
     "core.waves.image.filters.unit_gain": "the gain with which Mastin's images were made (make papers)",
     "core.statistics.sea_scales.beaufort_wind": "the scales both ways, for scripts",
     "core.statistics.sea_scales.douglas_degree": "the scales both ways, for scripts",

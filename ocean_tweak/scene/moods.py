@@ -28,6 +28,7 @@ class Mood:
     crest_distance : from the camera to the highest crest, in significant wave heights
     tilt : of the camera below the horizon
     rings : of copies around the ocean; 0 for a surface around the camera in their place
+    floats : before the camera, a key of `afloat.AFLOAT`
     """
 
     label: str
@@ -44,6 +45,7 @@ class Mood:
     crest_distance: float
     tilt: float
     rings: int
+    floats: str = "BUOY"
 
     def sea(self, timing: Timing) -> OceanParameters:
         """The sea's parameters."""
@@ -90,6 +92,7 @@ MOODS = {
         waves=partial(_wind_sea, 25.0, 500e3, 1200.0, 1024, _degrees(160.0)), water="STORM",
         sun=_degrees(-40.0), sun_elevation=_degrees(20.0), clouds=0.6, overcast=0.78,
         visibility=12e3, eye=0.6, least_eye=1.0, crest_distance=9.0, tilt=_degrees(0.5), rings=3,
+        floats="BOAT",
     ),
     "HORIZON": Mood(
         "To the Horizon", "9 m/s and a swell, from ripples before the camera to the horizon",

@@ -20,9 +20,8 @@ from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
 from . import ocean_object, startup_file, water_material
-from .buoy import DIAMETER, DRAFT, new_buoy
+from .afloat import add_afloat
 from .camera_surface import add_camera_surface
-from .floating import Ride, float_on
 from .moods import MOODS, VIEW, Mood
 from .settings import VIEWPORT_RESOLUTION
 from .sky import new_sun, new_world
@@ -42,13 +41,13 @@ class Wishes:
 
     engine : "CYCLES" or "EEVEE"
     camera, world : whether the scene gets new ones where it has its own
-    buoy : whether one floats before the camera
+    afloat : whether something floats before the camera
     """
 
     engine: str = "CYCLES"
     camera: bool = False
     world: bool = False
-    buoy: bool = True
+    afloat: bool = True
 
 
 @dataclass(frozen=True)
@@ -95,8 +94,8 @@ def build(
     kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
     if not chosen.rings:
         add_camera_surface(ocean, scene)
-    if wishes.buoy:
-        _add_buoy(scene, chosen, place, ocean, target)
+    if wishes.afloat:
+        add_afloat(chosen.floats, place, camera, parameters, ocean, scene, target)
     return Made(ocean, camera, kept, replaced)
 
 
@@ -170,29 +169,6 @@ def new_camera(
     camera.location = np.array(ocean.location) + place / metres
     camera.rotation_euler = (0.5 * math.pi - mood.tilt, 0.0, VIEW - 0.5 * math.pi)
     return camera
-
-
-def _add_buoy(
-    scene: bpy.types.Scene,
-    mood: Mood,
-    place: NDArray[np.float64],
-    ocean: bpy.types.Object,
-    collection: bpy.types.Collection,
-) -> bpy.types.Object:
-    """A buoy before the camera, a little to the side."""
-    metres = float(metres_per_unit(scene))
-    buoy = new_buoy("Buoy", metres)
-    distance = max(24.0, 7.5 * float(place[2]))
-    aside = -0.25 * distance
-    forward = np.array([math.cos(VIEW), math.sin(VIEW), 0.0])
-    right = np.array([math.sin(VIEW), -math.cos(VIEW), 0.0])
-    offset = np.array([place[0], place[1], 0.0]) + distance * forward + aside * right
-    buoy.location = np.array(ocean.location) + offset / metres
-    collection.objects.link(buoy)
-    scene.view_layers.update()
-    ride = Ride(waterline=DIAMETER / metres, draft=DRAFT / metres, keel=DRAFT / metres, tilt=0.8)
-    float_on(buoy, ocean, scene, ride, is_wet=True)
-    return buoy
 
 
 def _set_up(

@@ -21,7 +21,7 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
 
     bl_idname = "ocean.add_scene"
     bl_description = (
-        "Add a sea with foam, water material, sky, sun, camera and a floating buoy. The cube, the light and "
+        "Add a sea with foam, water material, sky, sun, camera and something afloat. The cube, the light and "
         "the camera of Blender's own start-up file go, unless something of the scene was changed"
     )
     bl_label = "Ocean Scene"
@@ -51,14 +51,18 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         description="Give the scene a new sky also where it has one. The old one stays in the file",
         default=False,
     )
-    use_buoy: BoolProperty(name="Buoy", description="Let a buoy float before the camera", default=True)
+    use_buoy: BoolProperty(
+        name="Something Afloat",
+        description="Let something of known size float before the camera: a boat in the storm, else a buoy",
+        default=True,
+    )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make it, and say what the scene has kept."""
         old = context.scene
         scene = _new_scene(old) if self.use_new_scene else old
         wishes = surroundings.Wishes(
-            engine=self.engine, camera=self.use_new_camera, world=self.use_new_world, buoy=self.use_buoy
+            engine=self.engine, camera=self.use_new_camera, world=self.use_new_world, afloat=self.use_buoy
         )
         if self.use_new_world and old.world is not None and not self.use_new_scene:
             old.world.use_fake_user = True

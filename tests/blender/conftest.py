@@ -162,6 +162,19 @@ def rendering(empty_scene):
 
 
 @pytest.fixture
+def quick(extension, monkeypatch):
+    """Moods with few samples: the sea itself is tested elsewhere."""
+    moods = extension("scene.moods")
+    original = moods.Mood.sea
+
+    def small(self, timing):
+        return original(self, timing).replace(resolution=64, foam=extension("core").Foam(resolution=32))
+
+    monkeypatch.setattr(moods.Mood, "sea", small)
+    return moods.MOODS
+
+
+@pytest.fixture
 def window():
     """A window's context: undo wants one, and Blender has one in the background too."""
     manager = bpy.context.window_manager

@@ -10,19 +10,6 @@ from mathutils import Vector
 
 
 @pytest.fixture
-def quick(extension, monkeypatch):
-    """Moods with few samples: the sea itself is tested elsewhere."""
-    moods = extension("scene.moods")
-    original = moods.Mood.sea
-
-    def small(self, timing):
-        return original(self, timing).replace(resolution=64, foam=extension("core").Foam(resolution=32))
-
-    monkeypatch.setattr(moods.Mood, "sea", small)
-    return moods.MOODS
-
-
-@pytest.fixture
 def startup_scene(package):
     """The scene of Blender's own start-up file."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)

@@ -97,7 +97,7 @@ def build(
 
     fields = {field.name: getattr(moods.MOODS[base], field.name) for field in dataclasses.fields(moods.Mood)}
     moods.MOODS["PAPER"] = Given(**{**fields, **look})
-    wishes = stage.Wishes(engine=engine, buoy=False)
+    wishes = stage.Wishes(engine=engine, afloat=False)
     return stage.build(bpy.context.scene, "PAPER", wishes).ocean
 
 

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What floats before the camera of a ready scene, by whose size the sea is seen to be large or small."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import Ocean, OceanParameters
+from . import boat_hull, buoy
+from .boat import new_boat
+from .buoy import new_buoy
+from .floating import Ride, float_on
+from .moods import VIEW
+from .units import metres_per_unit
+
+_OFF_THE_SEA = math.radians(30.0)  # how far from straight into the waves it heads
+_ASIDE = (0.3, 0.55)  # of the way from the middle of the picture to its edge
+_LEADS, _BEARINGS = 17, 5  # of the places that are tried
+
+
+@dataclass(frozen=True)
+class Afloat:
+    """Something that floats; lengths in m.
+
+    new : makes it, by name and the metres in a Blender unit
+    waterline : waves shorter than this do not move it
+    draft : of its keel below the water, where its origin is
+    nearest, farthest : from the camera
+    """
+
+    label: str
+    new: Callable[[str, float], bpy.types.Object]
+    waterline: float
+    draft: float
+    nearest: float
+    farthest: float
+
+
+AFLOAT = {
+    "BUOY": Afloat("Buoy", new_buoy, buoy.DIAMETER, buoy.DRAFT, 24.0, 34.0),
+    "BOAT": Afloat(
+        "Fishing Boat",
+        new_boat,
+        boat_hull.LENGTH,
+        boat_hull.DRAFT,
+        4.0 * boat_hull.LENGTH,
+        6.0 * boat_hull.LENGTH,
+    ),
+}
+
+
+def add_afloat(
+    kind: str,
+    place: NDArray[np.float64],
+    camera: bpy.types.Object,
+    parameters: OceanParameters,
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection,
+) -> bpy.types.Object:
+    """Let something of AFLOAT ride before a camera, to the side, into the waves and with room before its bow.
+
+    place : of the camera, x, y and z in m, in the patch
+    """
+    metres, chosen = float(metres_per_unit(scene)), AFLOAT[kind]
+    heading = _heading(parameters)
+    item = chosen.new(chosen.label, metres)
+    x, y = _best_seen(chosen, place, camera.data.angle, heading, parameters)
+    item.location = np.array(ocean.location) + np.array([x, y, 0.0]) / metres
+    item.rotation_euler.z = heading
+    collection.objects.link(item)
+    scene.view_layers.update()
+    draft = chosen.draft / metres
+    ride = Ride(waterline=chosen.waterline / metres, draft=draft, keel=draft, tilt=0.8)
+    float_on(item, ocean, scene, ride, is_wet=True)
+    return item
+
+
+def _heading(parameters: OceanParameters) -> float:
+    """Into the waves of the first layer, and of the two ways to do so the one that shows more of the side."""
+    against = parameters.layers[0].wind_direction + math.pi
+    return max(
+        (against - _OFF_THE_SEA, against + _OFF_THE_SEA), key=lambda heading: abs(math.sin(heading - VIEW))
+    )
+
+
+def _best_seen(
+    chosen: Afloat,
+    place: NDArray[np.float64],
+    angle: float,
+    heading: float,
+    parameters: OceanParameters,
+) -> tuple[float, float]:
+    """x and y in the patch, in m, where the water stands highest above all that lies before it.
+
+    angle : of the camera, from one side of its picture to the other
+    heading : of what floats there
+    """
+    forward = np.array([math.cos(VIEW), math.sin(VIEW)])
+    right = np.array([forward[1], -forward[0]])
+    side = 1.0 if math.sin(heading - VIEW) > 0.0 else -1.0  # it heads for the middle
+    bearing = side * math.tan(0.5 * angle) * np.linspace(*_ASIDE, _BEARINGS)
+    distance = np.linspace(chosen.nearest, chosen.farthest, _LEADS)[:, np.newaxis]
+    away = (distance[..., np.newaxis] * (forward + bearing[:, np.newaxis] * right)).reshape(-1, 2)
+    # the slope at which each piece of the way to a place is seen, the place itself being the last
+    share = np.array([*np.linspace(0.05, 0.9, 32), 1.0])[:, np.newaxis]
+    x, y = (place[axis] + share * away[:, axis] for axis in (0, 1))
+    height = Ocean(parameters).height_at(x, y, parameters.timing.time(parameters.timing.start_frame))
+    slope = (height - place[2]) / (share * np.hypot(*away.T))
+    best = int((slope[-1] - slope[:-1].max(axis=0)).argmax())
+    return float(x[-1, best]), float(y[-1, best])
