@@ -97,11 +97,19 @@ def merged_bands(parameters: OceanParameters) -> OceanParameters:
 
 
 def waves_above(parameters: OceanParameters, shortest: float, samples_a_wave: float) -> OceanParameters:
-    """A sea's patches apart, without the waves shorter than so many m, each with so many samples along the
-    shortest that it holds.
+    """A sea's patches on separate grids, without the waves shorter than so many m, each with about so many
+    samples along the shortest that it holds: a number that is quickly transformed.
     """
-    bands = tuple(_bands_above(parameters.patches, shortest, samples_a_wave))
-    return parameters.replace(merged_resolution=0, patches=bands)
+    bands = _bands_above(parameters.patches, shortest, samples_a_wave)
+    patches = tuple(replace(patch, resolution=_quickest(patch.resolution)) for patch in bands)
+    return parameters.replace(merged_resolution=0, patches=patches)
+
+
+def _quickest(samples: int) -> int:
+    """The even number nearest to that whose only factors are 2, 3 and 5."""
+    twos, threes, fives = (range(1, 14), range(9), range(6))
+    products = (2**a * 3**b * 5**c for a in twos for b in threes for c in fives)
+    return min((each for each in products if _FEWEST <= each <= _MOST), key=lambda each: abs(each - samples))
 
 
 def _bands_above(

@@ -44,11 +44,14 @@ INNER, OUTER = 80, 88
 _STEP = 8
 #: cells in a ring's shortest wave
 _CELLS_A_WAVE = 4.0
-#: samples of a patch along its shortest wave: read between them, a seventh of that wave's variance is lost,
-#: and less of longer ones
-_SAMPLES_A_WAVE = 6.0
-#: a ring whose waves have less of the strains' variance than this tells nothing
-_LEAST_SHARE = 0.02
+#: samples of a patch along its shortest wave: read between them, a fifth of that wave's variance is lost, and
+#: less of longer ones
+_SAMPLES_A_WAVE = 5.0
+#: by how much longer a ring's shortest wave may be than a patch's, and the patch is whole all the same: rings
+#: share the strains of a patch that they both have whole
+_WHOLE = 1.15
+#: a ring whose waves have less of the strains' variance than this tells little
+_LEAST_SHARE = 0.15
 _MOST_RINGS = 10
 
 
@@ -84,7 +87,10 @@ class _Ring:
         self.spacing = spacing
         # foam that is made coarser elsewhere is coarse by the rings alone here
         sea = parameters.replace(foam=replace(parameters.foam, resolution=0), patches=parameters.patches)
-        self.sea = Ocean(waves_above(sea, _CELLS_A_WAVE * spacing, _SAMPLES_A_WAVE))
+        shortest = _CELLS_A_WAVE * spacing
+        ends = (patch.shortest_wavelength for patch in sea.patches)
+        shortest = next((end for end in ends if end <= shortest <= _WHOLE * end), shortest)
+        self.sea = Ocean(waves_above(sea, shortest, _SAMPLES_A_WAVE))
 
     def around(self, place: Place, time: Fraction) -> tuple[int, int]:
         """The numbers of the first cell of a ring that lies around a place at a time."""
