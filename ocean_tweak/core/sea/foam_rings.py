@@ -44,9 +44,9 @@ INNER, OUTER = 80, 88
 _STEP = 8
 #: cells in a ring's shortest wave
 _CELLS_A_WAVE = 4.0
-#: samples of a patch along its shortest wave: read between them, a fifth of that wave's variance is lost, and
-#: less of longer ones
-_SAMPLES_A_WAVE = 5.0
+#: samples of a patch along its shortest wave: read between them, a fourth of that wave's variance is lost,
+#: and less of longer ones
+_SAMPLES_A_WAVE = 4.25
 #: by how much longer a ring's shortest wave may be than a patch's, and the patch is whole all the same: rings
 #: share the strains of a patch that they both have whole
 _WHOLE = 1.15
