@@ -87,6 +87,21 @@ def test_an_ocean_s_own_modifier_too(
     assert abs(evaluated(item) - expected(make_parameters(), 1)).max() < 1e-4
 
 
+def test_a_baked_ocean_s_modifier_learns_what_is_new(
+    inputs, old_kind, ocean_object, make_parameters, bake, empty_scene, open_again
+):
+    """Nothing else renews the inputs of an ocean that files move."""
+    parameters = make_parameters()
+    item = ocean_object.add(empty_scene, parameters, "NODES", "SEQUENCE", bake(parameters, 1, 3))
+    (modifier,) = item.modifiers
+    inputs.set_input(modifier, "Seconds per File", 0.0)
+    modifier.node_group["ocean_tweak_group"] = old_kind.tag
+    open_again()
+    item = bpy.data.objects["Ocean"]
+    values = [inputs.get_input(modifier, "Seconds per File") for modifier in item.modifiers]
+    assert values == [pytest.approx(1 / 24)]
+
+
 def test_a_node_in_another_group_keeps_links_and_values(
     extension, versioned, old_kind, empty_scene, open_again
 ):

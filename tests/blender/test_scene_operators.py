@@ -70,6 +70,13 @@ def test_the_buoy_floats(quick, empty_scene):
         heights.append(buoy.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z)
     assert np.ptp(heights) > 0.1
     assert max(np.abs(heights)) < 3.0
+    mesh = buoy.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    wet = np.array([each.value for each in mesh.attributes["wet"].data])
+    heights = np.array([vertex.co.z for vertex in mesh.vertices])
+    assert wet[heights < -1.0].min() > 1.0  # below the water
+    assert wet[heights > 2.0].max() < 0.0
+    labels = {node.label for node in ocean_of(empty_scene).material_slots[0].material.node_tree.nodes}
+    assert "Buoy Collar" in labels
 
 
 def test_copies_and_flat_water_reach_the_horizon(quick, empty_scene):
