@@ -19,7 +19,7 @@ from pathlib import Path
 
 import bpy
 
-_FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel)\.[^.]*\.exr")
+_FILE = re.compile(r"(?P<name>.+)_(?:disp|foam|normal|vel|foam_age)\.[^.]*\.exr")
 #: inputs of the ocean's modifiers that are on where the extension computes the sea
 _LIVE = ("Live", "Use Attributes")
 #: custom property of the mesh of a patch
