@@ -7,6 +7,7 @@ blender --background storm.blend --python examples/storm_render.py -- --frames 1
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sys
 import time
 from pathlib import Path
@@ -17,7 +18,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from extension import enable
-from look import stage
 
 
 def main() -> None:
@@ -28,7 +28,7 @@ def main() -> None:
     enable()
     for scene in bpy.data.scenes:
         if arguments.scene in (None, scene.name):
-            stage.render_settings(scene, arguments.width, arguments.width * 9 // 16, arguments.samples)
+            render_settings(scene, arguments.width, arguments.width * 9 // 16, arguments.samples)
             render(scene, arguments.frames, arguments.out)
 
 
@@ -44,6 +44,34 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "--check", action="store_true", help="first see the baked oceans move without the extension"
     )
     return parser.parse_args(argv)
+
+
+def render_settings(scene, width=960, height=540, samples=16):
+    """Cycles on the processor: few samples, a denoiser where this Blender has one."""
+    scene.render.engine = "CYCLES"
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.render.resolution_percentage = 100
+    scene.cycles.device = "CPU"
+    scene.cycles.samples = samples
+    scene.cycles.use_adaptive_sampling = True
+    scene.cycles.adaptive_threshold = 0.02
+    scene.cycles.adaptive_min_samples = 6
+    scene.cycles.max_bounces = 2
+    scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = False
+    scene.cycles.use_denoising = has_denoiser()
+    if scene.cycles.use_denoising:
+        scene.cycles.denoiser = "OPENIMAGEDENOISE"
+        scene.cycles.denoising_prefilter = "FAST"
+    with contextlib.suppress(TypeError):  # a studio's OCIO configuration may lack these
+        scene.view_settings.view_transform = "AgX"
+        scene.view_settings.look = "AgX - Medium High Contrast"
+
+
+def has_denoiser():
+    """Whether this Blender was built with Open Image Denoise."""
+    import _cycles
+
+    return bool(getattr(_cycles, "with_openimagedenoise", False))
 
 
 def check_baked_oceans_move(frames: list[int]) -> None:

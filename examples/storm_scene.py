@@ -10,6 +10,7 @@ blender --background --python examples/storm_scene.py --
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 import sys
 from pathlib import Path
@@ -20,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from extension import enable
-from look import ripples, sky, stage, water
+from storm_render import render_settings
 
 #: scene name → method and source of its ocean
 SCENES = {
@@ -31,20 +32,16 @@ SCENES = {
 OPENED = "Geometry nodes"
 
 LOOKING = math.radians(235.0)  # the wind blows along +x: waves come towards the camera, from its right
-LIGHT = math.radians(222.0)
-LENS = 40.0  # mm
-TILT = math.radians(1.0)
 RINGS = 3
-HAZE = (0.60, 0.635, 0.66)
-VISIBILITY = 16e3  # m
 
 
 def main() -> None:
     """Build the file from the command line's arguments."""
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
     extension = enable()
-    core = extension.module("core")
-    parameters = core.OceanParameters.from_json(arguments.params.read_text(encoding="utf-8"))
+    parameters = extension.module("core").OceanParameters.from_json(
+        arguments.params.read_text(encoding="utf-8")
+    )
     first, last = arguments.frames
     sequence = extension.module("scene.image_sequence").ImageSequence(
         arguments.sequence, arguments.params.stem, tuple(range(first, last + 1))
@@ -53,7 +50,7 @@ def main() -> None:
     for scene in make_scenes(extension, first, last, parameters.timing.fps):
         method, source = SCENES[scene.name]
         add_ocean(extension, scene, parameters, method, source, sequence if source == "SEQUENCE" else None)
-    dress(core, parameters)
+    dress(extension, parameters)
     save(arguments.out)
 
 
@@ -81,12 +78,12 @@ def make_scenes(extension, first, last, fps):
         scene.frame_start, scene.frame_end = first, last
         scene.frame_set(first)
         extension.module("scene.units").set_frame_rate(scene, fps)
-        stage.render_settings(scene)
+        render_settings(scene)
     return scenes
 
 
 def add_ocean(extension, scene, parameters, method, source, sequence):
-    """The ocean of a scene, and around it the instances that reach to the horizon."""
+    """The ocean of a scene."""
     ocean = extension.module("scene.ocean_object").add(
         scene, parameters, method=method, source=source, sequence=sequence, name=f"Ocean {scene.name}"
     )
@@ -98,27 +95,30 @@ def add_ocean(extension, scene, parameters, method, source, sequence):
         bpy.data.meshes.remove(own)
     else:
         ocean.data["shared_grid"] = True
-    scene.collection.objects.link(stage.tile(ocean, f"Horizon {scene.name}", parameters.domain_size, RINGS))
-    return ocean
 
 
-def dress(core, parameters):
-    """Sky, water and camera, the same in all scenes."""
-    world = sky.storm_sky("Storm", LIGHT)
-    small = ripples.make(core, parameters, "Ripples")
-    material = water.storm_water("Storm water", small, parameters.domain_size, HAZE, VISIBILITY)
-    ocean = core.Ocean(parameters)
-    height = ocean.statistics().significant_wave_height
-    place = stage.before_the_highest_crest(
-        ocean.surface(0.5).displacement[..., 2], parameters.domain_size, LOOKING, 17.0 * height, 0.72 * height
-    )
-    camera = stage.camera("Camera", place, LOOKING, TILT, LENS)
+def dress(extension, parameters):
+    """Water to the horizon, sky, sun and camera, the same in all scenes, as the ready storm has them."""
+    moods, surroundings = extension.module("scene.moods"), extension.module("scene.surroundings")
+    water_material, sky = extension.module("scene.water_material"), extension.module("scene.sky")
+    mood = dataclasses.replace(moods.MOODS["STORM"], crest_distance=7.0, tilt=math.radians(-2.0))
+    above = mood.sky(LOOKING)
+    world, sun = sky.new_world("Storm", above), sky.new_sun("Sun", above)
+    material = water_material.water_material(mood.water)
+    water_material.set_air(material, mood.visibility, above.haze)
+    water_material.light_by(material, sun)
+    place = surroundings.camera_place(mood, parameters, LOOKING)
+    camera = None
     for scene in bpy.data.scenes:
-        scene.world = world
+        ocean = next(item for item in scene.objects if item.name.startswith("Ocean "))
+        camera = camera or surroundings.new_camera(mood, place, ocean, scene, LOOKING)
         scene.collection.objects.link(camera)
-        scene.camera = camera
-    for mesh in {item.data for item in bpy.data.objects if item.name.startswith("Ocean ")}:
-        mesh.materials.append(material)
+        scene.collection.objects.link(sun)
+        scene.camera, scene.world, scene.view_settings.exposure = camera, world, mood.exposure
+        if not ocean.material_slots:  # the three of them share a mesh
+            water_material.assign(ocean, material)
+        water_material.describe(ocean, parameters, scene)
+        surroundings.add_horizon(ocean, parameters, scene, scene.collection, RINGS)
 
 
 def save(path: Path) -> None:

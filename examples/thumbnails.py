@@ -63,7 +63,11 @@ def build(extension, parameters) -> None:
         parameters = parameters.without_patches.replace(domain_size=PATCH)
     height = core.Ocean(parameters.replace(resolution=64)).statistics().significant_wave_height
     key = next(name for limit, name in MOODS if height <= limit)
-    mood = dataclasses.replace(moods.MOODS[key], eye=2.0, least_eye=0.0, crest_distance=18.0)
+    usual = moods.MOODS[key]
+    mood = dataclasses.replace(
+        usual, eye=2.0 * height, crest_distance=18.0, lens=35.0, rings=usual.rings or 3
+    )
+    moods.MOODS[key] = mood
     made = stage.build(scene, key, stage.Wishes(afloat=False))
     of_mood = mood.sea(parameters.timing)
     turn = of_mood.layers[0].wind_direction

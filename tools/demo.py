@@ -112,10 +112,10 @@ def summary(steps: Steps) -> list[str]:
 
 
 def bake() -> None:
-    """Write the displacement with the command line that artists use."""
+    """Write displacement and foam with the command line that artists use."""
     frames = f"{FIRST}-{LAST}"
     command = [sys.executable, "-m", "ocean_tweak", "bake", "--params", str(PARAMETERS), "--frames", frames]
-    run_logged([*command, "--out", str(CACHE)], LOG)
+    run_logged([*command, "--maps", "disp,foam", "--out", str(CACHE)], LOG)
 
 
 def frames_folder() -> Path:

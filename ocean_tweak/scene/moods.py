@@ -10,10 +10,13 @@ from functools import partial
 
 from ..core import Foam, OceanParameters, Timing, WaveLayer
 from ..core.parameters.presets import built_in
+from ..core.sea.patch_plan import Wish, planned
 from .sky import Sky
 
 #: where the camera looks, rad counter-clockwise from +x: along +y, as Blender's front view does
 VIEW = 0.5 * math.pi
+#: one whose highest wave stands before the camera as high as such waves are
+_STORM_SEED = 8
 
 
 @dataclass(frozen=True)
@@ -24,8 +27,10 @@ class Mood:
     water : a key of `water_material.WATERS`
     sun, sun_elevation, clouds, overcast : as in `Sky`, the sun's azimuth from the view
     visibility : in the air
-    eye : height of the camera above mean water, in significant wave heights above `least_eye`
+    exposure : of the picture, in stops
+    eye : height of the camera above the water at its place
     crest_distance : from the camera to the highest crest, in significant wave heights
+    lens : focal length in mm
     tilt : of the camera below the horizon
     rings : of copies around the ocean; 0 for a surface around the camera in their place
     floats : before the camera, a key of `afloat.AFLOAT`
@@ -40,9 +45,10 @@ class Mood:
     clouds: float
     overcast: float
     visibility: float
+    exposure: float
     eye: float
-    least_eye: float
     crest_distance: float
+    lens: float
     tilt: float
     rings: int
     floats: str = "BUOY"
@@ -51,9 +57,9 @@ class Mood:
         """The sea's parameters."""
         return self.waves().replace(timing=timing)
 
-    def sky(self) -> Sky:
-        """The sky."""
-        return Sky(self.sun_elevation, VIEW + self.sun, self.clouds, self.overcast)
+    def sky(self, view: float = VIEW) -> Sky:
+        """The sky, for a camera that looks along `view`."""
+        return Sky(self.sun_elevation, view + self.sun, self.clouds, self.overcast)
 
 
 def _wind_sea(
@@ -64,6 +70,15 @@ def _wind_sea(
     # foam is soft and looks back at a hundred surfaces: half the samples show it as well
     foam = Foam(resolution=resolution // 2)
     return OceanParameters(resolution=resolution, domain_size=domain_size, seed=3, layers=(layer,), foam=foam)
+
+
+def _storm() -> OceanParameters:
+    """A wind of 25 m/s over 800 km, as in figure 6 of Horvath (2015), down to waves of half a metre."""
+    layer = WaveLayer(wind_speed=25.0, fetch=800e3, wind_direction=VIEW + _degrees(160.0), swell=0.2)
+    # crests just fold, and foam lives as long as the bubbles of such seas let it
+    foam = Foam(coverage=2.5, half_life=6.0)
+    sea = OceanParameters(seed=_STORM_SEED, layers=(layer,), choppiness=1.25, foam=foam)
+    return planned(sea, Wish(finest=0.5, area=2000.0))
 
 
 def _preset_sea(key: str) -> OceanParameters:
@@ -79,25 +94,25 @@ MOODS = {
         "Calm", "A light breeze of 3 m/s, low sun and clear water",
         waves=partial(_wind_sea, 3.0, 15e3, 120.0, 512, _degrees(200.0)), water="OCEANIC",
         sun=_degrees(33.0), sun_elevation=_degrees(11.0), clouds=0.5, overcast=0.0, visibility=30e3,
-        eye=1.0, least_eye=2.2, crest_distance=30.0, tilt=_degrees(3.0), rings=9,
+        exposure=0.0, eye=2.4, crest_distance=30.0, lens=35.0, tilt=_degrees(3.0), rings=9,
     ),
     "FRESH_BREEZE": Mood(
         "Fresh Breeze", "10 m/s: waves of two metres and a half with white horses",
         waves=partial(_wind_sea, 10.0, 120e3, 400.0, 512, _degrees(215.0)), water="OCEANIC",
         sun=_degrees(75.0), sun_elevation=_degrees(34.0), clouds=0.55, overcast=0.0,
-        visibility=30e3, eye=1.0, least_eye=1.5, crest_distance=16.0, tilt=_degrees(3.0), rings=5,
+        visibility=30e3, exposure=0.0, eye=3.0, crest_distance=14.0, lens=40.0, tilt=_degrees(2.0), rings=5,
     ),
     "STORM": Mood(
-        "Storm", "25 m/s: waves of eleven metres, streaks of foam and torn cloud",
-        waves=partial(_wind_sea, 25.0, 500e3, 1200.0, 1024, _degrees(160.0)), water="STORM",
-        sun=_degrees(-40.0), sun_elevation=_degrees(20.0), clouds=0.6, overcast=0.78,
-        visibility=12e3, eye=0.6, least_eye=1.0, crest_distance=9.0, tilt=_degrees(0.5), rings=3,
+        "Storm", "25 m/s over 800 km: waves of fifteen metres, breaking crests and streaks of foam",
+        waves=_storm, water="STORM",
+        sun=_degrees(-60.0), sun_elevation=_degrees(14.0), clouds=0.6, overcast=0.6,
+        visibility=30e3, exposure=0.2, eye=3.0, crest_distance=8.0, lens=38.0, tilt=_degrees(-3.0), rings=0,
         floats="BOAT",
     ),
     "HORIZON": Mood(
         "To the Horizon", "9 m/s and a swell, from ripples before the camera to the horizon",
         waves=partial(_preset_sea, "horizon"), water="OCEANIC",
         sun=_degrees(40.0), sun_elevation=_degrees(24.0), clouds=0.5, overcast=0.0, visibility=150e3,
-        eye=0.0, least_eye=2.0, crest_distance=14.0, tilt=_degrees(4.0), rings=0,
+        exposure=0.0, eye=2.0, crest_distance=14.0, lens=35.0, tilt=_degrees(4.0), rings=0,
     ),
 }  # fmt: skip

@@ -27,7 +27,8 @@ from .settings import VIEWPORT_RESOLUTION
 from .sky import new_sun, new_world
 from .units import frame_rate, metres_per_unit
 
-_LENS = 35.0  # mm
+#: how far beside the middle of the picture the highest wave may be, rad
+_ASIDE = math.radians(4.0)
 _FAR = 30e3  # m, beyond the horizon of any camera on a ship
 _FRAMES = 240
 _SAMPLES = 128  # of Cycles, whose denoiser does the rest: 4,096 take an hour for the first picture
@@ -142,32 +143,51 @@ def add_horizon(
     return horizon
 
 
-def camera_place(mood: Mood, parameters: OceanParameters) -> NDArray[np.float64]:
-    """Where a camera sees the highest wave of the first frame before it: x, y and z in m, in the patch."""
-    sea = Ocean(parameters)
-    elevation = sea.surface(parameters.timing.time(parameters.timing.start_frame)).displacement[..., 2]
-    height = sea.statistics().seed.significant_wave_height
-    samples, domain = len(elevation), parameters.domain_size
-    row, column = divmod(int(elevation.argmax()), samples)
-    distance = mood.crest_distance * height
-    place = np.array([column, row]) * domain / samples
-    place = (place - distance * np.array([math.cos(VIEW), math.sin(VIEW)])) % domain
-    x, y = (int(part) % samples for part in place / domain * samples)
-    eye = max(mood.least_eye + mood.eye * height, float(elevation[y, x]) + 0.5 * height + 0.5)
-    return np.array([*place, eye])
+def camera_place(mood: Mood, parameters: OceanParameters, view: float = VIEW) -> NDArray[np.float64]:
+    """Where a camera sees the highest wave of the first frame best: x, y and z in m, in the patch.
+
+    Of the places around the mood's distance from it, the one from which it rises most above the water before
+    it: in a trough, with no other wave in between.
+
+    view : where the camera looks, rad counter-clockwise from +x
+    """
+    sea, time = Ocean(parameters), parameters.timing.time(parameters.timing.start_frame)
+    displacement = sea.surface(time).displacement
+    row, column = divmod(int(displacement[..., 2].argmax()), len(displacement))
+    spacing = parameters.domain_size / len(displacement)
+    crest = spacing * np.array([column, row, 0.0]) + displacement[row, column]
+    forward = np.array([math.cos(view), math.sin(view)])
+    usual = mood.crest_distance * sea.statistics().seed.significant_wave_height
+    distance, aside = np.meshgrid(
+        usual * np.linspace(0.7, 1.3, 31), np.tan(_ASIDE) * np.linspace(-1.0, 1.0, 9)
+    )
+    back = np.stack([distance, distance * aside], axis=-1).reshape(-1, 2)
+    places = crest[:2] - back @ np.array([forward, [forward[1], -forward[0]]])
+    eyes = sea.height_at(*places.T, time) + mood.eye
+    way = np.linspace(0.05, 0.9, 48)[:, np.newaxis, np.newaxis]
+    between = places + way * (crest[:2] - places)
+    far = np.hypot(*back.T)
+    before = (sea.height_at(between[..., 0], between[..., 1], time) - eyes) / (way[..., 0] * far)
+    rise = (crest[2] - eyes) / far - np.maximum(before.max(axis=0), -mood.eye / far)
+    best = int(rise.argmax())
+    return np.array([*(places[best] % parameters.domain_size), eyes[best]])
 
 
 def new_camera(
-    mood: Mood, place: NDArray[np.float64], ocean: bpy.types.Object, scene: bpy.types.Scene
+    mood: Mood,
+    place: NDArray[np.float64],
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    view: float = VIEW,
 ) -> bpy.types.Object:
-    """A camera at a place in the patch, in m; in no collection yet."""
+    """A camera at a place in the patch, in m, that looks along `view`; in no collection yet."""
     metres = float(metres_per_unit(scene))
     data = bpy.data.cameras.new("Ocean Camera")
-    data.lens = _LENS
+    data.lens = mood.lens
     data.clip_start, data.clip_end = 0.1 / metres, 2.0 * _FAR / metres
     camera = bpy.data.objects.new("Ocean Camera", data)
     camera.location = np.array(ocean.location) + place / metres
-    camera.rotation_euler = (0.5 * math.pi - mood.tilt, 0.0, VIEW - 0.5 * math.pi)
+    camera.rotation_euler = (0.5 * math.pi - mood.tilt, 0.0, view - 0.5 * math.pi)
     return camera
 
 
@@ -200,6 +220,7 @@ def _set_up(
         with contextlib.suppress(TypeError):  # a studio's OCIO configuration may lack these
             scene.view_settings.view_transform = "AgX"
             scene.view_settings.look = "AgX - Medium High Contrast"
+        scene.view_settings.exposure = mood.exposure
     else:
         kept.append("frame range, samples and color management")
     return tuple(kept)

@@ -103,18 +103,18 @@ def build(
 
 def figure_6(extension: Extension) -> None:
     """Horvath's figure 6."""
-    build(extension, horvath.FIGURE_6, "STORM", math.radians(160.0), eye=0.9, rings=2)
+    build(extension, horvath.FIGURE_6, "STORM", math.radians(160.0), eye=3.0, rings=2)
 
 
 def figure_7(extension: Extension) -> None:
     """Horvath's figure 7."""
-    build(extension, horvath.FIGURE_7, "STORM", math.radians(160.0), eye=0.9, rings=2, overcast=0.95)
+    build(extension, horvath.FIGURE_7, "STORM", math.radians(160.0), eye=3.0, rings=2, overcast=0.95)
 
 
 def patches(extension: Extension, sea: OceanParameters = chen.PATCH) -> bpy.types.Object:
     """Chen's figure 3: 17 x 17 patches of 256 m."""
     return build(
-        extension, sea, "FRESH_BREEZE", math.radians(215.0), rings=PATCHES // 2, least_eye=25.0, eye=0.0,
+        extension, sea, "FRESH_BREEZE", math.radians(215.0), rings=PATCHES // 2, eye=25.0,
         tilt=math.radians(6.0),
     )  # fmt: skip
 
@@ -122,7 +122,7 @@ def patches(extension: Extension, sea: OceanParameters = chen.PATCH) -> bpy.type
 def fog(extension: Extension) -> None:
     """Lantz's surface with lighting and fog."""
     build(
-        extension, lantz.PATCH, "FRESH_BREEZE", math.radians(200.0), rings=7, visibility=250.0, least_eye=5.0,
+        extension, lantz.PATCH, "FRESH_BREEZE", math.radians(200.0), rings=7, visibility=250.0, eye=5.0,
         clouds=0.2, sun_elevation=math.radians(20.0), sun=math.radians(10.0),
     )  # fmt: skip
 
