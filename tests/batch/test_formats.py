@@ -20,6 +20,7 @@ from ocean_tweak.export.cache.records import CacheSink, FrameRecord
 from ocean_tweak.export.exr import ExrError, read_header, read_image, write_image
 
 NEWER = r"format = 2: was written by a newer Ocean Tweak, and this one reads up to 1: update the extension"
+NEWER_SEA = NEWER.replace("format = 2", "format = 3").replace("up to 1", "up to 2")
 SEA = OceanParameters(resolution=16)
 #: what the first version without a number in its JSON made of the default sea of 16² samples
 FINGERPRINT = "bef05b5eee19f69524838c47ecc4610db0e427d4334f2ebed229ceb2ca55e6c1"
@@ -49,12 +50,12 @@ def folder(tmp_path):
 def test_json_of_seas(kind):
     sea = SEA if kind is OceanParameters else Shot(SEA, Animation(1, (("choppiness", (0.5, 1.0)),)))
     text = sea.to_json()
-    assert json.loads(text)["format"] == 1
+    assert json.loads(text)["format"] == 2
     assert "format" not in sea.to_dict()
     without = json.dumps(sea.to_dict())
     assert kind.from_json(text) == kind.from_json(without) == sea
-    with pytest.raises(ParameterError, match=NEWER):
-        kind.from_json(with_format(text, 2))
+    with pytest.raises(ParameterError, match=NEWER_SEA):
+        kind.from_json(with_format(text, 3))
     for number in (0, True, "1", 1.0, None):
         with pytest.raises(ParameterError, match=r"format = .*: must be a whole number from 1"):
             kind.from_json(with_format(text, number))
@@ -68,8 +69,8 @@ def test_a_number_changes_no_fingerprint():
 def test_presets():
     preset = next(iter(built_in().values()))
     assert type(preset).from_json(preset.to_json()) == preset
-    with pytest.raises(ParameterError, match=NEWER):
-        type(preset).from_json(with_format(preset.to_json(), 2))
+    with pytest.raises(ParameterError, match=NEWER_SEA):
+        type(preset).from_json(with_format(preset.to_json(), 3))
 
 
 def test_images(tmp_path):
