@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam of the surface around the camera: on the crests of the summed patches, wherever the camera is."""
 
+import bpy
 import numpy as np
 import pytest
 
@@ -162,8 +163,48 @@ def test_points_come_and_go_with_the_foam(shown, extension, empty_scene):
     assert not [child for child in ocean.children if child.name.endswith("Foam")]
 
 
+def test_a_baked_sea_has_foam_of_the_files_that_are_shown(shown, extension, core, parameters, bake, camera):
+    ocean, item = shown
+    files = bake(parameters.on_one_grid(32), 1, 12, maps=("disp", "foam"))
+    extension("scene.ocean_object").use_sequence(ocean, bpy.context.scene, files)
+    bpy.context.scene.frame_set(10)
+    _, rest, found = foam_of(item)
+    place = eye_of(ocean, camera)
+    close = np.abs(rest - place).max(axis=1) < 12.0
+    time = parameters.timing.time(10)
+    expected = expected_foam(extension, parameters, time, place, *rest[close].T)
+    np.testing.assert_allclose(found[close, :2], expected[:, :2], atol=0.02)
+
+
 def test_motion_blur_keeps_the_foam_of_the_frame(shown, empty_scene):
     _, item = shown
     before = foam_of(item)[2]
     empty_scene.frame_set(9, subframe=0.25)
     np.testing.assert_array_equal(np.sort(foam_of(item)[2][:, 0]), np.sort(before[:, 0]))
+
+
+def test_foam_lies_around_the_camera_of_a_render(shown, camera, empty_scene, tmp_path):
+    """While an animation is rendered, the camera's own matrix stays that of before."""
+    ocean, _ = shown
+    for frame, x in ((9, 31.0), (12, 331.0)):
+        camera.location.x = x
+        camera.keyframe_insert("location", frame=frame)
+    empty_scene.frame_set(9)
+    scene, lying = empty_scene, []
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    scene.render.filepath = str(tmp_path / "frame")
+    scene.frame_start, scene.frame_end = 11, 12
+
+    def look(scene, _depsgraph):
+        (points,) = [child for child in ocean.children if child.name.endswith("Foam")]
+        lying.append(points.data.vertices[0].co.x + 24.0 + ocean.location.x)
+
+    bpy.app.handlers.frame_change_post.append(look)
+    try:
+        bpy.ops.render.render(animation=True)
+    finally:
+        bpy.app.handlers.frame_change_post.remove(look)
+    # keys are eased: s²(3 - 2s) of the way at a share s of the time
+    assert lying[0] == pytest.approx(31.0 + 300.0 * (3.0 - 4.0 / 3.0) * 4.0 / 9.0, abs=3.0)
+    assert lying[1] == pytest.approx(331.0, abs=3.0)
