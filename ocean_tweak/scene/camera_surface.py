@@ -13,6 +13,7 @@ from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
 from . import patch_objects, portability, water_material
 from .plan import camera_surface_of
+from .refinement import follow_up
 from .refresh import Wanted, refresh
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit
@@ -67,7 +68,7 @@ def add_camera_surface(
     _make_room(ocean)
     # its own mesh is without what does not repeat from now on
     own = Wanted.SURFACE | Wanted.SAMPLES if repeating(parameters) is not parameters else Wanted(0)
-    refresh(ocean, scene, own | Wanted.PATCHES | Wanted.NEIGHBOURS)
+    follow_up(ocean, refresh(ocean, scene, own | Wanted.PATCHES | Wanted.NEIGHBOURS))
     return surface
 
 

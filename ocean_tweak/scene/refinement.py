@@ -171,8 +171,15 @@ def show(
         _outstanding.note(uid, Wanted.SAMPLES | Wanted.STATISTICS, True)
     elif Wanted.SURFACE in wanted and not (_is_playing() or _has_statistics(item, scene)):
         _outstanding.note(uid, Wanted.STATISTICS, True)
-    _outstanding.note(uid, Wanted.HISTORY, Wanted.HISTORY in missing)
-    if uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):
+    follow_up(item, missing)
+
+
+def follow_up(item: bpy.types.Object, missing: Wanted) -> None:
+    """Let the foam's history follow where somebody looks on and a refresh left it out."""
+    if not has_window():
+        return
+    _outstanding.note(item.session_uid, Wanted.HISTORY, Wanted.HISTORY in missing)
+    if item.session_uid in _outstanding.uids and not bpy.app.timers.is_registered(go_on):
         bpy.app.timers.register(go_on, first_interval=_INTERVAL)
 
 

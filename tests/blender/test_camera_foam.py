@@ -8,6 +8,7 @@ import pytest
 from . import camera_views
 from .camera_views import moved_to, numbers
 from .conftest import evaluated_mesh
+from .test_refinement import run_until
 
 # fixtures for the tests here
 camera = camera_views.camera
@@ -208,3 +209,37 @@ def test_foam_lies_around_the_camera_of_a_render(shown, camera, empty_scene, tmp
     # keys are eased: s²(3 - 2s) of the way at a share s of the time
     assert lying[0] == pytest.approx(31.0 + 300.0 * (3.0 - 4.0 / 3.0) * 4.0 / 9.0, abs=3.0)
     assert lying[1] == pytest.approx(331.0, abs=3.0)
+
+
+@pytest.fixture
+def window(shown, extension, monkeypatch):
+    """Refinement as with a window; what is left of it ends with the test."""
+    module = extension("scene.refinement")
+    monkeypatch.setattr(module, "has_window", lambda: True)
+    monkeypatch.setattr(module, "PAUSE", 0.0)
+    yield module
+    bpy.ops.wm.read_homefile(use_empty=True)
+
+
+def test_in_a_window_old_foam_follows(shown, window, extension, parameters, camera, empty_scene):
+    """After a jump in time foam is there at once where crests break, and the rest a little later."""
+    ocean, item = shown
+
+    def foam_near():
+        _, rest, found = foam_of(item)
+        place = eye_of(ocean, camera)
+        close = np.abs(rest - place).max(axis=1) < 12.0
+        time = parameters.timing.time(200)
+        return found[close], expected_foam(extension, parameters, time, place, *rest[close].T)
+
+    empty_scene.frame_set(200)
+    found, expected = foam_near()
+    np.testing.assert_allclose(found[:, 1], expected[:, 1], atol=0.02)
+    np.testing.assert_allclose(found[:, 0], expected[:, 1], atol=0.02)
+    assert window.is_unfinished(ocean)
+    run_until(window, lambda: not window.is_unfinished(ocean))
+    found, expected = foam_near()
+    assert expected[:, 0].mean() > 1.5 * expected[:, 1].mean()
+    np.testing.assert_allclose(found[:, :2], expected[:, :2], atol=0.02)
+    empty_scene.frame_set(201)  # which is quickly made
+    assert not window.is_unfinished(ocean)
