@@ -49,9 +49,9 @@ def test_laws_are_the_published_ones() -> None:
 @pytest.mark.parametrize("wind", CALLAGHAN)
 def test_foam_covers_what_the_wind_leaves(wind: float) -> None:
     found = []
-    for seed in range(4):
+    for seed in range(3):
         ocean = Ocean(sea(wind, seed=seed))
-        found += [on_the_plane(ocean.surface(t, {"foam", "jacobian"})) for t in (30.0, 37.0, 44.0)]
+        found += [on_the_plane(ocean.surface(t, {"foam", "jacobian"})) for t in (30.0, 36.0)]
     assert np.mean(found) == pytest.approx(CALLAGHAN[wind], rel=0.25)
 
 
@@ -59,12 +59,11 @@ def test_the_law_and_how_much_of_it_can_be_chosen() -> None:
     covered = {}
     choices = {
         "as it is": Foam(), "twice": Foam(coverage=2.0), "none": Foam(coverage=0.0),
-        "coarse": Foam(resolution=128), "Monahan": Foam(law="MONAHAN_1980"),
+        "coarse": Foam(resolution=96), "Monahan": Foam(law="MONAHAN_1980"),
     }  # fmt: skip
     for name, choice in choices.items():
-        ocean = Ocean(sea(15.0, 256, 40.0 / 256.0, seed=2, foam=choice))
-        fields = [ocean.surface(t, {"foam", "jacobian"}) for t in (20.0, 26.0, 32.0)]
-        covered[name] = np.mean([on_the_plane(each) for each in fields])
+        ocean = Ocean(sea(15.0, seed=2, foam=dataclasses.replace(choice, half_life=1.0)))
+        covered[name] = on_the_plane(ocean.surface(20.0, {"foam", "jacobian"}))
     assert covered["twice"] / covered["as it is"] == pytest.approx(2.0, rel=0.15)
     assert covered["coarse"] / covered["as it is"] == pytest.approx(1.0, rel=0.25)
     assert covered["Monahan"] / covered["as it is"] == pytest.approx(0.0393 / 0.023597, rel=0.15)
@@ -89,12 +88,11 @@ def test_a_sea_that_names_no_law_has_the_usual_one() -> None:
 def test_some_tenth_of_the_foam_is_new(wind: float) -> None:
     """Of all foam, added up over samples 1.6 m apart."""
     new = old = 0.0
-    for seed in range(2):
-        layer = WaveLayer(wind_speed=wind, fetch=200e3)
-        ocean = Ocean(OceanParameters(resolution=256, domain_size=400.0, seed=seed, layers=(layer,)))
-        for time in (30.0, 40.0):
-            fields = ocean.surface(time, {"foam", "breaking"})
-            new, old = new + np.sum(fields.breaking), old + np.sum(fields.foam)
+    layer = WaveLayer(wind_speed=wind, fetch=200e3)
+    ocean = Ocean(OceanParameters(resolution=256, domain_size=400.0, layers=(layer,)))
+    for time in (30.0, 34.0):
+        fields = ocean.surface(time, {"foam", "breaking"})
+        new, old = new + np.sum(fields.breaking), old + np.sum(fields.foam)
     assert 0.03 < new / old < 0.15
 
 
@@ -118,13 +116,12 @@ def correlation_lengths(field: np.ndarray, spacing: float) -> np.ndarray:
 )
 def test_old_foam_lies_in_lines_from_9_bft_and_not_at_5(wind: float, low: float, high: float) -> None:
     """On a square kilometre, along the wind against across it."""
-    lengths = np.zeros(2)
-    for seed in range(2):
-        layer = WaveLayer(wind_speed=wind, fetch=300e3)
-        ocean = Ocean(OceanParameters(resolution=400, domain_size=1000.0, seed=seed, layers=(layer,)))
-        fields = ocean.surface(40.0, {"foam", "foam_age"})
-        lengths += correlation_lengths(np.where(fields.foam_age > 0.0, fields.foam, 0.0), 2.5)
-    assert low < lengths[0] / lengths[1] < high
+    layer = WaveLayer(wind_speed=wind, fetch=300e3)
+    fields = Ocean(OceanParameters(resolution=400, domain_size=1000.0, layers=(layer,))).surface(
+        40.0, {"foam", "foam_age"}
+    )
+    along, across = correlation_lengths(np.where(fields.foam_age > 0.0, fields.foam, 0.0), 2.5)
+    assert low < along / across < high
 
 
 def test_windrows_rise_from_7_to_9_bft() -> None:
@@ -154,11 +151,11 @@ def test_windrows_repeat_with_the_sea_and_keep_the_mean(direction: float) -> Non
 
 
 def test_windrows_leave_the_new_foam_and_the_mean_of_the_old() -> None:
-    with_them, without = (Ocean(sea(22.0, 256, 50.0 / 256.0, seed=4)) for _ in range(2))
+    with_them, without = (Ocean(sea(22.0, seed=4)) for _ in range(2))
     assert with_them.foam_model.windrows is not None
     without.__dict__["foam_model"] = dataclasses.replace(without.foam_model, windrows=None)
     foam, plain = [], []
-    for time in (20.0, 27.0, 34.0):
+    for time in (20.0, 27.0):
         drawn, born = (ocean.surface(time, OF_MEMORY) for ocean in (with_them, without))
         np.testing.assert_array_equal(drawn.breaking, born.breaking)
         assert np.abs(drawn.foam - born.foam).max() > 0.5
@@ -204,7 +201,7 @@ def test_merged_patches_have_the_foam_of_their_sum() -> None:
     """Away from the far sides, where one patch goes over into the next."""
     apart = OceanParameters(
         seed=3, layers=(WaveLayer(wind_speed=22.0, wind_direction=0.4, fetch=200e3),), patches=PATCHES,
-        foam=Foam(half_life=1.0, drift=0.0),
+        foam=Foam(half_life=0.5, drift=0.0),
     )  # fmt: skip
     merged = Ocean(apart.on_one_grid(256)).surface(4.0, OF_MEMORY)
     along = 300.0 / 256.0 * np.arange(0, 210, 3)
