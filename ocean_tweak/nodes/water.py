@@ -39,6 +39,8 @@ _GUSTS = ((1400.0, 0.6), (310.0, 0.4))
 _GUSTY = (0.15, 1.85)
 #: least roughness of water, which keeps the sun's reflections from being points
 _SMOOTHEST = 0.03
+#: heights of what a ripple mirrors, as sines, between which it is water and sky
+_BELOW = (-0.1, 0.0)
 #: what waves that the mesh leaves out add to alpha², of their slope variance σ². Far water is as bright as
 #: its slopes along the line of sight are steep in the mean: GGX has E|s| = alpha, and with Gaussian slopes of
 #: the variance σ²/2 besides alpha + σ²/4alpha, so alpha² grows by σ²/2 (without other roughness by σ²/π)
@@ -152,18 +154,29 @@ def _build(tree: bpy.types.NodeTree) -> None:
     slope, roughness = _waves(shade, given, at)
     absorption, backscatter = coefficients(shade, given, foam)
     through = given["Transmission"]
+    normal = _normal(shade, given, slope)
     inputs = {
         "Base Color": shade.mix_vectors(through, body(shade, given, absorption, backscatter), (1.0,) * 3),
         "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"],
-        "Normal": _normal(shade, given, slope), "Emission Color": crest_glow(shade, given, absorption),
-        "Emission Strength": 1.0,
+        "Normal": normal, "Specular IOR Level": _mirrored(shade, normal),
+        "Emission Color": crest_glow(shade, given, absorption), "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     cover = foam_cover(shade, given, at, foam)
     piled = _normal(shade, given, cover.slope)
-    shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, foam, cover, piled))
+    shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, cover, piled))
     hazy = _in_haze(shade, given, at, shown)
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
+
+
+def _mirrored(shade: Shading, normal: Socket) -> Socket:
+    """How much of the mirrored light is the sky's, as the shader takes it: 0.5 for all.
+
+    What a ripple mirrors from below the horizon is the next ripple, which EEVEE cannot see.
+    """
+    incoming = shade.node("ShaderNodeNewGeometry").outputs["Incoming"]
+    mirrored = shade.vector("REFLECT", shade.scale(incoming, -1.0), normal)
+    return shade.smooth(shade.separate(mirrored)[2], *_BELOW, 0.0, 0.5)
 
 
 def _waves(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket, Socket]:

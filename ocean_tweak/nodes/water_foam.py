@@ -22,7 +22,7 @@ from .water_pattern import WIND_SPEED, Lace, Place, lace
 #: across; three for foam as it was made, and two for what the wind has drawn out
 _LACES = ((0.04, 0.7, 1), (0.17, 0.15, 2), (0.5, -0.4, 1), (0.7, 0.04, 3), (1.5, 0.0, 5))
 #: weights of the laces: of foam that is being made, of some seconds, old, and old in streaks
-_FRESH = (0.72, 0.28, 0.0, 0.0, 0.0)
+_FRESH = (0.48, 0.44, 0.08, 0.0, 0.0)
 _YOUNG = (0.35, 0.45, 0.20, 0.0, 0.0)
 _OLD = (0.12, 0.28, 0.60, 0.0, 0.0)
 _DRAWN_OUT = (0.10, 0.14, 0.05, 0.33, 0.38)
@@ -39,9 +39,11 @@ _RIM = (0.14, 0.07)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.5, 2.0)
 #: height of a pile of fresh foam in cells, and what old foam has of it
-_PILE, _FLAT = 0.7, 0.12
+_PILE, _FLAT = 0.4, 0.12
+#: light that fresh piles keep from themselves, a cell of height; measured under an even sky
+_SHADOW = 0.37
 #: brightness of a rim, which is thin and wet, of old and of fresh foam
-_RIM_LIGHT = (0.62, 0.80)
+_RIM_LIGHT = (0.62, 0.92)
 
 
 class Foam(NamedTuple):
@@ -61,12 +63,12 @@ class Cover(NamedTuple):
     """Foam as it is drawn.
 
     amount : 0…1, how much of the point is covered
-    thickness : 0…1, one half in the mean
+    light : 0…1, what rims and creases, and piles too small to be seen, leave of its brightness
     slope : of its piles, along the ocean's x and y
     """
 
     amount: Socket
-    thickness: Socket
+    light: Socket
     slope: Socket
 
 
@@ -89,25 +91,33 @@ def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
 def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> Cover:
     """Foam with its laces."""
     rim = shade.mix(foam.youth, *_RIM)
-    amount = thickness = slope = None
+    high = shade.math("MULTIPLY", shade.mix(foam.youth, _PILE * _FLAT, _PILE), given["Foam Relief"])
+    amount: Socket | float = 1.0
+    thickness: Socket | float = 0.0
+    unseen: Socket | float = 0.0
+    slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
     for weight, (size, turn, stretch) in zip(_weights(shade, given, foam), _LACES, strict=True):
         cell = shade.math("MULTIPLY", given["Foam Size"], size)
         layer = lace(shade, at, cell, turn, stretch)
         share = shade.math("POWER", foam.share, weight)
         cells = shade.math("DIVIDE", shade.math("MULTIPLY", at.footprint, float(stretch)), cell)
         far = shade.smooth(cells, *_FADE)
-        part = _covered(shade, layer, share, rim, far)
+        hidden = shade.math("MULTIPLY", weight, far)
+        amount = shade.math("MULTIPLY", amount, _covered(shade, layer, share, rim, far))
         depth = _depth(shade, layer, share, foam.youth, far)
-        shown = shade.math("MULTIPLY", weight, shade.math("SUBTRACT", 1.0, far))
-        pile = _pile(shade, layer, share, foam.youth, shown)
-        amount = part if amount is None else shade.math("MULTIPLY", amount, part)
-        weighed = shade.math("MULTIPLY", depth, weight)
-        thickness = weighed if thickness is None else shade.math("ADD", thickness, weighed)
-        slope = pile if slope is None else shade.vector("ADD", slope, pile)
+        thickness = shade.math("MULTIPLY_ADD", depth, weight, thickness)
+        pile = _pile(shade, layer, share, foam.youth, shade.math("SUBTRACT", weight, hidden))
+        slope = shade.vector("ADD", slope, pile)
+        unseen = shade.math("ADD", unseen, hidden)
     # heights between samples may be a little below 0
     has_any = shade.math("GREATER_THAN", foam.share, 1e-4)
-    high = shade.math("MULTIPLY", shade.mix(foam.youth, _PILE * _FLAT, _PILE), given["Foam Relief"])
-    return Cover(shade.math("MULTIPLY", amount, has_any), thickness, shade.scale(slope, high))
+    shadow = shade.math("MULTIPLY", shade.math("MULTIPLY", unseen, foam.youth), -_SHADOW)
+    light = shade.mix(thickness, shade.mix(foam.youth, *_RIM_LIGHT), 1.0)
+    return Cover(
+        amount=shade.math("MULTIPLY", amount, has_any),
+        light=shade.math("MULTIPLY", light, shade.math("MULTIPLY_ADD", shadow, high, 1.0, clamp=True)),
+        slope=shade.scale(slope, high),
+    )
 
 
 def _weights(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, ...]:
@@ -153,12 +163,10 @@ def _pile(shade: Shading, layer: Lace, share: Socket, youth: Socket, weight: Soc
     return shade.scale(layer.slope, shade.math("MULTIPLY", shade.math("MULTIPLY", steep, inside), weight))
 
 
-def foam_shader(shade: Shading, given: dict[str, Socket], foam: Foam, cover: Cover, normal: Socket) -> Socket:
+def foam_shader(shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket) -> Socket:
     """Bubbles scatter all light that meets them; a thin, wet rim keeps some."""
-    colour = shade.scale(
-        given["Foam Color"], shade.mix(cover.thickness, shade.mix(foam.youth, *_RIM_LIGHT), 1.0)
-    )
     inputs = {
-        "Base Color": colour, "Roughness": given["Foam Roughness"], "IOR": given["IOR"], "Normal": normal,
+        "Base Color": shade.scale(given["Foam Color"], cover.light), "Roughness": given["Foam Roughness"],
+        "IOR": given["IOR"], "Normal": normal,
     }  # fmt: skip
     return shade.node("ShaderNodeBsdfPrincipled", inputs).outputs[0]

@@ -26,7 +26,7 @@ _BUBBLES_LEFT = 0.5
 #: of old foam's bubbles beside fresh foam's
 _OLD_BUBBLES = 0.55
 #: cusps between which a crest is sharp
-_SHARP = (0.12, 0.65)
+_SHARP = (0.12, 0.42)
 #: way of light in m through a round crest and a sharp one
 _WAYS = (7.0, 1.2)
 #: how much more of the light goes on forward than aside: k of the phase function
@@ -34,7 +34,7 @@ _FORWARD = 0.72
 #: sine of the slope away from the sun between which light comes through
 _AWAY = (0.05, 0.45)
 #: share of the light on a crest's back that is scattered in it
-_SCATTERED = 0.35
+_SCATTERED = 0.25
 
 
 def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, Socket]:

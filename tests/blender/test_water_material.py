@@ -182,6 +182,98 @@ def test_a_normal_image_turns_the_surface(inputs, sea, seen):
     assert seen(45.0)[0] == pytest.approx(fresnel(60.0), rel=0.04)
 
 
+def glow(inputs, seen):
+    """What the sun adds at a crest that leans towards the camera, in red, green and blue."""
+    inputs["Sun Light"].default_value = (0.0, 0.0, 0.0, 1.0)
+    without = seen(80.0)
+    inputs["Sun Light"].default_value = (8.0, 8.0, 8.0, 1.0)
+    return seen(80.0) - without
+
+
+def test_crests_before_a_low_sun_shine_green(inputs, sea, seen):
+    """Only sharp ones, only where they stand between the eye and the sun; more green than blue than red."""
+    inputs["Absorption"].default_value = (0.40, 0.105, 0.19, 1.0)
+    cusp = sea.data.attributes.new("cusp", "FLOAT", "POINT")
+    cusp.data.foreach_set("value", np.full(4, 0.27, np.float32))
+    # the camera looks along +y: 17° of slope towards it
+    for vertex in sea.data.vertices:
+        vertex.co.z = 0.3 * vertex.co.y
+    inputs["Sun Direction"].default_value = (0.0, 0.98, 0.2)
+    red, green, blue = glow(inputs, seen)
+    assert green > 1.15 * blue > 1.15**2 * red > 0.0
+    assert green > 0.02
+    inputs["Sun Direction"].default_value = (0.0, -0.98, 0.2)
+    assert glow(inputs, seen).max() < 0.02 * green
+    inputs["Sun Direction"].default_value = (0.0, 0.98, 0.2)
+    sea.data.attributes["cusp"].data.foreach_set("value", np.full(4, 0.05, np.float32))
+    sea.data.update()
+    assert glow(inputs, seen).max() < 0.02 * green
+
+
+def test_the_lamp_lights_the_crests_wherever_it_turns(water, empty_scene, extension):
+    sky = extension("scene.sky")
+    sun = sky.new_sun("Sun", sky.Sky(math.radians(20.0), math.radians(30.0)))
+    empty_scene.collection.objects.link(sun)
+    material = water.water_material()
+    item = bpy.data.objects.new("Item", bpy.data.meshes.new("Item"))
+    item.data.materials.append(material)
+    empty_scene.collection.objects.link(item)
+    for _ in range(2):  # a second time changes nothing
+        water.light_by(material, sun)
+
+    def given(label):
+        shown = material.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        node = next(node for node in shown.node_tree.nodes if node.label == label)
+        return [socket.default_value for socket in node.inputs]
+
+    level = math.cos(math.radians(20.0))
+    towards = (level * math.cos(math.radians(30.0)), 0.5 * level, math.sin(math.radians(20.0)))
+    assert given("Sun Direction") == pytest.approx(towards, abs=1e-5)
+    assert given("Sun Light") == pytest.approx(sky.Sky(math.radians(20.0), 0.0).sun_irradiance, rel=1e-4)
+    sun.rotation_euler, sun.data.energy = (0.0, 0.0, 0.0), 3.0
+    assert given("Sun Direction") == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
+    assert max(given("Sun Light")) == pytest.approx(3.0)
+
+
+def test_a_pixel_is_the_camera_s(water, empty_scene):
+    material = water.water_material()
+    item = bpy.data.objects.new("Item", bpy.data.meshes.new("Item"))
+    item.data.materials.append(material)
+    empty_scene.collection.objects.link(item)
+
+    def angle():
+        shown = material.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        node = next(node for node in shown.node_tree.nodes if node.label == "Pixel Angle")
+        return node.outputs[0].default_value
+
+    empty_scene.render.resolution_x, empty_scene.render.resolution_percentage = 1000, 50
+    assert angle() == pytest.approx(36.0 / 50.0 / 500.0)  # no camera: as a new one
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera, camera.data.lens = camera, 200.0
+    assert angle() == pytest.approx(36.0 / 200.0 / 500.0)
+
+
+def test_foam_stays_white_whatever_its_age_and_however_far(inputs, sea, seen, empty_scene):
+    """Its mean colour: relief, rims and creases neither near nor far take more than a twentieth of it."""
+    for link in inputs["Pixel Angle"].links:
+        sea.active_material.node_tree.links.remove(link)
+    inputs["Bubbles"].default_value = 0.0
+    empty_scene.camera.data.ortho_scale = 40.0
+    for name in ("foam", "foam_age", "breaking"):
+        sea.data.attributes.new(name, "FLOAT", "POINT")
+    for age, breaking in ((0.0, 1.0), (3.0, 0.0)):
+        for name, value in (("foam", 0.7), ("foam_age", age), ("breaking", breaking)):
+            sea.data.attributes[name].data.foreach_set("value", np.full(4, value, np.float32))
+        sea.data.update()
+        shown = []
+        for angle in (0.0, 1.0):  # patterns as they are, and far below a pixel
+            inputs["Pixel Angle"].default_value = angle
+            shown.append(seen()[0])
+        assert shown[0] == pytest.approx(shown[1], rel=0.05)
+        assert shown[1] > 0.45
+
+
 def test_describe_says_what_the_sea_is_and_only_once(ocean_object, water, make_parameters, core, empty_scene):
     parameters = make_parameters(domain_size=200.0, resolution=64, water=core.Water(depth=12.0))
     item = ocean_object.add(empty_scene, parameters)
