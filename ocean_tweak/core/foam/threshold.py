@@ -29,9 +29,11 @@ LEAST_COMPRESSION = 1e-6
 
 #: directions of the gradient over which means are taken; levels of compression, and how far they reach in
 #: standard deviations of the direction that is compressed most
-_DIRECTIONS, _LEVELS, _REACH = 4096, 400, 9.0
+_DIRECTIONS, _LEVELS, _REACH = 2048, 160, 9.0
 #: the lowest level over the highest
 _LOWEST = 1e-5
+#: what is taken for none where logarithms are
+_NONE = 1e-300
 #: of the range in which the threshold is looked for
 _HALVINGS = 40
 
@@ -108,6 +110,11 @@ class Strains:
     area: Array
     crossings: Array
 
+    def at(self, compression: Array, name: str) -> Array:
+        """One of the other arrays between its levels: what falls by orders of magnitude, by its logarithm."""
+        of_levels = np.log(np.maximum(getattr(self, name), _NONE))
+        return np.asarray(np.exp(np.interp(np.log(compression), np.log(self.level), of_levels)))
+
     def covered(self, threshold: float, half_life: float) -> float:
         """The mean of the foam over the horizontal plane, new and old, with this threshold.
 
@@ -117,10 +124,7 @@ class Strains:
         """
         strength, rise = births()
         octaves = np.diff(np.log2(strength), prepend=2.0 * np.log2(strength[0]) - np.log2(strength[1]))
-        share, area, crossings = (
-            np.interp(threshold * rise, self.level, field)
-            for field in (self.share, self.area, self.crossings)
-        )
+        share, area, crossings = (self.at(threshold * rise, name) for name in ("share", "area", "crossings"))
         later = half_life * np.cumsum((crossings * octaves)[::-1])[::-1] / np.maximum(1.0 - share, 1e-3)
         covered = 1.0 - (1.0 - area) * np.exp(-later)
         return float(np.sum(covered * strength * octaves)) * math.log(2.0)
