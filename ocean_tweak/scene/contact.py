@@ -75,7 +75,7 @@ def part(item: bpy.types.Object) -> None:
 
 def touches(item: bpy.types.Object) -> bool:
     """Whether an object was made to touch the water."""
-    return _OCEAN in item
+    return _OCEAN in item and isinstance(item.get(_LEVEL), float)
 
 
 def level_of(item: bpy.types.Object) -> float:
@@ -102,13 +102,14 @@ def refresh(fitted: Mapping[bpy.types.Object, Values] | None = None) -> None:
     """
     fitted = fitted or {}
     known = {item: item[_OCEAN] for item in bpy.data.objects if touches(item) and _is_shown(item)}
-    oceans = {ocean for ocean in known.values() if ocean is not None and is_ocean(ocean)}
+    # what a file says there may be anything
+    oceans = {ocean for ocean in known.values() if isinstance(ocean, bpy.types.Object) and is_ocean(ocean)}
     shown = {ocean: set(_materials(ocean)) for ocean in oceans}
     for material in bpy.data.materials:
         water = _water(material)
         if water is None:
             continue
-        wanted = [item for item, ocean in known.items() if ocean in oceans and material in shown[ocean]]
+        wanted = [item for item, ocean in known.items() if ocean in shown and material in shown[ocean]]
         present = _collars(material)
         if set(present) != set(wanted) or not fitted.keys().isdisjoint(wanted):
             _chain(material.node_tree, water, _inputs_of(wanted, present, fitted))

@@ -209,6 +209,18 @@ def test_collars_come_and_go_with_the_objects(extension, ocean, disc, select, em
     assert sorted(node.name for node in nodes) == before
 
 
+def test_what_a_file_says_of_contact_may_be_anything(extension, ocean, disc):
+    item = disc()
+    for told in (None, "Ocean", 3, item):
+        item["ocean_tweak_waterline"] = "deep"
+        if told is not None:
+            item["ocean_tweak_contact"] = told
+        extension("scene.contact").refresh()
+        item["ocean_tweak_waterline"] = 0.0
+        extension("scene.contact").refresh()
+    assert collars(ocean) == []
+
+
 def test_undo_takes_the_collar_back(ocean, disc, select, window):
     item = disc()
     select(item)
