@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the ocean scenes that one press makes, and renders a still of each.
+"""Renders stills of the ocean scenes that one press makes, and of others beside them.
 
 python3 -m tools.blender --in 5.2 examples/gallery.py -- --out build/gallery
 
@@ -9,10 +9,16 @@ python3 -m tools.blender --in 5.2 examples/gallery.py -- --out build/gallery
 from __future__ import annotations
 
 import argparse
+import dataclasses
+import math
 import os
 import sys
 import time
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import bpy
 
@@ -21,12 +27,47 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from extension import Extension, enable
 
 LARGEST = 200_000  # bytes
-MOODS = ("CALM", "FRESH_BREEZE", "STORM")
 ENGINES = ("CYCLES", "EEVEE")
-
-
 #: where Mesa's driver draws EEVEE on a processor, the horizon's images take minutes a sample with it
 ANISOTROPIC_FILTERS = "-GL_EXT_texture_filter_anisotropic -GL_ARB_texture_filter_anisotropic"
+
+
+class Shot(NamedTuple):
+    """A ready scene, or one with another sea, sky or camera.
+
+    mood : of the scene
+    wind : speed in m/s and fetch in m of another sea, on patches down to waves of a fifth of a metre; None
+        for the mood's own
+    changes : of fields of the mood
+    is_afloat : whether something floats before the camera
+    """
+
+    mood: str
+    wind: tuple[float, float] | None = None
+    changes: Mapping[str, float] = MappingProxyType({})
+    is_afloat: bool = True
+
+
+SHOTS = {
+    "calm": Shot("CALM"),
+    "fresh-breeze": Shot("FRESH_BREEZE"),
+    "storm": Shot("STORM"),
+    "backlit-crest": Shot(
+        "FRESH_BREEZE", (14.0, 80e3), is_afloat=False,
+        changes={
+            "sun": math.radians(6.0), "sun_elevation": math.radians(13.0), "clouds": 0.35, "rings": 0,
+            "eye": 0.9, "crest_distance": 5.0, "lens": 70.0, "tilt": math.radians(-2.0),
+        },
+    ),
+    "aerial-60m": Shot(
+        "FRESH_BREEZE", (11.0, 150e3), is_afloat=False,
+        changes={"eye": 60.0, "tilt": math.radians(12.0), "lens": 28.0, "rings": 0, "sun": math.radians(25.0)},
+    ),
+    "aerial-300m": Shot(
+        "STORM", is_afloat=False,
+        changes={"eye": 300.0, "tilt": math.radians(14.0), "lens": 28.0, "exposure": -0.1, "sun": math.radians(130.0)},
+    ),
+}  # fmt: skip
 
 
 def main() -> None:
@@ -34,10 +75,12 @@ def main() -> None:
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
     os.environ.setdefault("MESA_EXTENSION_OVERRIDE", ANISOTROPIC_FILTERS)
     extension = enable()
-    for mood in arguments.moods:
+    for name in arguments.shots:
         for engine in arguments.engines:
-            build(extension, mood, engine, arguments)
-            picture = arguments.out.resolve() / f"{mood.lower().replace('_', '-')}-{engine.lower()}.png"
+            build(extension, SHOTS[name], engine)
+            set_quality(bpy.context.scene, arguments.width, arguments.samples)
+            bpy.context.scene.render.use_motion_blur = not arguments.still
+            picture = arguments.out.resolve() / f"{name}-{engine.lower()}.png"
             render(bpy.context.scene, arguments.frame, picture)
             if arguments.jpeg:
                 save_jpeg(picture, arguments.jpeg.resolve() / f"{picture.stem}.jpg")
@@ -46,10 +89,8 @@ def main() -> None:
 def parse(argv: list[str]) -> argparse.Namespace:
     """The arguments after "--"."""
     parser = picture_parser("gallery.py")
-    parser.add_argument("--moods", nargs="+", default=MOODS, choices=MOODS)
+    parser.add_argument("--shots", nargs="+", default=tuple(SHOTS), choices=SHOTS)
     parser.add_argument("--engines", nargs="+", default=ENGINES, choices=ENGINES)
-    parser.add_argument("--resolution", type=int, help="samples along a side, instead of the mood's")
-    parser.add_argument("--rings", type=int, help="of copies around the ocean, instead of the scene's")
     parser.add_argument("--still", action="store_true", help="without motion blur")
     return parser.parse_args(argv)
 
@@ -65,18 +106,23 @@ def picture_parser(program: str) -> argparse.ArgumentParser:
     return parser
 
 
-def build(extension: Extension, mood: str, engine: str, arguments: argparse.Namespace) -> None:
-    """A new file with the scene of a mood, ready to render."""
+def build(extension: Extension, shot: Shot, engine: str) -> None:
+    """A new file with the scene of a shot, ready to render."""
+    moods, surroundings = extension.module("scene.moods"), extension.module("scene.surroundings")
     bpy.ops.wm.read_homefile(use_empty=True)
-    bpy.ops.ocean.add_scene(mood=mood, engine=engine)
-    scene = bpy.context.scene
-    if arguments.resolution:
-        bpy.data.objects["Ocean"].ocean_tweak.resolution = arguments.resolution
-    if arguments.rings is not None:
-        modifier = bpy.data.objects["Ocean Horizon"].modifiers[0]
-        extension.module("nodes.modifier_inputs").set_input(modifier, "Rings", arguments.rings)
-    set_quality(scene, arguments.width, arguments.samples)
-    scene.render.use_motion_blur = not arguments.still
+    mood = dataclasses.replace(moods.MOODS[shot.mood], **shot.changes)
+    if shot.wind is not None:
+        mood = dataclasses.replace(mood, waves=partial(wind_sea, extension, *shot.wind))
+    moods.MOODS["SHOT"] = mood
+    surroundings.build(bpy.context.scene, "SHOT", surroundings.Wishes(engine=engine, afloat=shot.is_afloat))
+
+
+def wind_sea(extension: Extension, wind_speed: float, fetch: float) -> Any:
+    """Parameters of a wind's sea that runs towards the camera."""
+    core, plan = extension.module("core"), extension.module("core.sea.patch_plan")
+    direction = extension.module("scene.moods").VIEW + math.radians(205.0)
+    layer = core.WaveLayer(wind_speed=wind_speed, fetch=fetch, wind_direction=direction, swell=0.3)
+    return plan.planned(core.OceanParameters(seed=3, layers=(layer,)), plan.Wish(finest=0.2, area=900.0))
 
 
 def set_quality(scene: bpy.types.Scene, width: int, samples: int) -> None:
