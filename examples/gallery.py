@@ -61,11 +61,16 @@ SHOTS = {
     ),
     "aerial-60m": Shot(
         "FRESH_BREEZE", (11.0, 150e3), is_afloat=False,
-        changes={"eye": 60.0, "tilt": math.radians(12.0), "lens": 28.0, "rings": 0, "sun": math.radians(25.0)},
+        changes={
+            "eye": 60.0, "tilt": math.radians(12.0), "lens": 28.0, "rings": 0, "sun": math.radians(25.0),
+        },
     ),
     "aerial-300m": Shot(
         "STORM", is_afloat=False,
-        changes={"eye": 300.0, "tilt": math.radians(14.0), "lens": 28.0, "exposure": -0.1, "sun": math.radians(130.0)},
+        changes={
+            "eye": 300.0, "tilt": math.radians(14.0), "lens": 28.0, "exposure": -0.1,
+            "sun": math.radians(130.0),
+        },
     ),
 }  # fmt: skip
 

@@ -29,6 +29,10 @@ from .units import frame_rate, metres_per_unit
 
 #: how far beside the middle of the picture the highest wave may be, rad
 _ASIDE = math.radians(4.0)
+#: a camera that is lower, m, rides the waves as a boat does, with a key in so many frames
+_BOAT, _KEY_FRAMES = 10.0, 12
+#: samples of the sea that it feels
+_FELT = 256
 _FAR = 30e3  # m, beyond the horizon of any camera on a ship
 _FRAMES = 240
 _SAMPLES = 128  # of Cycles, whose denoiser does the rest: 4,096 take an hour for the first picture
@@ -92,6 +96,8 @@ def build(
     place = camera_place(chosen, parameters)
     camera = new_camera(chosen, place, ocean, scene)
     target.objects.link(camera)
+    if chosen.eye < _BOAT:
+        ride(camera, place, parameters, scene)
     kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
     if not chosen.rings:
         add_camera_surface(ocean, scene)
@@ -189,6 +195,24 @@ def new_camera(
     camera.location = np.array(ocean.location) + place / metres
     camera.rotation_euler = (0.5 * math.pi - mood.tilt, 0.0, view - 0.5 * math.pi)
     return camera
+
+
+def ride(
+    camera: bpy.types.Object,
+    place: NDArray[np.float64],
+    parameters: OceanParameters,
+    scene: bpy.types.Scene,
+) -> None:
+    """Key a camera's height over the scene's first frames, so that long waves lift it and none goes over it."""
+    metres, first = float(metres_per_unit(scene)), scene.frame_start
+    sea = Ocean(parameters.at_resolution(min(_FELT, parameters.resolution)))
+    frames = range(first, first + _FRAMES + _KEY_FRAMES, _KEY_FRAMES)
+    heights = [float(sea.height_at(*place[:2], parameters.timing.time(frame))) for frame in frames]
+    at_first = camera.location.z
+    for frame, height in zip(frames, heights, strict=True):
+        camera.location.z = at_first + (height - heights[0]) / metres
+        camera.keyframe_insert("location", index=2, frame=frame)
+    camera.location.z = at_first
 
 
 def _set_up(

@@ -88,6 +88,20 @@ def test_the_camera_is_above_the_water_and_sees_the_highest_wave(quick, empty_sc
     assert np.all(points[:, 2] > water)
 
 
+@pytest.mark.parametrize("mood", ["FRESH_BREEZE", "STORM"])
+def test_no_wave_goes_over_the_camera(quick, empty_scene, extension, mood):
+    bpy.ops.ocean.add_scene(mood=mood, engine="CYCLES", use_buoy=False)
+    ocean, camera = ocean_of(empty_scene), empty_scene.camera
+    sea = extension("core").Ocean(ocean.ocean_tweak.to_parameters(empty_scene))
+    x, y = (camera.location - ocean.location)[:2]
+    above = []
+    for frame in range(1, 241, 7):
+        empty_scene.frame_set(frame)
+        above.append(camera.matrix_world.translation.z - float(sea.height_at(x, y, (frame - 1) / 24)))
+    assert min(above) > 0.2 * quick[mood].eye
+    assert max(above) < 2.0 * quick[mood].eye
+
+
 def test_the_buoy_floats(quick, empty_scene):
     bpy.ops.ocean.add_scene(mood="FRESH_BREEZE")
     buoy = by_name(empty_scene, "Buoy")
