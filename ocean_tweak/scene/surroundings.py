@@ -203,7 +203,7 @@ def ride(
     parameters: OceanParameters,
     scene: bpy.types.Scene,
 ) -> None:
-    """Key a camera's height over the scene's first frames, so that long waves lift it and none goes over it."""
+    """Key a camera's height over the first frames, so that long waves lift it and none goes over it."""
     metres, first = float(metres_per_unit(scene)), scene.frame_start
     sea = Ocean(parameters.at_resolution(min(_FELT, parameters.resolution)))
     frames = range(first, first + _FRAMES + _KEY_FRAMES, _KEY_FRAMES)

@@ -65,7 +65,7 @@ def crests() -> Table:
     side, waves = 8.0 * np.pi, 4
     cosine = np.cos(2.0 * np.pi * waves / 64.0 * np.arange(64))
     picture = ImageLayer(
-        picture=Raster(np.tile(cosine, (64, 1))), filter="FRACTAL", fractal_dimension=4.0,
+        image=Raster(np.tile(cosine, (64, 1))), filter="FRACTAL", fractal_dimension=4.0,
         significant_wave_height=4.0 * 0.1 / np.sqrt(2.0),
     )  # fmt: skip
     for choppiness in (0.0, 1.0):
