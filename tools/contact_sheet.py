@@ -78,19 +78,16 @@ def save(pictures: Mapping[tuple[str, int], object], titles: Mapping[str, str], 
     sheet.save(path)
 
 
-def save_gallery(stills: Path, sheet: Path, gallery: Path) -> None:
-    """Write the sheet, and the one still, as JPEG small enough for the repository."""
+def save_gallery(sheet: Path, gallery: Path) -> None:
+    """Write the sheet as a JPEG small enough for the repository."""
     from PIL import Image
 
     gallery.mkdir(parents=True, exist_ok=True)
-    (still,) = stills.glob("*.png")
-    for source, name, width in ((sheet, "storm-contact-sheet.jpg", 1600), (still, "storm.jpg", 1600)):
-        picture = Image.open(source).convert("RGB")
-        height = round(picture.height * width / picture.width)
-        picture = picture.resize((width, height), Image.Resampling.LANCZOS)
-        for quality in range(92, 40, -4):
-            picture.save(gallery / name, quality=quality, optimize=True, progressive=True)
-            if (gallery / name).stat().st_size < GALLERY_BYTES:
-                break
-        else:
-            raise ToolError(f"{name} stays above {GALLERY_BYTES} bytes")
+    picture = Image.open(sheet).convert("RGB")
+    picture = picture.resize((1600, round(picture.height * 1600 / picture.width)), Image.Resampling.LANCZOS)
+    path = gallery / "storm-contact-sheet.jpg"
+    for quality in range(92, 40, -4):
+        picture.save(path, quality=quality, optimize=True, progressive=True)
+        if path.stat().st_size < GALLERY_BYTES:
+            return
+    raise ToolError(f"{path.name} stays above {GALLERY_BYTES} bytes")

@@ -23,7 +23,6 @@ GALLERY = ROOT / "docs" / "gallery"
 FOLDER = BUILD / "demo"
 CACHE = FOLDER / "cache"
 PICTURES = FOLDER / "pictures"
-STILL = FOLDER / "still"
 BLEND = FOLDER / "storm.blend"
 PROFILE = FOLDER / "profile"
 LOG = FOLDER / "demo.log"
@@ -59,15 +58,16 @@ class Steps:
 def main() -> int:
     """Run the demo; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tools.demo", description=__doc__)
-    parser.add_argument("--gallery", action="store_true", help="also renew the pictures in docs/gallery/")
+    parser.add_argument(
+        "--gallery", action="store_true", help="also renew the contact sheet in docs/gallery/"
+    )
     arguments = parser.parse_args()
     steps = Steps()
     try:
         table = run(steps)
         if arguments.gallery:
             with steps.step("renew docs/gallery"):
-                render((LAST,), "--scene", "Geometry nodes", "--width", "1600", "--samples", "96", out=STILL)
-                contact_sheet.save_gallery(STILL, FOLDER / "contact_sheet.png", GALLERY)
+                contact_sheet.save_gallery(FOLDER / "contact_sheet.png", GALLERY)
     except (ToolError, OSError) as error:
         print(f"\ndemo failed: {steps.current}: {error}", file=sys.stderr)
         return 1

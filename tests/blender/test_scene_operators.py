@@ -2,11 +2,14 @@
 """A whole scene at one press: what it makes, what it leaves alone, and that undo takes it back."""
 
 import math
+import os
 
 import bpy
 import numpy as np
 import pytest
 from mathutils import Vector
+
+from .test_water_foam import ANISOTROPIC_FILTERS
 
 
 @pytest.fixture
@@ -86,6 +89,28 @@ def test_the_camera_is_above_the_water_and_sees_the_highest_wave(quick, empty_sc
     points = place + way * seen
     water = sea.height_at(points[:, 0], points[:, 1], 0.0)
     assert np.all(points[:, 2] > water)
+
+
+@pytest.mark.skipif("OCEAN_TWEAK_LONG_TESTS" not in os.environ, reason="EEVEE on a processor takes a minute")
+def test_both_engines_see_a_storm_as_bright(quick, empty_scene, tmp_path, monkeypatch):
+    monkeypatch.setenv("MESA_EXTENSION_OVERRIDE", ANISOTROPIC_FILTERS)
+    seen = []
+    for engine in ("CYCLES", "EEVEE"):
+        bpy.ops.ocean.add_scene(mood="STORM", engine=engine, use_buoy=False, use_new_scene=True)
+        scene = bpy.context.scene
+        scene.render.resolution_x, scene.render.resolution_y = 96, 40
+        scene.render.use_motion_blur = False
+        scene.cycles.samples = scene.eevee.taa_render_samples = 16
+        scene.cycles.device, scene.cycles.use_denoising = "CPU", False
+        scene.render.image_settings.file_format = "OPEN_EXR"
+        scene.render.filepath = str(tmp_path / f"{engine}.exr")
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+        image = bpy.data.images.load(scene.render.filepath)
+        pixels = np.empty(4 * 96 * 40, np.float32)
+        image.pixels.foreach_get(pixels)
+        seen.append(float(pixels.reshape(-1, 4)[:, :3].mean()))
+    assert seen[1] == pytest.approx(seen[0], rel=0.15)
+    assert seen[0] > 0.02
 
 
 @pytest.mark.parametrize("mood", ["FRESH_BREEZE", "STORM"])

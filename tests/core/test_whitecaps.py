@@ -41,6 +41,9 @@ def test_laws_are_the_published_ones() -> None:
         assert whitecap_coverage(wind) == pytest.approx(share, rel=1e-4)
     assert whitecap_coverage(3.7) == whitecap_coverage(0.0) == 0.0
     assert whitecap_coverage(10.18) == pytest.approx(whitecap_coverage(10.1801), rel=0.01)  # the curves meet
+    # 3.18e-5 · 6.4³ before, and 4.82e-6 · 12.28³ after: the other curve would give 2.4 % more there
+    assert whitecap_coverage(10.1) == pytest.approx(0.0083362, rel=1e-3)
+    assert whitecap_coverage(10.3) == pytest.approx(0.0089258, rel=1e-3)
     for wind, share in MONAHAN.items():
         assert whitecap_coverage(wind, "MONAHAN_1980") == pytest.approx(share, rel=2e-3)
     assert whitecap_coverage(500.0) == 1.0
