@@ -102,8 +102,12 @@ def refresh(
 
 def are_live(ocean: bpy.types.Object) -> bool:
     """Whether an ocean has patches that no files move, waves that do not repeat, or foam around a camera."""
-    is_shown = shows_area(ocean) or any(_FOAM in child for child in ocean.children)
-    return is_shown or any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
+    return shows_area(ocean) or has_foam(ocean) or lack_points(ocean)
+
+
+def lack_points(ocean: bpy.types.Object) -> bool:
+    """Whether an ocean has patches that no files move."""
+    return any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
 
 
 def has_foam(ocean: bpy.types.Object) -> bool:

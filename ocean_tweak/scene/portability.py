@@ -137,7 +137,7 @@ def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     if surface is not None and patch_objects.shows_area(ocean):
         reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile has not"
         return (Need(surface.name, reason, "mute their layers"),)
-    if surface is not None and patch_objects.are_live(ocean):
+    if surface is not None and patch_objects.lack_points(ocean):
         reason = f"shows the patches of {ocean.name}, of which its bake has no points"
         return (Need(surface.name, reason, f"bake {ocean.name} again"),)
     return ()

@@ -91,7 +91,7 @@ def of_a_frame(item: bpy.types.Object) -> Wanted:
     wanted = Wanted.FILES
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
-    if patch_objects.are_live(item) or patch_objects.has_foam(item):
+    if patch_objects.are_live(item):
         wanted |= Wanted.PATCHES | Wanted.HISTORY
     return wanted
 
