@@ -115,7 +115,7 @@ def bake() -> None:
     """Write displacement and foam with the command line that artists use."""
     frames = f"{FIRST}-{LAST}"
     command = [sys.executable, "-m", "ocean_tweak", "bake", "--params", str(PARAMETERS), "--frames", frames]
-    run_logged([*command, "--maps", "disp,foam", "--out", str(CACHE)], LOG)
+    run_logged([*command, "--maps", "disp,foam,foam_age", "--out", str(CACHE)], LOG)
 
 
 def frames_folder() -> Path:
