@@ -7,7 +7,7 @@ object and its waterline as a superellipse: no mesh reads another, so nothing de
 shows the water shows the collar.
 
 Ripples of length λ run outwards as waves in deep water do, ω² = 2πg/λ. The distance from the waterline is
-that of the first order, (f - 1)/|∇f|, f being 1 on it (Taubin 1991).
+that of the first order, (f - 1)/|∇f|, f being 1 on it (Taubin 1994, ACM Transactions on Graphics 13).
 """
 
 from __future__ import annotations

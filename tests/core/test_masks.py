@@ -52,10 +52,10 @@ def only(parameters: OceanParameters, number: int) -> OceanParameters:
     return parameters.replace(layers=layers)
 
 
-def exact_field(parameters: OceanParameters) -> Field:
-    """The band-limited surface at 2 s, with derivatives, at any rest positions."""
+def exact_field(parameters: OceanParameters, time: float = 2.0) -> Field:
+    """The band-limited surface, with derivatives, at any rest positions."""
     waves = [PartWaves(part, SIZE, "double", None) for part in parts(parameters)]
-    return summed_field([of_part.exact_field(2.0) for of_part in waves])
+    return summed_field([of_part.exact_field(time) for of_part in waves])
 
 
 # weights
@@ -143,6 +143,17 @@ def test_slopes_and_strains_are_those_of_the_masked_surface() -> None:
         (ahead, *_), _ = field(x + dx, y + dy, False)
         (behind, *_), _ = field(x - dx, y - dy, False)
         np.testing.assert_allclose(by, (ahead - behind) / (2 * step), atol=1e-5)
+
+
+def test_the_velocity_anywhere_is_that_of_the_masked_surface() -> None:
+    """By differences in time of the displacement itself."""
+    masked = sea(layers=(dataclasses.replace(STORM, mask=IMAGE), RIPPLES))
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 40))
+    _, velocity = exact_field(masked)(x, y, True)
+    step = 1e-3
+    (later, *_), _ = exact_field(masked, 2.0 + step)(x, y, False)
+    (earlier, *_), _ = exact_field(masked, 2.0 - step)(x, y, False)
+    np.testing.assert_allclose(velocity, (later - earlier) / (2 * step), atol=1e-4)
 
 
 def test_a_grid_has_the_slopes_and_strains_of_the_masked_surface() -> None:
