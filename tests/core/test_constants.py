@@ -27,6 +27,7 @@ def test_branches_of_donelan_banner() -> None:
     """Horvath (2015), eq. 38, on both sides of its ends: near 1.6 the branches differ by less than 0.05 %."""
     expected = {
         0.94: 2.61 * 0.94**1.3,
+        0.95: 2.28 * 0.95**-1.3,
         0.96: 2.28 * 0.96**-1.3,
         1.57: 2.28 * 1.57**-1.3,
         1.63: 10.0 ** (-0.4 + 0.8393 * math.exp(-0.567 * math.log(1.63**2))),

@@ -314,6 +314,20 @@ def test_strains_are_those_of_the_fields() -> None:
         assert told("crossings") == pytest.approx(crossed, rel=0.1)
 
 
+def test_gaussian_strains_are_those_of_draws() -> None:
+    """Strong ones, whose products count: a million Gaussian gradients, counted."""
+    covariance = np.array([[0.09, 0.02, 0.01], [0.02, 0.06, -0.01], [0.01, -0.01, 0.03]])
+    expected = gaussian_strains(covariance, np.eye(3))
+    xx, yy, xy = np.random.default_rng(5).multivariate_normal(np.zeros(3), covariance, 1_000_000).T
+    compression = np.hypot(0.5 * (xx - yy), xy) - 0.5 * (xx + yy)
+    jacobian = (1.0 + xx) * (1.0 + yy) - xy**2
+    for level in (0.3, 0.6):
+        above = compression > level
+        for name, counted in (("share", above), ("area", jacobian * above)):
+            told = float(expected.at(np.array([level]), name)[0])
+            assert told == pytest.approx(float(np.mean(counted)), rel=0.01)
+
+
 def test_covariances_of_strains_are_those_of_the_fields() -> None:
     """Waves that run one way each, with the amplitudes of the spectrum: no seed differs from the mean."""
     layer = WaveLayer(spreading="COSINE_SQUARED", swell=0.0, wind_direction=0.7)

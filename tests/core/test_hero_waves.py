@@ -336,6 +336,18 @@ WAVES = st.builds(
 )  # fmt: skip
 
 
+def test_the_samples_that_hold_a_wave_are_those_that_are_not_refused() -> None:
+    """In viewport resolutions it is left out where a sea of as few samples would be refused."""
+    wave = HeroWave(x=200.0, y=200.0, wavelength=50.0, group_length=2.0, group_width=120.0)
+    for samples in range(8, 128, 2):
+        try:
+            sea(wave, resolution=samples)
+            refused = False
+        except ParameterError:
+            refused = True
+        assert wave.is_held(sea(), samples) is not refused
+
+
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(wave=WAVES, relation=st.sampled_from(["DEEP", "CAPILLARY"]), loop=st.booleans())
 def test_any_wave_has_its_crest_at_its_focus(wave: HeroWave, relation: str, loop: bool) -> None:

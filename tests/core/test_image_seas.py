@@ -97,6 +97,12 @@ def test_statistics_count_images() -> None:
         assert np.mean(moments) == pytest.approx(ocean.statistics().seed.m0, rel=0.1)
 
 
+def test_noise_too_small_for_its_waves_is_told_the_height_of_its_wind() -> None:
+    """0.0246 U² (Pierson & Moskowitz 1964), whether the image holds all of its waves or not."""
+    found = Ocean(sea(ImageLayer(wind_speed=15.0, noise_resolution=64))).statistics()
+    assert found.significant_wave_height == pytest.approx(0.02460 * 15.0**2, rel=2e-3)
+
+
 def test_periods_are_those_that_a_place_sees() -> None:
     """Waves of 20 m that move at 4 m/s pass every 5 s, whatever gravity would have them do."""
     moving = single_wave(0, 10, 64, animation="TRANSLATION", translation_speed=4.0)

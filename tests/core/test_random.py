@@ -30,6 +30,13 @@ def key() -> np.ndarray:
     return random.hash_wave_vectors(k[np.newaxis, :], k[:, np.newaxis], seed=3)
 
 
+def test_no_number_is_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its logarithm is taken: the least is 2⁻⁵⁴."""
+    monkeypatch.setattr(random, "mix", np.zeros_like)
+    assert random.uniform(np.arange(3, dtype=np.uint64), 0).tolist() == [2.0**-54] * 3
+    assert np.all(np.isfinite(random.normal(np.arange(3, dtype=np.uint64), 0)))
+
+
 def test_integers_never_change() -> None:
     # pinned: a sea of today looks the same on every platform and in every later version
     assert random.combine(0) == PINNED["combine(0)"]

@@ -127,6 +127,20 @@ def test_old_foam_lies_in_lines_from_9_bft_and_not_at_5(wind: float, low: float,
     assert low < along / across < high
 
 
+@pytest.mark.parametrize("direction", [0.4, 1.2, 2.8])
+def test_windrows_lie_along_any_wind(direction: float) -> None:
+    """How much foam there is changes across the wind, several times as quickly as along it."""
+    rows = windrows(25.0, direction, 1000.0, 3)
+    assert rows is not None
+    x, y = np.random.default_rng(4).uniform(0.0, 1000.0, (2, 2000))
+    here = rows.sources(x, y)[2]
+    along, across = (
+        np.std(rows.sources(x + math.cos(angle), y + math.sin(angle))[2] - here)
+        for angle in (direction, direction + 0.5 * math.pi)
+    )
+    assert across > 4.0 * along
+
+
 def test_windrows_rise_from_7_to_9_bft() -> None:
     strengths = [rows.strength if (rows := windrows(wind, 0.0, 400.0, 0)) else 0.0 for wind in range(12, 24)]
     assert strengths[:2] == [0.0, 0.0]

@@ -12,6 +12,7 @@ import pytest
 from ocean_tweak.core import OceanParameters, ParameterError, Raster, WindFieldLayer, WindKey
 from ocean_tweak.core.parameters.fingerprint import frame_fingerprint
 from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.waves.wind_field.presets import wind_field
 from tests.layers import layers_of, with_layers
 
 CALM = np.zeros((1, 1, 2))
@@ -34,6 +35,18 @@ def test_a_keyed_wind_survives_json() -> None:
     assert layers_of(written, "WIND_FIELD")[0].greatest_speed == 5.0
     brief = parameters.to_dict(brief=True)["layers"][1]["keys"][0]["vectors"]
     assert set(brief) == {"name", "shape", "sha256"}
+
+
+def test_fields_of_the_start_have_the_winds_of_their_figure() -> None:
+    """Winds whose waves, of V²/g, are a 24th of the patch: 12.8 m/s on 400 m, in two digits."""
+    assert wind_field("UNIFORM", 400.0, 9.81).wind_speed == 13.0
+    varying = wind_field("VARYING_SPEED", 400.0, 9.81).rasters[0].values
+    assert float(varying[0, 0, 0]) == pytest.approx(0.4 * 13.0)
+    assert float(varying[-1, 0, 0]) == pytest.approx(1.4 * 13.0)
+    assert not np.any(varying[..., 1])
+    halves = wind_field("OPPOSED_HALVES", 400.0, 9.81).rasters[0].values
+    assert float(halves[0, 0, 0]) == -13.0
+    assert float(halves[0, -1, 0]) == 13.0
 
 
 def test_a_sea_without_wind_fields_is_written_as_before_there_were_any() -> None:

@@ -41,7 +41,7 @@ def hash_wave_vectors(kx: ArrayLike, ky: ArrayLike, seed: int) -> NDArray[np.uin
 
 
 def uniform(key: NDArray[np.uint64], stream: int) -> NDArray[np.float64]:
-    """Numbers in the open interval (0, 1), odd multiples of 2⁻⁵⁴, independent per stream."""
+    """Numbers between 0, which is none of them, and 1, independent per stream."""
     offset = np.uint64(_GOLDEN * (stream + 1) & _MASK)
     bits = mix(key + offset) >> np.uint64(11)
     return (bits.astype(np.float64) + 0.5) * 2.0**-53
