@@ -56,6 +56,20 @@ EQUIVALENT = {
     "formula waves.image.animation.dominant_band x 1.05": "truth values, which are left as they are",
     "formula waves.wind_field.life.divisions x 1.05": "whole numbers, which are left as they are",
     "formula waves.wind_field.wind_waves.WindWaves.shares x 1.05": "no numbers: they are made by the block",
+    "structure waves.wind_field.shape.bump: distance < radius: < -> <=": "the bump is 0 at its radius",
+    "structure waves.image.parameters.check: "
+    "abs(a - b) > _WHOLE * max(1.0, patches): > -> >=": "a distance of the very limit",
+    "structure statistics.sea_statistics.loop_warnings: "
+    "statistics.loop_speed_change > _LARGEST_SPEED_CHANGE: > -> >=": "the very limit",
+    "structure sea.query._sheets: "
+    "np.hypot(x - start_x, y - start_y) < 2.0 * step: < -> <=": "a distance of the very limit",
+    "structure waves.wind_field.convolution.kernel: 2 * reach: * -> /": "no bump is wider than the patch",
+    "structure sea.query.inside_quad: u < 1 + edge: < -> <=": "a place on the very edge",
+    "structure parameters.former_json._path: "
+    "len(found[1]) < 6: < -> <=": "no sea has a hundred thousand layers",
+    "structure waves.hero.group._blocks: along * cosine: * -> /": "more places are tried, which hold no wave",
+    "structure waves.image.filters._modified_pierson_moskowitz: "
+    "grid.ky[rows[row], 0][:, np.newaxis, np.newaxis] + offset[:,: + -> -": "the offsets lie evenly about 0",
 }
 
 #: said of a change with which the core cannot even be imported: no test had to notice it

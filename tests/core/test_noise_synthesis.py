@@ -13,6 +13,7 @@ from scipy import integrate, special
 from ocean_tweak.core.data.errors import ParameterError
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.numerics.grid import WaveVectorGrid
+from ocean_tweak.core.spectral.water import Water
 from ocean_tweak.core.waves.image import animation, filters, source
 from ocean_tweak.core.waves.image.parameters import ImageLayer
 from ocean_tweak.core.waves.image.state import filtered
@@ -255,6 +256,15 @@ def test_resolution_shows_more_of_the_same_sea() -> None:
         coarse, fine = (spectrum(elevation(state(layer, n))) for n in (32, 128))
         index = [*range(16), *range(-15, 0)]
         np.testing.assert_allclose(coarse[np.ix_(index, index)], fine[np.ix_(index, index)], atol=1e-12)
+
+
+def test_waves_are_told_where_the_noise_has_some() -> None:
+    """On a grid finer than the noise nothing is told of waves that the noise is too coarse for."""
+    fine = filtered(ImageLayer(noise_resolution=16), L, 64, "DEEP", Water())
+    beyond = (fine.grid.kx > 7.5 * fine.grid.spacing) | (np.abs(fine.grid.ky) > 7.5 * fine.grid.spacing)
+    assert not np.any(fine.coefficients[beyond])
+    assert not np.any(fine.expected[beyond])
+    assert np.any(fine.expected[~beyond])
 
 
 def test_colours_become_their_luminance() -> None:

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy import integrate, special
 
 from ocean_tweak.core import Ocean, OceanParameters, Water, WaveLayer
 from ocean_tweak.core.spectral import spectra
+from ocean_tweak.core.spectral.directional_spectrum import RadialTable
 from ocean_tweak.core.spectral.spreading import Spreading, directional_spreading, donelan_banner_beta
 from tests import reference
 from tests.core.layer_spectra import jonswap_scales, spectrum_of
@@ -144,6 +147,16 @@ def test_donelan_banner_beta() -> None:
     expected = {0.5: 2.61 * 0.5**1.3, 1.0: 2.28, 1.3: 2.28 * 1.3**-1.3, 2.0: 0.960345, 10.0: 0.458826}
     for ratio, beta in expected.items():
         assert float(donelan_banner_beta(ratio)) == pytest.approx(beta, rel=1e-4)
+
+
+@pytest.mark.parametrize("ends", [(0.01, 3.0), (0.5, 0.5), (math.exp(-2.0), math.exp(1.0))])
+def test_a_table_of_wave_numbers_reaches_beyond_its_ends(ends: tuple[float, float]) -> None:
+    """Values lie between two nodes: nothing is extrapolated."""
+    table = RadialTable(*ends)
+    index, weight = table.nodes(np.array(ends))
+    assert np.all(index >= 0)
+    assert np.all(index + 1 < len(table.k))
+    assert np.all((weight >= 0.0) & (weight < 1.0))
 
 
 @pytest.mark.parametrize("swell", [0.0, 0.3, 1.0, 2.0])
