@@ -105,7 +105,7 @@ def _row(field: dataclasses.Field[Any]) -> str:
         "" if meta["kind"] is Raster and not meta["optional"] else _shown(default_of(field)),
         _allowed(meta),
         meta.get("why", ""),
-        meta["description"],
+        meta["description"] + (f"; {_shown(off.value)} {off.means}" if (off := meta.get("off")) else ""),
     ]
     return "| " + " | ".join(cells) + " |"
 

@@ -19,7 +19,8 @@ from .settings import OceanSettings, settings_of
 from .units import frame_rate, frame_with_subframe, shortest_decimal, time_stretch
 
 _GROUP = "ocean_tweak."
-_OCEAN_TIME = "ocean_tweak.ocean_time"
+#: path of the waves' own time
+OCEAN_TIME = "ocean_tweak.ocean_time"
 _LAYER = re.compile(r"ocean_tweak\.layers\[(\d+)\]")
 
 
@@ -44,6 +45,11 @@ def is_animated(item: bpy.types.Object) -> bool:
     return any(path.startswith(_GROUP) for path in paths)
 
 
+def has_own_time(settings: OceanSettings) -> bool:
+    """Whether the waves' time is another than the scene's frames tell."""
+    return settings.use_ocean_time or settings.time_scale != 1.0
+
+
 def shown_settings(item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None) -> OceanSettings:
     """The settings with what animation makes of them in this evaluation."""
     if depsgraph is None or not is_animated(item):
@@ -57,7 +63,8 @@ def clock_of(settings: OceanSettings, scene: bpy.types.Scene, start_frame: int) 
     frame, rate = frame_with_subframe(scene) / time_stretch(scene), 1 / time_stretch(scene)
     fps = frame_rate(scene)
     if not settings.use_ocean_time:
-        return Clock((frame - start_frame) / fps, float(rate))
+        scale = shortest_decimal(settings.time_scale)
+        return Clock((frame - start_frame) / fps * scale, float(rate * scale))
     change = _change(settings.id_data, frame)
     return Clock(
         shortest_decimal(settings.ocean_time), None if change is None else float(change * fps * rate)
@@ -67,9 +74,9 @@ def clock_of(settings: OceanSettings, scene: bpy.types.Scene, start_frame: int) 
 def _change(item: bpy.types.Object, frame: Fraction) -> float | None:
     """Seconds of ocean time in a frame of the animation, from the keys on both sides of one."""
     data = item.animation_data
-    if data is not None and any(driver.data_path == _OCEAN_TIME for driver in data.drivers):
+    if data is not None and any(driver.data_path == OCEAN_TIME for driver in data.drivers):
         return None
-    curve = next((curve for curve in curves_of(item) if curve.data_path == _OCEAN_TIME), None)
+    curve = next((curve for curve in curves_of(item) if curve.data_path == OCEAN_TIME), None)
     if curve is None:
         return 0.0
     half = 0.5
@@ -108,7 +115,7 @@ def move_keys(item: bpy.types.Object, places: Mapping[int, int | None]) -> None:
         return
     for driver in list(data.drivers):
         _move_curve(driver, places, data.drivers)
-    for bag in _channel_bags(data.action, data.action_slot):
+    for bag in channel_bags(data.action, data.action_slot):
         for curve in list(bag.fcurves):
             _move_curve(curve, places, bag.fcurves)
 
@@ -131,7 +138,7 @@ def _remove_animation(item: bpy.types.Object) -> None:
     for driver in list(data.drivers):
         if driver.data_path.startswith(_GROUP):
             data.drivers.remove(driver)
-    for bag in _channel_bags(data.action, data.action_slot):
+    for bag in channel_bags(data.action, data.action_slot):
         for curve in list(bag.fcurves):
             if curve.data_path.startswith(_GROUP):
                 bag.fcurves.remove(curve)
@@ -151,13 +158,14 @@ def curves_of(item: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
 def _action_curves(
     action: bpy.types.Action | None, slot: bpy.types.ActionSlot | None
 ) -> Iterator[bpy.types.FCurve]:
-    for bag in _channel_bags(action, slot):
+    for bag in channel_bags(action, slot):
         yield from bag.fcurves
 
 
-def _channel_bags(
+def channel_bags(
     action: bpy.types.Action | None, slot: bpy.types.ActionSlot | None
 ) -> Iterator[bpy.types.ActionChannelbag]:
+    """What holds the curves of an action's slot."""
     if action is None or slot is None:
         return
     for layer in action.layers:

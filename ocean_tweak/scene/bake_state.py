@@ -20,7 +20,7 @@ from ..export.cache.folders import JOB_FILE, read_job
 from ..export.cache.job import CacheError
 from ..export.exr import ExrError, read_header
 from . import failures
-from .animated import clock_of, is_animated
+from .animated import clock_of, has_own_time, is_animated
 from .cache_place import is_left_behind
 from .image_sequence import SequenceError, baked_frames, file_of, folder_of, shown_frame, unbaked_frames
 from .modifiers import set_changed
@@ -174,7 +174,7 @@ def differences(shot: Shot, frame: int, settings: OceanSettings, scene: bpy.type
     baked, own = (sea.to_dict(brief=True) for sea in (moment.parameters, parameters))
     found = sorted(_different("", baked, own))
     has_clock = shot.animation is not None and OCEAN_TIME in dict(shot.animation.samples)
-    if has_clock or settings.use_ocean_time:
+    if has_clock or has_own_time(settings):
         time = clock_of(settings, scene, parameters.timing.start_frame).time
         if abs(time - moment.time) > _SAME_TIME:
             found.append(Difference(OCEAN_TIME, float(moment.time), float(time)))

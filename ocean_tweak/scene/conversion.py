@@ -9,7 +9,8 @@ from typing import NamedTuple
 import bpy
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
-from .animated import curves_of
+from .animated import OCEAN_TIME, channel_bags, curves_of
+from .settings import settings_of
 from .units import frame_rate, metres_per_unit
 
 #: Blender's spectra and ours
@@ -88,7 +89,7 @@ def _samples(resolution: int) -> int:
 
 def _lost(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> Iterator[str]:
     if modifier.wave_scale != 1.0:
-        yield f"Scale {modifier.wave_scale:.3g}: waves have the height of their wind; change it with Gain"
+        yield f"Scale {modifier.wave_scale:.3g}: wind gives the wave height; change it with Amplitude Scale"
     if modifier.wave_alignment > 0.0:
         yield f"Alignment {modifier.wave_alignment:.3g}: use Swell, which draws waves out"
     if modifier.geometry_mode == "DISPLACE":
@@ -101,15 +102,45 @@ def _lost(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> Iterator
         yield f"Smallest wave {modifier.wave_scale_min:.3g} m: use Short Wave Cutoff"
     if modifier.sharpen_peak_jonswap and modifier.spectrum in _WITH_FETCH:
         yield f"Sharpen peak {modifier.sharpen_peak_jonswap:.3g}: use Peak Enhancement"
-    if _has_animated_time(item, modifier):
-        yield "The keys of Time: the sea moves with the frames"
+    if _has_layered_time(item, modifier):
+        yield "The keys of Time in the nonlinear animation: the sea moves with the frames"
 
 
-def _has_animated_time(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> bool:
-    data = item.animation_data
+def carry_time(original: bpy.types.Object, modifier: bpy.types.OceanModifier, item: bpy.types.Object) -> None:
+    """Let keys or a driver of a modifier's time, which is in seconds as ours, be those of an ocean's time."""
+    data, path = original.animation_data, _time_path(modifier)
     if data is None:
+        return
+    driver = next((driver for driver in data.drivers if driver.data_path == path), None)
+    if driver is not None:
+        item.animation_data_create().drivers.from_existing(src_driver=driver).data_path = OCEAN_TIME
+    elif _is_keyed(data, path):
+        own = item.animation_data_create()
+        own.action = data.action.copy()  # with interpolation, handles and modifiers of its curves
+        own.action_slot = next(slot for slot in own.action.slots if slot.handle == data.action_slot.handle)
+        for bag in channel_bags(own.action, own.action_slot):
+            for curve in list(bag.fcurves):
+                if curve.data_path == path:
+                    curve.data_path = OCEAN_TIME
+                else:
+                    bag.fcurves.remove(curve)
+    else:
+        return
+    settings_of(item).use_ocean_time = True
+
+
+def _time_path(modifier: bpy.types.OceanModifier) -> str:
+    return f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].time'
+
+
+def _is_keyed(data: bpy.types.AnimData, path: str) -> bool:
+    bags = channel_bags(data.action, data.action_slot)
+    return any(curve.data_path == path for bag in bags for curve in bag.fcurves)
+
+
+def _has_layered_time(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> bool:
+    """Whether strips of the nonlinear animation move the time, and nothing above them does."""
+    data, path = item.animation_data, _time_path(modifier)
+    if data is None or _is_keyed(data, path) or any(driver.data_path == path for driver in data.drivers):
         return False
-    path = f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].time'
-    if any(driver.data_path == path for driver in data.drivers):
-        return True
     return any(curve.data_path == path for curve in curves_of(item))

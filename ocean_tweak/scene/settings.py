@@ -81,7 +81,8 @@ class OceanSettings(Protocol):
     preset : title of the preset whose sea this is, "" for one of the user's own making
     uid : what tells the ocean's bakes from those of others; "" while nothing was baked
     cache_folder : where they go; "" for the usual place
-    use_ocean_time, ocean_time : seconds on the waves' own clock, where it does not follow the frames
+    use_ocean_time, ocean_time : the waves' time in s, where it does not follow the frames
+    time_scale : how fast it runs where it does
     error : why the ocean cannot be shown, "" when all is well
     missing_file : the file that the present frame of a sequence should show and that is not there, or ""
     baked_sea : JSON of the sea that the shown bake is of, at the present frame; "" where that is not known
@@ -109,6 +110,7 @@ class OceanSettings(Protocol):
     cache_folder: str
     use_ocean_time: bool
     ocean_time: float
+    time_scale: float
     method: str
     source: str
     viewport_resolution: int

@@ -13,7 +13,7 @@ from ..core.data.frames import Frame
 from ..core.data.validation import changing_fields
 from ..core.parameters.shot import OCEAN_TIME, Animation, Shot
 from . import handlers
-from .animated import clock_of, is_animated, set_keys, shown_settings
+from .animated import clock_of, has_own_time, is_animated, set_keys, shown_settings
 from .settings import settings_of
 from .view_layers import evaluated, taking_part
 
@@ -25,7 +25,7 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     """
     settings = settings_of(item)
     parameters = settings.to_parameters(scene)
-    if not (is_animated(item) or settings.use_ocean_time):
+    if not (is_animated(item) or has_own_time(settings)):
         return Shot(parameters)
     wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
     # one more on either side: the velocity of an end is that of the motion through it
@@ -49,6 +49,7 @@ def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
     settings = settings_of(item)
     with settings.quiet():
         settings.use_ocean_time = OCEAN_TIME in samples
+        settings.time_scale = 1.0
     first = shot.animation.first_frame if shot.animation is not None else 0
     set_keys(
         item, scene, first, {path: settings.blender_values(path, samples[path], scene) for path in samples}
@@ -86,7 +87,7 @@ def _sample(
     settings = shown_settings(item, depsgraph)
     parameters = settings.to_parameters(scene)
     values = dict(_values(parameters))
-    if settings.use_ocean_time:
+    if has_own_time(settings):
         values[OCEAN_TIME] = float(clock_of(settings, scene, parameters.timing.start_frame).time)
     return values
 

@@ -11,7 +11,7 @@ from ..core.data.validation import changing_fields
 from ..core.waves.contribution import Contribution
 from ..core.waves.kinds import shown
 from ..core.waves.wind_field.presets import WIND_FIELDS, wind_field
-from ..scene.animated import move_keys
+from ..scene.animated import clock_of, move_keys
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfOwnList, nearest, refuse
 
@@ -87,7 +87,8 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
     def _new(self, parameters: OceanParameters) -> Contribution:
         if self.kind == "WIND_FIELD":
             return wind_field(self.wind, parameters.domain_size, parameters.water.gravity)
-        time = parameters.timing.time(bpy.context.scene.frame_current)
+        settings, scene = settings_of(bpy.context.active_object), bpy.context.scene
+        time = clock_of(settings, scene, parameters.timing.start_frame).time
         return _kind(self.kind).to_begin_with(parameters, float(time))
 
 

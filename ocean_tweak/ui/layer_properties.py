@@ -33,9 +33,8 @@ from ..core.data.raster import Raster
 from ..core.waves.contribution import Contribution
 from ..core.waves.kinds import shown
 from ..scene import source_images, wind_recording
-from ..scene.settings import scene_of
 from ..scene.source_images import ImageSource
-from ..scene.units import metres_per_unit, shortest_decimal
+from ..scene.units import shortest_decimal
 from . import mask_properties, parameter_properties
 from .mask_properties import OCEAN_PG_mask, channels_property
 from .parameter_properties import changed
@@ -49,19 +48,6 @@ SOURCES = {
     "IMAGE": ("Image", "Red and green of an image are the wind along x and along y"),
     "RECORDING": ("Recording", "What Record Wind took from force fields, or keys that came with a file"),
 }
-
-
-def _metres(layer: bpy.types.PropertyGroup) -> float:
-    """Metres in a Blender unit of the layer's scene."""
-    return float(metres_per_unit(scene_of(layer.id_data)))
-
-
-def _fetch_in_km(layer: bpy.types.PropertyGroup) -> float:
-    return layer.fetch * _metres(layer) / 1000.0
-
-
-def _set_fetch_in_km(layer: bpy.types.PropertyGroup, value: float) -> None:
-    layer.fetch = value * 1000.0 / _metres(layer)
 
 
 #: properties of kinds besides those of their parameters: of a wind field where its wind comes from, with the
@@ -131,13 +117,6 @@ class OCEAN_PG_layer(bpy.types.PropertyGroup):
 
     __annotations__ = {
         **_properties(WaveLayer),
-        # Blender has no property that is always shown in kilometres; this is the fetch itself
-        "fetch_km": FloatProperty(
-            name="Fetch", min=0.0, max=20e3, soft_min=0.1, soft_max=1000.0, precision=1, step=100,
-            get=_fetch_in_km, set=_set_fetch_in_km, options=set(),
-            description="Distance of open water over which the wind has blown, in kilometres. "
-            "Longer fetch: higher and longer waves, until the sea is fully developed",
-        ),
         "kind": EnumProperty(
             name="Kind", default=WaveLayer.kind, **_HIDDEN,
             items=[

@@ -21,12 +21,13 @@ import numpy as np
 from ..core.data.errors import ParameterError
 from ..core.data.plain_data import to_plain
 from ..core.data.raster import Raster
-from ..core.data.validation import default_of
+from ..core.data.validation import Off, default_of
 from ..scene import bake_versions, stored_paths
 from ..scene.refinement import show
 from ..scene.refresh import Wanted
 from ..scene.settings import scene_of
 from ..scene.units import metres_per_unit, shortest_decimal
+from . import wording
 
 _Field = dataclasses.Field[Any]
 _Update = Callable[[Any, bpy.types.Context], None]
@@ -35,9 +36,14 @@ _Update = Callable[[Any, bpy.types.Context], None]
 _LENGTHS = {"m": "LENGTH", "m/s": "VELOCITY"}
 # what belongs to the instrument and not to the scene stays in metres
 _ABSOLUTE = {"wind_height"}
-_SUBTYPES = {"rad": {"subtype": "ANGLE", "unit": "ROTATION", "soft_min": -math.pi, "soft_max": math.pi}}
+_SUBTYPES = {
+    "rad": {"subtype": "ANGLE", "unit": "ROTATION", "soft_min": -math.pi, "soft_max": math.pi},
+    "s": {"unit": "TIME_ABSOLUTE"},
+}
 _FLOAT32_MAX = 3e38
-_ACRONYMS = {"TMA", "JONSWAP"}
+#: before the name of a field: of the switch that stands for its number that means none, and of what the field
+#: was before it was switched off
+SWITCH, _BEFORE = "use_", "before_"
 
 #: hundredths that a number moves a pixel while it is dragged; Blender has no more than 100
 _STEPS = {"m": 100, "m/s": 10}
@@ -81,13 +87,22 @@ def annotations(
 ) -> dict[str, Any]:
     """Blender properties for the plain fields of a parameter class, and the hidden `exact`.
 
+    A field with a number that stands for none has a switch too; one that is shown in another unit has a
+    property of that, which holds nothing itself. Keys, drivers and files know the field's own.
+
     without : fields that come from elsewhere
     updates : by field, where a change does more than `update`
     """
     own = updates or {}
-    properties = {
-        field.name: _property(field, own.get(field.name, update)) for field in _plain_fields(kind, without)
-    }
+    properties = {}
+    for field in _plain_fields(kind, without):
+        properties[field.name] = _property(field, own.get(field.name, update))
+        if field.metadata.get("off"):
+            meta = field.metadata
+            is_whole, is_length = meta["kind"] is int, _is_length(field)
+            properties |= switch_of(field.name, meta["description"], meta["off"], is_whole, is_length)
+        if field.name in wording.SCALED:
+            properties |= _scaled(field)
     return {
         **properties,
         "exact": bpy.props.StringProperty(options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}),
@@ -161,7 +176,7 @@ def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
 
 def _property(field: _Field, update: _Update) -> Any:
     common = {
-        "name": field.name.replace("_", " ").title(),
+        "name": wording.label(field.name),
         "default": default_of(field),
         "update": _limited(field, update) if _is_length(field) else update,
         "options": {"ANIMATABLE"} if field.metadata.get("changes") else set(),
@@ -181,8 +196,8 @@ def _float_property(field: _Field, common: dict[str, Any]) -> Any:
         limits |= {"min": least, "max": _FLOAT32_MAX, "unit": _LENGTHS[meta["unit"]]}
     limits |= _SUBTYPES.get(meta["unit"], {})
     return bpy.props.FloatProperty(
-        description=f"{meta['description']} ({low:g} to {high:g} {meta['unit']})".replace(" )", ")"),
-        precision=3 if _is_length(field) else 2,
+        description=meta["description"] + wording.number_range(low, high, meta["unit"]),
+        precision=3 if _is_length(field) or 0.0 < default_of(field) < 0.1 else 2,
         step=_STEPS.get(meta["unit"], 3),
         **limits,
         **common,
@@ -192,14 +207,18 @@ def _float_property(field: _Field, common: dict[str, Any]) -> Any:
 def _int_property(field: _Field, common: dict[str, Any]) -> Any:
     meta = field.metadata
     return bpy.props.IntProperty(
-        description=f"{meta['description']} ({meta['minimum']} to {meta['maximum']})",
+        description=meta["description"] + wording.number_range(meta["minimum"], meta["maximum"], ""),
         min=meta["minimum"], max=meta["maximum"], **common,
     )  # fmt: skip
 
 
 def _enum_property(field: _Field, common: dict[str, Any]) -> Any:
     description = field.metadata["description"]
-    items = [(choice, _label(choice), description) for choice in field.metadata["choices"]]
+    texts = wording.CHOICES.get(field.name, {})
+    items = [
+        (choice, *texts.get(choice, (wording.label(choice), description)))
+        for choice in field.metadata["choices"]
+    ]
     return bpy.props.EnumProperty(items=items, description=description, **common)
 
 
@@ -215,8 +234,65 @@ _BUILDERS: dict[type, Callable[[_Field, dict[str, Any]], Any]] = {
 }
 
 
-def _label(choice: str) -> str:
-    return choice if choice in _ACRONYMS else choice.replace("_", " ").title()
+def switch_of(
+    name: str, description: str, off: Off, is_whole: bool = True, is_length: bool = False
+) -> dict[str, Any]:
+    """A switch that sets a property to the number that stands for none and back, and what it goes back to.
+
+    is_whole, is_length : of the property's numbers
+    """
+    before = f"{_BEFORE}{name}"
+
+    def in_blender(group: Any, value: float) -> float:
+        if is_whole:
+            return int(value)
+        return float(value / float(metres_per_unit(scene_of(group.id_data)))) if is_length else value
+
+    def is_on(group: Any) -> bool:
+        return not math.isclose(getattr(group, name), in_blender(group, off.value), rel_tol=1e-5)
+
+    def switch(group: Any, on: bool) -> None:
+        if on == is_on(group):
+            return
+        if not on:
+            setattr(group, before, getattr(group, name))
+            setattr(group, name, in_blender(group, off.value))
+        else:
+            known = getattr(group, before) if group.is_property_set(before) else None
+            setattr(group, name, in_blender(group, off.first) if known is None else known)
+
+    kept = bpy.props.IntProperty if is_whole else bpy.props.FloatProperty
+    return {
+        f"{SWITCH}{name}": bpy.props.BoolProperty(
+            name=wording.label(name), get=is_on, set=switch, options=set(), override={"LIBRARY_OVERRIDABLE"},
+            description=f"{description}. Switched off, it {off.means}",
+        ),
+        before: kept(options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}),
+    }  # fmt: skip
+
+
+def _scaled(field: _Field) -> dict[str, Any]:
+    """A property in which a field is shown in a unit that Blender does not have."""
+    shown, meta = wording.SCALED[field.name], field.metadata
+
+    def get(group: Any) -> float:
+        metres = metres_per_unit(scene_of(group.id_data))
+        return getattr(group, field.name) * float(_unit(field, metres)) / shown.factor
+
+    def set_scaled(group: Any, value: float) -> None:
+        # what a library override tells twice stays exact
+        if np.float32(value) != np.float32(get(group)):
+            metres = metres_per_unit(scene_of(group.id_data))
+            setattr(group, field.name, value * shown.factor / float(_unit(field, metres)))
+
+    return {
+        shown.name: bpy.props.FloatProperty(
+            name=shown.label, min=meta["minimum"] / shown.factor, max=meta["maximum"] / shown.factor,
+            soft_min=shown.useful[0], soft_max=shown.useful[1], precision=1, step=100,
+            get=get, set=set_scaled,
+            options=set(), override={"LIBRARY_OVERRIDABLE"}, description=meta["description"],
+        )
+    }  # fmt: skip
 
 
 def _is_length(field: _Field) -> bool:

@@ -18,6 +18,7 @@ from bpy.props import (
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
 from ..core.data.plain_data import from_plain, to_plain
+from ..core.data.validation import Off
 from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
 from ..scene import cache_place, ocean_object
@@ -48,6 +49,8 @@ _FROM_RESOLUTION = ("merged_resolution",)
 def _choices(table: dict[str, tuple[str, str]]) -> list[tuple[str, str, str]]:
     return [(key, label, description) for key, (label, description) in table.items()]
 
+
+_MESH_QUADS = "Quads along each side of a patch, in the viewport and in the render"
 
 # every setting of a linked ocean can be overridden
 _OVERRIDE = {"override": {"LIBRARY_OVERRIDABLE"}}
@@ -149,13 +152,20 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "bake_done": IntProperty(**_HIDDEN),
         "bake_total": IntProperty(**_HIDDEN),
         "use_ocean_time": BoolProperty(
-            name="Own Time", **_SHOWN,
-            description="Let the waves follow a clock of their own, which can be animated: slow motion, "
-            "ramps, a still sea",
+            name="Keyed Time", **_SHOWN,
+            description="Take the waves' time from the number beside, which can have keys, and not from the "
+            "scene's frames: for speed ramps, freezes, waves that run backwards",
         ),
         "ocean_time": FloatProperty(
             name="Ocean Time", unit="TIME_ABSOLUTE", precision=3, step=10, update=changed,
-            description="Seconds on the waves' own clock; animate it", options={"ANIMATABLE"}, **_OVERRIDE,
+            description="The waves' time in seconds. Give it keys: without any the sea stands still",
+            options={"ANIMATABLE"}, **_OVERRIDE,
+        ),
+        "time_scale": FloatProperty(
+            name="Time Scale", default=1.0, min=-100.0, max=100.0, soft_min=0.0, soft_max=2.0, precision=2,
+            step=1, **_SHOWN,
+            description="How fast the waves run: 0.5 is half speed, 0 a still sea. They pass Start Frame at "
+            "the same moment of their motion whatever the scale",
         ),
         "method": EnumProperty(
             name="Method", items=_choices(METHODS), default="NODES", **_SHOWN,
@@ -166,14 +176,15 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             description="Where the displacement comes from",
         ),
         "viewport_resolution": IntProperty(
-            name="Resolution Viewport", default=VIEWPORT_RESOLUTION, min=16, max=8192, **_SHOWN,
+            name="Samples in the Viewport", default=VIEWPORT_RESOLUTION, min=16, max=8192, **_SHOWN,
             description="Samples along each side in the viewport: the same sea without its shortest waves. "
             "Never more than in the render",
         ),
         "mesh_resolution": IntProperty(
-            name="Mesh Resolution", min=0, max=8192, **_SHOWN,
-            description="Quads along each side of a patch, in the viewport and in the render; "
-            "0 for one per sample",
+            name="Mesh Quads", min=0, max=8192, **_SHOWN, description=_MESH_QUADS
+        ),
+        **parameter_properties.switch_of(
+            "mesh_resolution", _MESH_QUADS, Off(0, 256, "has one quad per sample")
         ),
         **_SWITCHES,
         "repeats_x": _repeats("x"),

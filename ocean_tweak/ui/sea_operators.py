@@ -39,12 +39,12 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
         ],
     )
     height: FloatProperty(
-        name="Wave Height", default=2.0, min=0.0, max=100.0, precision=2,
+        name="Wave Height (m)", default=2.0, min=0.0, max=100.0, precision=2,
         description="Significant wave height in metres: the mean of the highest third of the waves",
     )  # fmt: skip
     period: FloatProperty(
-        name="Period", default=8.0, min=0.1, max=60.0, precision=1,
-        description="Peak period in seconds: that of the waves with the most energy",
+        name="Peak Period", default=8.0, min=0.1, max=60.0, precision=1, unit="TIME_ABSOLUTE",
+        description="Peak period: that of the waves with the most energy",
     )  # fmt: skip
     beaufort: EnumProperty(name="Wind", items=_beaufort_items(), default="beaufort_05")
     fit_domain: BoolProperty(
@@ -74,7 +74,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
             settings.from_parameters(matched, context.scene)
         except (ParameterError, OceanObjectError) as error:
             return refuse(self, error)
-        self.report({"INFO"}, explanation)
+        self.report({"INFO"}, explanation)  # what cannot be stays as a warning in the panel
         return {"FINISHED"}
 
     def _matched(self, before: OceanParameters) -> tuple[OceanParameters, str]:
@@ -141,11 +141,11 @@ class OCEAN_OT_convert(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the ocean, then hide or delete the original, and say what did not carry over."""
         original, scene = context.active_object, context.scene
-        modifier = conversion.ocean_modifier(original)
+        modifier, name = conversion.ocean_modifier(original), original.name
         try:
             result = conversion.convert(original, modifier, scene)
             item = ocean_object.add(
-                scene, result.parameters, name=original.name,
+                scene, result.parameters, name=name,
                 collection=original.users_collection[0], viewport_resolution=result.viewport_resolution,
             )  # fmt: skip
         except ocean_object.EXPECTED_ERRORS as error:
@@ -156,12 +156,15 @@ class OCEAN_OT_convert(bpy.types.Operator):
             item.data.materials.append(material)
         context.view_layer.objects.active = item
         item.select_set(True)
+        conversion.carry_time(original, modifier, item)
         if self.keep_original:
+            original.name = f"{name} Original"
             original.select_set(False)
             original.hide_render = True
             original.hide_set(True)
         else:
             bpy.data.objects.remove(original)
+        item.name = name
         if result.lost:
             self.report(
                 {"WARNING"}, translated("Not carried over: {list}").format(list="; ".join(result.lost))

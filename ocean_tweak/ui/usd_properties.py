@@ -14,10 +14,12 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..core.data.validation import Off
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS
 from ..export.usd.package import MOST_TILES, UNITS, UP_AXES
-from .parameter_properties import path_changed
+from .field_drawing import draw_switched
+from .parameter_properties import path_changed, switch_of
 
 _KEPT = {"options": set(), "override": {"LIBRARY_OVERRIDABLE"}}
 
@@ -26,6 +28,9 @@ def _of(name: str, **more: Any) -> dict[str, Any]:
     """What the table says of an option, as Blender's properties take it."""
     option, default = OPTIONS[name], DEFAULTS[name]
     return {"name": option.label, "description": option.sentence, "default": default, **_KEPT, **more}
+
+
+_PROXY = OPTIONS["proxy"].sentence.partition(";")[0]
 
 
 def _title(name: str) -> str:
@@ -67,6 +72,7 @@ class OCEAN_PG_usd(bpy.types.PropertyGroup):
         "half": BoolProperty(**_of("half")),
         "tiles": IntVectorProperty(**_of("tiles", size=2, subtype="XYZ", min=1, max=MOST_TILES, soft_max=8)),
         "proxy": IntProperty(**_of("proxy", min=0, soft_max=256)),
+        **switch_of("proxy", _PROXY, Off(0, DEFAULTS["proxy"], "is left out")),
         "variants": StringProperty(**_of("variants", default="")),
         "force": BoolProperty(**_of("force")),
     }  # fmt: skip
@@ -89,7 +95,7 @@ def draw_choices(layout: bpy.types.UILayout, settings: OCEAN_PG_usd, bake: bool)
         layout.column(align=True).prop(settings, "attributes")
         layout.prop(settings, "half")
     layout.prop(settings, "tiles")
-    layout.prop(settings, "proxy")
+    draw_switched(layout, settings, "proxy")
     layout.prop(settings, "variants")
     layout.prop(settings, "force")
 

@@ -103,6 +103,19 @@ def test_time_of_its_own(ocean, core, make_parameters, evaluated, empty_scene):
     assert not np.any(attribute(ocean, "velocity"))
 
 
+def test_a_time_scale(ocean, core, make_parameters, evaluated, empty_scene, extension):
+    """At half the speed, frame 25 shows what frame 13 showed: half a second at 24 a second."""
+    ocean.ocean_tweak.time_scale = 0.5
+    empty_scene.frame_set(25)
+    surface = core.Ocean(make_parameters()).surface(0.5, {"displacement", "velocity"})
+    np.testing.assert_allclose(evaluated(ocean)[:-1, :-1, 2], surface.displacement[..., 2], atol=TOLERANCE)
+    velocity = attribute(ocean, "velocity")[:-1, :-1]
+    np.testing.assert_allclose(velocity, 0.5 * surface.velocity, atol=1e-3 * np.abs(velocity).max())
+    shot = extension("scene.shots").shot_of(ocean, empty_scene, range(1, 49))
+    moment = shot.at(25)
+    assert (float(moment.time), moment.rate) == (pytest.approx(0.5), pytest.approx(0.5))
+
+
 def test_a_driven_time_has_no_velocity_but_moves_within_the_frame(
     ocean, core, make_parameters, evaluated, empty_scene
 ):

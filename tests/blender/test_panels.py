@@ -13,6 +13,8 @@ from tests.blender.conftest import stored
 class Layout:
     """Takes what a panel draws, and remembers it."""
 
+    use_property_decorate = False
+
     def __init__(self, drawn, look=lambda _owner, _name: None):
         self.drawn, self.look = drawn, look
 
@@ -56,6 +58,9 @@ class Layout:
         assert items in source.bl_rna.properties
         self.prop(owner, name)
 
+    def prop_decorator(self, owner, name):
+        assert name in owner.bl_rna.properties
+
     def operator(self, name, **_named):
         module, _, function = name.partition(".")
         assert hasattr(bpy.types, f"{module.upper()}_OT_{function}")
@@ -64,6 +69,11 @@ class Layout:
 
     def operator_menu_enum(self, name, _property, **_named):
         return self.operator(name)
+
+
+def test_the_layout_draws_what_blenders_can():
+    methods = {name for name, part in vars(Layout).items() if callable(part) and not name.startswith("_")}
+    assert methods - {"part"} <= set(bpy.types.UILayout.bl_rna.functions.keys())
 
 
 @pytest.fixture
@@ -268,8 +278,53 @@ def test_every_parameter_can_be_reached(draw, item, core):
     }
     elsewhere |= {"fps", "stretch"}  # the scene's
     in_lists = {"patches", "keys", "image"}  # as layers, recordings and images
+    # behind a switch, or in a unit that Blender does not have
+    drawn |= {name.removeprefix("use_") for name in drawn}
+    drawn |= {"fetch"} if "fetch_km" in drawn else set()
+    drawn |= {"drift"} if "drift_percent" in drawn else set()
     assert names - elsewhere - in_lists - drawn == set()
     assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
+
+
+def test_a_number_that_stands_for_none_is_a_switch(draw, item, empty_scene, make_parameters):
+    empty_scene.unit_settings.scale_length = 0.01  # a kilometre is 100,000 units
+    settings, layer = item.ocean_tweak, item.ocean_tweak.layers[0]
+    settings.from_parameters(make_parameters(), empty_scene)
+    drawn = draw(item)
+    numbers = {"shortest_wavelength", "longest_wavelength", "short_wave_cutoff", "mesh_resolution"}
+    assert not numbers & set(drawn)
+    assert {"Auto", "All Waves", "None", "As the Sea"} <= set(drawn)
+    before = settings.to_parameters(empty_scene)
+    layer.use_longest_wavelength = layer.use_seed = settings.use_mesh_resolution = True
+    assert (layer.seed, settings.mesh_resolution) == (0, 256)
+    assert settings.to_parameters(empty_scene).layers[0].longest_wavelength == 100.0
+    assert {"longest_wavelength", "mesh_resolution"} <= set(draw(item))
+    layer.seed, layer.longest_wavelength = 7, 2500.0
+    assert settings.to_parameters(empty_scene).layers[0].longest_wavelength == 25.0
+    for _ in range(2):  # a second time changes nothing
+        layer.use_longest_wavelength = layer.use_seed = settings.use_mesh_resolution = False
+    assert settings.to_parameters(empty_scene) == before
+    assert settings.mesh_resolution == 0
+    layer.use_longest_wavelength = layer.use_seed = True
+    assert (layer.seed, layer.longest_wavelength) == (7, 2500.0)
+
+
+def test_tooltips_hold_no_range_that_says_nothing(item):
+    """Angles turn as often as they are told to, and a place may be anywhere."""
+    settings = item.ocean_tweak
+    groups = [settings, settings.water, settings.foam, settings.timing, settings.layers[0]]
+    groups += [getattr(settings.layers[0], name) for name in ("wind_field", "image_waves", "hero_wave")]
+    texts = [prop.description for group in groups for prop in group.bl_rna.properties]
+    assert [text for text in texts if "e+" in text or " rad)" in text or "1000000" in text] == []
+    assert any(text.endswith("(0 to 100 m/s)") for text in texts)
+
+
+def test_messages_name_what_the_window_names(extension):
+    wording = extension("ui.wording")
+    said = "layers.1.shortest_wavelength = 20.0: must be below longest_wavelength = 10 m"
+    expected = "Layer 2, Shortest Wave = 20.0: must be below Longest Wave = 10 m"
+    assert wording.readable(said) == expected
+    assert wording.place("water.depth") == "Water, Depth"
 
 
 def test_a_hero_wave_says_when_and_how_fast(draw, item, empty_scene):
@@ -309,16 +364,16 @@ def test_a_bake_under_way_shows_how_far_it_is(draw, item, extension):
 def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
     drawn = draw(item)
     once = {
-        "fetch_km", "choppiness", "domain_size", "viewport_resolution", "method", "use_foam",
-        "coverage", "half_life", "drift", "use_normals", "use_velocity", "repeats_x", "repeats_y",
+        "time_scale", "choppiness", "domain_size", "viewport_resolution", "method", "use_foam",
+        "coverage", "half_life", "drift_percent", "use_normals", "use_velocity", "repeats_x", "repeats_y",
         "dispersion", "gravity", "trough_damping", "orbital_motion", "start_frame", "use_loop", "loop_frames",
         "ocean_time", "spectrum", "peak_enhancement", "depth_factor", "definition", "amplitude_scale",
-        "spreading", "shortest_wavelength", "OCEAN_UL_layers", "cache_folder", "ocean.bake",
+        "spreading", "use_shortest_wavelength", "OCEAN_UL_layers", "cache_folder", "ocean.bake",
         "ocean.match_sea_state", "OCEAN_MT_presets",
     }  # fmt: skip
     assert {name for name in once if drawn.count(name) != 1} == set()
     # in the first panel and in the active layer's, its mask's, the water's or the foam's own
-    twice = {"source", "wind_speed", "wind_direction", "swell", "depth", "seed", "resolution"}
+    twice = {"source", "wind_speed", "wind_direction", "fetch_km", "swell", "depth"}
     assert {name for name in twice if drawn.count(name) != 2} == set()
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn
@@ -350,7 +405,7 @@ def test_a_length_that_a_curve_took_beyond_its_range_is_told(draw, item, empty_s
     empty_scene.frame_set(1)
     assert "counts as" not in " ".join(draw(item))
     empty_scene.frame_set(11)
-    assert "wind speed is out of its range and counts as 100 m/s" in " ".join(draw(item))
+    assert "Layer 1, Wind Speed is out of its range and counts as 100 m/s" in " ".join(draw(item))
 
 
 def test_frames_without_a_file_are_told(draw, item, bake, ocean_object, make_parameters, empty_scene):

@@ -80,12 +80,37 @@ def test_what_carries_over(blenders_ocean):
     # it covers the same place, but for the waves that now have their own height and push sideways
     np.testing.assert_allclose(corners(item)[:, :2], before[:, :2], atol=4.0)
     assert blenders_ocean.hide_render
+    assert (item.name, blenders_ocean.name) == ("Old Sea", "Old Sea Original")
+
+
+@pytest.mark.parametrize("way", ["keys", "driver"])
+def test_the_clock_carries_over(blenders_ocean, way, extension, empty_scene):
+    modifier = blenders_ocean.modifiers["Ocean"]
+    if way == "keys":
+        for frame, seconds in ((1, 2.0), (25, 5.0)):
+            modifier.time = seconds
+            modifier.keyframe_insert("time", frame=frame)
+            blenders_ocean.keyframe_insert("location", frame=frame)
+        for curve in extension("scene.animated").curves_of(blenders_ocean):
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+    else:
+        modifier.driver_add("time").driver.expression = "2 + (frame - 1) / 8"
+    assert bpy.ops.ocean.convert() == {"FINISHED"}
+    item = bpy.context.active_object
+    assert item.ocean_tweak.use_ocean_time
+    empty_scene.frame_set(13)
+    clock = extension("scene.animated").clock_of
+    settings = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).ocean_tweak
+    assert float(clock(settings, empty_scene, 1).time) == pytest.approx(3.5)
+    assert all("location" not in curve.data_path for curve in extension("scene.animated").curves_of(item))
+    assert modifier.time == pytest.approx(3.5)  # the original's own clock runs on
 
 
 def test_the_original_goes_where_it_is_not_wanted(blenders_ocean):
     name = blenders_ocean.name
     assert bpy.ops.ocean.convert(keep_original=False) == {"FINISHED"}
-    assert bpy.context.active_object.name.startswith(name)
+    assert bpy.context.active_object.name == name
     assert len(bpy.data.objects) == 1
 
 
@@ -94,9 +119,8 @@ def test_the_list_of_what_is_lost(blenders_ocean, extension, empty_scene):
     modifier = blenders_ocean.modifiers["Ocean"]
     assert conversion.convert(blenders_ocean, modifier, empty_scene).lost == ()
     modifier.wave_scale, modifier.wave_alignment, modifier.use_spray = 2.0, 0.4, True
-    modifier.keyframe_insert("time", frame=1)
     lost = " ".join(conversion.convert(blenders_ocean, modifier, empty_scene).lost)
-    for word in ("Gain", "Swell", "Spray", "keys of Time"):
+    for word in ("Amplitude Scale", "Swell", "Spray"):
         assert word in lost
 
 

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import dataclasses
+import math
+import re
 
 import numpy as np
 import pytest
@@ -171,6 +173,36 @@ def test_swell_is_set_directly() -> None:
     assert "steeper" in layer_for_sea_state(10.0, 5.0).explanation
     with pytest.raises(ParameterError, match="peak_period = 0"):
         layer_for_sea_state(1.0, 0.0)
+
+
+def _steepness_warnings(height: float, period: float, depth: float = 200.0) -> list[str]:
+    layer = WaveLayer(definition="SEA_STATE", significant_wave_height=height, peak_period=period)
+    sea = Ocean(OceanParameters(resolution=16, water=Water(depth=depth), layers=(layer,)))
+    return [text for text in sea.statistics().warnings if "steepness" in text]
+
+
+def test_a_sea_state_that_cannot_be_is_told_with_the_nearest_that_can() -> None:
+    (text,) = _steepness_warnings(6.0, 4.0)
+    numbers = [float(number) for number in re.findall(r"[0-9]+(?:\.[0-9]+)?", text)]
+    _, height, period, steepness, limit, lower, same_period, same_height, longer = numbers
+    assert (height, period, same_period, same_height) == (6.0, 4.0, 4.0, 6.0)
+    # in deep water the wavelength is g T²/2π; of JONSWAP m0 = 0.305 α g²/ω⁴ with γ = 3.3, and α at most 0.076
+    wavelength = 9.81 * 4.0**2 / (2.0 * math.pi)
+    most = 4.0 * math.sqrt(0.305 * 0.076) * 9.81 / (0.5 * math.pi) ** 2
+    assert steepness == pytest.approx(6.0 / wavelength, abs=0.005)
+    assert lower == pytest.approx(most, abs=0.1)
+    assert limit == pytest.approx(most / wavelength, abs=0.005)
+    assert longer == pytest.approx(4.0 * math.sqrt(6.0 / most), abs=0.1)
+    assert _steepness_warnings(lower, 4.0) == _steepness_warnings(6.0, longer) == []
+
+
+def test_nearest_seas_of_shallow_water_can_be() -> None:
+    (text,) = _steepness_warnings(3.0, 5.0, depth=3.0)
+    found = re.search(r"Nearest: (\S+) m at 5 s, or 3 m at (\S+) s", text)
+    assert found is not None
+    lower, longer = map(float, found.groups())
+    assert lower < 3.0 < 5.0 < longer
+    assert _steepness_warnings(lower, 5.0, 3.0) == _steepness_warnings(3.0, longer, 3.0) == []
 
 
 def test_wind_is_matched_at_its_height() -> None:

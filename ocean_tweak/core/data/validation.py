@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 from .errors import ParameterError
 from .raster import Raster
@@ -23,6 +23,19 @@ class _Open:
 OPEN: Any = _Open()
 
 
+class Off(NamedTuple):
+    """A number of a field that stands for none: files hold it, and the window has a switch in its place.
+
+    value : that number
+    first : what the field is when it is switched on for the first time
+    means : what the number does, as in "0 keeps all short waves"
+    """
+
+    value: float
+    first: float
+    means: str
+
+
 def number(
     default: float,
     minimum: float,
@@ -34,19 +47,21 @@ def number(
     useful: tuple[float, float] | None = None,
     changes: bool = False,
     may_be_told: bool = False,
+    off: Off | None = None,
 ) -> Any:
     """A real-valued dataclass field with its range, unit, description and the reason for the range.
 
     useful : what a slider offers, where the range is much wider
     changes : whether it can change during a shot; the rest sets which waves there are and how fast they run
     may_be_told : whether other fields may tell it, so that it is open until all are known, see `default_of`
+    off : a number that stands for none
     """
     return dataclasses.field(
         default=OPEN if may_be_told else default,
         metadata={
             "kind": float, "minimum": minimum, "maximum": maximum, "useful": useful or (minimum, maximum),
             "unit": unit, "description": description, "why": why, "changes": changes,
-            "default": default,
+            "default": default, "off": off,
         },
     )  # fmt: skip
 
@@ -65,18 +80,19 @@ def integer(
     *,
     left_out: bool = False,
     may_be_told: bool = False,
+    off: Off | None = None,
 ) -> Any:
     """A whole-number dataclass field with its range.
 
     left_out : where it is 0, JSON has no such key
-    may_be_told : as of a `number`
+    may_be_told, off : as of a `number`
     """
     return dataclasses.field(
         default=OPEN if may_be_told else default,
         metadata={
             "kind": int, "minimum": minimum, "maximum": maximum,
             "unit": "", "description": description, "why": why, "left_out": left_out,
-            "default": default,
+            "default": default, "off": off,
         },
     )  # fmt: skip
 

@@ -18,7 +18,18 @@ from ..data import formats
 from ..data.errors import ParameterError
 from ..data.plain_data import from_plain, parse_json, to_plain
 from ..data.raster import check_numbers, numbers_in
-from ..data.validation import OPEN, Validated, choice, default_of, integer, nested, number, rational, switch
+from ..data.validation import (
+    OPEN,
+    Off,
+    Validated,
+    choice,
+    default_of,
+    integer,
+    nested,
+    number,
+    rational,
+    switch,
+)
 from ..masks import Mask
 from ..spectral.water import Water
 from ..waves.contribution import Contribution, Gives
@@ -80,8 +91,8 @@ class Foam(Validated):
         "the surface drifts with 2 to 3 % of the wind",
     )  # fmt: skip
     resolution: int = integer(
-        0, 0, 8192, "Samples along each side at which foam is made, even; 0 for those of the sea",
-        "as the resolution of the sea",
+        0, 0, 8192, "Samples along each side at which foam is made, an even number",
+        "as the resolution of the sea", off=Off(0, 512, "takes those of the sea"),
     )  # fmt: skip
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from ..data.errors import ParameterError
-from ..data.validation import Validated, integer, nested, number
+from ..data.validation import Off, Validated, integer, nested, number
 from ..masks import Mask
 
 #: of a sea
@@ -40,11 +40,11 @@ class Patch(Validated):
     )  # fmt: skip
     shortest_wavelength: float = number(
         NO_SHORTEST, 0.0, 1e6, "m", "The band's short end; the next patch's waves are shorter than that",
-        "0 keeps all short waves",
+        "any domain", off=Off(NO_SHORTEST, 1.0, "keeps all short waves"),
     )  # fmt: skip
     longest_wavelength: float = number(
         NO_LONGEST, 1e-3, 1e6, "m", "The band's long end; the waves of the patch before are longer than that",
-        "1000 km keeps all long waves",
+        "any domain", off=Off(NO_LONGEST, 100.0, "keeps all long waves"),
     )  # fmt: skip
     resolution: int = integer(
         512, 16, 8192, "Samples along each side of the patch, an even number", "as the resolution of a sea"

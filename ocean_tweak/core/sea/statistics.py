@@ -25,6 +25,7 @@ from ..statistics.sea_statistics import (
     is_told_apart,
     layer_warnings,
     loop_warnings,
+    steepness_warnings,
 )
 
 
@@ -89,6 +90,7 @@ def _warnings(
             )
     yield from loop_warnings(parameters, total)
     yield from fetch_warnings(parameters, sea)
+    yield from steepness_warnings(parameters)
 
 
 def _patch_warnings(found: PatchStatistics, parameters: OceanParameters, is_first: bool) -> Iterator[str]:

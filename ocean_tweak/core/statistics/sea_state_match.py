@@ -3,17 +3,37 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
 from ..data.errors import ParameterError
-from ..spectral import constants, spectra
+from ..spectral import constants, dispersion, spectra
 from ..spectral.spectra import layer_scales, wind_at
 from ..spectral.water import Water
 from ..waves.spectral import WaveLayer
 
 #: below this dimensionless fetch g F / U² nobody has measured JONSWAP's growth
 LEAST_DIMENSIONLESS_FETCH = 1.0
+#: α of the steepest sea that a wind raises: JONSWAP's at that fetch
+LARGEST_ALPHA = constants.JONSWAP_ALPHA * LEAST_DIMENSIONLESS_FETCH**-constants.JONSWAP_ALPHA_EXPONENT
+
+#: steps towards the least period, and the change of one that is none
+_TRIES, _NEAR = 20, 1e-3
+
+
+class TooSteep(NamedTuple):
+    """A sea state that is steeper than any wind sea, and the two nearest that are not.
+
+    steepness, limit : Hs over the wavelength at the peak, and the most that this can be at the same period
+    height : m, the most at the same period
+    period : s, the least at the same height; infinite where none is long enough
+    """
+
+    steepness: float
+    limit: float
+    height: float
+    period: float
 
 
 class Match(NamedTuple):
@@ -64,10 +84,40 @@ def layer_for_sea_state(
     F = X * U**2 / water.gravity
     if spectra.full_development_fetch(U, water.gravity) < F:
         return Match(swell, False, f"{wanted} is flatter than any wind sea: set directly, as swell")
-    if X < LEAST_DIMENSIONLESS_FETCH:
+    if too_steep(swell, water) is not None:
         return Match(swell, False, f"{wanted} is steeper than any wind sea: set directly")
     try:
         wind = replace(template, definition="WIND", wind_speed=wind_at(U, template.wind_height), fetch=F)
     except ParameterError as error:
         return Match(swell, False, f"{wanted} is set directly: {error}")
     return Match(wind, True, f"{wanted} is made by a wind of {U:.3g} m/s over {F / 1e3:.3g} km")
+
+
+def too_steep(layer: WaveLayer, water: Water) -> TooSteep | None:
+    """What is wrong with a layer's sea state, and what would be possible; None where a wind can raise it.
+
+    Energy is in proportion to α, so Hs is to √α; in deep water α is to Hs² / Tp⁴, elsewhere nearly so.
+    """
+    if layer.definition != "SEA_STATE" or layer.significant_wave_height == 0.0:
+        return None
+    excess = math.sqrt(layer_scales(layer, water).alpha / LARGEST_ALPHA)
+    if excess <= 1.0:
+        return None
+    k = dispersion.wave_number(2.0 * math.pi / layer.peak_period, "FINITE_DEPTH", water)
+    steepness = layer.significant_wave_height * float(k) / (2.0 * math.pi)
+    height = layer.significant_wave_height / excess
+    return TooSteep(steepness, steepness / excess, height, _least_period(layer, water))
+
+
+def _least_period(layer: WaveLayer, water: Water) -> float:
+    longest = WaveLayer.__dataclass_fields__["peak_period"].metadata["maximum"]
+    period = layer.peak_period
+    for _ in range(_TRIES):
+        alpha = layer_scales(replace(layer, peak_period=period), water).alpha
+        longer = period * (alpha / LARGEST_ALPHA) ** 0.25
+        if longer > longest:
+            return math.inf
+        if abs(longer / period - 1.0) < _NEAR:
+            break
+        period = longer
+    return longer

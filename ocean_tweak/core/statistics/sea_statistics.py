@@ -9,6 +9,7 @@ zero up-crossings.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -30,7 +31,9 @@ from ..spectral.sea_state import (
 from ..spectral.spreading import mean_cosine
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import WAVES, Gives
+from ..waves.spectral import WaveLayer
 from .sea_spectrum import SeaSpectrum
+from .sea_state_match import too_steep
 
 Array = NDArray[np.float64]
 
@@ -206,6 +209,7 @@ def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statist
         *grid_warnings(parameters, sea, statistics),
         *loop_warnings(parameters, statistics),
         *fetch_warnings(parameters, sea),
+        *steepness_warnings(parameters),
     )
 
 
@@ -259,6 +263,12 @@ def _round_up(length: float) -> str:
     return f"{np.ceil(length / unit) * unit:.10g}"
 
 
+def _round_down(length: float) -> str:
+    """A length rounded down to two digits."""
+    unit = 10.0 ** (np.floor(np.log10(length)) - 1.0)
+    return f"{np.floor(length / unit) * unit:.10g}"
+
+
 def loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[str]:
     """Of a loop that is too short."""
     if parameters.loop_duration is None or statistics.loop_speed_change is None:
@@ -280,12 +290,34 @@ def loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[s
 
 def fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
     """Of fetches that the sea is done growing before."""
+    numbers = {(layer.kind, layer.id): number for number, layer in enumerate(parameters.layers, 1)}
     return [
-        f"Layer {spectrum.layer.id}: the sea is fully developed after {spectrum.scales.fetch / 1e3:.4g} km; "
-        f"the fetch of {spectrum.layer.fetch / 1e3:.4g} km counts as that"
+        f"Layer {numbers[spectrum.layer.kind, spectrum.layer.id]}: the sea is fully developed after "
+        f"{spectrum.scales.fetch / 1e3:.4g} km; the fetch of {spectrum.layer.fetch / 1e3:.4g} km counts as "
+        "that"
         for spectrum in sea.layers
         if spectrum.fetch_is_limited
     ]
+
+
+def steepness_warnings(parameters: OceanParameters) -> list[str]:
+    """Of layers whose wave height and period no wind can raise, with the nearest that one can."""
+    warnings = []
+    for number, layer in enumerate(parameters.layers, 1):
+        if not isinstance(layer, WaveLayer) or layer.muted:
+            continue
+        found = too_steep(layer, parameters.water)
+        if found is None:
+            continue
+        height, period = layer.significant_wave_height, layer.peak_period
+        nearest = f"{_round_down(found.height)} m at {period:g} s"
+        if math.isfinite(found.period):
+            nearest += f", or {height:g} m at {_round_up(found.period)} s"
+        warnings.append(
+            f"Layer {number}: no sea has waves of {height:g} m at {period:g} s. Their steepness, height over "
+            f"wavelength, would be {found.steepness:.2f}; {found.limit:.2f} is the most. Nearest: {nearest}"
+        )
+    return warnings
 
 
 def spectrum_state(sea: SeaSpectrum) -> SeaState:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..data.validation import Validated, integer, number, switch
+from ..data.validation import Off, Validated, integer, number, switch
 
 if TYPE_CHECKING:
     from ..masks import Mask
@@ -273,4 +273,5 @@ def identity() -> Any:
 
 def own_seed(what: str = "Seed of this layer alone") -> Any:
     """A field: the seed of a layer's random numbers."""
-    return integer(-1, -1, _LARGEST, f"{what}; -1 derives it from the ocean's seed and the id", _WHOLE)
+    derived = Off(-1, 0, "derives it from the ocean's seed and the id")
+    return integer(-1, -1, _LARGEST, what, _WHOLE, off=derived)

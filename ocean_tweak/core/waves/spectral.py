@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from ..data.errors import ParameterError
-from ..data.validation import choice, nested, number, switch
+from ..data.validation import Off, choice, nested, number, switch
 from ..masks import Mask
 from ..numerics import random
 from ..spectral import constants
@@ -84,7 +84,7 @@ class WaveLayer(Contribution):
     )  # fmt: skip
     short_wave_cutoff: float = number(
         0.0, 0.0, 1e3, "m", "Length l of the factor exp(-k²l²) that takes away waves shorter than about 2πl",
-        "longer than any wave's cut-off",
+        "longer than any wave's cut-off", off=Off(0.0, 0.05, "takes none away"),
     )  # fmt: skip
     wind_height: float = number(
         10.0, 2.0, 100.0, "m", "Height above the water at which the wind was measured",
@@ -120,16 +120,13 @@ class WaveLayer(Contribution):
     second_spreading: str = choice("FLAT", SPREADINGS, "The spreading that is mixed in")
     spreading_mix: float = number(0.0, 0.0, 1.0, "", "Share of the second spreading", "a share")
     shortest_wavelength: float = number(
-        0.0, 0.0, 1e6, "m", "The band's short end: waves below it are left out", "0 keeps all short waves"
-    )
+        0.0, 0.0, 1e6, "m", "The band's short end: waves below it are left out", "any domain",
+        off=Off(0.0, 1.0, "keeps all short waves"),
+    )  # fmt: skip
     longest_wavelength: float = number(
-        1e6,
-        1e-3,
-        1e6,
-        "m",
-        "The band's long end: waves above it are left out",
-        "1000 km keeps all long waves",
-    )
+        1e6, 1e-3, 1e6, "m", "The band's long end: waves above it are left out", "any domain",
+        off=Off(1e6, 100.0, "keeps all long waves"),
+    )  # fmt: skip
     band_softness: float = number(
         0.0,
         0.0,

@@ -33,7 +33,7 @@ class Option(NamedTuple):
 OPTIONS = {
     "up_axis": Option("Up Axis", "Z as in Blender, or Y: then points, velocities and normals are turned"),
     "metres_per_unit": Option("Metres per Unit", "metres in a unit of the layers; 0.01 for centimetres"),
-    "subframes": Option("Samples per Frame", "samples a frame, for motion blur"),
+    "subframes": Option("Time Samples", "time samples a frame, for motion blur"),
     "attributes": Option("Attributes", "what the mesh carries beside points and extent"),
     "half": Option("Half Precision", "foam, cusp, breaking and foam_age in 16 bits"),
     "tiles": Option("Tiles", "patches side by side, as instances"),

@@ -4,6 +4,7 @@
 import bpy
 
 from .. import camera_operators, material_operators, parameter_operators
+from ..field_drawing import draw_fields, draw_switched
 from .drawing import SubPanel, active_settings, split
 
 
@@ -18,8 +19,7 @@ class OCEAN_PT_water(SubPanel, bpy.types.Panel):
         layout, settings = split(self.layout), active_settings(context)
         layout.prop(settings, "dispersion")
         column = layout.column(align=True)
-        for name in ("depth", "gravity", "density", "surface_tension"):
-            column.prop(settings.water, name)
+        draw_fields(column, settings.water, "depth", "gravity", "density", "surface_tension")
         layout.operator(material_operators.OCEAN_OT_use_water_material.bl_idname, icon="MATERIAL")
 
 
@@ -51,7 +51,10 @@ class OCEAN_PT_time(SubPanel, bpy.types.Panel):
         part = loop.row()
         part.active = settings.use_loop
         part.prop(settings, "loop_frames", text="Frames")
-        own = layout.row(heading="Own Time")
+        scale = layout.row()
+        scale.active = not settings.use_ocean_time
+        scale.prop(settings, "time_scale", slider=True)
+        own = layout.row(heading="Keyed Time")
         own.prop(settings, "use_ocean_time", text="")
         part = own.row()
         part.active = settings.use_ocean_time
@@ -73,9 +76,7 @@ class OCEAN_PT_foam(SubPanel, bpy.types.Panel):
         layout, settings = split(self.layout), active_settings(context)
         column = layout.column()
         column.active = settings.use_foam and settings.source == "LIVE"
-        for name in ("law", "coverage", "half_life", "drift"):
-            column.prop(settings.foam, name)
-        column.prop(settings.foam, "resolution", text="Foam Res.")
+        draw_fields(column, settings.foam, "law", "coverage", "half_life", "drift", "resolution")
 
 
 class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
@@ -91,7 +92,7 @@ class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
         repeats = layout.column(align=True)
         repeats.prop(settings, "repeats_x")
         repeats.prop(settings, "repeats_y", text="Y")
-        layout.prop(settings, "mesh_resolution", text="Mesh Quads")
+        draw_switched(layout, settings, "mesh_resolution")
         attributes = layout.column(heading="Attributes")
         attributes.prop(settings, "use_normals")
         attributes.prop(settings, "use_velocity")

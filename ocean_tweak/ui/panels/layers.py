@@ -10,6 +10,7 @@ from ...scene.refresh import sea_of_settings
 from ...scene.units import metres_per_unit
 from .. import layer_operators, parameter_properties, wind_operators
 from ..active_ocean import active_layer, nearest
+from ..field_drawing import draw_fields
 from ..layer_properties import kind_of
 from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
 from .masks import draw_image, draw_mask
@@ -94,7 +95,7 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
             if kind.kind in _DRAWERS:
                 _DRAWERS[kind.kind](layout, layer.group, context)
             else:
-                _props(layout, layer.group, *parameter_properties.names_of(kind))
+                draw_fields(layout, layer.group, *parameter_properties.names_of(kind))
             if hasattr(layer.group, "mask"):
                 draw_mask(layout, context, layer.group.mask)
 
@@ -106,8 +107,8 @@ def _draw_waves(
     names = ("wind_speed", "wind_direction", "fetch", "wind_height", "limit_fetch")
     if layer.definition == "SEA_STATE":
         names = ("significant_wave_height", "peak_period", "wind_direction")
-    _props(layout.column(align=True), layer, *names)
-    _props(layout, layer, "amplitude_scale")
+    draw_fields(layout.column(align=True), layer, *names)
+    draw_fields(layout, layer, "amplitude_scale")
 
 
 def _draw_wind_field(
@@ -117,31 +118,31 @@ def _draw_wind_field(
     sources.use_property_split = False  # beside a label there is no room for the three names
     sources.prop(group, "source", expand=True)
     if group.source == "UNIFORM":
-        _props(layout.column(align=True), group, "wind_speed", "wind_direction")
+        draw_fields(layout.column(align=True), group, "wind_speed", "wind_direction")
     elif group.source == "IMAGE":
         draw_image(layout, group)
         if group.image is not None:
             _image_notes(layout, context, group.image)
-        _props(layout, group, "image_values", "image_speed")
+        draw_fields(layout, group, "image_values", "image_speed")
     else:
-        _props(layout, group, "objects")
+        draw_fields(layout, group, "objects")
         text = "Record Again" if group.recording_hash else "Record Wind"
         layout.operator(wind_operators.OCEAN_OT_record_wind.bl_idname, text=text, icon="REC")
-    _props(layout, group, "wind_scale", "show_vectors")
+    draw_fields(layout, group, "wind_scale", "show_vectors")
     places = layout.column(align=True)
-    _props(places, group, "columns", "rows", "origins")
-    _props(layout, group, "jitter", "phase_jitter", "start_time", "minimum_wind_speed")
-    _props(
+    draw_fields(places, group, "columns", "rows", "origins")
+    draw_fields(layout, group, "jitter", "phase_jitter", "start_time", "minimum_wind_speed")
+    draw_fields(
         layout,
         group,
         "height",
         "steepness" if group.height == "STEEPNESS" else "height_per_speed",
         "amplitude_scale",
     )
-    _props(layout, group, "life", "crest", "particles")
+    draw_fields(layout, group, "life", "crest", "particles")
     if group.crest == "ARC":
-        _props(layout, group, "split_angle", "splitting")
-    _props(layout, group, "seed")
+        draw_fields(layout, group, "split_angle", "splitting")
+    draw_fields(layout, group, "seed")
 
 
 def _draw_image(
@@ -151,30 +152,30 @@ def _draw_image(
     if group.image is not None:
         _image_notes(layout, context, group.image)
     else:
-        layout.prop(group, "noise_resolution", text="Noise Res.")
-        _props(layout, group, "seed")
-    _props(layout, group, "filter")
+        draw_fields(layout, group, "noise_resolution")
+        draw_fields(layout, group, "seed")
+    draw_fields(layout, group, "filter")
     physical = False
     if group.filter == "MODIFIED_PIERSON_MOSKOWITZ":
-        _props(layout, group, "filter_gain", "wind_speed")
+        draw_fields(layout, group, "filter_gain", "wind_speed")
         physical = group.filter_gain == "PHYSICAL"
     else:
-        _props(layout, group, "fractal_dimension")
+        draw_fields(layout, group, "fractal_dimension")
     if group.filter == "WATER_TEXTURE":
-        _props(layout, group, "texture_wavelength")
+        draw_fields(layout, group, "texture_wavelength")
     if not physical:
-        _props(layout, group, "significant_wave_height")
-    _props(layout, group, "amplitude_scale", "wind_direction", "animation")
-    _props(layout, group, *_ANIMATION.get(group.animation, ()))
+        draw_fields(layout, group, "significant_wave_height")
+    draw_fields(layout, group, "amplitude_scale", "wind_direction", "animation")
+    draw_fields(layout, group, *_ANIMATION.get(group.animation, ()))
 
 
 def _draw_hero_wave(
     layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
 ) -> None:
-    _props(layout.column(align=True), group, "x", "y", "time")
-    _props(layout, group, "direction", "wavelength", "crest_height")
-    _props(layout.column(align=True), group, "group_length", "group_width")
-    _props(layout, group, "phase")
+    draw_fields(layout.column(align=True), group, "x", "y", "time")
+    draw_fields(layout, group, "direction", "wavelength", "crest_height")
+    draw_fields(layout.column(align=True), group, "group_length", "group_width")
+    draw_fields(layout, group, "phase")
     settings, scene = active_settings(context), context.scene
     if group.muted or settings.error:
         return
@@ -216,11 +217,6 @@ def _image_notes(layout: bpy.types.UILayout, context: bpy.types.Context, image: 
             f"{image.name} is in the colour space {image.colorspace_settings.name}: choose Non-Color for the "
             "numbers of its file",
         )  # fmt: skip
-
-
-def _props(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, *names: str) -> None:
-    for name in names:
-        layout.prop(group, name)
 
 
 CLASSES = (OCEAN_UL_layers, OCEAN_PT_layers)

@@ -11,6 +11,7 @@ from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
 from .. import patch_operators
 from ..active_ocean import nearest
+from ..field_drawing import draw_fields
 from .drawing import SubPanel, active_settings, length_text, message, parsed, row, split
 from .masks import draw_mask
 
@@ -72,12 +73,11 @@ def _draw_patch(layout: bpy.types.UILayout, context: bpy.types.Context, index: i
     settings = active_settings(context)
     patch = settings.patches[index]
     numbers = layout.column(align=True)
-    numbers.prop(patch, "domain_size", text="Size")
+    numbers.prop(patch, "domain_size")
     numbers.prop(patch, "resolution", text="Samples")
     layout.prop(patch, "rotation")
     band = layout.column(align=True)
-    band.prop(patch, "longest_wavelength", text="Waves From")
-    band.prop(patch, "shortest_wavelength", text="To")
+    draw_fields(band, patch, "longest_wavelength", "shortest_wavelength")
     draw_mask(layout, context, patch.mask, index)
     facts = layout.box().column(align=True)
     if patch.shortest_wavelength > 0.0 and patch.domain_size > 0.0:

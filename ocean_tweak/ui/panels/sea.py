@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sea: the few numbers that make a sea, and what they mean right now."""
 
-import re
 from typing import Any
 
 import bpy
@@ -23,7 +22,9 @@ from .. import (
     preset_operators,
     sea_operators,
     sequence_operators,
+    wording,
 )
+from ..field_drawing import draw_fields
 from ..layer_properties import first_waves
 from .drawing import (
     OceanPanel,
@@ -51,7 +52,7 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
         layout = split(self.layout, animated=True)
         settings = active_settings(context)
         if settings.error:
-            message(layout, context, settings.error, alert=True)
+            message(layout, context, wording.readable(settings.error), alert=True)
         if settings.source == "SEQUENCE":
             _bake(layout, context)
         _presets(layout, context)
@@ -89,11 +90,8 @@ def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _difference(path: str, baked: object, own: object) -> str:
-    """`layer 2: wind speed 8, baked 12`."""
-    match = re.fullmatch(r"(\w+)s\.(\d+)\.(.+)", path)
-    where = f"{match[1]} {int(match[2]) + 1}: " if match and match[2] != "0" else ""
-    name = (match[3] if match else path).replace("_", " ").replace(".", " ")
-    return f"{where}{name} {_number(own)}, baked {_number(baked)}"
+    """`Layer 2, Wind Speed 8, baked 12`."""
+    return f"{wording.place(path)} {_number(own)}, baked {_number(baked)}"
 
 
 def _number(value: object) -> str:
@@ -114,13 +112,9 @@ def _presets(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 def _wind(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
     column = layout.column(align=True)
     if layer.definition == "WIND":
-        column.prop(layer, "wind_speed", text="Wind")
-        column.prop(layer, "wind_direction", text="Direction")
-        column.prop(layer, "fetch_km", text="Fetch (km)")
+        draw_fields(column, layer, "wind_speed", "wind_direction", "fetch")
     else:
-        column.prop(layer, "significant_wave_height", text="Height")
-        column.prop(layer, "peak_period", text="Period")
-        column.prop(layer, "wind_direction", text="Direction")
+        draw_fields(column, layer, "significant_wave_height", "peak_period", "wind_direction")
     layout.prop(layer, "swell", slider=True)
 
 
@@ -128,7 +122,7 @@ def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
     """Draw the size, of several patches that of the first, and the samples of the mesh."""
     first = settings.patches[0] if settings.patches else settings
     column = layout.column(align=True)
-    column.prop(first, "domain_size", text="Domain")
+    column.prop(first, "domain_size")
     column.prop(settings, "viewport_resolution", text="Viewport")
     column.prop(settings, "resolution", text="Render")
     if len(settings.patches) > 1:
@@ -166,18 +160,18 @@ def _baked_rows(scene: bpy.types.Scene, baked: dict[str, Any]) -> list[tuple[str
     layer = _baked_waves(baked)[0]
     if layer["definition"] == "WIND":
         first = [
-            ("Wind", speed_text(scene, layer["wind_speed"])),
+            ("Wind Speed", speed_text(scene, layer["wind_speed"])),
             ("Fetch", length_text(scene, layer["fetch"])),
         ]
     else:
         height = length_text(scene, layer["significant_wave_height"])
-        first = [("Height", height), ("Period", f"{layer['peak_period']:.3g} s")]
+        first = [("Wave Height", height), ("Peak Period", f"{layer['peak_period']:.3g} s")]
     return [
         *first,
         ("Choppiness", f"{baked['choppiness']:.3g}"),
         ("Depth", length_text(scene, baked["water"]["depth"])),
         ("Seed", str(baked["seed"])),
-        ("Size", f"{length_text(scene, baked['domain_size'])}, {baked['resolution']}²"),
+        ("Domain Size", f"{length_text(scene, baked['domain_size'])}, {baked['resolution']}²"),
     ]
 
 
@@ -220,11 +214,11 @@ def _rows(scene: bpy.types.Scene, values: dict[str, Any]) -> list[tuple[str, str
     ]
     if expected["peak_period"] is not None:  # a flat sea has none
         rows += [
-            ("Period", f"{expected['peak_period']:.1f} s"),
+            ("Peak Period", f"{expected['peak_period']:.1f} s"),
             ("Wavelength", length_text(scene, expected["peak_wavelength"])),
-            ("Domain", translated("{:.1f} wavelengths").format(values["wavelengths_per_domain"])),
+            ("Domain Holds", translated("{:.1f} wavelengths").format(values["wavelengths_per_domain"])),
         ]
-    return [*rows, ("Sample", length_text(scene, values["sample_spacing"]))]
+    return [*rows, ("Sample Spacing", length_text(scene, values["sample_spacing"]))]
 
 
 def _object_warnings(context: bpy.types.Context) -> list[str]:
@@ -242,8 +236,8 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
     for index, layer in enumerate(settings.layers):
         for name, length in parameter_properties.beyond(layer, WaveLayer, metres):
             shown = (speed_text if name == "wind_speed" else length_text)(scene, length)
-            where = f"Layer {index + 1}: " if index else ""
-            warnings.append(f"{where}{name.replace('_', ' ')} is out of its range and counts as {shown}")
+            where = wording.place(f"layers.{index}.{name}")
+            warnings.append(f"{where} is out of its range and counts as {shown}")
     sea = sea_of_settings(item, scene) if settings.source == "LIVE" else None
     over = None if sea is None else beyond_budget(sea)
     if over is not None:

@@ -3,8 +3,8 @@
 
 import bpy
 
-from ...core.parameters.ocean_parameters import WaveLayer
 from ...scene.refresh import sea_of_settings
+from ..field_drawing import draw_fields
 from ..previews import PREVIEWS
 from .drawing import SubPanel, active_settings, active_waves, split
 
@@ -39,14 +39,14 @@ class OCEAN_PT_spectrum(SubPanel, bpy.types.Panel):
         layer = active_waves(settings)
         if layer is None:
             return
-        _props(layout, layer, "spectrum")
+        draw_fields(layout, layer, "spectrum")
         if layer.spectrum in ("TMA", "JONSWAP"):
-            _props(layout, layer, "peak_enhancement")
+            draw_fields(layout, layer, "peak_enhancement")
         if layer.spectrum == "TMA":
-            _props(layout, layer, "depth_factor")
+            draw_fields(layout, layer, "depth_factor")
         if layer.spectrum == "GENERALIZED_AB":
-            _props(layout, layer, "generalized_a", "generalized_b")
-        _props(layout, layer, "short_wave_cutoff")
+            draw_fields(layout, layer, "generalized_a", "generalized_b")
+        draw_fields(layout, layer, "short_wave_cutoff")
 
 
 class OCEAN_PT_spreading(_OfWaves, bpy.types.Panel):
@@ -58,11 +58,11 @@ class OCEAN_PT_spreading(_OfWaves, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the model, and the one that is mixed in."""
         layout, layer = split(self.layout), active_waves(active_settings(context))
-        _props(layout, layer, "spreading", "swell", "spreading_mix")
+        draw_fields(layout, layer, "spreading", "swell", "spreading_mix")
         if layer.spreading_mix > 0.0:
-            _props(layout, layer, "second_spreading")
+            draw_fields(layout, layer, "second_spreading")
         if "COSINE_2S" in (layer.spreading, layer.second_spreading):
-            _props(layout, layer, "spreading_exponent")
+            draw_fields(layout, layer, "spreading_exponent")
 
 
 class OCEAN_PT_band(_OfWaves, bpy.types.Panel):
@@ -74,14 +74,8 @@ class OCEAN_PT_band(_OfWaves, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the band's ends and the seed."""
         layout, layer = split(self.layout), active_waves(active_settings(context))
-        _props(layout, layer, "shortest_wavelength", "longest_wavelength", "band_softness")
-        _props(layout, layer, "band_inverted", "seed")
-
-
-def _props(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup, *names: str) -> None:
-    for name in names:
-        assert name in WaveLayer.__dataclass_fields__, name
-        layout.prop(layer, name)
+        draw_fields(layout, layer, "shortest_wavelength", "longest_wavelength", "band_softness")
+        draw_fields(layout, layer, "band_inverted", "seed")
 
 
 CLASSES = (OCEAN_PT_spectrum, OCEAN_PT_spreading, OCEAN_PT_band)

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fields of parameters as panels show them: in a unit of their own, or behind a switch."""
+
+import bpy
+
+from . import wording
+from .parameter_properties import SWITCH
+
+
+def draw_fields(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, *names: str) -> None:
+    """Draw fields of parameters, one below another."""
+    for name in names:
+        scaled = wording.SCALED.get(name)
+        if scaled is not None:
+            _draw_scaled(layout, group, name, scaled)
+        elif f"{SWITCH}{name}" in group.bl_rna.properties:
+            draw_switched(layout, group, name)
+        else:
+            layout.prop(group, name)
+
+
+def draw_switched(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, name: str) -> None:
+    """Draw a switch, and beside it the number, or what its absence means."""
+    switch = f"{SWITCH}{name}"
+    line = layout.row(heading=group.bl_rna.properties[switch].name)
+    line.prop(group, switch, text="")
+    if getattr(group, switch):
+        line.prop(group, name, text="")
+    else:
+        absent = line.row()
+        absent.active = False
+        absent.label(text=wording.OFF[name])
+
+
+def _draw_scaled(
+    layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, name: str, scaled: wording.Scaled
+) -> None:
+    """Draw a field in its other unit, with the dot that sets keys of the field itself."""
+    line = layout.row(align=True)
+    decorated = layout.use_property_decorate and group.bl_rna.properties[name].is_animatable
+    line.use_property_decorate = False
+    line.prop(group, scaled.name)
+    if decorated:
+        line.prop_decorator(group, name)
