@@ -122,6 +122,17 @@ def test_many_radii_are_a_few_of_equal_ratio() -> None:
     assert radii == pytest.approx([smallest * ratio**0.25, smallest * ratio**0.75], rel=1e-5)
 
 
+@pytest.mark.parametrize("jitter", [0.0, 0.3, 1.0])
+def test_origins_lie_around_the_middles_of_their_cells(jitter: float) -> None:
+    """Anywhere within their share of a cell of 100 m by 200 m."""
+    layer = WindFieldLayer(columns=8, rows=4, origins=16, jitter=jitter)
+    origins = layer_origins(layer, 0, 800.0)
+    for places, cells in ((origins.x, 100.0), (origins.y, 200.0)):
+        off = np.mod(places, cells) / cells - 0.5
+        assert np.ptp(off) == pytest.approx(jitter, rel=0.02, abs=1e-12)
+        assert abs(off.mean()) <= 0.1 * jitter
+
+
 # waves of several particles
 
 
@@ -151,6 +162,15 @@ def test_splitting_keeps_the_sum_of_amplitudes_and_the_fan() -> None:
         np.testing.assert_allclose(np.diff(angles), 0.1 / parts, rtol=1e-9)
         np.testing.assert_allclose(angles.mean(), 0.0, atol=1e-12)
         np.testing.assert_allclose(np.hypot(now.x - 2000.0, now.y - 2000.0), age * LENGTH)
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.8, -2.5])
+def test_a_parallel_crest_lies_across_its_way(direction: float) -> None:
+    """A straight line of particles, all as far along the wind."""
+    now, _ = one_wave(2.0, crest="PARALLEL", wind_direction=direction)
+    dx, dy = now.x - 2000.0, now.y - 2000.0
+    np.testing.assert_allclose(dx * math.cos(direction) + dy * math.sin(direction), 2.0 * LENGTH)
+    assert np.ptp(dy * math.cos(direction) - dx * math.sin(direction)) > 0.5 * LENGTH
 
 
 def crest(now: Particles, classes: RadiusClasses, age: float, within: float) -> Array:
