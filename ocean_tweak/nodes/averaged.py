@@ -8,60 +8,49 @@ from __future__ import annotations
 
 import bpy
 
-from .averages import AVERAGES, CARRIED, IS_MOVING, MOVING, cells, halvings, read
+from .averages import CARRIED, cells, halvings, told
 from .building import Builder, Plug, Socket, output
-from .fields import alone, connect, coordinates, named_attribute, whole_number
-from .versioned import GroupKind, node_group
+from .fields import alone, coordinates, mixed, sample_index, whole_number
+from .versioned import GroupKind
 
 #: cells of the grid in a cell of the averages: what is left is at least four cells long
 _GRID_CELLS = 2.0
 
 _INPUTS = (
-    Plug("Geometry", "NodeSocketGeometry", None, "The grid"),
-    Plug("Surface", "NodeSocketGeometry", None, "Mesh with what is averaged"),
-    Plug("Columns", "NodeSocketInt", 2, "Its vertices along x"),
+    Plug("Averages", "NodeSocketGeometry", None, "Points of a surface and of its averages"),
+    Plug("Levels", "NodeSocketGeometry", None, "Points that tell where each of them begins"),
+    Plug("Columns", "NodeSocketInt", 2, "Of the surface itself, its vertices along x"),
     Plug("Rows", "NodeSocketInt", 2, "Its vertices along y"),
     Plug("Spacing", "NodeSocketVector", None, "Between them"),
     Plug("Place", "NodeSocketVector", None, "Of the grid's vertices at rest, from the surface's first one"),
     Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     Plug("Fade", "NodeSocketBool", True, "Average; otherwise the surface is read as it is"),
-    IS_MOVING,
 )
-_OUTPUTS = (Plug("Geometry", "NodeSocketGeometry", None, "The grid with what was read, under its names"),)
+#: names of what is averaged → sockets
+SOCKETS = {name: name.removeprefix("ocean_tweak_").title() for name in CARRIED}
+#: what was read at a vertex
+READ = tuple(Plug(socket, "NodeSocketVector", None, "At the vertex") for socket in SOCKETS.values())
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, _INPUTS, _OUTPUTS)
+    build = Builder(tree, _INPUTS, READ)
     counts = build.given("Columns"), build.given("Rows")
-    grid = build.given("Geometry")
-    for name in CARRIED:
-        grid = build.store(grid, name, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
-    period = build.vector("MULTIPLY", build.given("Spacing"), cells(build, *counts))
+    number = cells(build, *counts)
+    period = build.vector("MULTIPLY", build.given("Spacing"), number)
     periods = alone(build, "FRACTION", build.vector("DIVIDE", build.given("Place"), period))
+    # samples of averages stand for places half a cell in, those of the surface for its first corners
+    periods = build.vector("ADD", periods, build.vector("DIVIDE", (0.5, 0.5, 0.0), number))
     most = halvings(build, *counts)
-    once = build.add("GeometryNodeCaptureAttribute", {"Geometry": grid}, domain="POINT")
-    for kind, name, value in (("FLOAT", "Level", _level(build, most)), ("VECTOR", "Periods", periods)):
-        once.capture_items.new(kind, name)
-        build.tree.links.new(value, once.inputs[name])
-    end = build.add("GeometryNodeRepeatOutput")
-    end.repeat_items.clear()
-    before = {"Geometry": build.given("Surface"), "Columns": counts[0], "Rows": counts[1]}
-    kinds = {"Geometry": "GEOMETRY", "Columns": "INT", "Rows": "INT", "Grid": "GEOMETRY"}
-    for name, kind in kinds.items():
-        end.repeat_items.new(kind, name)
-    begin = build.add("GeometryNodeRepeatInput")
-    begin.pair_with_output(end)
-    for name, value in {**before, "Grid": output(once, "Geometry")}.items():
-        connect(build, begin.inputs[name], value)
-    fading = build.integer("ADD", whole_number(build, most, "ROUND"), 1)
-    connect(build, begin.inputs["Iterations"], build.switch("INT", build.given("Fade"), 1, fading))
-    mesh = {name: begin.outputs[name] for name in before}
-    part = _with_level(build, begin, once, counts, mesh)
-    after = build.group(node_group(AVERAGES), {**mesh, "Moving": build.given("Moving")})
-    for name in before:
-        connect(build, end.inputs[name], output(after, name))
-    connect(build, end.inputs["Grid"], part)
-    build.finish(end.outputs["Grid"])
+    level = _level(build, most)
+    low = alone(build, "FLOOR", level, "ShaderNodeMath")
+    high = build.math("MINIMUM", build.math("ADD", low, 1.0), most)
+    values = [_of_level(build, each, periods) for each in (low, high)]
+    part = build.math("SUBTRACT", level, low)
+    either = {}
+    for name, socket in SOCKETS.items():
+        between = mixed(build, values[0][name], values[1][name], part)
+        either[socket] = build.switch("VECTOR", build.given("Fade"), values[0][name], between)
+    build.finish_with(either)
 
 
 def _level(build: Builder, most: Socket) -> Socket:
@@ -73,46 +62,31 @@ def _level(build: Builder, most: Socket) -> Socket:
     return build.switch("FLOAT", build.given("Fade"), 0.0, held)
 
 
-def _with_level(
-    build: Builder,
-    begin: bpy.types.Node,
-    once: bpy.types.Node,
-    counts: tuple[Socket, Socket],
-    mesh: dict[str, Socket],
-) -> Socket:
-    """The grid with its share of one of the averages."""
-    off = build.math(
-        "ABSOLUTE", build.math("SUBTRACT", once.outputs["Level"], begin.outputs["Iteration"]), None
+def _of_level(build: Builder, level: Socket, periods: Socket) -> dict[str, Socket]:
+    """What one of the averages is at a place in periods, bilinear between its four samples around."""
+    levels = build.given("Levels")
+    place = output(build.add("GeometryNodeInputPosition"), "Position")
+    fact = sample_index(build, levels, place, whole_number(build, level, "ROUND"), "FLOAT_VECTOR")
+    columns, rows, first = (whole_number(build, each, "ROUND") for each in coordinates(build, fact))
+    in_cells = build.vector("SUBTRACT", fact, (1.0, 1.0, 0.0))
+    place = build.vector("SUBTRACT", build.vector("MULTIPLY", periods, in_cells), (0.5, 0.5, 0.0))
+    x, y, _ = coordinates(build, place)
+    part_x, part_y, _ = coordinates(build, alone(build, "FRACTION", place))
+    column, row = (
+        build.integer("FLOORED_MODULO", whole_number(build, along, "FLOOR"), build.integer("SUBTRACT", n, 1))
+        for along, n in ((x, columns), (y, rows))
     )
-    share = build.math("SUBTRACT", 1.0, off)
-    place = _in_cells(build, once.outputs["Periods"], counts, mesh)
+    south = build.integer("ADD", first, build.integer("ADD", build.integer("MULTIPLY", row, columns), column))
+    north = build.integer("ADD", south, columns)
+    corners = (south, build.integer("ADD", south, 1), north, build.integer("ADD", north, 1))
 
-    def add(grid: Socket, name: str) -> Socket:
-        told = output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
-        more = build.scaled(read(build, mesh, name, place), share)
-        inputs = {
-            "Name": name, "Value": build.vector("ADD", told, more),
-            "Selection": build.compare("GREATER_THAN", share, 0.0, "FLOAT"),
-        }  # fmt: skip
-        return build.change(
-            "GeometryNodeStoreNamedAttribute", grid, inputs, data_type="FLOAT_VECTOR", domain="POINT"
-        )
+    def read(name: str) -> Socket:
+        points, value = build.given("Averages"), told(build, name)
+        at = [sample_index(build, points, value, corner, "FLOAT_VECTOR") for corner in corners]
+        lower, upper = (mixed(build, at[first], at[first + 1], part_x) for first in (0, 2))
+        return mixed(build, lower, upper, part_y)
 
-    grid = moved = begin.outputs["Grid"]
-    for name in MOVING:
-        moved = add(moved, name)
-    grid = build.switch("GEOMETRY", build.given("Moving"), grid, moved)
-    return add(grid, next(name for name in CARRIED if name not in MOVING))
+    return {name: read(name) for name in CARRIED}
 
 
-def _in_cells(
-    build: Builder, periods: Socket, counts: tuple[Socket, Socket], mesh: dict[str, Socket]
-) -> Socket:
-    """A vertex in cells of a mesh of averages, whose samples stand for places half a cell in."""
-    half = build.vector("DIVIDE", (0.5, 0.5, 0.0), cells(build, *counts))
-    number = cells(build, mesh["Columns"], mesh["Rows"])
-    middle = build.vector("MULTIPLY", build.vector("ADD", periods, half), number)
-    return build.vector("SUBTRACT", middle, (0.5, 0.5, 0.0))
-
-
-AVERAGED = GroupKind("Ocean Tweak Averaged", 1, _build)
+AVERAGED = GroupKind("Ocean Tweak Averaged", 2, _build)

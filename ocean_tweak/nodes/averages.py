@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that average an ocean's surface over larger and larger cells, and read it in between.
+"""Geometry nodes that average an ocean's surface over larger and larger cells.
 
 A surface is held by a mesh as `nodes.surface` knows it: vertices stand x fastest, the last ones of a row and
-of a column are the first ones of the next period. Of a mesh of averages only the attributes count.
+of a column are the first ones of the next period. It and its averages become points, one after the other, of
+which only the attributes count.
 
 The next averages are those of two by two: sample j of nₖ stands for the place (j + ½)/nₖ of the period, and
 lies between two samples of the averages before. Numbers that cannot be halved are rounded up, and what
@@ -13,8 +14,9 @@ from __future__ import annotations
 
 import bpy
 
-from .building import Builder, Plug, Socket, output
-from .fields import alone, combined, coordinates, named_attribute
+from .building import Builder, Input, Plug, Socket, output
+from .fields import alone, combined, connect, coordinates, named_attribute, whole_number
+from .loops import joined, repeated
 from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, SLOPE, STRAIN, VELOCITY
 from .surface import CELL
 from .versioned import GroupKind, node_group
@@ -33,7 +35,15 @@ _MESH = (
     Plug("Columns", "NodeSocketInt", 2, "Vertices along x"),
     Plug("Rows", "NodeSocketInt", 2, "Vertices along y"),
 )
-IS_MOVING = Plug("Moving", "NodeSocketBool", True, "Displacement, velocity and slopes are wanted too")
+_FADE = Plug("Fade", "NodeSocketBool", True, "Average; otherwise there is the surface alone")
+_IS_MOVING = Plug("Moving", "NodeSocketBool", True, "Displacement, velocity and slopes are wanted too")
+_OUTPUTS = (
+    Plug("Geometry", "NodeSocketGeometry", None, "Points of the surface and of all its averages"),
+    Plug(
+        "Levels", "NodeSocketGeometry", None,
+        "A point for the surface and for each of its averages, at columns, rows, number of the first point",
+    ),
+)  # fmt: skip
 
 
 def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
@@ -68,26 +78,30 @@ def patch_carried(build: Builder, patch: Socket) -> Socket:
     return build.store(sloped, OTHERS, strain, "FLOAT_VECTOR")
 
 
-def read(build: Builder, mesh: bpy.types.Node | dict[str, Socket], name: str, place: Socket) -> Socket:
-    """What an attribute of a surface is at a place, in cells."""
-    value = output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
-    of_mesh = {plug.name: mesh[plug.name] for plug in _MESH}
-    return output(build.group(node_group(CELL), {**of_mesh, "Value": value, "Place": place}), "Value")
-
-
 def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:
     """Along x and y, and 1."""
     x, y = (build.integer("SUBTRACT", count, 1) for count in (columns, rows))
     return combined(build, x, y, 1.0)
 
 
-def _build(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, (*_MESH, IS_MOVING), _MESH)
+def told(build: Builder, name: str) -> Socket:
+    """An attribute of three numbers."""
+    return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
+
+
+def halvings(build: Builder, columns: Socket, rows: Socket) -> Socket:
+    """How often it takes until one cell is left."""
+    most = build.integer("SUBTRACT", build.integer("MAXIMUM", columns, rows), 1)
+    return alone(build, "CEIL", build.math("LOGARITHM", most, 2.0), "ShaderNodeMath")
+
+
+def _build_next(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, (*_MESH, _IS_MOVING), _MESH)
     given = {plug.name: build.given(plug.name) for plug in _MESH}
     counts = [
         build.integer("ADD", build.integer("DIVIDE_FLOOR", given[name], 2), 1) for name in ("Columns", "Rows")
     ]
-    grid = build.add("GeometryNodeMeshGrid", {"Vertices X": counts[1], "Vertices Y": counts[0]})
+    points = build.add("GeometryNodePoints", {"Count": build.integer("MULTIPLY", *counts)})
     index = output(build.add("GeometryNodeInputIndex"), "Index")
     number = combined(
         build, *(build.integer(operation, index, counts[0]) for operation in ("MODULO", "DIVIDE_FLOOR"))
@@ -95,18 +109,60 @@ def _build(tree: bpy.types.NodeTree) -> None:
     ratio = build.vector("DIVIDE", cells(build, given["Columns"], given["Rows"]), cells(build, *counts))
     middle = build.vector("MULTIPLY", build.vector("ADD", number, (0.5, 0.5, 0.0)), ratio)
     place = build.vector("SUBTRACT", middle, (0.5, 0.5, 0.0))
-    averages = moving = output(grid, "Mesh")
-    for name in MOVING:
-        moving = build.store(moving, name, read(build, given, name, place), "FLOAT_VECTOR")
-    averages = build.switch("GEOMETRY", build.given("Moving"), averages, moving)
-    averages = build.store(averages, OTHERS, read(build, given, OTHERS, place), "FLOAT_VECTOR")
+
+    def averaged(*names: str) -> Socket:
+        node = build.add(
+            "GeometryNodeCaptureAttribute", {"Geometry": output(points, "Points")}, domain="POINT"
+        )
+        for name in names:
+            node.capture_items.new("VECTOR", name)
+            cell = build.group(node_group(CELL), {**given, "Value": told(build, name), "Place": place})
+            build.tree.links.new(output(cell, "Value"), node.inputs[name])
+        result = output(node, "Geometry")
+        for name in names:
+            result = build.store(result, name, node.outputs[name], "FLOAT_VECTOR")
+        return result
+
+    averages = build.switch("GEOMETRY", build.given("Moving"), averaged(OTHERS), averaged(*CARRIED))
     build.finish_with({"Geometry": averages, "Columns": counts[0], "Rows": counts[1]})
 
 
-AVERAGES = GroupKind("Ocean Tweak Averages", 2, _build)
+def _build(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, (*_MESH, _FADE, _IS_MOVING), _OUTPUTS)
+    surface = {plug.name: build.given(plug.name) for plug in _MESH}
+    surface["Geometry"] = build.change("GeometryNodeMeshToPoints", surface["Geometry"])
+    all_points = build.change("GeometryNodeGeometryToInstance", surface["Geometry"])
+    first = build.integer("MULTIPLY", surface["Columns"], surface["Rows"])
+    kinds = {plug.name: plug.socket_type.removeprefix("NodeSocket").upper() for plug in _MESH}
+    kinds |= {"All": "GEOMETRY", "Levels": "GEOMETRY", "First": "INT"}
+    begin, end = repeated(build, kinds)
+    start = {**surface, "All": all_points, "Levels": _level(build, surface, 0), "First": first}
+    for name, value in start.items():
+        connect(build, begin.inputs[name], value)
+    count = whole_number(build, halvings(build, surface["Columns"], surface["Rows"]), "ROUND")
+    connect(build, begin.inputs["Iterations"], build.switch("INT", build.given("Fade"), 0, count))
+    before = {plug.name: begin.outputs[plug.name] for plug in _MESH}
+    means = build.group(node_group(NEXT_AVERAGES), {**before, "Moving": build.given("Moving")})
+    after = {plug.name: output(means, plug.name) for plug in _MESH}
+    more = build.change("GeometryNodeGeometryToInstance", after["Geometry"])
+    present = begin.outputs["First"]
+    following = {
+        **after,
+        "All": joined(build, begin.outputs["All"], more),
+        "Levels": joined(build, begin.outputs["Levels"], _level(build, after, present)),
+        "First": build.integer("ADD", present, build.integer("MULTIPLY", after["Columns"], after["Rows"])),
+    }
+    for name, value in following.items():
+        connect(build, end.inputs[name], value)
+    points = build.change("GeometryNodeRealizeInstances", end.outputs["All"])
+    build.finish_with({"Geometry": points, "Levels": end.outputs["Levels"]})
 
 
-def halvings(build: Builder, columns: Socket, rows: Socket) -> Socket:
-    """How often it takes until one cell is left."""
-    most = build.integer("SUBTRACT", build.integer("MAXIMUM", columns, rows), 1)
-    return alone(build, "CEIL", build.math("LOGARITHM", most, 2.0), "ShaderNodeMath")
+def _level(build: Builder, mesh: dict[str, Socket], first: Input) -> Socket:
+    """The point that tells of one of the averages."""
+    place = combined(build, mesh["Columns"], mesh["Rows"], first)
+    return output(build.add("GeometryNodePoints", {"Count": 1, "Position": place}), "Points")
+
+
+NEXT_AVERAGES = GroupKind("Ocean Tweak Next Averages", 1, _build_next)
+AVERAGES = GroupKind("Ocean Tweak Averages", 3, _build)

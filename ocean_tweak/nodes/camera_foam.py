@@ -14,8 +14,7 @@ import bpy
 
 from ..core.sea.foam_rings import INNER, OUTER, SAMPLES
 from .building import Builder, Input, Plug, Socket, output
-from .fields import alone, combined, coordinates, named_attribute, sample_index, whole_number
-from .names import BREAKING, FOAM, FOAM_AGE
+from .fields import alone, combined, coordinates, mixed, named_attribute, sample_index, whole_number
 from .versioned import GroupKind, node_group
 
 #: attribute of the places: foam, breaking and age
@@ -83,8 +82,8 @@ def _build_ring(tree: bpy.types.NodeTree) -> None:
 
     corners = [told(index if not step else build.integer("ADD", index, step)) for step in _CORNERS]
     part_x, part_y, _ = coordinates(build, part)
-    south, north = (_mixed(build, corners[pair], corners[pair + 1], part_x) for pair in (0, 2))
-    within = _mixed(build, south, north, part_y)
+    south, north = (mixed(build, corners[pair], corners[pair + 1], part_x) for pair in (0, 2))
+    within = mixed(build, south, north, part_y)
     beyond = told(build.integer("MULTIPLY", rings, SAMPLES**2))
     is_beyond = build.compare("GREATER_THAN", build.given("Ring"), last)
     build.finish_with({"Value": build.switch("VECTOR", is_beyond, within, beyond)})
@@ -96,13 +95,12 @@ _CORNERS = (0, 1, SAMPLES, SAMPLES + 1)
 
 def _build(tree: bpy.types.NodeTree) -> None:
     inputs = (
-        Plug("Geometry", "NodeSocketGeometry", None, "The grid"),
         _POINTS,
         _RINGS,
         _PLACE,
         Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     )
-    outputs = (Plug("Geometry", "NodeSocketGeometry", None, "The grid with its foam"),)
+    outputs = (Plug("Value", "NodeSocketVector", None, "Foam, breaking and age at the vertex"),)
     build = Builder(tree, inputs, outputs)
     points, rings = build.given("Foam"), build.given("Rings")
     first, last = (_position(build, points, index) for index in (0, SAMPLES - 1))
@@ -116,15 +114,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
         given = {"Foam": points, "Rings": rings, "Ring": ring, "Spacing": spacing}
         given["Place"] = build.given("Place")
         values.append(output(build.group(node_group(RING), given), "Value"))
-    mixed = _mixed(build, values[0], values[1], build.math("SUBTRACT", number, low))
-    read = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
-    read.capture_items.new("VECTOR", "Value")
-    build.tree.links.new(mixed, read.inputs["Value"])
-    grid = output(read, "Geometry")
-    parts = coordinates(build, read.outputs["Value"])
-    for name, value in zip((FOAM, BREAKING, FOAM_AGE), parts, strict=True):
-        grid = build.store(grid, name, value, "FLOAT")
-    build.finish(grid)
+    value = mixed(build, values[0], values[1], build.math("SUBTRACT", number, low))
+    build.finish_with({"Value": value})
 
 
 def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) -> Socket:
@@ -155,15 +146,11 @@ def _held(build: Builder, along: Socket, most: float) -> Socket:
     return whole_number(build, build.math("MINIMUM", low, most), "ROUND")
 
 
-def _mixed(build: Builder, first: Socket, second: Socket, share: Socket) -> Socket:
-    return build.vector("ADD", first, build.scaled(build.vector("SUBTRACT", second, first), share))
-
-
 def _position(build: Builder, points: Socket, index: Input) -> Socket:
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     return sample_index(build, points, position, index, "FLOAT_VECTOR")
 
 
 RING_FACTS = GroupKind("Ocean Tweak Foam Facts", 1, _build_facts)
-RING = GroupKind("Ocean Tweak Foam Ring", 1, _build_ring)
-CAMERA_FOAM = GroupKind("Ocean Tweak Camera Foam", 1, _build)
+RING = GroupKind("Ocean Tweak Foam Ring", 2, _build_ring)
+CAMERA_FOAM = GroupKind("Ocean Tweak Camera Foam", 2, _build)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that add one patch of a sea of several to a grid around the camera.
+"""Geometry nodes that add one patch of a sea of several to what a grid around the camera shows.
 
-The grid carries the sums of the patches before: displacement, velocity, slopes with the variance that the
-averages lack, and strain, all in the ocean's axes. A patch is read in its own space, averaged by its own
-spacing, turned, and multiplied by its weight w, whose own change is a part of slopes and strains:
-∂(w d) = w ∂d + d ∂w.
+Sums of the patches before come in, for each of the grid's vertices: displacement, velocity, slopes with the
+variance that the averages lack, and strain, all in the ocean's axes. They are fields, so that all patches are
+read at once. A patch is read in its own space, averaged by its own spacing, turned, and multiplied by its
+weight w, whose own change is a part of slopes and strains: ∂(w d) = w ∂d + d ∂w.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from collections.abc import Callable
 
 import bpy
 
-from .averaged import AVERAGED
-from .averages import CARRIED, OTHERS, SLOPES, cells, patch_carried
+from .averaged import AVERAGED, READ, SOCKETS
+from .averages import AVERAGES, CARRIED, OTHERS, SLOPES, cells, patch_carried
 from .building import Builder, Plug, Socket, output
-from .fields import alone, combined, coordinates, named_attribute, sample_index
+from .fields import alone, combined, coordinates, sample_index
 from .names import DISPLACEMENT, VELOCITY
 from .sample import OCEAN_INPUT, Spaces
 from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
 
 _INPUTS = (
-    Plug("Geometry", "NodeSocketGeometry", None, "The grid with the sums of the patches before"),
+    *(Plug(plug.name, plug.socket_type, None, "Sum of the patches before") for plug in READ),
     OCEAN_INPUT,
     Plug("Patch", "NodeSocketObject", None, "One patch; without one nothing is added"),
     Plug(
@@ -38,7 +38,10 @@ _INPUTS = (
     Plug("Fade", "NodeSocketBool", True, "Average by the size of the cells"),
     Plug("Repeats", "NodeSocketBool", True, "Go on beyond the mesh; otherwise there is nothing of it"),
 )
-_OUTPUTS = (Plug("Geometry", "NodeSocketGeometry", None, "The grid with the sums of this one too"),)
+_OUTPUTS = tuple(Plug(plug.name, plug.socket_type, None, "Sum with this patch") for plug in READ)
+
+#: by the names of CARRIED
+Values = dict[str, Socket]
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
@@ -48,25 +51,34 @@ def _build(tree: bpy.types.NodeTree) -> None:
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     in_ocean = build.vector("ADD", position, build.given("Corner"))
     in_patch = patch.point_of_ocean(ocean.point_of_asker(in_ocean))
-    inputs = {name: output(facts, name) for name in ("Columns", "Rows", "Spacing")}
     place = build.vector("SUBTRACT", in_patch, output(facts, "Corner"))
-    before = _sums_before(build, build.logic("OR", build.given("Repeats"), _is_over(build, place, inputs)))
-    inputs |= {name: build.given(name) for name in ("Size", "Fade")}
-    inputs |= {
-        "Geometry": output(before, "Geometry"),
-        "Surface": patch_carried(build, output(facts, "Geometry")),
-        "Place": place,
-    }
-    grid = output(build.group(node_group(AVERAGED), inputs), "Geometry")
+    counts = {name: output(facts, name) for name in ("Columns", "Rows")}
+    fade = {"Fade": build.given("Fade")}
+    surface = {"Geometry": patch_carried(build, output(facts, "Geometry"))}
+    averages = build.group(node_group(AVERAGES), {**surface, **counts, **fade})
+    inputs = {"Averages": output(averages, "Geometry"), "Levels": output(averages, "Levels")}
+    lies = {**counts, "Spacing": output(facts, "Spacing")}
+    at = {"Place": place, "Size": build.given("Size")}
+    read = build.group(node_group(AVERAGED), {**inputs, **lies, **at, **fade})
 
     def turned(direction: Socket | tuple[float, float, float]) -> Socket:
         return ocean.direction_of_ocean(patch.direction_of_asker(direction))
 
-    for name, value in _turned(build, turned, before.outputs["Weight"]).items():
-        grid = build.store(grid, name, build.vector("ADD", before.outputs[name], value), "FLOAT_VECTOR")
+    whole = _turned(build, turned, {name: output(read, socket) for name, socket in SOCKETS.items()})
+    is_weighted, weight = _weight(build)
+    is_bounded = build.logic("NOT", build.given("Repeats"), None)
+    over = build.switch("FLOAT", _is_over(build, place, lies), 0.0, 1.0)
+    bounded = {name: build.scaled(value, over) for name, value in whole.items()}
+    whole = {name: build.switch("VECTOR", is_bounded, whole[name], bounded[name]) for name in CARRIED}
+    weighted = _weighted(build, whole, weight)
     count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": output(facts, "Geometry")})
     is_there = build.compare("GREATER_THAN", output(count, "Point Count"), 0)
-    build.finish(build.switch("GEOMETRY", is_there, build.given("Geometry"), grid))
+    sums = {}
+    for name, socket in SOCKETS.items():
+        before = build.given(socket)
+        value = build.switch("VECTOR", is_weighted, whole[name], weighted[name])
+        sums[socket] = build.switch("VECTOR", is_there, before, build.vector("ADD", before, value))
+    build.finish_with(sums)
 
 
 def _is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
@@ -77,24 +89,8 @@ def _is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
     return build.compare("LESS_EQUAL", build.math("MAXIMUM", x, y), 0.5, "FLOAT")
 
 
-def _sums_before(build: Builder, is_there: Socket) -> bpy.types.Node:
-    """Keeps the sums and the weight, whose names are used anew.
-
-    is_there : whether there is a patch where a vertex is
-    """
-    node = build.add("GeometryNodeCaptureAttribute", {"Geometry": build.given("Geometry")}, domain="POINT")
-    values = {name: output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in CARRIED}
-    for name, value in values.items():
-        node.capture_items.new("VECTOR", name)
-        build.tree.links.new(value, node.inputs[name])
-    node.capture_items.new("VECTOR", "Weight")
-    weight = build.switch("VECTOR", is_there, (0.0, 0.0, 0.0), _weight(build))
-    build.tree.links.new(weight, node.inputs["Weight"])
-    return node
-
-
-def _weight(build: Builder) -> Socket:
-    """At the vertex, with its changes along x and y; 1 where there is no such attribute."""
+def _weight(build: Builder) -> tuple[Socket, Socket]:
+    """Whether there is a weight, and at the vertex the weight with its changes along x and y."""
     points = build.given("Weights")
     attribute = build.add("GeometryNodeInputNamedAttribute", data_type="FLOAT")
     build.tree.links.new(build.given("Weight"), attribute.inputs["Name"])
@@ -111,41 +107,46 @@ def _weight(build: Builder) -> Socket:
     )
     step_x, step_y, _ = coordinates(build, build.given("Spacing"))
     changes = (build.math("DIVIDE", change, step) for change, step in ((by_x, step_x), (by_y, step_y)))
-    known = sample_index(build, points, output(attribute, "Exists"), 0, "BOOLEAN")
-    return build.switch("VECTOR", known, (1.0, 0.0, 0.0), combined(build, there, *changes))
+    is_known = sample_index(build, points, output(attribute, "Exists"), 0, "BOOLEAN")
+    return is_known, combined(build, there, *changes)
 
 
 def _turned(
-    build: Builder, turned: Callable[[Socket | tuple[float, float, float]], Socket], weight: Socket
-) -> dict[str, Socket]:
-    """What was read, in the ocean's axes and multiplied: vectors R v, strain R G Rᵀ.
+    build: Builder, turned: Callable[[Socket | tuple[float, float, float]], Socket], read: Values
+) -> Values:
+    """What was read in the ocean's axes: vectors R v, strain R G Rᵀ; of slopes, what they lack too."""
+    x, y, squares = coordinates(build, read[SLOPES])
+    slope_x, slope_y, _ = coordinates(build, turned(combined(build, x, y)))
+    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
+    return {
+        DISPLACEMENT: turned(read[DISPLACEMENT]),
+        VELOCITY: turned(read[VELOCITY]),
+        SLOPES: combined(build, slope_x, slope_y, lost),
+        OTHERS: _turned_strain(build, read[OTHERS], turned((1.0, 0.0, 0.0))),
+    }
 
-    In the order in which it can be stored: the displacement is a part of what stands before it.
-    """
 
-    def told(name: str) -> Socket:
-        return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
+def _weighted(build: Builder, whole: Values, weight: Socket) -> Values:
+    """What is multiplied by a weight that changes."""
 
     def product(a: Socket, b: Socket) -> Socket:
         return build.math("MULTIPLY", a, b)
 
     weight, by_x, by_y = coordinates(build, weight)
-    displacement = turned(told(DISPLACEMENT))
-    dx, dy, dz = coordinates(build, displacement)
-    x, y, squares = coordinates(build, told(SLOPES))
-    slope = build.scaled(turned(combined(build, x, y)), weight)
-    slope = build.vector("ADD", slope, build.scaled(combined(build, by_x, by_y), dz))
-    slope_x, slope_y, _ = coordinates(build, slope)
-    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
-    lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
-    lost = build.math("MULTIPLY", lost, build.math("MULTIPLY", weight, weight))
+    dx, dy, dz = coordinates(build, whole[DISPLACEMENT])
+    slope_x, slope_y, lost = coordinates(build, whole[SLOPES])
+    slope_x, slope_y = (
+        build.math("ADD", product(slope, weight), product(change, dz))
+        for slope, change in ((slope_x, by_x), (slope_y, by_y))
+    )
     shear = build.math("MULTIPLY", build.math("ADD", product(dx, by_y), product(dy, by_x)), 0.5)
-    strain = build.scaled(_turned_strain(build, told(OTHERS), turned((1.0, 0.0, 0.0))), weight)
+    more = combined(build, product(dx, by_x), product(dy, by_y), shear)
     return {
-        SLOPES: combined(build, slope_x, slope_y, lost),
-        OTHERS: build.vector("ADD", strain, combined(build, product(dx, by_x), product(dy, by_y), shear)),
-        VELOCITY: build.scaled(turned(told(VELOCITY)), weight),
-        DISPLACEMENT: build.scaled(displacement, weight),
+        DISPLACEMENT: build.scaled(whole[DISPLACEMENT], weight),
+        VELOCITY: build.scaled(whole[VELOCITY], weight),
+        SLOPES: combined(build, slope_x, slope_y, product(lost, product(weight, weight))),
+        OTHERS: build.vector("ADD", build.scaled(whole[OTHERS], weight), more),
     }
 
 
@@ -168,4 +169,4 @@ def _turned_strain(build: Builder, strain: Socket, axis: Socket) -> Socket:
     )
 
 
-CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 3, _build)
+CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 4, _build)

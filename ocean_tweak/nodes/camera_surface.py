@@ -14,8 +14,8 @@ from typing import NamedTuple
 import bpy
 
 from ..core.parameters.patch import MOST_PATCHES
-from .averaged import AVERAGED
-from .averages import CARRIED, OTHERS, SLOPES, ocean_carried
+from .averaged import AVERAGED, SOCKETS
+from .averages import AVERAGES, OTHERS, SLOPES, ocean_carried
 from .building import Builder, Plug, Socket, output
 from .camera_foam import CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
@@ -109,12 +109,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     flat = build.change("GeometryNodeSetShadeSmooth", output(grid, "Geometry"))
     away = build.vector("SUBTRACT", output(build.add("GeometryNodeInputPosition"), "Position"), sea.eye)
     laid = build.store(flat, TEXTURE_COORDINATES, _texture_coordinates(build, sea), "FLOAT2", "CORNER")
-    sized = build.add("GeometryNodeCaptureAttribute", {"Geometry": laid}, domain="POINT")
-    sized.capture_items.new("FLOAT", "Size")
-    build.tree.links.new(_size(build, grid, away), sized.inputs["Size"])
-    size = sized.outputs["Size"]
-    moving = _summed(build, output(sized, "Geometry"), sea, size)
-    shown = _finished(build, moving, spaces, sea, away, size)
+    size = _size(build, grid, away)
+    shown = _finished(build, laid, _summed(build, sea, size), spaces, sea, away, size)
     painted = build.change("GeometryNodeSetMaterial", shown, {"Material": build.given("Material")})
     warns = _warnings(build, sea, reach, output(grid, "Reached"))
     # nobody asks a group for its warnings unless something hangs on them
@@ -183,56 +179,70 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
     return build.math("MAXIMUM", size, build.given("Finest Spacing"))
 
 
-def _summed(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
-    """The grid with what it shows: the patches, or the ocean's mesh; foam on rings, or that of the mesh.
+def _summed(build: Builder, sea: _Sea, size: Socket) -> dict[str, Socket]:
+    """What is shown at a vertex: the patches, or the ocean's mesh; foam on rings, or that of the mesh.
 
-    Under the names of what is averaged are, in the ocean's axes, displacement, velocity, slopes with the
-    variance that they lack, and strain.
+    Besides attributes there are, in the ocean's axes, slopes with the variance that they lack, and strain.
     """
     info = build.add("GeometryNodeObjectInfo", {"Object": build.given(PATCH_INPUTS[0])})
     is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
-    facts = {name: output(sea.facts, name) for name in ("Columns", "Rows", "Spacing")}
-    shared = {**facts, "Size": size, "Fade": build.given("Fade")}
-    own = _of_mesh(build, grid, sea, shared, is_one)
+    own = _of_mesh(build, sea, size, is_one)
     has_rings = build.logic("NIMPLY", output(sea.of_foam, "Is There"), is_one)
-    grid = build.switch("GEOMETRY", has_rings, own, _of_rings(build, grid, sea, size))
-    whole = {**shared, **_weights(build, sea), "Ocean": build.given("Ocean"), "Corner": sea.corner}
-    for number, name in enumerate(PATCH_INPUTS, start=1):
-        inputs = {**whole, "Patch": build.given(name), "Weight": WEIGHT.format(number)}
-        grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
-    inputs = {**whole, "Patch": build.given(AREA_INPUT), "Repeats": False}
-    grid = output(build.group(node_group(CAMERA_PATCH), {"Geometry": grid, **inputs}), "Geometry")
-    return build.switch("GEOMETRY", is_one, build.store(grid, CUSP, _cusp(build), "FLOAT"), grid)
-
-
-def _of_mesh(build: Builder, grid: Socket, sea: _Sea, shared: dict[str, Socket], is_moving: Socket) -> Socket:
-    """The grid with the foam of the ocean's mesh, and where that moves it, how."""
-    position = output(build.add("GeometryNodeInputPosition"), "Position")
-    mesh = ocean_carried(build, output(sea.facts, "Geometry"), is_moving)
-    own = {"Surface": mesh, "Place": position, "Moving": is_moving}
-    grid = output(build.group(node_group(AVERAGED), {"Geometry": grid, **shared, **own}), "Geometry")
-    values = coordinates(build, _told(build, OTHERS))
-    for name, value in zip((FOAM, CUSP, BREAKING), values, strict=True):
-        grid = build.store(grid, name, value, "FLOAT")
-    # a mean of births would be the age of none of them
-    read_there = {
-        "Geometry": output(sea.facts, "Geometry"),
-        "Value": output(named_attribute(build, FOAM_AGE, "FLOAT"), "Attribute"),
-        "Place": build.vector("DIVIDE", position, shared["Spacing"]),
-        **{name: shared[name] for name in ("Columns", "Rows")},
+    rings = dict(zip((FOAM, BREAKING, FOAM_AGE), _of_rings(build, sea, size), strict=True))
+    foam = {name: build.switch("FLOAT", has_rings, own[name], ring) for name, ring in rings.items()}
+    sums = {
+        socket: build.switch("VECTOR", is_one, (0.0, 0.0, 0.0), own[name]) for name, socket in SOCKETS.items()
     }
-    age, _, _ = coordinates(build, output(build.group(node_group(CELL), read_there), "Value"))
-    grid = build.store(grid, FOAM_AGE, age, "FLOAT")
-    x, y, squares = coordinates(build, _told(build, SLOPES))
+    whole = {**_weights(build, sea), "Ocean": build.given("Ocean"), "Corner": sea.corner}
+    whole |= {"Size": size, "Fade": build.given("Fade")}
+    for number, name in enumerate((*PATCH_INPUTS, AREA_INPUT), start=1):
+        of_patch = {"Weight": WEIGHT.format(number)} if name != AREA_INPUT else {"Repeats": False}
+        inputs = {**whole, **of_patch, **sums, "Patch": build.given(name)}
+        patch = build.group(node_group(CAMERA_PATCH), inputs)
+        sums = {socket: output(patch, socket) for socket in sums}
+    values = {name: sums[socket] for name, socket in SOCKETS.items()}
+    cusp = build.switch("FLOAT", is_one, _cusp(build, values[OTHERS]), own[CUSP])
+    return {**values, **foam, CUSP: cusp}
+
+
+def _of_mesh(build: Builder, sea: _Sea, size: Socket, is_moving: Socket) -> dict[str, Socket]:
+    """What the ocean's mesh has of foam, and where that moves the surface, how."""
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    mesh = output(sea.facts, "Geometry")
+    counts = {name: output(sea.facts, name) for name in ("Columns", "Rows")}
+    fade, spacing = {"Fade": build.given("Fade")}, output(sea.facts, "Spacing")
+    carried = {"Geometry": ocean_carried(build, mesh, is_moving), "Moving": is_moving}
+    averages = build.group(node_group(AVERAGES), {**carried, **counts, **fade})
+    inputs = {"Averages": output(averages, "Geometry"), "Levels": output(averages, "Levels")}
+    at = {"Spacing": spacing, "Place": position, "Size": size}
+    read = build.group(node_group(AVERAGED), {**inputs, **at, **counts, **fade})
+    x, y, squares = coordinates(build, output(read, SOCKETS[SLOPES]))
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
     lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
-    grid = build.store(grid, SLOPES, combined(build, x, y, lost), "FLOAT_VECTOR")
-    # a mesh's normals are of its present shape already
-    return build.store(grid, OTHERS, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
+    foam, cusp, breaking = coordinates(build, output(read, SOCKETS[OTHERS]))
+    # a mean of births would be the age of none of them
+    read_there = {
+        "Geometry": mesh,
+        "Value": output(named_attribute(build, FOAM_AGE, "FLOAT"), "Attribute"),
+        "Place": build.vector("DIVIDE", position, spacing),
+        **counts,
+    }
+    age, _, _ = coordinates(build, output(build.group(node_group(CELL), read_there), "Value"))
+    return {
+        DISPLACEMENT: output(read, SOCKETS[DISPLACEMENT]),
+        VELOCITY: output(read, SOCKETS[VELOCITY]),
+        SLOPES: combined(build, x, y, lost),
+        # a mesh's normals are of its present shape already
+        OTHERS: build.scaled(output(read, SOCKETS[OTHERS]), 0.0),
+        FOAM: foam,
+        CUSP: cusp,
+        BREAKING: breaking,
+        FOAM_AGE: age,
+    }
 
 
-def _of_rings(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
-    """The grid with foam on rings, and without any waves so far."""
+def _of_rings(build: Builder, sea: _Sea, size: Socket) -> tuple[Socket, Socket, Socket]:
+    """Foam, breaking and age on rings around a camera."""
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     inputs = {
         "Foam": sea.foam,
@@ -240,15 +250,12 @@ def _of_rings(build: Builder, grid: Socket, sea: _Sea, size: Socket) -> Socket:
         "Place": build.vector("ADD", position, sea.corner),
         "Size": size,
     }
-    grid = output(build.group(node_group(CAMERA_FOAM), {"Geometry": grid, **inputs}), "Geometry")
-    for name in CARRIED:
-        grid = build.store(grid, name, (0.0, 0.0, 0.0), "FLOAT_VECTOR")
-    return grid
+    return coordinates(build, output(build.group(node_group(CAMERA_FOAM), inputs), "Value"))
 
 
-def _cusp(build: Builder) -> Socket:
+def _cusp(build: Builder, strain: Socket) -> Socket:
     """How far the sum of the strains compresses the surface: what a cusp is, `core.synthesis.channels`."""
-    xx, yy, shear = coordinates(build, _told(build, OTHERS))
+    xx, yy, shear = coordinates(build, strain)
     half_sum, half_difference = (
         build.math("MULTIPLY", build.math(operation, xx, yy), 0.5) for operation in ("ADD", "SUBTRACT")
     )
@@ -270,35 +277,58 @@ def _weights(build: Builder, sea: _Sea) -> dict[str, Socket]:
     return {"Weights": output(facts, "Geometry"), **lie}
 
 
-def _told(build: Builder, name: str) -> Socket:
-    return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
-
-
-def _finished(build: Builder, grid: Socket, spaces: Spaces, sea: _Sea, away: Socket, size: Socket) -> Socket:
+def _finished(
+    build: Builder,
+    grid: Socket,
+    values: dict[str, Socket],
+    spaces: Spaces,
+    sea: _Sea,
+    away: Socket,
+    size: Socket,
+) -> Socket:
     """The grid with its attributes and normals, moved to where the water is."""
-    x, y, lost = coordinates(build, _told(build, SLOPES))
-    lost = build.switch("FLOAT", build.given("Fade"), 0.0, lost)
-    shortest = build.math("MULTIPLY", size, SHORTEST_CELLS)
-    shortest = build.switch("FLOAT", build.given("Fade"), 0.0, shortest)
-    for name, value in ((SLOPE_VARIANCE, lost), (SHORTEST_WAVE, shortest)):
-        grid = build.store(grid, name, value, "FLOAT")
+    node = build.add("GeometryNodeCaptureAttribute", {"Geometry": grid}, domain="POINT")
+    fade, drop, normal = build.given("Fade"), *_curved_normal(build, values, spaces, away)
+    lost = coordinates(build, values[SLOPES])[2]
+    place = build.vector("ADD", output(build.add("GeometryNodeInputPosition"), "Position"), sea.corner)
+    place = build.vector("ADD", build.vector("ADD", place, drop), values[DISPLACEMENT])
+    shown = {
+        **{name: ("FLOAT", values[name]) for name in (FOAM, BREAKING, FOAM_AGE, CUSP)},
+        SLOPE_VARIANCE: ("FLOAT", build.switch("FLOAT", fade, 0.0, lost)),
+        SHORTEST_WAVE: (
+            "FLOAT", build.switch("FLOAT", fade, 0.0, build.math("MULTIPLY", size, SHORTEST_CELLS))
+        ),
+        **{
+            name: ("FLOAT_VECTOR", spaces.direction_of_asker(values[name]))
+            for name in (DISPLACEMENT, VELOCITY)
+        },
+    }  # fmt: skip
+    moved = {"Normal": ("FLOAT_VECTOR", normal), "Place": ("FLOAT_VECTOR", spaces.point_of_asker(place))}
+    # all at once: what several of them are made of is computed once
+    for name, (data_type, value) in {**shown, **moved}.items():
+        node.capture_items.new(data_type.removeprefix("FLOAT_"), name)
+        build.tree.links.new(value, node.inputs[name])
+    grid = output(node, "Geometry")
+    for name, (data_type, _) in shown.items():
+        grid = build.store(grid, name, node.outputs[name], data_type)
+    inputs = {"Custom Normal": node.outputs["Normal"]}
+    grid = build.change("GeometryNodeSetMeshNormal", grid, inputs, mode="FREE", domain="POINT")
+    return build.change("GeometryNodeSetPosition", grid, {"Position": node.outputs["Place"]})
+
+
+def _curved_normal(
+    build: Builder, values: dict[str, Socket], spaces: Spaces, away: Socket
+) -> tuple[Socket, Socket]:
+    """How far the globe has fallen, and the asker's normal of the water on it."""
     drop, tilt = _curved(build, away)
     tilt_x, tilt_y, _ = coordinates(build, tilt)
-    xx, yy, shear = coordinates(build, _told(build, OTHERS))
+    x, y, _ = coordinates(build, values[SLOPES])
+    xx, yy, shear = coordinates(build, values[OTHERS])
     tangents = (
         combined(build, build.math("ADD", xx, 1.0), shear, build.math("ADD", x, tilt_x)),
         combined(build, shear, build.math("ADD", yy, 1.0), build.math("ADD", y, tilt_y)),
     )
-    normal = {"Custom Normal": spaces.normal_of_asker(*tangents)}
-    grid = build.change("GeometryNodeSetMeshNormal", grid, normal, mode="FREE", domain="POINT")
-    place = build.vector("ADD", output(build.add("GeometryNodeInputPosition"), "Position"), sea.corner)
-    place = build.vector("ADD", build.vector("ADD", place, drop), _told(build, DISPLACEMENT))
-    grid = build.change("GeometryNodeSetPosition", grid, {"Position": spaces.point_of_asker(place)})
-    for name in (DISPLACEMENT, VELOCITY):
-        grid = build.store(grid, name, spaces.direction_of_asker(_told(build, name)), "FLOAT_VECTOR")
-    for name in (SLOPES, OTHERS):
-        grid = build.change("GeometryNodeRemoveAttribute", grid, {"Name": name})
-    return grid
+    return drop, spaces.normal_of_asker(*tangents)
 
 
 def _curved(build: Builder, away: Socket) -> tuple[Socket, Socket]:
@@ -341,4 +371,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 4, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 5, _build)

@@ -52,3 +52,11 @@ def whole_number(build: Builder, value: Socket, rounding: str) -> Socket:
 def alone(build: Builder, operation: str, value: Socket, kind: str = "ShaderNodeVectorMath") -> Socket:
     """The result of a node with one operand."""
     return build.math(operation, value, None, kind)
+
+
+def mixed(build: Builder, first: Socket, second: Socket, share: Socket) -> Socket:
+    """The vector between two where the share of the second one is this; beyond them too."""
+    node = build.add("ShaderNodeMix", data_type="VECTOR", clamp_factor=False)
+    for name, value in (("Factor", share), ("A", first), ("B", second)):
+        connect(build, next(each for each in node.inputs if each.name == name and each.enabled), value)
+    return output(node, "Result")

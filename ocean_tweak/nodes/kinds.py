@@ -43,6 +43,7 @@ ALL_KINDS = (
     floating.CARRIER,
     horizon.HORIZON,
     camera_grid.CAMERA_GRID,
+    averages.NEXT_AVERAGES,
     averages.AVERAGES,
     averaged.AVERAGED,
     camera_patch.CAMERA_PATCH,

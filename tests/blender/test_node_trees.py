@@ -27,6 +27,7 @@ KINDS = {
     "frame-warnings": ("nodes.frame_warnings", lambda module: module.WARNINGS),
     "grid": ("nodes.grid", lambda module: module.GRID),
     "camera-grid": ("nodes.camera_grid", lambda module: module.CAMERA_GRID),
+    "next-averages": ("nodes.averages", lambda module: module.NEXT_AVERAGES),
     "averages": ("nodes.averages", lambda module: module.AVERAGES),
     "averaged": ("nodes.averaged", lambda module: module.AVERAGED),
     "camera-patch": ("nodes.camera_patch", lambda module: module.CAMERA_PATCH),
