@@ -139,6 +139,7 @@ def register(package: str | None = None) -> None:
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
     previews.register()
+    material_operators.register()
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
     bpy.types.VIEW3D_MT_object.append(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_object.append(object_menu.draw_object_menu)
@@ -167,6 +168,7 @@ def unregister() -> None:
     bpy.types.VIEW3D_MT_object.remove(object_menu.draw_object_menu)
     bpy.types.VIEW3D_MT_object.remove(float_operators.draw_object_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
+    material_operators.unregister()
     previews.unregister()
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):

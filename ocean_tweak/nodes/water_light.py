@@ -18,8 +18,9 @@ from .shading import Shading
 from .water_foam import Foam
 from .water_pattern import DEPTH
 
-_THROWN_BACK = 0.47
-_SURFACE_FACTOR = 0.33
+#: share of light that a flat surface throws back down from below, and factor of the two-flow model
+THROWN_BACK = 0.47
+SURFACE_FACTOR = 0.33
 
 #: bubbles live longer than the foam above them: of what there was, F to this power is left where foam has F
 _BUBBLES_LEFT = 0.5
@@ -56,7 +57,7 @@ def sharpness(shade: Shading) -> Socket:
 def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatter: Socket) -> Socket:
     """Colour of the light that comes back out of the water."""
     lost = shade.vector("MAXIMUM", shade.vector("ADD", absorption, backscatter), (1e-9, 1e-9, 1e-9))
-    deep = shade.scale(shade.vector("DIVIDE", backscatter, lost), _SURFACE_FACTOR)
+    deep = shade.scale(shade.vector("DIVIDE", backscatter, lost), SURFACE_FACTOR)
     own = shade.value(DEPTH, "OBJECT")
     depth = shade.mix(shade.math("GREATER_THAN", given["Water Depth"], 0.0), own, given["Water Depth"])
     # a mesh that is no ocean has no depth: then it is deep
@@ -64,8 +65,8 @@ def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatt
     seen = _left_after(shade, lost, shade.math("MULTIPLY", depth, 2.0))
     difference = shade.vector("SUBTRACT", given["Bottom Color"], deep)
     below = shade.vector("MULTIPLY_ADD", difference, seen, deep)
-    kept = shade.vector("MULTIPLY_ADD", below, (-_THROWN_BACK,) * 3, (1.0,) * 3)
-    return shade.vector("DIVIDE", shade.scale(below, 1.0 - _THROWN_BACK), kept)
+    kept = shade.vector("MULTIPLY_ADD", below, (-THROWN_BACK,) * 3, (1.0,) * 3)
+    return shade.vector("DIVIDE", shade.scale(below, 1.0 - THROWN_BACK), kept)
 
 
 def crest_glow(shade: Shading, given: dict[str, Socket], absorption: Socket) -> Socket:

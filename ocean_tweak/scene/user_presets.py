@@ -11,6 +11,7 @@ from ..core.parameters.ocean_parameters import ParameterError
 from ..core.parameters.presets import LARGEST, Preset, built_in
 from ..export.files import read_bytes, write_text
 from .preferences import user_folder
+from .sea_picture import SeaView, write_png
 
 #: a user's preset is told from one that came along by the start of its key
 _OWN = "user:"
@@ -53,7 +54,7 @@ def read_preset(path: Path) -> Preset:
 
 
 def save(preset: Preset, replace: bool = False) -> str:
-    """Keep a preset in the user's folder; returns its key.
+    """Keep a preset and a picture of its sea in the user's folder; returns its key.
 
     Raises ParameterError where the title is taken and `replace` is off, and for images that are too large
     for a preset, OSError for what the disk refuses.
@@ -68,8 +69,19 @@ def save(preset: Preset, replace: bool = False) -> str:
     if path.exists() and not replace:
         raise ParameterError("title", preset.title, "is the name of another preset already")
     write_text(path, text)
+    _draw(preset, path.with_suffix(".png"))
     _presets_of.cache_clear()  # clocks of disks are coarse: a second change may not move them
     return key
+
+
+def _draw(preset: Preset, path: Path) -> None:
+    """Write the picture of a preset's sea; one that so few samples cannot show has none."""
+    path.unlink(missing_ok=True)  # of another sea
+    try:
+        picture = SeaView(preset.parameters).picture()
+    except (ValueError, MemoryError):
+        return
+    write_png(picture, path)
 
 
 def rename(key: str, title: str) -> str:
@@ -84,13 +96,19 @@ def rename(key: str, title: str) -> str:
 
 def delete(key: str) -> None:
     """Delete a user's preset. Raises OSError."""
-    path_of(key).unlink(missing_ok=True)
+    for path in (path_of(key), picture_of(key)):
+        path.unlink(missing_ok=True)
     _presets_of.cache_clear()
 
 
 def path_of(key: str) -> Path:
     """The file of a user's preset."""
     return user_folder("presets") / f"{key.removeprefix(_OWN)}.json"
+
+
+def picture_of(key: str) -> Path:
+    """Where the picture of a user's preset is, if it has one."""
+    return path_of(key).with_suffix(".png")
 
 
 def _key(title: str) -> str:

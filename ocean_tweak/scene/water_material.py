@@ -7,19 +7,21 @@ are plain numbers on the objects.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import bpy
+import numpy as np
 
 from ..core import OceanParameters
 from ..core.foam.threshold import foam_wind
 from ..core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ..nodes.shading import Shading
-from ..nodes.versioned import is_stale, node_group
+from ..nodes.versioned import is_of_kind, is_stale, node_group
 from ..nodes.water import WATER
 from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND, WIND_SPEED
 from .material_drivers import follow_lamp, follow_pixel_angle, follow_seconds
 from .units import metres_per_unit
+from .water_colour import coefficients_of, water_colour
 
 _KEY = "ocean_tweak_material"
 # marks flat water that stands for the ocean it is a child of
@@ -27,6 +29,11 @@ _FAR = "ocean_tweak_is_far"
 # marks a mesh that shows the waves of the ocean it is a child of
 _NEAR = "ocean_tweak_is_near"
 NAME = "Ocean Tweak Water"
+
+#: of the Solid view: bright enough for waves to show, and as smooth as shows their crests
+_IN_SOLID, _ROUGHNESS_IN_SOLID = (0.13, 0.35, 0.45, 1.0), 0.25
+#: and what it was before
+_DARK_IN_SOLID = (0.02, 0.08, 0.12, 1.0)
 
 #: inputs of the group for waters of some kinds; absorption and backscatter per metre in red, green and blue
 WATERS: dict[str, tuple[str, str, dict[str, object]]] = {
@@ -141,10 +148,15 @@ def water_material(water: str = "OCEANIC") -> bpy.types.Material:
 
 
 def renew(material: bpy.types.Material) -> None:
-    """Give a material this version of the group; its inputs keep their values by name."""
+    """Give a material this version of the group; its inputs keep their values by name.
+
+    One that was too dark in the Solid view is so no more.
+    """
     for node in material.node_tree.nodes:
         if node.type == "GROUP" and is_stale(node.node_tree, WATER):
             node.node_tree = node_group(WATER)
+    if np.allclose(material.diffuse_color, _DARK_IN_SOLID):
+        material.diffuse_color, material.roughness = _IN_SOLID, _ROUGHNESS_IN_SOLID
 
 
 def assign(item: bpy.types.Object, material: bpy.types.Material) -> None:
@@ -176,6 +188,27 @@ def light_by(material: bpy.types.Material, sun: bpy.types.Object) -> None:
     follow_lamp(*nodes, sun)
 
 
+def water_node(material: bpy.types.Material | None) -> bpy.types.Node | None:
+    """The node of a material that is the water's group, of whatever version; None where it has none."""
+    nodes = () if material is None or material.node_tree is None else material.node_tree.nodes
+    return next((node for node in nodes if node.type == "GROUP" and is_of_kind(node.node_tree, WATER)), None)
+
+
+def colour_of(material: bpy.types.Material) -> tuple[float, ...]:
+    """Colour of a water material's deep water, linear."""
+    inputs = water_node(material).inputs
+    return water_colour(*(inputs[name].default_value[:3] for name in ("Absorption", "Backscatter")))
+
+
+def set_colour(material: bpy.types.Material, colour: Sequence[float]) -> None:
+    """Give a water material's deep water a colour, linear: absorption and backscatter follow."""
+    inputs = water_node(material).inputs
+    names = ("Absorption", "Backscatter")
+    found = coefficients_of(colour, *(inputs[name].default_value[:3] for name in names))
+    for name, value in zip(names, found, strict=True):
+        inputs[name].default_value = (*value, 1.0)
+
+
 def _group(material: bpy.types.Material) -> bpy.types.Node:
     return next(node for node in material.node_tree.nodes if node.type == "GROUP")
 
@@ -194,4 +227,4 @@ def _fill(material: bpy.types.Material, values: Mapping[str, object]) -> None:
     shade.tree.links.new(group.outputs["Surface"], shown.inputs["Surface"])
     # or Cycles takes the haze for a lamp and sorts millions of triangles
     material.cycles.emission_sampling = "NONE"
-    material.diffuse_color = (0.02, 0.08, 0.12, 1.0)
+    material.diffuse_color, material.roughness = _IN_SOLID, _ROUGHNESS_IN_SOLID

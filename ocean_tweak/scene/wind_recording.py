@@ -79,7 +79,7 @@ def record(
         settings = shown_settings(item, depsgraph)
         time = float(clock_of(settings, scene, settings.timing.start_frame).time)
         if keys and time <= keys[-1].time:
-            raise OceanObjectError("Own Time must run forwards over the frames that are recorded")
+            raise OceanObjectError("Keyed Time must run forwards over the frames that are recorded")
         size = settings.domain_size
         vectors = patch_wind(fields, item.evaluated_get(depsgraph), size, samples)
         keys.append(WindKey(time, Raster(vectors, f"{item.name} wind")))

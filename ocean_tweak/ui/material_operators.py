@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Water materials: on an ocean and, with the node groups, in the asset browser."""
 
+from collections.abc import Sequence
+
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import EnumProperty
@@ -8,6 +10,7 @@ from bpy.props import EnumProperty
 from ..core import ParameterError
 from ..scene import asset_library, contact, water_material
 from ..scene.settings import settings_of
+from ..scene.water_colour import BRIGHTEST
 from .active_ocean import OfActiveOcean, refuse
 
 
@@ -63,6 +66,30 @@ class OCEAN_OT_install_assets(bpy.types.Operator):
             ),
         )
         return {"FINISHED"}
+
+
+def _colour(material: bpy.types.Material) -> tuple[float, ...]:
+    return water_material.colour_of(material) if water_material.water_node(material) else (0.0, 0.0, 0.0)
+
+
+def _set_colour(material: bpy.types.Material, colour: Sequence[float]) -> None:
+    if water_material.water_node(material):
+        water_material.set_colour(material, colour)
+
+
+def register() -> None:
+    """Give materials the colour of their water, which holds nothing itself."""
+    bpy.types.Material.ocean_tweak_water_colour = bpy.props.FloatVectorProperty(
+        name="Water Color", subtype="COLOR", size=3, min=0.0, max=BRIGHTEST, precision=3, options=set(),
+        get=_colour, set=_set_colour,
+        description="Light that deep water gives back. Absorption and Backscatter of the material follow; "
+        "give those keys",
+    )  # fmt: skip
+
+
+def unregister() -> None:
+    """Take it back."""
+    del bpy.types.Material.ocean_tweak_water_colour
 
 
 CLASSES = (OCEAN_OT_use_water_material, OCEAN_OT_install_assets)

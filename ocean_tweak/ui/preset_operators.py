@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Presets: taken, saved, renamed, deleted, imported and exported."""
 
+from itertools import chain, count
 from pathlib import Path
 
 import bpy
@@ -50,13 +51,20 @@ class OCEAN_OT_apply_preset(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
 
+def free_title() -> str:
+    """A name for a new preset that no other has."""
+    taken = {preset.title for preset in user_presets.all_presets().values()}
+    names = chain(["My Sea"], (f"My Sea {number}" for number in count(2)))
+    return next(name for name in names if name not in taken)
+
+
 class OCEAN_OT_save_preset(OfActiveOcean, bpy.types.Operator):
     """Keep the active ocean's sea as a preset."""
 
     bl_idname = "ocean.save_preset"
-    bl_description = "Keep the active ocean's sea as a preset of your own"
+    bl_description = "Keep the active ocean's sea as a preset of your own, with a picture of it"
     bl_label = "Save Preset"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
     bl_property = "title"
 
     title: StringProperty(name="Name", default="My Sea", maxlen=60)
@@ -65,15 +73,18 @@ class OCEAN_OT_save_preset(OfActiveOcean, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Ask for the name."""
+        self.title = free_title()
         return context.window_manager.invoke_props_dialog(self)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Write the file."""
+        """Write the file; the ocean has this preset's sea from now on."""
+        settings = settings_of(context.active_object)
         try:
-            parameters = settings_of(context.active_object).to_parameters(context.scene)
+            parameters = settings.to_parameters(context.scene)
             user_presets.save(Preset(self.title.strip(), self.text.strip(), parameters), self.replace)
         except _ERRORS as error:
             return refuse(self, error)
+        settings.preset = self.title.strip()
         self.report({"INFO"}, translated("Preset {title} saved").format(title=self.title.strip()))
         return {"FINISHED"}
 

@@ -65,11 +65,13 @@ class Previews:
 
     def thumbnail(self, key: str) -> int:
         """Icon of a preset; 0, which is none, where it has no picture."""
-        if key not in _thumbnails():
+        path = user_presets.picture_of(key) if user_presets.is_own(key) else _thumbnails().get(key)
+        if path is None or not path.exists():
             return 0
-        if key not in self.collection:
-            self.collection.load(key, str(_thumbnails()[key]), "IMAGE")
-        return int(self.collection[key].icon_id)
+        name = f"{key} {path.stat().st_mtime_ns}"  # one that was replaced has another picture
+        if name not in self.collection:
+            self.collection.load(name, str(path), "IMAGE")
+        return int(self.collection[name].icon_id)
 
     def close(self) -> None:
         """Give the pictures back to Blender."""

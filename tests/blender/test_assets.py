@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The asset library: written, listed, read again, taken out."""
 
+import math
+
 import bpy
+import numpy as np
 import pytest
 
 NAMES = {"Ocean Tweak", "Ocean Sample", "Float on Ocean", "Ocean Tweak Water", "Ocean Tweak Wet Band"}
@@ -24,7 +27,20 @@ def test_assets_are_written_and_listed(library, tmp_path):
         assert set(found.node_groups) == NAMES
         assert len(found.materials) >= 2
         taken.node_groups = list(NAMES)
-    assert all(group.asset_data.description for group in taken.node_groups)
+        taken.materials = list(found.materials)
+    lines = (tmp_path / "blender_assets.cats.txt").read_text(encoding="utf-8").splitlines()
+    catalogues = {line.partition(":")[0] for line in lines if line and line[0] != "#" and ":" in line}
+    assert "VERSION 1" in lines
+    pictures = set()
+    for block in (*taken.node_groups, *taken.materials):
+        assert block.asset_data.description
+        assert block.asset_data.catalog_id in catalogues
+        pixels = np.empty(4 * math.prod(block.preview.image_size), np.float32)
+        block.preview.image_pixels_float.foreach_get(pixels)
+        assert len(pixels) > 4 * 128**2
+        pictures.add(pixels.tobytes())
+    # the groups of the ocean and of its material have one picture
+    assert len(pictures) == len(taken.node_groups) + len(taken.materials) - 1
 
 
 def test_what_the_file_has_stays_as_it_is(library, ocean_object, make_parameters, empty_scene):

@@ -46,7 +46,7 @@ def test_other_settings_are_told_and_the_numbers_stay_those_of_the_bake(baked, d
     assert wave_height(baked) == core.Ocean(before).statistics().significant_wave_height
     text = " ".join(draw(baked))
     assert "Settings differ from the bake" in text
-    assert "wind speed 5, baked 11" in text
+    assert "Layer 1, Wind Speed 5, baked 11" in text
     assert "11 m/s" in text
     assert "ocean.settings_from_bake" in text
     baked.ocean_tweak.layers[0].wind_speed = 11.0

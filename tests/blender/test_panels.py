@@ -286,6 +286,17 @@ def test_every_parameter_can_be_reached(draw, item, core):
     assert {"image", "image_values", "image_speed", "objects", "ocean.record_wind"} <= drawn
 
 
+def test_the_look_is_the_materials(draw, item):
+    assert "ocean_tweak_water_colour" not in draw(item)
+    bpy.context.view_layer.objects.active = item
+    bpy.ops.ocean.use_water_material()
+    owners = []
+    drawn = draw(item, lambda owner, _name: owners.append(owner))
+    assert "ocean_tweak_water_colour" in drawn
+    names = {owner.name for owner in owners if isinstance(owner, bpy.types.NodeSocket)}
+    assert {"Foam Amount", "Foam Size", "Slopes", "Gusts", "Crest Light"} <= names
+
+
 def test_a_number_that_stands_for_none_is_a_switch(draw, item, empty_scene, make_parameters):
     empty_scene.unit_settings.scale_length = 0.01  # a kilometre is 100,000 units
     settings, layer = item.ocean_tweak, item.ocean_tweak.layers[0]

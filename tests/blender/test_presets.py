@@ -56,7 +56,8 @@ def test_undo_takes_a_preset_back(ocean, window):
 def test_a_life_of_an_own_preset(ocean, own_folder, extension, tmp_path_factory):
     presets = extension("scene.user_presets")
     assert bpy.ops.ocean.save_preset(title="Bay at Dawn", text="Calm") == {"FINISHED"}
-    assert [file.name for file in own_folder.iterdir()] == ["bay_at_dawn.json"]
+    assert {file.name for file in own_folder.iterdir()} == {"bay_at_dawn.json", "bay_at_dawn.png"}
+    assert ocean.ocean_tweak.preset == "Bay at Dawn"
     mine = sea_of(ocean)
     with pytest.raises(RuntimeError, match="another preset already"):
         bpy.ops.ocean.save_preset(title="Bay at Dawn")
@@ -68,11 +69,13 @@ def test_a_life_of_an_own_preset(ocean, own_folder, extension, tmp_path_factory)
     (key,) = presets.own_presets()
     assert presets.own_presets()[key].title == "Dusk é 2"
     assert presets.own_presets()[key].description == "Calm"
+    assert [file.name for file in own_folder.glob("*.png")] == [presets.picture_of(key).name]
 
     exported = tmp_path_factory.mktemp("out") / "dusk.json"
     assert bpy.ops.ocean.export_preset(filepath=str(exported), key=key) == {"FINISHED"}
     assert bpy.ops.ocean.delete_preset(key=key) == {"FINISHED"}
     assert not presets.own_presets()
+    assert not list(own_folder.iterdir())
     assert bpy.ops.ocean.import_preset(filepath=str(exported)) == {"FINISHED"}
     assert bpy.ops.ocean.apply_preset(key=key) == {"FINISHED"}
     assert sea_of(ocean) == mine
@@ -104,8 +107,9 @@ def test_a_file_that_is_no_preset_is_left_out(own_folder, extension):
     assert extension("scene.user_presets").own_presets() == {}
 
 
-def test_mutated_presets_never_half_apply(ocean, own_folder, extension, tmp_path_factory):
+def test_mutated_presets_never_half_apply(ocean, own_folder, extension, tmp_path_factory, monkeypatch):
     """A file is read or refused; where it is refused, neither the folder nor the ocean changes."""
+    monkeypatch.setattr(extension("scene.user_presets"), "_draw", lambda *_: None)  # pictures take their time
     chance = random.Random(11)
     texts = [preset.to_json() for preset in extension("core.parameters.presets").built_in().values()]
     file = tmp_path_factory.mktemp("in") / "mutated.json"
@@ -129,3 +133,29 @@ def test_mutated_presets_never_half_apply(ocean, own_folder, extension, tmp_path
     assert 20 < refused < 58
     for kept in own_folder.iterdir():
         json.loads(kept.read_text(encoding="utf-8"))
+
+
+def test_the_picture_of_an_own_preset_is_of_its_sea(ocean, own_folder, extension, make_parameters):
+    """A sky over water; in a storm both are darker and greyer than in a breeze, and waves are higher."""
+    view = extension("scene.sea_picture").SeaView
+    layer = make_parameters().layers[0]
+    pictures = {}
+    for wind in (6.0, 26.0):
+        layers = (layer.changed(definition="WIND", wind_speed=wind),)
+        pictures[wind] = view(make_parameters(layers=layers)).picture()
+        assert pictures[wind].shape == (192, 192, 4)
+        sky, water = pictures[wind][-40:, :, :3], pictures[wind][:60, :, :3]
+        assert sky.mean() > 1.2 * water.mean()
+    blue = {wind: (picture[-40:, :, 2] - picture[-40:, :, 0]).mean() for wind, picture in pictures.items()}
+    assert blue[6.0] > 2.0 * blue[26.0]
+    assert bpy.ops.ocean.save_preset(title="Grey Day") == {"FINISHED"}
+    image = bpy.data.images.load(str(extension("scene.user_presets").picture_of("user:grey_day")))
+    assert tuple(image.size) == (192, 192)
+
+
+def test_a_new_preset_is_offered_a_name_that_is_free(ocean, own_folder, extension):
+    names = []
+    for _ in range(2):
+        names.append(extension("ui.preset_operators").free_title())
+        assert bpy.ops.ocean.save_preset(title=names[-1]) == {"FINISHED"}
+    assert names == ["My Sea", "My Sea 2"]

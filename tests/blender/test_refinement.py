@@ -141,9 +141,11 @@ def test_statistics_of_a_sea_that_has_changed_again_are_not_shown(item, refineme
 
 def test_the_panel_says_that_it_is_not_all_yet(item, refinement, draw):  # noqa: F811
     run_until(refinement, lambda: not refinement.is_outstanding(item))
-    assert "Refining…" not in draw(item)
+    drawn = draw(item)
+    assert "Refining…" not in drawn
     item.ocean_tweak.seed = 3
     assert draw(item).count("Refining…") == 1
+    assert len(draw(item)) == len(drawn)  # no row moves
     run_until(refinement, lambda: not refinement.is_outstanding(item))
     assert "Refining…" not in draw(item)
 

@@ -328,3 +328,36 @@ def test_seconds_run_with_the_frame_rate(water, empty_scene):
     shown = material.evaluated_get(bpy.context.evaluated_depsgraph_get())
     seconds = next(node for node in shown.node_tree.nodes if node.label == "Seconds")
     assert seconds.outputs[0].default_value == pytest.approx(2.0)
+
+
+def test_the_colour_of_the_water_is_what_its_coefficients_give_back(water, empty_scene):
+    """R = 0.33 b/(a + b), of which 0.53 R/(1 - 0.47 R) comes out, as the shader has it."""
+    material = water.water_material()
+    inputs = water.water_node(material).inputs
+    before = [tuple(inputs[name].default_value) for name in ("Absorption", "Backscatter")]
+    below = 0.33 * 0.0022 / (0.067 + 0.0022)
+    assert material.ocean_tweak_water_colour[1] == pytest.approx(
+        0.53 * below / (1.0 - 0.47 * below), rel=1e-4
+    )
+    wanted = (0.02, 0.11, 0.09)
+    material.ocean_tweak_water_colour = wanted
+    assert material.ocean_tweak_water_colour[:] == pytest.approx(wanted, rel=1e-4)
+    for channel, colour in enumerate(wanted):
+        a, b = (inputs[name].default_value[channel] for name in ("Absorption", "Backscatter"))
+        below = 0.33 * b / (a + b)
+        assert 0.53 * below / (1.0 - 0.47 * below) == pytest.approx(colour, rel=1e-4)
+        assert a * b == pytest.approx(before[0][channel] * before[1][channel], rel=1e-3)
+    material.ocean_tweak_water_colour = (0.0, 1.0, 0.5)  # black and snow are no water
+    assert all(0.0 < part <= 0.2 for part in material.ocean_tweak_water_colour)
+    assert not water.water_node(bpy.data.materials.new("Paint"))
+
+
+def test_water_is_bright_enough_for_the_solid_view(water, empty_scene):
+    material = water.water_material()
+    assert min(material.diffuse_color[1:3]) > 0.3
+    material.diffuse_color = (0.02, 0.08, 0.12, 1.0)  # as it was made before
+    assert water.water_material() == material
+    assert min(material.diffuse_color[1:3]) > 0.3
+    material.diffuse_color = (0.5, 0.1, 0.1, 1.0)  # the user's own
+    water.water_material()
+    assert material.diffuse_color[:3] == pytest.approx((0.5, 0.1, 0.1))

@@ -209,7 +209,7 @@ def test_what_cannot_be_recorded_is_told_and_changes_nothing(ocean, empty_scene)
         record(last=0)
     ocean.ocean_tweak.use_ocean_time = True
     bpy.data.objects["Wind"].field.strength = 5.0
-    with pytest.raises(RuntimeError, match="Own Time must run forwards"):
+    with pytest.raises(RuntimeError, match="Keyed Time must run forwards"):
         record()
     ocean.ocean_tweak.use_ocean_time = False
     assert wind_of(ocean) == before

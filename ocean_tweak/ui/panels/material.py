@@ -1,26 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The active ocean's material."""
+"""How the active ocean's water looks: the inputs of its material that an artist turns first."""
 
 import bpy
 
+from ...scene import water_material
 from .. import material_operators
-from .drawing import OceanPanel
+from .drawing import OceanPanel, split
+
+#: inputs of the water's node, as they are called there
+_WATER = ("Crest Light", "Crest Glow", "Bubbles")
+_FOAM = ("Foam Amount", "Foam Size", "Foam Streaks", "Foam Color")
+_SURFACE = ("Slopes", "Ripples", "Gusts")
 
 
 class OCEAN_PT_material(OceanPanel, bpy.types.Panel):
-    """The active ocean's material."""
+    """The look of the active ocean's water."""
 
     bl_idname = "OCEAN_PT_material"
-    bl_label = "Material"
-    bl_options = {"DEFAULT_CLOSED"}
+    bl_label = "Look"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw what the ocean has, and the button that gives it water."""
+        """Draw the button that gives it water, and that water's colour, foam and surface."""
         material = context.active_object.active_material
-        if material is not None:
-            self.layout.label(text=material.name, icon="MATERIAL")
         operator = material_operators.OCEAN_OT_use_water_material.bl_idname
-        self.layout.operator_menu_enum(operator, "water", text="Water Material", icon="MATFLUID")
+        text = "Water Material" if material is None else material.name
+        self.layout.operator_menu_enum(operator, "water", text=text, icon="MATFLUID")
+        node = water_material.water_node(material)
+        if node is None:
+            return
+        layout = split(self.layout, animated=True)
+        layout.prop(material, "ocean_tweak_water_colour")
+        for names in (_WATER, _FOAM, _SURFACE):
+            column = layout.column(align=True)
+            for socket in (node.inputs[name] for name in names if name in node.inputs):
+                column.prop(socket, "default_value", text=socket.name)
 
 
 CLASSES = (OCEAN_PT_material,)

@@ -103,9 +103,12 @@ def _number(value: object) -> str:
 def _presets(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     buttons = layout.row(align=True)
     if context.window_manager is not None and hasattr(context.window_manager, "ocean_tweak_preset"):
-        buttons.template_icon_view(context.window_manager, "ocean_tweak_preset", show_labels=True, scale=4.0)
+        buttons.template_icon_view(
+            context.window_manager, "ocean_tweak_preset", show_labels=True, scale=4.0, scale_popup=8.0
+        )
         buttons = buttons.column(align=True)
-    buttons.menu(preset_operators.OCEAN_MT_presets.bl_idname, text="Presets", icon="PRESET")
+    title = active_settings(context).preset or "Presets"
+    buttons.menu(preset_operators.OCEAN_MT_presets.bl_idname, text=title, icon="PRESET")
     buttons.operator(sea_operators.OCEAN_OT_match_sea_state.bl_idname, text="Match", icon="VIEWZOOM")
 
 
@@ -135,16 +138,12 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the sea that is shown: the statistics that the last change left, and warnings."""
     settings, item = active_settings(context), context.active_object
     column = layout.box().column(align=True)
-    baked: dict[str, Any] = {}
-    if settings.source == "SEQUENCE" and settings.baked_sea:
-        column.label(text="The bake", icon="FILE_CACHE")
-        baked = parsed(settings.baked_sea)
+    is_baked = settings.source == "SEQUENCE" and bool(settings.baked_sea)
+    baked: dict[str, Any] = parsed(settings.baked_sea) if is_baked else {}
+    _waves_title(column.row(), is_baked, bool(settings.statistics), refinement.is_outstanding(item))
+    if baked:
         for label, text in _baked_rows(context.scene, baked):
             row(column, label, text)
-    if refinement.is_outstanding(item):
-        column.label(text="Refining…", icon="SORTTIME")
-    elif not settings.statistics:
-        column.label(text="Not known with these settings", icon="QUESTION")
     if not settings.statistics:
         return
     values: dict[str, Any] = parsed(settings.statistics)
@@ -153,6 +152,18 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         row(column, label, text)
     for warning in [*values["warnings"], *_object_warnings(context)]:
         message(layout, context, warning)
+
+
+def _waves_title(layout: bpy.types.UILayout, is_baked: bool, is_known: bool, is_refined: bool) -> None:
+    """Draw one row, whatever it says: none below it moves when a refinement begins or ends."""
+    if is_refined:
+        layout.label(text="Refining…", icon="SORTTIME")
+    elif is_baked:
+        layout.label(text="The bake", icon="FILE_CACHE")
+    elif is_known:
+        layout.label(text="These waves", icon="MOD_OCEAN")
+    else:
+        layout.label(text="Not known with these settings", icon="QUESTION")
 
 
 def _baked_rows(scene: bpy.types.Scene, baked: dict[str, Any]) -> list[tuple[str, str]]:
