@@ -13,11 +13,14 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.numerics.rounding import rounded
 from .surface_detail import foam_lace, gradient, gusts, ripple_slopes, spline_weights
 
 _KEY = "ocean_tweak_image"
 _RESOLUTION = 512
 _GUST_RESOLUTION = 128
+#: of the root mean square: fewer digits than a float has, and the image takes a third of the room in a file
+_PRECISION = 1.0 / 64.0
 
 
 def ripple_image() -> bpy.types.Image:
@@ -46,7 +49,7 @@ def _image(name: str, version: int, make: Callable[[], Iterable[NDArray[np.float
     for image in bpy.data.images:
         if image.library is None and image.get(_KEY) == tag:
             return image
-    channels = [spline_weights(field) for field in make()]
+    channels = [rounded(spline_weights(field), _PRECISION) for field in make()]
     side = len(channels[0])
     pixels = np.zeros((side, side, 4), np.float32)
     pixels[..., 3] = 1.0

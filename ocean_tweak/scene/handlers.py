@@ -24,6 +24,7 @@ from . import (
     contact,
     failures,
     former_settings,
+    held_sea,
     live_image,
     ocean_object,
     patch_objects,
@@ -249,6 +250,12 @@ def hold_before_save(_path: object = None, _unused: object = None) -> None:
 
 
 @persistent
+def let_go_after_save(_path: object = None, _unused: object = None) -> None:
+    """The file is written: show the whole surface again."""
+    held_sea.take_back()
+
+
+@persistent
 def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     """Undo restores settings, but neither the texels nor what was made anew since."""
     show_that_it_runs()
@@ -292,6 +299,8 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("save_pre", make_paths_relative),
     ("save_post", take_paths_back),
     ("save_post_fail", take_paths_back),
+    ("save_post", let_go_after_save),
+    ("save_post_fail", let_go_after_save),
     ("blend_import_post", mend_after_import),
     ("save_post", look_after_save),
     ("undo_post", refresh_after_undo),

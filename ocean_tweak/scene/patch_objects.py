@@ -26,7 +26,7 @@ from ..export.frame_files import POINTS
 from ..nodes.camera_surface import AREA_INPUT, FOAM_INPUT, PATCH_INPUTS
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
-from . import evaluation, foam_rings, patch_points, vertex_attributes
+from . import evaluation, foam_rings, held_sea, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
 from .plan import Plan, camera_surface_of, surface_modifier
@@ -97,7 +97,19 @@ def refresh(
         is_needed = plan.is_whole or (foam is not None and not foam.data.vertices)
         if wanted is not None and foam.data.library is None and is_needed:
             is_complete = wanted.write(foam.data, patient)
+    _keep_out_of_files(ocean)
     return is_complete
+
+
+def _keep_out_of_files(ocean: bpy.types.Object) -> None:
+    """What is made anew with every opened file is not saved: the ocean's own mesh stands for it.
+
+    Nothing stands for what does not repeat, and points that move by files need the weights.
+    """
+    is_live = lack_points(ocean)
+    for child in ocean.children:
+        if _FOAM in child or _NUMBER in child or _MASKS in child:
+            held_sea.keep_out(child, is_live or _FOAM in child)
 
 
 def are_live(ocean: bpy.types.Object) -> bool:

@@ -17,6 +17,7 @@ from . import (
     evaluation,
     failures,
     grid_mesh,
+    held_sea,
     image_sequence,
     live_image,
     modifiers,
@@ -173,7 +174,7 @@ def _statistics(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, wan
 
 
 def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> None:
-    """Put the sea that a live ocean of this file shows on its mesh."""
+    """Put the sea that a live ocean of this file shows on its mesh, as a file keeps it."""
     if settings.source != "LIVE" or item.library is not None:
         return
     textures = Textures(settings.texture, settings.render_texture)
@@ -181,12 +182,13 @@ def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scen
     try:
         plan = plan_for(item, settings, scene)
         if settings.method == "NODES" and vertex_attributes.can_hold(item.data, plan.viewport):
+            held_sea.leave_out(item.data)
             return
         fields, _ = _viewport_fields(plan, Wanted.SAMPLES)
     except EXPECTED_ERRORS:  # the panel tells
         return
     if grid_mesh.is_current(item.data, plan.viewport) and not item.data.is_editmode:
-        vertex_attributes.write(item.data, _on_vertices(fields, plan))
+        vertex_attributes.write(item.data, held_sea.held(_on_vertices(fields, plan)))
 
 
 def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:

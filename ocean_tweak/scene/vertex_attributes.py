@@ -53,6 +53,18 @@ def put(mesh: bpy.types.Mesh, channel: Channel, field: RealArray) -> None:
     attribute.data.foreach_set(numbers, np.ascontiguousarray(field).reshape(-1))
 
 
+def read(mesh: bpy.types.Mesh) -> Fields:
+    """The channels of a surface that the mesh has, (vertices, components) in Blender units."""
+    found = {}
+    for channel in _OF_OCEANS:
+        attribute = mesh.attributes.get(channel.attribute)
+        if attribute is not None and _is_ours(attribute, channel):
+            field = np.empty((len(attribute.data), max(channel.components, 1)), np.float32)
+            attribute.data.foreach_get(_TYPES[channel.components][1], field.reshape(-1))
+            found[channel.name] = field
+    return found
+
+
 def resampled(closed: RealArray, samples: int) -> RealArray:
     """Bilinear values of an (n+1, n+1, …) field, its far edges included, as (samples+1, samples+1, …)."""
     # columns while there are few rows: what is left are whole rows, added in place

@@ -77,11 +77,8 @@ def test_a_baked_horizon_moves(horizon, saved, tmp_path):
         np.testing.assert_allclose(seen[f"{surface.name} render {frame}"], live[frame], atol=1e-4)
         # no wave is shorter than 38 means, of which half a sample is 2 cm
         np.testing.assert_allclose(seen[f"{surface.name} viewport {frame}"], live[frame], atol=1e-3)
-        told = seen[f"{surface.name} warnings {frame}"]
-        # foam around the camera is no part of a bake: that of the ocean's own mesh takes its place
-        assert [text[:40] for text in told] == (
-            [] if frame == 1 else ["Foam around the camera is that of frame "]
-        )
+        # foam around the camera is no part of a file: that of the ocean's own mesh takes its place
+        assert not len(seen[f"{surface.name} warnings {frame}"])
 
 
 def test_a_baked_horizon_that_is_live_again(horizon, saved):

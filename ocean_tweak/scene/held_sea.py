@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a file keeps of a live ocean: the sea that a Blender without the extension shows, and no more.
+
+All else is made anew when the file is opened. While a file is written the ocean's mesh is without it; what
+surrounds a camera is run-time data, which Blender does not write.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ..core.numerics.rounding import rounded
+from . import vertex_attributes
+from .modifiers import set_changed
+from .vertex_attributes import Fields
+
+#: what of a surface a sea that stands still is drawn with: its normals are the mesh's, and it has no velocity
+_HELD = ("displacement", "foam", "cusp", "breaking", "foam_age")
+#: of the root mean square; 0.1 mm in waves of two metres
+_PRECISION = 1.0 / 4096.0
+
+# what the meshes had before the save that is under way, by session uid
+_before: dict[int, Fields] = {}
+
+
+def held(fields: Fields) -> Fields:
+    """What a file keeps of a surface, with as many digits as are seen."""
+    return {name: rounded(fields[name], _PRECISION) for name in _HELD if name in fields}
+
+
+def leave_out(mesh: bpy.types.Mesh) -> None:
+    """Let a mesh with a live surface have only what a file keeps of it, until `take_back`."""
+    found = vertex_attributes.read(mesh)
+    _before[mesh.session_uid] = found
+    vertex_attributes.write(mesh, held(found))
+
+
+def take_back() -> None:
+    """Give the meshes the whole surfaces again."""
+    for mesh in bpy.data.meshes if _before else ():
+        if mesh.session_uid in _before:
+            vertex_attributes.write(mesh, _before[mesh.session_uid])
+    _before.clear()
+
+
+def keep_out(item: bpy.types.Object, is_out: bool) -> None:
+    """Let an object and its mesh be run-time data, which files are without, or take them in again."""
+    for each in (item, item.data):
+        if each.library is None and each.override_library is None:
+            set_changed(each, is_runtime_data=is_out)
