@@ -142,7 +142,7 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
     coverage, earlier = foam_outlook(parameters)
     if coverage > 0.0:
         share = f"{100.0 * coverage:.2g} % of the sea by {parameters.foam.law}"
-        lines.append(f"  foam on {share}; a frame by itself looks back at {earlier} moments")
+        lines.append(f"  foam on {share}; a frame by itself looks back over {earlier} moments")
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.loop_duration or 0)

@@ -67,7 +67,7 @@ def _wind_sea(
 ) -> OceanParameters:
     """One wind's sea; `wind` is the waves' direction, counter-clockwise from the view."""
     layer = WaveLayer(wind_speed=wind_speed, fetch=fetch, wind_direction=VIEW + wind, swell=0.3)
-    # foam is soft and looks back at a hundred surfaces: half the samples show it as well
+    # foam is soft and looks back at dozens of surfaces: half the samples show it as well
     foam = Foam(resolution=resolution // 2)
     return OceanParameters(resolution=resolution, domain_size=domain_size, seed=3, layers=(layer,), foam=foam)
 

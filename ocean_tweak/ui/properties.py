@@ -93,7 +93,7 @@ _SWITCHES = {
         name="Foam", default=True, **_SHOWN,
         description="Write the attributes foam, how much of the water is white, breaking, how much crests "
         "break now, foam_age in seconds, and cusp, how far the water is compressed. A frame alone looks back "
-        "over up to 180 moments, playback goes on from the last",
+        "over six half-lives, playback goes on from the last",
     ),
     "use_normals": BoolProperty(
         name="Normals", default=True, **_SHOWN,

@@ -59,7 +59,7 @@ def test_more_processes_look_back_more_often(tmp_path: Path, monkeypatch: pytest
     """Foam's look back is what each process begins with: two on two cores gain the less, the longer it is."""
     monkeypatch.setattr(cache_estimate, "usable_cores", lambda: 2)
     monkeypatch.setattr(cache_estimate, "_costs", lambda *_: cache_estimate._Costs(1.0, 0.5, 4.0))
-    foam = {"half_life": 1.0}  # looks back at 73 moments of an eighth of a second
+    foam = {"half_life": 1.0}  # looks back over 49 moments of an eighth of a second
     shot = Shot.from_dict(
         {"resolution": 16, "foam": foam, "timing": {"fps": 8}, "layers": [{"wind_speed": 14}]}
     )
@@ -68,16 +68,16 @@ def test_more_processes_look_back_more_often(tmp_path: Path, monkeypatch: pytest
     def seconds(workers: int, job: Job = job) -> float:
         return estimate(tmp_path, job, job.frames, workers).seconds
 
-    # the sea, 74 moments, and frames of 4 s; each looks at a new moment and at its own beside the last
-    assert seconds(1) == pytest.approx(1.0 + 37.0 + 10 * 4.0)
+    # the sea, 50 moments, and frames of 4 s; each looks at a new moment and at its own beside the last
+    assert seconds(1) == pytest.approx(1.0 + 25.0 + 10 * 4.0)
     begin = 0.4
-    assert seconds(2) == pytest.approx(begin + 1.0 + 37.0 + 4 * 1.0 + 5 * 4.0)
+    assert seconds(2) == pytest.approx(begin + 1.0 + 25.0 + 4 * 1.0 + 5 * 4.0)
     still = Job("sea", "1", shot, ("disp",), frames=job.frames)
     assert seconds(2, still) == pytest.approx(begin + 1.0 + 5 * 4.0)
     changing = {**shot.to_dict(), "animation": {"first_frame": 1, "samples": {"choppiness": [0.5] * 10}}}
     every = Job("sea", "1", Shot.from_dict(changing), ("disp", "foam"), frames=job.frames)
-    assert seconds(1, every) == pytest.approx(10 * (1.0 + 37.0 + 4.0) / 2, rel=0.9)
-    assert seconds(1, every) > 370.0
+    assert seconds(1, every) == pytest.approx(10 * (1.0 + 25.0 + 4.0) / 2, rel=0.9)
+    assert seconds(1, every) > 250.0
 
 
 def test_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

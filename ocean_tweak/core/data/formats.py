@@ -25,7 +25,7 @@ LAYER = 1
 #: the waves themselves: raised whenever the same parameters give another surface
 SYNTHESIS = 1
 #: the foam: raised whenever the same waves get other foam. Only what holds foam is known by it
-FOAM = 2
+FOAM = 3
 
 
 def told_foam(version: int, has_foam: bool) -> dict[str, int]:

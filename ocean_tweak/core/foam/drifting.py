@@ -6,11 +6,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics.memo import total_bytes
+from .looks import Looks
 from .model import Births, FoamModel, Whitecaps, breaking_of, seen
 
 Array = NDArray[np.float64]
@@ -33,6 +35,7 @@ class DriftingFoam:
         self._compression_at = compression_at
         self._x, self._y = x, y
         self._births: Births | None = None
+        self._looks: Looks | None = None
         self._last = 0
         # how far windrows have moved past the foam, and of the places that it is drawn from x, y and share
         self._past = (0.0, 0.0)
@@ -40,8 +43,8 @@ class DriftingFoam:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the places and their births."""
-        return total_bytes((self._x, self._y, self._births, *(self._drawn or ())))
+        """Bytes of the places, their births, and the looks that these are from."""
+        return total_bytes((self._x, self._y, self._births, self._looks, *(self._drawn or ())))
 
     def missing(self, time: float | Fraction) -> range:
         """Lattice times that are to be remembered, in this order, before the foam of a time is known."""
@@ -57,15 +60,18 @@ class DriftingFoam:
         return range(max(first, self._last + 1), index + 1)
 
     def remember(self, index: int) -> None:
-        """Look at a lattice time."""
-        model = self._model
+        """Add what is born at a lattice time."""
         x, y, _ = self._sources
-        if self._births is None:
-            self._births = Births(model, x.shape, index)
-        then = index * model.step
-        compression = self._compression_at(*self._moved(x, y, then), model.reduced(then))
-        self._births.add(compression, index)
+        if self._births is None or self._looks is None:
+            self._births = Births(self._model, x.shape, index)
+            self._looks = Looks(partial(self._look, x, y), self._model.stride, self._model.threshold)
+        self._births.add(self._looks.at(index), index)
         self._last = index
+
+    def _look(self, x: Array, y: Array, index: int) -> RealArray:
+        """The compression at a lattice time of places that are at x and y in m at time 0."""
+        then = index * self._model.step
+        return self._compression_at(*self._moved(x, y, then), self._model.reduced(then))
 
     def whitecaps(self, time: float | Fraction) -> Whitecaps:
         """(places,) foam where they are at a time: what breaks, and what is left of what is remembered."""

@@ -2,13 +2,14 @@
 """Foam: whitecaps that are born where the surface is compressed, drift and fade. The one thing with a memory.
 
 F(x, t) is the largest of 2^(-age/T)·c(x - v·age, t - age) over the present and over a fixed lattice of times
-before it: c is 1 where the compression exceeds a threshold, T the half-life, v the drift. Terms below 1/512
+before it: c is 1 where the compression exceeds a threshold, T the half-life, v the drift. Terms below 1/64
 are dropped, so the memory is finite and any frame can be made alone. The present's c is the crest that breaks
 now; the age of what is seen is that of the largest term.
 
 Instead of F, a grid that drifts along keeps the latest birth B = t + T·log₂c of foam at each point, and the
 lattice time of that birth: F is 2^((B - t)/T), and B of several times is their maximum, which neither rounds
-nor depends on the order. So a sequence, a chunk of it and a single frame have the same bytes.
+nor depends on the order. So a sequence, a chunk of it and a single frame have the same bytes. The sea is not
+made at each lattice time: see `looks`.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from numpy.typing import NDArray
 
 from ..numerics.interpolation import between, resampled, wrapped
 from ..numerics.memo import MEMO, total_bytes
+from .looks import Compressed, Looks, stride_of
 from .windrows import Windrows
 
 RealArray = NDArray[np.floating]
@@ -34,7 +36,7 @@ Array = NDArray[np.float64]
 LATTICE_RATE = 8
 
 #: foam thinner than this is none
-FAINTEST = 2.0**-9
+FAINTEST = 2.0**-6
 
 #: rows of a grid that are drawn out at once
 _ROWS = 64
@@ -53,6 +55,7 @@ class FoamModel:
     spacing : between samples, m
     loop_duration : of the sea, s
     windrows : in which old foam lies; None where there are none
+    frequency : up to which the strains that it is born of must be known, rad/s
     """
 
     threshold: float
@@ -61,13 +64,20 @@ class FoamModel:
     spacing: float
     loop_duration: Fraction | None = None
     windrows: Windrows | None = None
+    frequency: float = math.inf
+
+    @property
+    def stride(self) -> int:
+        """Lattice times from one at which the sea is looked at to the next."""
+        return stride_of(self.frequency, 1.0 / LATTICE_RATE)
 
     @property
     def step(self) -> Fraction:
-        """Seconds between lattice times; in a loop, a whole number of them fits."""
+        """Seconds between lattice times; in a loop, a whole number of looks fits."""
         if self.loop_duration is None:
             return Fraction(1, LATTICE_RATE)
-        return self.loop_duration / max(1, math.floor(self.loop_duration * LATTICE_RATE))
+        looks = max(1, math.floor(self.loop_duration * LATTICE_RATE / self.stride))
+        return self.loop_duration / (looks * self.stride)
 
     @property
     def memory(self) -> int:
@@ -124,13 +134,19 @@ class Whitecaps(NamedTuple):
 
 
 class Births:
-    """At each place the birth of which there is most left, by now and at any later time."""
+    """At each place the birth of which there is most left, by now and at any later time.
+
+    B counts in lattice times from one that follows the newest, in multiples of a power of two so small that
+    float32 holds them all: so it does not matter from where they are counted.
+    """
 
     def __init__(self, model: FoamModel, shape: tuple[int, ...], first: int) -> None:
         """No births yet; `first` is the first lattice time of which there may be some."""
         self._model = model
-        self._first = first
-        self._latest = np.full(shape, -np.inf)  # B, s
+        self._first = self._zero = first
+        self._halving = model.half_life / float(model.step)
+        self._unit = 2.0 ** (math.ceil(math.log2(4 * model.memory + 4)) - 23)
+        self._latest = np.full(shape, -np.inf, np.float32)  # B
         self._moments = np.zeros(shape, np.int32)  # lattice times after the first
 
     @property
@@ -138,30 +154,36 @@ class Births:
         """Bytes of the births and their times."""
         return self._latest.nbytes + self._moments.nbytes
 
-    def add(self, compression: RealArray, index: int, moved: tuple[int, ...] = (0,)) -> None:
+    def add(self, compressed: Compressed, index: int, moved: tuple[int, ...] = (0,)) -> None:
         """Those of a lattice time, moved by whole samples along each axis; of equal ones the later counts."""
-        model = self._model
-        found = np.nonzero(compression > model.threshold)
-        strength = model.strength(compression[found])
+        if index - self._zero > self._model.memory:
+            self._latest -= np.float32(index - self._zero)
+            self._zero = index
+        strength = self._model.strength(compressed.compression)
         born = strength >= FAINTEST
-        places = tuple(
-            (axis[born] + by) % size for axis, by, size in zip(found, moved, compression.shape, strict=True)
-        )
-        births = float(index * model.step) + model.half_life * np.log2(strength[born])
-        newer = births >= self._latest[places]
-        places = tuple(axis[newer] for axis in places)
-        self._latest[places] = births[newer]
-        self._moments[places] = index - self._first
+        births = np.rint(self._halving / self._unit * np.log2(strength[born])).astype(np.float32)
+        births *= np.float32(self._unit)
+        births += np.float32(index - self._zero)
+        places = compressed.places[born]
+        if any(moved):
+            axes = np.unravel_index(places, self._latest.shape)
+            to = tuple(axis + by for axis, by in zip(axes, moved, strict=True))
+            places = np.ravel_multi_index(to, self._latest.shape, mode="wrap")
+        newer = births >= self._latest.take(places)
+        places = places[newer]
+        self._latest.put(places, births[newer])
+        self._moments.put(places, index - self._first)
 
     def left(self, now: Fraction) -> tuple[RealArray, RealArray]:
         """F of what is left by now, and its age in s; what is remembered beyond the faintest is none."""
         model = self._model
-        halvings = self._latest - float(now)
-        halvings /= model.half_life
-        foam = np.exp2(halvings.astype(np.float32))
-        foam *= foam >= FAINTEST
         last = math.floor(now / model.step)
-        # counted from the present, so that it does not depend on where the history began
+        # what is rounded is counted from the present: it does not depend on where the history began
+        foam = self._latest - np.float32(last - self._zero)
+        foam -= np.float32(now / model.step - last)
+        foam *= np.float32(1.0 / self._halving)
+        np.exp2(foam, out=foam)
+        foam *= foam >= FAINTEST
         age = ((last - self._first) - self._moments).astype(np.float32)
         age *= np.float32(model.step)
         age += np.float32(now - last * model.step)
@@ -184,6 +206,7 @@ class FoamHistory:
         self._compression_at = compression_at
         self._resolution = resolution
         self._births: Births | None = None
+        self._looks = self._new_looks()
         self._drawing: _Drawing | None = None
         self._last = 0
         self._busy = threading.Lock()
@@ -193,18 +216,19 @@ class FoamHistory:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the births, and of what draws them out."""
-        return total_bytes((self._births, self._drawing))
+        """Bytes of the births, of the looks that they are from, and of what draws them out."""
+        return total_bytes((self._births, self._looks, self._drawing))
 
     def whitecaps(self, time: float | Fraction) -> Whitecaps:
         """(N, N) foam at a time."""
         model, n = self._model, self._resolution
         now = model.reduced(time)
         with self._busy:
-            breaking = resampled(breaking_of(model, self._compression_at(now)), n)
+            compression = self._compression_at(now)
+            breaking = resampled(breaking_of(model, compression), n)
             if model.memory == 0:
                 return seen(breaking, breaking, np.zeros_like(breaking))
-            foam, age = self._births_until(math.floor(now / model.step)).left(now)
+            foam, age = self._births_until(math.floor(now / model.step), len(compression)).left(now)
             drifted, drift = model.drifted(now), [v * float(now) for v in model.drift]
             foam, age = _moved(foam, age, [a - b for a, b in zip(drift, drifted, strict=True)], model.spacing)
             if self._drawing is not None:
@@ -214,26 +238,32 @@ class FoamHistory:
             foam, age = _stretched(foam, age, axis, n)
         return seen(breaking, foam, age)
 
-    def _births_until(self, index: int) -> Births:
+    def _new_looks(self) -> Looks:
+        model, compression_at = self._model, self._compression_at
+        return Looks(
+            lambda index: compression_at(model.reduced(index * model.step)), model.stride, model.threshold
+        )
+
+    def _births_until(self, index: int, samples: int) -> Births:
         first = index - self._model.memory + 1
         if self._births is None or not self._last <= index:
-            self._births = None
+            self._births, self._looks = None, self._new_looks()
             self._last = first - 1
         # births of lattice times that are forgotten by now fade below the faintest: they may stay
         first = max(first, self._last + 1)
         births = self._births
         for step in range(first, index + 1):
-            compression = self._compression_at(self._model.reduced(step * self._model.step))
+            compressed = self._looks.at(step)
             if births is None:
-                births = Births(self._model, compression.shape, first)
-            births.add(compression, step, self._moved(step))
+                births = Births(self._model, (samples, samples), first)
+            births.add(compressed, step, self._moved(step))
             self.tell(step - first + 1, index + 1 - first)
         assert births is not None
         is_new = self._births is None
         self._births, self._last = births, index
         if is_new:
             if self._model.windrows is not None and self._drawing is None:
-                self._drawing = _Drawing(self._model.windrows, len(compression), self._model.spacing)
+                self._drawing = _Drawing(self._model.windrows, samples, self._model.spacing)
             MEMO.trim()
         return births
 
@@ -286,7 +316,8 @@ def breaking_of(model: FoamModel, compression: RealArray) -> RealArray:
     """c of the present, float32."""
     result = np.zeros(compression.shape, np.float32)
     found = compression > model.threshold
-    result[found] = model.strength(compression[found])
+    strength = model.strength(compression[found])
+    result[found] = strength * (strength >= FAINTEST)
     return result
 
 
@@ -294,7 +325,7 @@ def seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
     """What breaks now over what is left."""
     foam = np.maximum(old, breaking)
     foam *= foam >= FAINTEST
-    breaking = breaking * (breaking >= FAINTEST)
+    breaking = breaking * (foam > 0.0)
     return Whitecaps(foam, breaking, age * ((foam > 0.0) & (breaking == 0.0)))
 
 

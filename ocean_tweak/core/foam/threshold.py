@@ -19,7 +19,7 @@ from ..parameters.ocean_parameters import FOAM_LAWS, OceanParameters
 from ..spectral import constants
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import Wind
-from .model import FoamModel, births
+from .model import FAINTEST, FoamModel, births
 from .windrows import windrows
 
 Array = NDArray[np.float64]
@@ -34,6 +34,9 @@ _DIRECTIONS, _LEVELS, _REACH = 2048, 160, 9.0
 _LOWEST = 1e-5
 #: what is taken for none where logarithms are
 _NONE = 1e-300
+#: the strains' highest frequency over the root mean square, and the standard deviations at which a threshold
+#: becomes rare
+_BAND, _RARE = 2.0, 3.7
 #: of the range in which the threshold is looked for
 _HALVINGS = 40
 
@@ -103,12 +106,14 @@ class Strains:
     share : of the places at rest that are compressed by more
     area : of the horizontal plane that these cover; compressed places cover less
     crossings : how often in a second a place comes to be compressed by more
+    frequency : root mean square of that of the gradient, rad/s
     """
 
     level: Array
     share: Array
     area: Array
     crossings: Array
+    frequency: float
 
     def at(self, compression: Array, name: str) -> Array:
         """One of the other arrays between its levels: what falls by orders of magnitude, by its logarithm."""
@@ -120,14 +125,26 @@ class Strains:
 
         The share of the plane where F > f is that where the present c is, and of the rest where a birth has
         left as much: one of strength c does for T log₂(c/f) seconds. Births are crossings of the compression
-        at which c begins to be born, rare and so independent; old foam lies on waves of any phase.
+        at which c begins to be born, rare and so independent; old foam lies on waves of any phase. Foam that
+        is thinner than the faintest is none.
         """
         strength, rise = births()
         octaves = np.diff(np.log2(strength), prepend=2.0 * np.log2(strength[0]) - np.log2(strength[1]))
         share, area, crossings = (self.at(threshold * rise, name) for name in ("share", "area", "crossings"))
         later = half_life * np.cumsum((crossings * octaves)[::-1])[::-1] / np.maximum(1.0 - share, 1e-3)
         covered = 1.0 - (1.0 - area) * np.exp(-later)
-        return float(np.sum(covered * strength * octaves)) * math.log(2.0)
+        return float(np.sum(covered * strength * octaves)) * math.log(2.0) + FAINTEST * float(covered[0])
+
+    def highest_frequency(self, threshold: float) -> float:
+        """Frequency in rad/s up to which the compression must be known in time, to tell when it is over a
+        threshold.
+
+        That is twice the root mean square, and more for a threshold that is so rare that the compression
+        rises little above it: by a share of 1/u² of it, u the standard deviations at which it lies.
+        """
+        share = float(self.at(np.array([threshold]), "share")[0])
+        deviations = math.sqrt(max(0.0, -2.0 * math.log(share)))
+        return _BAND * self.frequency * max(1.0, deviations / _RARE)
 
     def threshold(self, coverage: float, half_life: float) -> float:
         """The compression from which foam is to be born, so that it covers a share of the sea.
@@ -211,7 +228,9 @@ def gaussian_strains(of_gradient: Array, of_rates: Array) -> Strains:
     area = share + np.sum(beyond[1] * (xx + yy) + beyond[2] * (xx * yy - xy * xy), axis=1) / _DIRECTIONS
     density = math.sqrt(2.0 / math.pi) * radius**2 * np.exp(-0.5 * radius**2) / compression
     crossings = np.sum(density * rate, axis=1) / (math.sqrt(2.0 * math.pi) * _DIRECTIONS)
-    return Strains(level, share, np.maximum(area, 0.0), crossings)
+    variance = float(np.trace(of_gradient))
+    frequency = math.sqrt(float(np.trace(of_rates)) / variance) if variance > 0.0 else 0.0
+    return Strains(level, share, np.maximum(area, 0.0), crossings, frequency)
 
 
 def _root(covariance: Array) -> Array:
@@ -249,14 +268,16 @@ def foam_model(
     spacing : of those samples, m
     """
     foam, wind = parameters.foam, foam_wind(parameters)
-    drift, threshold, rows = (0.0, 0.0), math.inf, None
+    drift, threshold, rows, frequency = (0.0, 0.0), math.inf, None, math.inf
     if wind is not None:
         rows = windrows(wind.speed, wind.direction, parameters.domain_size, parameters.seed)
         speed = foam.drift * wind.speed
         drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
     coverage = _coverage(parameters)
     if coverage > 0.0:
-        threshold = strains_of(drift).threshold(coverage, foam.half_life)
+        strains = strains_of(drift)
+        threshold = strains.threshold(coverage, foam.half_life)
+        frequency = strains.highest_frequency(threshold)
     return FoamModel(
         threshold=threshold,
         half_life=foam.half_life,
@@ -264,4 +285,5 @@ def foam_model(
         spacing=spacing,
         loop_duration=parameters.loop_duration,
         windrows=rows,
+        frequency=frequency,
     )

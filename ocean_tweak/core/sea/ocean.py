@@ -220,12 +220,13 @@ class Ocean:
         sea, dtype = self._of_foam, real_type(self.precision)
         tile, n = sea._tile, sea.parameters.resolution
 
-        def cusp_at(time: Fraction) -> RealArray:
-            cusp: RealArray = np.empty((n, n), dtype)
-            tile.fill(time, frozenset({"cusp"}), {"cusp": cusp})
-            return cusp
+        def compression_at(time: Fraction) -> RealArray:
+            # below 0 where the surface is stretched, as what is interpolated in time must be
+            left: RealArray = np.empty((n, n), dtype)
+            tile.fill(time, frozenset({"min_eigenvalue"}), {"min_eigenvalue": left})
+            return np.subtract(1.0, left, out=left)
 
-        return FoamHistory(sea.foam_model, cusp_at, self.parameters.resolution)
+        return FoamHistory(sea.foam_model, compression_at, self.parameters.resolution)
 
     def _whitecaps_at(self, x: Array, y: Array, time: float | Fraction) -> Whitecaps:
         """Foam at flat places in m: that of the tile, or of what has none from the places' own past."""

@@ -173,14 +173,16 @@ class AnywhereSum:
             fields[name][...] = made.reshape(fields[name].shape)
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
-        """(places,) float32 of the channel cusp; the strains it is made of are remembered, for the next
-        frame's foam looks back at them too, and so may other seas of the same patches.
+        """(places,) float32 compression, below 0 where the surface is stretched.
+
+        The strains it is made of are remembered, for the next frame's foam looks back at them too, and so
+        may other seas of the same patches.
         """
-        needs = CHANNELS["cusp"].needs
-        compression = np.empty(x.shape, np.float32)
-        grids = [self._strains(waves, time, needs) for waves in self._parts]
-        CHANNELS["cusp"].write(self._sums(x, y, time, needs, grids), compression)
-        return compression
+        channel = CHANNELS["min_eigenvalue"]
+        left = np.empty(x.shape, np.float32)
+        grids = [self._strains(waves, time, channel.needs) for waves in self._parts]
+        channel.write(self._sums(x, y, time, channel.needs, grids), left)
+        return np.subtract(1.0, left, out=left)
 
     def _strains(self, waves: PartWaves, time: Fraction, needs: Iterable[Key]) -> Grid:
         key = (waves.parameters, waves.part.rotation, bool(waves.part.masks), self._precision, time)
