@@ -31,6 +31,10 @@ RIDE_INPUTS = (
     Plug("Keel", "NodeSocketFloat", 0.0, "How far below the origin its lowest point is"),
     Plug("Tilt", "NodeSocketFloat", 1.0, "How much it tilts with the surface: 0 stays upright"),
     Plug("Drift", "NodeSocketFloat", 0.0, "How much it goes along with the water: 0 stays above its place"),
+    Plug(
+        "Keep Height", "NodeSocketBool", False,
+        "Stay as high above the surface as its place is above calm water, whatever Draft and Keel say",
+    ),
 )  # fmt: skip
 AS_ONE = Plug(
     "As One", "NodeSocketBool", False,
@@ -89,7 +93,7 @@ def _build_ride(tree: bpy.types.NodeTree) -> None:
     radius = build.math("MULTIPLY", build.math("MULTIPLY", build.given("Waterline"), 0.5), size)
     is_disc = build.compare("GREATER_THAN", radius, 0.0, "FLOAT")
     discs = _Discs(build, build.switch("INT", is_disc, 1, POINTS), radius)
-    stencil, point, along_x, along_y = _on_the_surface(build, spaces, discs)
+    stencil, point, along_x, along_y, above = _on_the_surface(build, spaces, discs)
     # the slopes of the plane: sums of offset · height over sums of offset²
     moment = discs.mean(build.scaled(discs.offset, coordinates(build, point)[2]))
     square = discs.mean(build.vector("MULTIPLY", discs.offset, discs.offset))
@@ -98,13 +102,14 @@ def _build_ride(tree: bpy.types.NodeTree) -> None:
         build.switch("VECTOR", is_disc, along_x, combined(build, 1.0, 0.0, slope_x)),
         build.switch("VECTOR", is_disc, along_y, combined(build, 0.0, 1.0, slope_y)),
     )
-    origin = build.math("SUBTRACT", build.given("Draft"), build.given("Keel"))
-    depth = combined(build, 0.0, 0.0, build.math("MULTIPLY", origin, size))
+    origin = build.math("SUBTRACT", build.given("Keel"), build.given("Draft"))
+    settled = build.math("MULTIPLY", origin, size)
+    height = combined(build, 0.0, 0.0, build.switch("FLOAT", build.given("Keep Height"), settled, above))
     build.finish_with(
         {
             "Stencil": stencil,
             "Points": discs.points,
-            "Position": spaces.point_of_asker(build.vector("SUBTRACT", discs.mean(point), depth)),
+            "Position": spaces.point_of_asker(build.vector("ADD", discs.mean(point), height)),
             "Rotation": _tilt(build, spaces.normal_of_asker(), spaces.normal_of_asker(*tangents)),
         }
     )
@@ -136,12 +141,13 @@ class _Discs:
         return build.scaled(output(total, "Total"), build.math("DIVIDE", 1.0, self.points))
 
 
-def _on_the_surface(build: Builder, spaces: Spaces, discs: _Discs) -> tuple[Socket, Socket, Socket, Socket]:
-    """The stencil's points, and on them: where the surface is, and its two tangents."""
+def _on_the_surface(build: Builder, spaces: Spaces, discs: _Discs) -> tuple[Socket, ...]:
+    """The stencil's points, and on them: where the surface is, its two tangents, the height of its place."""
     places = build.given("Places")
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     place = sample_index(build, places, position, discs.place, "FLOAT_VECTOR")
-    around = build.vector("ADD", spaces.point_of_ocean(place), discs.offset)
+    inside = spaces.point_of_ocean(place)
+    around = build.vector("ADD", inside, discs.offset)
 
     def surface(where: Socket, at_rest: bool) -> bpy.types.Node:
         inputs = {"Geometry": spaces.mesh, "Position": where, "At Rest": at_rest}
@@ -161,7 +167,7 @@ def _on_the_surface(build: Builder, spaces: Spaces, discs: _Discs) -> tuple[Sock
         kept.capture_items.new("VECTOR", name)
         connect(build, kept.inputs[name], output(found, name))
     connect(build, kept.inputs[0], build.add("GeometryNodePoints", {"Count": all_points}).outputs[0])
-    return kept.outputs[0], *(kept.outputs[name] for name in names)
+    return kept.outputs[0], *(kept.outputs[name] for name in names), coordinates(build, inside)[2]
 
 
 def _tilt(build: Builder, up: Socket, normal: Socket) -> Socket:
@@ -260,6 +266,6 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
 
 
 STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
-RIDE = GroupKind("Ocean Tweak Ride", 2, _build_ride)
-FLOAT = GroupKind("Float on Ocean", 2, _build_float)
-CARRIER = GroupKind("Float on Ocean Carrier", 2, _build_carrier)
+RIDE = GroupKind("Ocean Tweak Ride", 3, _build_ride)
+FLOAT = GroupKind("Float on Ocean", 3, _build_float)
+CARRIER = GroupKind("Float on Ocean Carrier", 3, _build_carrier)

@@ -78,7 +78,7 @@ def add_afloat(
     scene.view_layers.update()
     draft = chosen.draft / metres
     ride = Ride(waterline=chosen.waterline / metres, draft=draft, keel=draft, tilt=0.8)
-    float_on(item, ocean, scene, ride, is_wet=True)
+    float_on(item, ocean, ride, is_wet=True)
     return item
 
 

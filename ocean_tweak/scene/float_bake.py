@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from . import contact, float_keys, floating, handlers
+from . import contact, float_carrier, float_keys, floating, handlers
 from .floating import FloatError, Ride
 from .floating_place import Water, place_on, water_at
 from .hull import Hull
@@ -21,18 +21,20 @@ from .view_layers import evaluated, taking_part
 class _Rider:
     """An object that is being baked.
 
-    carrier : stands where the object would be on land
-    was_live : whether the carrier was there before
+    place : stands where the object would be on land; its carrier, or an empty for as long as this takes
+    was_live : whether that is its carrier
     hull : of the object, where the water is to touch it
+    level : how high above its origin the water stands
     track : where the object was so far
     """
 
     item: bpy.types.Object
-    carrier: bpy.types.Object
+    place: bpy.types.Object
     was_live: bool
     ocean: bpy.types.Object
     ride: Ride
     hull: Hull | None
+    level: float
     track: float_keys.Track
 
 
@@ -66,16 +68,17 @@ class FloatBake:
         self._scene, self._frame = scene, (scene.frame_current, scene.frame_subframe)
         self._riders = [self._begin(item, ocean, ride(item), is_wet) for item in chosen]
         self._taking_part = ExitStack()
-        self._taking_part.enter_context(taking_part(scene, *{rider.ocean for rider in self._riders}))
+        needed = {rider.ocean for rider in self._riders} | {rider.place for rider in self._riders}
+        self._taking_part.enter_context(taking_part(scene, *needed))
 
     def _begin(self, item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride, is_wet: bool) -> _Rider:
-        carrier = floating.carrier_of(item)
+        carrier = float_carrier.carrier_of(item)
         if carrier is None:
             hull = floating.own_hull(item) if is_wet else None
-            carrier = floating.place_carrier(item, self._scene)
-            return _Rider(item, carrier, False, ocean, ride, hull, float_keys.Track(item))
+            level, place = floating.level_at(item, ocean, ride), float_carrier.stand_in(item)
+            return _Rider(item, place, False, ocean, ride, hull, level, float_keys.Track(item))
         known, ride = floating.ride_of(carrier)
-        return _Rider(item, carrier, True, known or ocean, ride, None, float_keys.Track(item))
+        return _Rider(item, carrier, True, known or ocean, ride, None, 0.0, float_keys.Track(item))
 
     def advance(self) -> None:
         """Go on by one frame. Raises what a missing or broken image raises."""
@@ -88,31 +91,33 @@ class FloatBake:
         for rider in self._riders:
             if rider.ocean not in waters:
                 waters[rider.ocean] = water_at(rider.ocean, self._scene, depsgraph, frame)
-            places = rider.carrier.matrix_world, rider.ocean.evaluated_get(depsgraph).matrix_world
+            places = (each.evaluated_get(depsgraph).matrix_world for each in (rider.place, rider.ocean))
             rider.track.add(place_on(waters[rider.ocean], *places, rider.ride, metres))
         self.done += 1
 
     def finish(self) -> int:
         """Write the keys; what floated live is left to them. Returns how many objects there are."""
         stretch = time_stretch(self._scene)
+        self._clear()
         for rider in self._riders:
-            if not rider.was_live:
-                floating.remove_carrier(rider.carrier)
             floating.take_off(rider.item)
             if rider.hull is not None:
-                contact.touch(rider.item, rider.ocean, rider.hull, rider.ride.level)
+                contact.touch(rider.item, rider.ocean, rider.hull, rider.level)
             rider.track.write(self.frames[0] / stretch, 1 / stretch)
         self._go_back()
         return len(self._riders)
 
     def cancel(self) -> None:
         """Leave everything as it was before."""
-        for rider in self._riders:
-            if not rider.was_live:
-                floating.remove_carrier(rider.carrier)
+        self._clear()
         self._go_back()
 
-    def _go_back(self) -> None:
+    def _clear(self) -> None:
         self._taking_part.close()
+        for rider in self._riders:
+            if not rider.was_live:
+                bpy.data.objects.remove(rider.place)
+
+    def _go_back(self) -> None:
         frame, subframe = self._frame
         self._scene.frame_set(frame, subframe=subframe)

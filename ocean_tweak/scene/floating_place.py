@@ -86,7 +86,7 @@ def place_on(water: Water, place: Matrix, ocean: Matrix, ride: Ride, metres: flo
     middle = np.array(to_ocean.translation)[:2] * metres
     height, normal, drift = _settled(water, middle, ride, 0.5 * ride.waterline * size * metres)
     level = Vector((*(middle + drift), height)) / metres
-    level.z -= ride.level * size
+    level.z += to_ocean.translation.z if ride.keep_height else -ride.level * size
     up = _world_normal(ocean, Vector((0.0, 0.0, 1.0)))
     tilt = up.rotation_difference(_world_normal(ocean, Vector(normal)))
     turned = Quaternion().slerp(tilt, ride.tilt) @ place.to_quaternion()

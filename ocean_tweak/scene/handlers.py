@@ -23,6 +23,7 @@ from . import (
     command_process,
     contact,
     failures,
+    float_carrier,
     former_settings,
     held_sea,
     live_image,
@@ -69,6 +70,12 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
             raise
 
     return run
+
+
+@_loud
+def follow_before_frame(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+    """A script may have moved floating objects since the last evaluation."""
+    float_carrier.follow()
 
 
 @_loud
@@ -141,6 +148,13 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 
 
 @persistent
+def follow_by_hand(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let floating objects go where they were moved to, and look after those that came and went."""
+    if depsgraph is None or any(map(depsgraph.id_type_updated, ("OBJECT", "COLLECTION", "SCENE"))):
+        float_carrier.follow()
+
+
+@persistent
 def look_after_save(_path: object = None, _unused: object = None) -> None:
     """A file that was saved elsewhere may have left its bakes behind."""
     for item, scene in shown_oceans().items():
@@ -209,6 +223,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     baked = Wanted.NOTES | Wanted.SURFACE | Wanted.PATCHES if upgrade_groups(ALL_KINDS) else Wanted.NOTES
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
+    float_carrier.take_over()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
 
@@ -238,6 +253,7 @@ def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
     former_settings.take_over()
     stored_values.mend_all()
     stored_paths.follow_import(imported)
+    float_carrier.take_over()
     contact.refresh()
     show_that_it_runs()
 
@@ -261,6 +277,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     show_that_it_runs()
     live_image.forget_all()
     source_images.forget_all()
+    float_carrier.follow()
     contact.refresh()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if is_live(item) else Wanted.NOTES)
@@ -282,12 +299,14 @@ def refresh_all_oceans() -> None:
 
 
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
+    ("frame_change_pre", follow_before_frame),
     ("frame_change_pre", refresh_on_frame_change),
     ("frame_change_post", refresh_animated),
     ("frame_change_post", refresh_around_camera),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
     ("depsgraph_update_post", look_around),
+    ("depsgraph_update_post", follow_by_hand),
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),

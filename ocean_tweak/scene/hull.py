@@ -64,6 +64,11 @@ class Hull:
         return float(np.ptp(self.vertices[:, :2], axis=0).min())
 
     @property
+    def length(self) -> float:
+        """The larger one of the two horizontal sizes."""
+        return float(np.ptp(self.vertices[:, :2], axis=0).max())
+
+    @property
     def draft(self) -> float:
         """How deep it sits where nobody says so: a third of its beam, at most half of its height."""
         return min(self.beam / _BEAM_OF_DRAFT, 0.5 * float(np.ptp(self.vertices[:, 2])))

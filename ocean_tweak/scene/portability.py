@@ -13,7 +13,7 @@ from typing import NamedTuple
 import bpy
 
 from ..nodes.modifier_inputs import all_inputs
-from . import floating, patch_objects
+from . import float_carrier, patch_objects
 from .cache_place import shown_bake
 from .plan import camera_surface_of
 from .settings import all_oceans, oceans_in, settings_of, was_ocean
@@ -155,10 +155,10 @@ def _readers(ocean: bpy.types.Object) -> Iterator[Need]:
     for item in bpy.data.objects:
         if item == ocean or not _reads(item, (ocean,)):
             continue
-        if not floating.is_carrier(item):
+        if not float_carrier.is_carrier(item):
             yield Need(item.name, f"reads {ocean.name}, which is computed live", f"bake {ocean.name}")
             continue
-        for other in floating.carried_by(item):
+        for other in float_carrier.carried_by(item):
             remedy = f"bake {ocean.name}, or its floating to keys"
             yield Need(other.name, f"floats on {ocean.name}, which is computed live", remedy)
 

@@ -5,7 +5,7 @@ import time
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
-from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from ..core import ParameterError
 from ..scene import contact, floating
@@ -22,18 +22,12 @@ _TURN = 0.05
 
 
 def floatable(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The selected objects that are neither oceans nor carriers; of a selected carrier what it carries."""
-    chosen: dict[bpy.types.Object, None] = {}
-    for item in context.selected_objects:
-        if floating.is_carrier(item):
-            chosen.update(dict.fromkeys(floating.carried_by(item)))
-        elif not is_ocean(item):
-            chosen[item] = None
-    return list(chosen)
+    """The selected objects that are no oceans."""
+    return [item for item in context.selected_objects if not is_ocean(item)]
 
 
-#: what an object's size may say
-_OF_SIZE = ("waterline", "draft")
+#: what the object may say
+_OF_OBJECT = ("waterline", "draft", "tilt", "keep_height")
 
 
 class _OnOcean:
@@ -66,11 +60,11 @@ class _OnOcean:
 class _Rides(_OnOcean):
     """Operators that let the selected objects float."""
 
-    use_size: BoolProperty(
-        name="From Size",
-        default=True,
-        description="Take waterline and draft from each object's bounds: it feels no waves shorter than its "
-        "beam, and sits a third of that deep, as ships do, but at most half its height",
+    ride: EnumProperty(
+        name="Float As",
+        items=[(key, *texts) for key, texts in floating.RIDES.items()],
+        default="OBJECT",
+        description="What waterline, draft and tilt are taken from",
     )
     waterline: FloatProperty(
         name="Waterline",
@@ -102,20 +96,25 @@ class _Rides(_OnOcean):
         subtype="FACTOR",
         description="How much it goes along with the water's to and fro: 0 stays above its place",
     )
+    keep_height: BoolProperty(
+        name="Keep Height",
+        description="Stay as high above the surface as it is above calm water, whatever the draft is: for "
+        "cameras and lights",
+    )
     use_contact: BoolProperty(
         name="Contact with Water",
         default=True,
         description="Put a collar of foam and ripples on the water around it, and let its meshes know where "
         "they are wet",
     )
-    shown = ("use_size", *_OF_SIZE, "tilt", "drift", "use_contact")
+    shown = ("ride", "waterline", "draft", "tilt", "drift", "keep_height", "use_contact")
 
     def ride_of(self, item: bpy.types.Object) -> Ride:
-        """How an object shall float; what a script gives goes before the size, unless it asks for both."""
+        """How an object shall float; what a script gives goes before the object, unless it asks for both."""
         hull, asked = floating.own_hull(item), self.properties.is_property_set
-        values = vars(floating.ride_by_size(hull)) | {"tilt": self.tilt, "drift": self.drift}
-        for name in _OF_SIZE:
-            if not self.use_size or (asked(name) and not asked("use_size")):
+        values = vars(floating.usual_ride(self.ride, item, hull)) | {"drift": self.drift}
+        for name in _OF_OBJECT:
+            if self.ride == "CUSTOM" or (asked(name) and not asked("ride")):
                 values[name] = getattr(self, name)
         return Ride(**values)
 
@@ -126,7 +125,7 @@ class _Rides(_OnOcean):
         layout.prop_search(self, "ocean", context.scene, "objects", icon="MOD_OCEAN")
         for name in self.shown:
             row = layout.row()
-            row.active = not (self.use_size and name in _OF_SIZE)
+            row.active = self.ride == "CUSTOM" or name not in _OF_OBJECT
             row.prop(self, name)
 
 
@@ -135,8 +134,8 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
 
     bl_idname = "object.ocean_tweak_float"
     bl_description = (
-        "Let the selected objects ride the ocean's surface. Each gets a small carrier where it stands: "
-        "move or animate that one from then on"
+        "Let the selected objects ride the ocean's surface. Move, turn, parent and animate them as before: "
+        "they float where you put them"
     )
     bl_label = "Float on Ocean"
     bl_options = {"REGISTER", "UNDO"}
@@ -150,7 +149,8 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
             return refuse(self, error)
         for item in floating.outermost(floatable(context)):
             try:
-                floating.float_on(item, ocean, context.scene, self.ride_of(item), self.use_contact)
+                ride = self.ride_of(item)
+                floating.float_on(item, ocean, ride, self.use_contact)
                 done += 1
             except FloatError as error:
                 refused.append(str(error))
@@ -265,8 +265,8 @@ class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
 
     bl_idname = "object.ocean_tweak_float_remove"
     bl_description = (
-        "Let the selected objects float no more, live or baked: they are back where they were, and with the "
-        "animation that they had"
+        "Let the selected objects float no more, live or baked: they stand where they floated, without the "
+        "waves, and with their own animation"
     )
     bl_label = "Remove Float"
     bl_options = {"REGISTER", "UNDO"}
@@ -282,12 +282,7 @@ class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put them back."""
         items = [item for item in floatable(context) if _floats(item)]
-        empty = [
-            item
-            for item in context.selected_objects
-            if floating.is_carrier(item) and not any(floating.carried_by(item))
-        ]
-        for item in (*items, *empty):
+        for item in items:
             floating.sink(item)
         self.report({"INFO"}, translated("Objects back in place: {count}").format(count=len(items)))
         return {"FINISHED"}
@@ -334,7 +329,7 @@ def draw_object_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 
 def _floats(item: bpy.types.Object) -> bool:
-    return floating.is_carrier(item) or floating.carrier_of(item) is not None or is_baked(item)
+    return floating.carrier_of(item) is not None or is_baked(item)
 
 
 CLASSES = (

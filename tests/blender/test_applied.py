@@ -134,7 +134,7 @@ def test_what_showed_the_sea_and_what_floats_on_it(extension, ocean_object, make
     empty_scene.collection.objects.link(boat)
     empty_scene.view_layers.update()
     floating = extension("scene.floating")
-    floating.float_on(boat, live, empty_scene)
+    floating.float_on(boat, live)
     extension("scene.camera_surface").add_camera_surface(live, empty_scene)
     empty_scene.frame_set(10)
     height = boat.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z

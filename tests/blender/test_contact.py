@@ -122,7 +122,7 @@ def test_a_script_s_numbers_go_before_the_size(extension, ocean, new_box, select
     bpy.ops.object.ocean_tweak_float(draft=0.25)
     ride = floating.ride_of(floating.carrier_of(item))[1]
     assert (ride.draft, ride.waterline) == pytest.approx((0.25, 2.0))
-    bpy.ops.object.ocean_tweak_float(use_size=False)
+    bpy.ops.object.ocean_tweak_float(ride="CUSTOM")
     ride = floating.ride_of(floating.carrier_of(item))[1]
     assert (ride.draft, ride.waterline) == (0.0, 0.0)
 
@@ -137,7 +137,7 @@ def test_its_lowest_point_is_a_draft_below_the_water(
     item = new_box((*place, 0.0), np.array(BOX) / unit)
     floating = extension("scene.floating")
     ride = floating.Ride(draft=DRAFT / unit, tilt=0.0)
-    floating.float_on(item, ocean, empty_scene, ride)
+    floating.float_on(item, ocean, ride)
     heights = []
     for frame in (1, 9, 17):
         empty_scene.frame_set(frame)
@@ -154,7 +154,7 @@ def test_a_broad_hull_has_its_draft_in_the_mean(extension, ocean, disc, core, ma
     for vertex in item.data.vertices:
         vertex.co.xy *= 4.0
     ride = floating.Ride(waterline=8.0, draft=0.3, keel=0.5)
-    floating.float_on(item, ocean, empty_scene, ride)
+    floating.float_on(item, ocean, ride)
     around = np.random.default_rng(3).uniform(-4.0, 4.0, (4000, 2))
     around = around[np.hypot(*around.T) < 4.0] + AT
     for frame in (1, 9, 17):
@@ -167,7 +167,7 @@ def test_a_broad_hull_has_its_draft_in_the_mean(extension, ocean, disc, core, ma
 
 def test_a_mesh_knows_where_it_is_wet(extension, ocean, disc, core, make_parameters, empty_scene):
     item, floating = disc(), extension("scene.floating")
-    floating.float_on(item, ocean, empty_scene, floating.Ride(draft=0.5, keel=0.5), is_wet=True)
+    floating.float_on(item, ocean, floating.Ride(draft=0.5, keel=0.5), is_wet=True)
     extension("nodes.modifier_inputs").set_input(item.modifiers[-1], "Wet Band", 0.2)
     for frame in (1, 12):
         empty_scene.frame_set(frame)
@@ -355,7 +355,7 @@ def test_foam_lies_around_the_hull_and_follows_it(
     assert collar.inputs["Fullness"].default_value == pytest.approx(2.0, abs=0.11)
     with extension("scene.handlers").asleep():  # as where there is no extension
         for shift in (0.0, 4.0):
-            floating.carrier_of(item).location.x = AT[0] + shift
+            item.location.x = floating.carrier_of(item).location.x = AT[0] + shift
             empty_scene.frame_set(5)
             foam = seen_from_above(ocean)
             middle = np.array(item.matrix_world.translation)[:2]

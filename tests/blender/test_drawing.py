@@ -114,7 +114,7 @@ def test_what_panels_know_of_other_objects_follows_them(ocean, ocean_object, mak
         return {need.name for need in needs.neighbours_of(item).needs}
 
     assert names(ocean) == {ocean.name}
-    carrier = floating.float_on(boat, ocean, scene)
+    carrier = floating.float_on(boat, ocean)
     assert names(ocean) == {ocean.name, "Boat"}
     floating.let_ride(carrier, other, floating.Ride())  # no object comes or goes
     assert (names(ocean), names(other)) == ({ocean.name}, {"Lake", "Boat"})

@@ -83,7 +83,7 @@ KINDS = {
 def test_an_object_follows_the_surface(floating, ocean, new_object, core, make_parameters, empty_scene, kind):
     item = new_object("Buoy", KINDS[kind](), (25.0, 40.0, 9.0), 0.7)
     item.scale = (2.0, 2.0, 2.0)
-    floating.float_on(item, ocean, empty_scene)
+    floating.float_on(item, ocean)
     heights = []
     for frame in range(1, 49):
         empty_scene.frame_set(frame)
@@ -104,7 +104,7 @@ def test_in_a_render_it_rides_the_sea_of_the_render(
 ):
     ocean.ocean_tweak.viewport_resolution = 16
     item = new_object("Buoy", None, (25.0, 40.0, 9.0))
-    floating.float_on(item, ocean, empty_scene)
+    floating.float_on(item, ocean)
     seen = []
 
     class Probe(bpy.types.RenderEngine):
@@ -139,7 +139,7 @@ def test_back_where_it_was(floating, ocean, new_object, empty_scene):
     item.parent = parent
     bpy.context.view_layer.update()
     before, things = item.matrix_world.copy(), set(bpy.data.objects)
-    floating.float_on(item, ocean, empty_scene)
+    floating.float_on(item, ocean)
     bpy.context.view_layer.update()
     assert (item.matrix_world.translation - before.translation).length > 0.1
     floating.sink(item)
@@ -149,28 +149,13 @@ def test_back_where_it_was(floating, ocean, new_object, empty_scene):
     assert len(bpy.data.meshes) == 1  # the ocean's
 
 
-def test_the_carrier_is_what_moves_it(floating, ocean, new_object, core, make_parameters, empty_scene):
-    parent = new_object("Tug", None, (1.0, 2.0, 0.0), 0.1)
-    item = new_object("Barge", None, (30.0, 0.0, 0.0))
-    item.parent = parent
-    carrier = floating.float_on(item, ocean, empty_scene)
-    assert carrier.parent == parent
-    assert carrier.users_collection == item.users_collection
-    assert (carrier.hide_render, carrier.display_type) == (True, "WIRE")
-    for shift in (0.0, 25.0):
-        carrier.location.y = shift
-        bpy.context.view_layer.update()
-        point, _ = sea_below(core, ocean, make_parameters(), 1, carrier.matrix_world.translation)
-        np.testing.assert_allclose(item.matrix_world.translation, point, atol=CENTIMETRE)
-
-
 def test_an_animated_object_floats_along_its_way(floating, ocean, new_object, core, make_parameters,
                                                  empty_scene):  # fmt: skip
     item = new_object("Ship")
     for frame, x in ((1, 0.0), (11, 50.0)):
         item.location.x = x
         item.keyframe_insert("location", frame=frame)
-    floating.float_on(item, ocean, empty_scene)
+    floating.float_on(item, ocean)
     for frame, x in ((1, 0.0), (6, 25.0), (11, 50.0)):
         empty_scene.frame_set(frame)
         point, _ = sea_below(core, ocean, make_parameters(), frame, (x, 0.0))
@@ -180,7 +165,7 @@ def test_an_animated_object_floats_along_its_way(floating, ocean, new_object, co
 def test_draft_tilt_and_drift(floating, ocean, new_object, core, make_parameters, empty_scene):
     item = new_object("Buoy", None, (10.0, 20.0, 0.0))
     point, normal = sea_below(core, ocean, make_parameters(), 1, (10.0, 20.0))
-    carrier = floating.float_on(item, ocean, empty_scene, floating.Ride(draft=0.75))
+    carrier = floating.float_on(item, ocean, floating.Ride(draft=0.75))
     bpy.context.view_layer.update()
     np.testing.assert_allclose(item.matrix_world.translation, point - [0.0, 0.0, 0.75], atol=1e-3)
     whole = angle(normal, (0.0, 0.0, 1.0))
@@ -191,7 +176,7 @@ def test_draft_tilt_and_drift(floating, ocean, new_object, core, make_parameters
         assert angle(up(item.matrix_world), (0.0, 0.0, 1.0)) == pytest.approx(tilt * whole, abs=0.05)
     # the water that is at a sample when at rest is where the mesh's vertex is now
     step = DOMAIN / 32
-    carrier.location = ocean.matrix_world @ Vector((5 * step, 7 * step, 0.0))
+    item.location = ocean.matrix_world @ Vector((5 * step, 7 * step, 0.0))
     floating.let_ride(carrier, ocean, floating.Ride(drift=1.0))
     bpy.context.view_layer.update()
     gone = core.Ocean(make_parameters()).surface(0.0).displacement[7, 5].astype(float)
@@ -204,67 +189,34 @@ def test_in_centimetres(floating, ocean_object, new_object, core, make_parameter
     empty_scene.unit_settings.scale_length = 0.01
     ocean = ocean_object.add(empty_scene, make_parameters())
     item = new_object("Buoy", None, (1000.0, 2000.0, 0.0))
-    floating.float_on(item, ocean, empty_scene, floating.Ride(waterline=1.0))
+    floating.float_on(item, ocean, floating.Ride(waterline=1.0))
     empty_scene.frame_set(9)
     parameters = make_parameters()
     height = core.Ocean(parameters).height_at(10.0, 20.0, parameters.timing.time(9))
     assert item.matrix_world.translation.z / 100.0 == pytest.approx(float(height), abs=CENTIMETRE)
 
 
-def test_when_the_ocean_goes_it_lies_flat(floating, ocean, new_object, empty_scene):
-    item = new_object("Buoy", None, (10.0, 20.0, 5.0), 0.4)
-    carrier = floating.float_on(item, ocean, empty_scene)
-    bpy.data.objects.remove(ocean)
-    empty_scene.frame_set(4)
-    np.testing.assert_allclose(item.matrix_world, carrier.matrix_world, atol=1e-5)
-    assert floating.ride_of(carrier)[0] is None
-    floating.sink(item)
-    assert not bpy.data.objects.get("Buoy Float")
-
-
-def test_when_the_object_goes_the_carrier_stays_harmless(floating, ocean, new_object, empty_scene):
-    item = new_object("Buoy")
-    carrier = floating.float_on(item, ocean, empty_scene)
-    bpy.data.objects.remove(item)
-    empty_scene.frame_set(4)
-    assert list(floating.carried_by(carrier)) == []
-    floating.sink(carrier)
-    assert [each.name for each in bpy.data.objects] == ["Ocean"]
-
-
 def test_when_the_carrier_goes_the_object_stays_where_it_is_without(floating, ocean, new_object, empty_scene):
     item = new_object("Buoy", None, (10.0, 20.0, 5.0))
-    carrier = floating.float_on(item, ocean, empty_scene)
+    carrier = floating.float_on(item, ocean)
     bpy.data.objects.remove(carrier)
     empty_scene.frame_set(4)
     assert floating.carrier_of(item) is None
-    floating.float_on(item, ocean, empty_scene)
+    floating.float_on(item, ocean)
     floating.sink(item)
     bpy.context.view_layer.update()
     np.testing.assert_allclose(item.matrix_world.translation, (10.0, 20.0, 5.0))
 
 
-def test_a_copy_shares_the_carrier_until_the_last_one_goes(floating, ocean, new_object, empty_scene):
-    item = new_object("Buoy")
-    carrier = floating.float_on(item, ocean, empty_scene)
-    twin = item.copy()
-    empty_scene.collection.objects.link(twin)
-    assert set(floating.carried_by(carrier)) == {item, twin}
-    floating.sink(item)
-    assert floating.carrier_of(twin) == carrier
-    floating.sink(twin)
-    assert not [each for each in bpy.data.objects if each not in (ocean, item, twin)]
-
-
 def test_what_cannot_float(floating, ocean, new_object, empty_scene):
     with pytest.raises(floating.FloatError, match="Ocean cannot float on Ocean"):
-        floating.float_on(ocean, ocean, empty_scene)
+        floating.float_on(ocean, ocean)
     item = new_object("Buoy")
     with pytest.raises(floating.FloatError, match="Buoy cannot float on Buoy"):
-        floating.float_on(item, item, empty_scene)
+        floating.float_on(item, item)
     ocean.parent = item
     with pytest.raises(floating.FloatError, match="Buoy carries Ocean"):
-        floating.float_on(item, ocean, empty_scene)
+        floating.float_on(item, ocean)
     assert not item.constraints
 
 

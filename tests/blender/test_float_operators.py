@@ -26,8 +26,6 @@ def test_float_and_remove(ocean, buoy, select, core, make_parameters, empty_scen
     bpy.context.view_layer.update()
     assert len(bpy.data.meshes) == 2
     assert_rides(buoy, core, ocean, make_parameters(resolution=16), 7)
-    # by its carrier
-    select(next(each for each in bpy.data.objects if each.type == "MESH" and each != ocean))
     assert bpy.ops.object.ocean_tweak_float_remove() == {"FINISHED"}
     bpy.context.view_layer.update()
     assert tuple(buoy.matrix_world.translation) == (25.0, 40.0, 9.0)
@@ -145,6 +143,11 @@ class Layout:
     def prop_search(self, owner, name, _data, _collection, text, **_named):
         self.prop(owner, name, text)
 
+    def operator_menu_enum(self, name, choice, text, **_named):
+        assert choice in bpy.ops.object.ocean_tweak_float.get_rna_type().properties
+        self.operator(name)
+        self.drawn[-1] = text
+
     def operator(self, name, **_named):
         module, _, function = name.partition(".")
         assert hasattr(bpy.types, f"{module.upper()}_OT_{function}")
@@ -167,10 +170,8 @@ def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, exten
     select(buoy)
     assert drawn() == ["object.ocean_tweak_float", touch, *buttons]
     bpy.ops.object.ocean_tweak_float()
-    inputs = ["Ocean", "Waterline", "Draft", "Keel", "Tilt", "Drift"]
-    assert drawn() == ["Move Buoy Float", *inputs, touch, *buttons]
-    select(bpy.data.objects["Buoy Float"])
-    assert drawn() == [*inputs, touch, *buttons]
+    inputs = ["Ocean", "Waterline", "Draft", "Keel", "Tilt", "Drift", "Keep Height"]
+    assert drawn() == ["Float As", *inputs, touch, *buttons]
 
 
 @pytest.mark.parametrize(("menu", "function"), [("VIEW3D_MT_object", "draw_object_menu"),

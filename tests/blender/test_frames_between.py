@@ -139,7 +139,7 @@ def test_what_floats_is_keyed_on_that_slow_motion(extension, baked, empty_scene)
     boat.location = (60.0, 70.0, 0.0)
     empty_scene.collection.objects.link(boat)
     floating = extension("scene.floating")
-    floating.float_on(boat, item, empty_scene)
+    floating.float_on(boat, item)
     item.ocean_tweak.viewport_resolution += 2
     frames = range(9, 16)
 

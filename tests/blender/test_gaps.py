@@ -103,7 +103,7 @@ def test_what_floats_on_a_bake_with_gaps_stays_on_it(baked, extension, empty_sce
     boat.location = (60.0, 60.0, 0.0)
     empty_scene.collection.objects.link(boat)
     empty_scene.view_layers.update()
-    extension("scene.floating").float_on(boat, item, empty_scene)
+    extension("scene.floating").float_on(boat, item)
     live = {frame: height_of(boat, empty_scene, frame) for frame in range(-4, 7)}
     ride = extension("scene.floating").Ride()
     bake = extension("scene.float_bake").FloatBake(empty_scene, [boat], item, lambda _: ride, range(-4, 7))

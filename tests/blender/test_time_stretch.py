@@ -133,7 +133,7 @@ def test_what_floats_keeps_to_the_sea_when_it_is_baked_to_keys(stretched, live, 
     scene.collection.objects.link(boat)
     scene.view_layers.update()
     floating = extension("scene.floating")
-    floating.float_on(boat, item, scene)
+    floating.float_on(boat, item)
     before = [height_of(boat, scene, frame) for frame in range(1, 9)]
     bake = extension("scene.float_bake").FloatBake(
         scene, [boat], item, lambda _: floating.Ride(), range(1, 9)

@@ -175,7 +175,7 @@ def test_nothing_is_said_where_the_extension_runs(
 def boat_on(ocean, extension):
     boat = bpy.data.objects.new("Boat", None)
     bpy.context.scene.collection.objects.link(boat)
-    extension("scene.floating").float_on(boat, ocean, bpy.context.scene)
+    extension("scene.floating").float_on(boat, ocean)
 
 
 def test_what_needs_the_extension_is_named(horizon, extension, tmp_path, capsys):

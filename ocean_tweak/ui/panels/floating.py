@@ -5,8 +5,8 @@ import bpy
 
 from ...nodes.contact import LOOK_INPUTS
 from ...nodes.floating import RIDE_INPUTS
-from ...nodes.modifier_inputs import input_property
-from ...scene import contact, floating
+from ...nodes.modifier_inputs import input_property, input_sockets
+from ...scene import contact, float_carrier, floating
 from .. import float_operators
 from .drawing import SidebarPanel, split
 
@@ -20,25 +20,28 @@ class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the inputs of the active object's carrier, or the button that gives it one."""
+        """Draw how the active object floats, or the button that lets it."""
         layout = split(self.layout)
         item = context.active_object
-        carrier = item if item is None or floating.is_carrier(item) else floating.carrier_of(item)
-        modifier = floating.carrier_modifier(carrier) if carrier is not None else None
+        carrier = floating.carrier_of(item) if item is not None else None
+        modifier = float_carrier.modifier_of(carrier) if carrier is not None else None
+        float_operator = float_operators.OBJECT_OT_ocean_float.bl_idname
         if modifier is None:
-            layout.operator(float_operators.OBJECT_OT_ocean_float.bl_idname, icon="OUTLINER_DATA_EMPTY")
+            layout.operator(float_operator, icon="MOD_OCEAN")
         else:
-            if carrier != item:
-                layout.label(text=f"Move {carrier.name}", icon="INFO")
+            layout.operator_menu_enum(float_operator, "ride", text="Float As", icon="PRESET")
+            known = input_sockets(modifier.node_group)  # of a linked one perhaps not all
             column = layout.column()
             for plug in RIDE_INPUTS:
+                if plug.name not in known:
+                    continue
                 owner, name = input_property(modifier, plug.name)
                 if plug.socket_type == "NodeSocketObject":
                     column.prop_search(owner, name, bpy.data, "objects", text=plug.name, icon="MOD_OCEAN")
                 else:
                     column.prop(owner, name, text=plug.name)
         if item is not None:
-            _contact(layout, item if carrier != item else next(floating.carried_by(item), item))
+            _contact(layout, item)
         column = layout.column(align=True)
         bake, remove = (
             float_operators.OBJECT_OT_ocean_float_bake, float_operators.OBJECT_OT_ocean_float_remove,
