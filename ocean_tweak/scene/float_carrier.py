@@ -18,7 +18,7 @@ from typing import Any
 import bpy
 
 from ..nodes.floating import CARRIER, TRANSFORM
-from ..nodes.modifier_inputs import get_input, set_input
+from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import is_of_kind, node_group
 from . import float_keys
 
@@ -80,12 +80,6 @@ def set_inputs(carrier: bpy.types.Object, values: dict[str, Any]) -> None:
     for name, value in values.items():
         set_input(modifier, name, value)
     carrier.update_tag()
-
-
-def ocean_of(carrier: bpy.types.Object) -> bpy.types.Object | None:
-    """On which it floats; None where that one was deleted."""
-    modifier = modifier_of(carrier)
-    return None if modifier is None else get_input(modifier, "Ocean")
 
 
 def new_carrier(item: bpy.types.Object) -> bpy.types.Object:
