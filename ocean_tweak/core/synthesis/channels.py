@@ -108,10 +108,17 @@ def normal(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 3): unit normal of the displaced surface, the cross product of its tangents."""
     xx, xy, yx, yy = _gradient(rows)
     zx, zy = rows.position(Z, "x"), rows.position(Z, "y")
-    np.subtract(yx * zy, zx * yy, out=out[..., X])
-    np.subtract(zx * xy, xx * zy, out=out[..., Y])
-    np.subtract(xx * yy, xy * yx, out=out[..., Z])
-    out /= np.sqrt(np.sum(out * out, axis=-1, keepdims=True))
+    parts = [yx * zy, zx * xy, xx * yy]
+    for part, (first, second) in zip(parts, ((zx, yy), (xx, zy), (xy, yx)), strict=True):
+        part -= first * second
+    # each component in an array of its own: sums along an axis of three numbers take longer than all else
+    squares = [part * part for part in parts]
+    length = squares[X]
+    length += squares[Y]
+    length += squares[Z]
+    np.sqrt(length, out=length)
+    for component, part in enumerate(parts):
+        np.divide(part, length, out=out[..., component])
 
 
 class UsdAttribute(NamedTuple):
