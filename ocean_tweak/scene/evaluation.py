@@ -74,7 +74,8 @@ class Surfaces:
     def _foam_at(self, time: Fraction, kept: dict[str, RealArray], maker: FoamMaker, patient: bool) -> str:
         """Make the foam, with its history or without; what it is kept under, before its channels' names."""
         if "foam" not in kept and (patient or maker.is_near(time)):
-            self._keep(kept, "", maker.at(time))
+            known = kept.get("cusp") if self.ocean.foam_is_of_its_samples else None
+            self._keep(kept, "", maker.at(time, None if known is None else known[:-1, :-1]))
         if "foam" in kept:
             return ""
         if _INSTANT + "foam" not in kept:
@@ -135,12 +136,15 @@ class FoamMaker:
         # the window's thread and the one that makes foam ahead of it
         self._busy = threading.Lock()
 
-    def at(self, time: Fraction) -> Whitecaps:
-        """(N, N) each. It may be called on any thread, and waits for another one."""
+    def at(self, time: Fraction, compression: RealArray | None = None) -> Whitecaps:
+        """(N, N) each. It may be called on any thread, and waits for another one.
+
+        compression : (M, M) that the foam of this time is made of, where it is known
+        """
         with self._busy:
             if self._history is None:
                 self._history = self._ocean.new_foam_history()
-            made = self._history.whitecaps(time)
+            made = self._history.whitecaps(time, compression)
             self._last = self._reduced(time)
         return made
 

@@ -24,8 +24,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..numerics.interpolation import between, resampled, wrapped
+from ..numerics.interpolation import between, close, resampled
 from ..numerics.memo import MEMO, total_bytes
+from ..numerics.threads import default_workers, row_blocks, run_blocks
+from . import laying
 from .looks import Compressed, Looks, stride_of
 from .windrows import Windrows
 
@@ -38,8 +40,8 @@ LATTICE_RATE = 8
 #: foam thinner than this is none
 FAINTEST = 2.0**-6
 
-#: rows of a grid that are drawn out at once
-_ROWS = 64
+#: what it takes to fade and lay old foam on a sample, in numbers to be transformed
+_WORK_OF_OLD_FOAM = 6
 
 #: from no foam to full foam the compression rises by this share of the threshold
 _SOFTNESS = 0.25
@@ -129,7 +131,7 @@ class Whitecaps(NamedTuple):
         where = between(y * (n / side), x * (n / side), (n, n))
         here, beside, above, across = ((self.foam[at], self.foam_age[at]) for at in where.corners)
         u, v = where.u.astype(np.float32), where.v.astype(np.float32)
-        foam, age = _between(_between(here, beside, u), _between(above, across, u), v)
+        foam, age = laying.between(laying.between(here, beside, u), laying.between(above, across, u), v)
         return seen(where.read(self.breaking).astype(np.float32), foam, age)
 
 
@@ -174,17 +176,20 @@ class Births:
         self._latest.put(places, births[newer])
         self._moments.put(places, index - self._first)
 
-    def left(self, now: Fraction) -> tuple[RealArray, RealArray]:
-        """F of what is left by now, and its age in s; what is remembered beyond the faintest is none."""
+    def left(self, now: Fraction, part: slice = slice(None)) -> tuple[RealArray, RealArray]:
+        """F of what is left by now, and its age in s; what is remembered beyond the faintest is none.
+
+        part : of the places, along their first axis
+        """
         model = self._model
         last = math.floor(now / model.step)
         # what is rounded is counted from the present: it does not depend on where the history began
-        foam = self._latest - np.float32(last - self._zero)
+        foam = self._latest[part] - np.float32(last - self._zero)
         foam -= np.float32(now / model.step - last)
         foam *= np.float32(1.0 / self._halving)
         np.exp2(foam, out=foam)
         foam *= foam >= FAINTEST
-        age = ((last - self._first) - self._moments).astype(np.float32)
+        age = ((last - self._first) - self._moments[part]).astype(np.float32)
         age *= np.float32(model.step)
         age += np.float32(now - last * model.step)
         age *= foam > 0.0
@@ -199,15 +204,23 @@ class FoamHistory:
     """
 
     def __init__(
-        self, model: FoamModel, compression_at: Callable[[Fraction], RealArray], resolution: int
+        self,
+        model: FoamModel,
+        compression_at: Callable[[Fraction], RealArray],
+        resolution: int,
+        workers: int | None = None,
     ) -> None:
-        """`compression_at` gives the (M, M) compression at a time; `resolution` is that of the sea, N."""
+        """`compression_at` gives the (M, M) compression at a time; `resolution` is that of the sea, N.
+
+        workers : threads that draw foam out, by default as many as help
+        """
         self._model = model
         self._compression_at = compression_at
         self._resolution = resolution
+        self._workers = workers
         self._births: Births | None = None
         self._looks = self._new_looks()
-        self._drawing: _Drawing | None = None
+        self._drawing: laying.Drawing | None = None
         self._last = 0
         self._busy = threading.Lock()
         MEMO.watch("foam", self)
@@ -219,24 +232,45 @@ class FoamHistory:
         """Bytes of the births, of the looks that they are from, and of what draws them out."""
         return total_bytes((self._births, self._looks, self._drawing))
 
-    def whitecaps(self, time: float | Fraction) -> Whitecaps:
-        """(N, N) foam at a time."""
-        model, n = self._model, self._resolution
+    def whitecaps(self, time: float | Fraction, compression: RealArray | None = None) -> Whitecaps:
+        """(N, N) foam at a time.
+
+        compression : (M, M) of that time, where it is known already
+        """
+        model = self._model
         now = model.reduced(time)
         with self._busy:
-            compression = self._compression_at(now)
-            breaking = resampled(breaking_of(model, compression), n)
+            if compression is None:
+                compression = self._compression_at(now)
+            breaking = resampled(breaking_of(model, compression), self._resolution)
             if model.memory == 0:
                 return seen(breaking, breaking, np.zeros_like(breaking))
-            foam, age = self._births_until(math.floor(now / model.step), len(compression)).left(now)
-            drifted, drift = model.drifted(now), [v * float(now) for v in model.drift]
-            foam, age = _moved(foam, age, [a - b for a, b in zip(drift, drifted, strict=True)], model.spacing)
-            if self._drawing is not None:
-                foam, age = self._drawing.drawn_out(foam, age)
-        foam, age = _moved(foam, age, drifted, model.spacing)
-        for axis in (0, 1):
-            foam, age = _stretched(foam, age, axis, n)
-        return seen(breaking, foam, age)
+            old = self._old_foam(now, len(compression))
+        return seen(breaking, *laying.put_on(old, self._resolution))
+
+    def _old_foam(self, now: Fraction, n: int) -> laying.Foam:
+        """(n, n) what is left of earlier foam where it lies now, and its age."""
+        model = self._model
+        births = self._births_until(math.floor(now / model.step), n)
+        workers = self._workers or default_workers(_WORK_OF_OLD_FOAM * n * n)
+        left = np.empty((n + 1, n + 1), np.float32), np.empty((n + 1, n + 1), np.float32)
+
+        def fill(rows: slice) -> None:
+            left[0][rows, :-1], left[1][rows, :-1] = births.left(now, rows)
+
+        run_blocks(fill, row_blocks(n, n), workers)
+        drifted, drift = model.drifted(now), [v * float(now) for v in model.drift]
+        past = [a - b for a, b in zip(drift, drifted, strict=True)]
+        if any(past):  # windrows stand still
+            for whole, moved in zip(left, laying.laid(left, self._samples(past), None, workers), strict=True):
+                whole[:-1, :-1] = moved
+        for field in left:
+            close(field)
+        return laying.laid(left, self._samples(drifted), self._drawing, workers)
+
+    def _samples(self, by: Sequence[float]) -> list[float]:
+        """Rows and columns on from which foam is read that has moved by x and y in m."""
+        return [-metres / self._model.spacing for metres in reversed(by)]
 
     def _new_looks(self) -> Looks:
         model, compression_at = self._model, self._compression_at
@@ -263,7 +297,7 @@ class FoamHistory:
         self._births, self._last = births, index
         if is_new:
             if self._model.windrows is not None and self._drawing is None:
-                self._drawing = _Drawing(self._model.windrows, samples, self._model.spacing)
+                self._drawing = laying.Drawing(self._model.windrows, samples, self._model.spacing)
             MEMO.trim()
         return births
 
@@ -272,44 +306,6 @@ class FoamHistory:
         time, spacing = float(index * self._model.step), self._model.spacing
         x, y = (round(-time * v / spacing) for v in self._model.drift)
         return y, x
-
-
-class _Drawing:
-    """Windrows on the samples of a grid that drifts with them."""
-
-    def __init__(self, windrows: Windrows, samples: int, spacing: float) -> None:
-        self._windrows = windrows
-        along = spacing * np.arange(samples)
-        y, x = np.broadcast_arrays(along[:, np.newaxis], along)
-        source_x, source_y, self._share = windrows.sources(x, y)
-        column, row = np.floor(source_x / spacing), np.floor(source_y / spacing)
-        self._u = (source_x / spacing - column).astype(np.float32)
-        self._v = (source_y / spacing - row).astype(np.float32)
-        # of the sample before each source, where rows have one more, the first again
-        self._first = (row % samples * (samples + 1) + column % samples).astype(np.int32)
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all that is kept."""
-        return total_bytes((self._share, self._u, self._v, self._first))
-
-    def drawn_out(self, foam: RealArray, age: RealArray) -> tuple[RealArray, RealArray]:
-        """Old foam and its age as they lie in the windrows."""
-        n = len(foam)
-        fields = wrapped(foam).ravel(), wrapped(age).ravel()
-        result = np.empty_like(foam), np.empty_like(age)
-        for first in range(0, n, _ROWS):
-            part = slice(first, first + _ROWS)
-            at = self._first[part].astype(np.intp)
-            here, beside, above, across = (
-                [np.take(field[offset:], at) for field in fields] for offset in (0, 1, n + 1, n + 2)
-            )
-            u = self._u[part]
-            drawn = _between(_between(here, beside, u), _between(above, across, u), self._v[part])
-            made = self._windrows.drawn_out(foam[part], age[part], *drawn, self._share[part])
-            for whole, rows in zip(result, made, strict=True):
-                whole[part] = rows
-        return result
 
 
 def breaking_of(model: FoamModel, compression: RealArray) -> RealArray:
@@ -327,47 +323,3 @@ def seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
     foam *= foam >= FAINTEST
     breaking = breaking * (foam > 0.0)
     return Whitecaps(foam, breaking, age * ((foam > 0.0) & (breaking == 0.0)))
-
-
-def _moved(
-    foam: RealArray, age: RealArray, by: Sequence[float], spacing: float
-) -> tuple[RealArray, RealArray]:
-    """Periodic foam and its age moved by x and y in m; see `_between`."""
-    for axis, metres in enumerate(reversed(by)):
-        foam, age = _shifted(foam, age, axis, -metres / spacing)
-    return foam, age
-
-
-def _shifted(foam: RealArray, age: RealArray, axis: int, shift: float) -> tuple[RealArray, RealArray]:
-    """Periodic foam and its age read `shift` samples on along an axis; see `_between`."""
-    whole = math.floor(shift)
-    share = np.float32(shift - whole)
-    if shift == 0.0:
-        return foam, age
-    near = np.roll(foam, -whole, axis), np.roll(age, -whole, axis)
-    return near if share == 0.0 else _between(near, [np.roll(field, -1, axis) for field in near], share)
-
-
-def _stretched(foam: RealArray, age: RealArray, axis: int, samples: int) -> tuple[RealArray, RealArray]:
-    """Periodic foam and its age on so many samples along an axis; see `_between`."""
-    own = foam.shape[axis]
-    if own == samples:
-        return foam, age
-    place = np.arange(samples) * (own / samples)
-    before = place.astype(np.intp)
-    share = (place - before).astype(np.float32).reshape((-1, 1) if axis == 0 else (1, -1))
-    near, far = ([np.take(field, at, axis) for field in (foam, age)] for at in (before, (before + 1) % own))
-    return _between(near, far, share)
-
-
-def _between(
-    near: Sequence[RealArray], far: Sequence[RealArray], share: RealArray | np.float32
-) -> tuple[RealArray, RealArray]:
-    """Foam between samples, linear, and the age of that of the two which gives more of it.
-
-    A mean of a new and an old birth would be the age of neither.
-    """
-    (foam, age), (other_foam, other_age) = near, far
-    other = share * other_foam
-    own = foam - share * foam
-    return own + other, np.where(other > own, other_age, age)

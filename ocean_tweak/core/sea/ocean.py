@@ -24,7 +24,7 @@ from ..synthesis.channels import CHANNELS, OF_MEMORY, SurfaceFields, checked_out
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .memory import check_memory, memory_need
-from .part_waves import PRECISIONS, PartWaves, default_workers, real_type, strain_covariances
+from .part_waves import PRECISIONS, PartWaves, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves
 from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import SurfacePoints, find_points, refine_points
@@ -46,8 +46,8 @@ class Ocean:
 
     parameters : OceanParameters
     precision : "single" for float32 fields, "double" for reference work in float64
-    workers : threads that make a surface, by default one a core for 1024² samples or more, else one; the
-        result does not depend on it
+    workers : threads that make a surface, by default one a core where that helps, for 1024² samples or for
+        many fields of 512², else one; the result does not depend on it
 
     Raises ValueError for an unknown precision or a number of workers below 1. Whatever makes the waves
     raises MemoryError, before that, where the machine is too small.
@@ -133,7 +133,8 @@ class Ocean:
             fields = self._arrays(wanted, (n, n), out or {})
             tile.fill(time, wanted - OF_MEMORY, fields)
             if wanted & OF_MEMORY:
-                _fill(fields, self.foam_history.whitecaps(time))
+                known = fields.get("cusp") if self.foam_is_of_its_samples else None
+                _fill(fields, self.foam_history.whitecaps(time, known))
         else:
             x, y = on.rest_positions()
             fields = self._arrays(wanted, x.shape, out or {})
@@ -226,7 +227,7 @@ class Ocean:
             tile.fill(time, frozenset({"min_eigenvalue"}), {"min_eigenvalue": left})
             return np.subtract(1.0, left, out=left)
 
-        return FoamHistory(sea.foam_model, compression_at, self.parameters.resolution)
+        return FoamHistory(sea.foam_model, compression_at, self.parameters.resolution, self._workers)
 
     def _whitecaps_at(self, x: Array, y: Array, time: float | Fraction) -> Whitecaps:
         """Foam at flat places in m: that of the tile, or of what has none from the places' own past."""
@@ -256,9 +257,14 @@ class Ocean:
         return self._strains(model.drift).covered(model.threshold, 0.0)
 
     @property
+    def foam_is_of_its_samples(self) -> bool:
+        """Whether foam is made of the compression of these samples, not of the sea at another resolution."""
+        return self.parameters.foam.resolution in (0, self.parameters.resolution)
+
+    @property
     def _of_foam(self) -> Ocean:
         """The sea at the resolution at which foam is made."""
-        return self if self.parameters.foam.resolution in (0, self.parameters.resolution) else self._coarser
+        return self if self.foam_is_of_its_samples else self._coarser
 
     @cached_property
     def _coarser(self) -> Ocean:
@@ -294,8 +300,7 @@ class Ocean:
             )
         if not self.parameters.needs_summation:
             return self._parts[0]
-        workers = self._workers or default_workers(self.parameters.resolution)
-        return TileSum(self.parameters, self._parts, real_type(self.precision), workers)
+        return TileSum(self.parameters, self._parts, real_type(self.precision), self._workers)
 
     @cached_property
     def _anywhere(self) -> AnywhereSum:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -61,7 +60,7 @@ class PartWaves:
         self.parameters = part.parameters
         self.precision = precision
         self._side = side
-        self._workers = workers or default_workers(part.parameters.resolution)
+        self._workers = workers
 
     @property
     def is_on_tile(self) -> bool:
@@ -107,7 +106,7 @@ class PartWaves:
                 for name in group:
                     CHANNELS[name].write(rows, fields[name][block])
 
-            self._synthesis.fill(time, needed, write, most)
+            self._synthesis.fill(time, needed, write, most, sum(map(len, needs)))
 
     def components(
         self, time: float | Fraction, wanted: Iterable[Key], closed: bool = False
@@ -158,11 +157,6 @@ class PartWaves:
 def real_type(precision: str) -> type:
     """Of the numbers of fields."""
     return np.float32 if precision == "single" else np.float64
-
-
-def default_workers(resolution: int) -> int:
-    """Threads that help: one a core, but only one where a surface is too small to share."""
-    return (os.cpu_count() or 1) if resolution >= 1024 else 1
 
 
 def strain_covariances(

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..masks import Mask, Weights, weights, weights_on_grid
 from ..numerics.memo import MEMO
+from ..numerics.threads import default_workers
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import Part
 from ..synthesis.channels import CHANNELS, memory_groups
@@ -50,11 +51,11 @@ class TileSum:
     parameters : of the sea
     parts : whose sum it is
     dtype : of the fields' numbers
-    workers : threads that read between samples
+    workers : threads that read between samples, by default as many as help
     """
 
     def __init__(
-        self, parameters: OceanParameters, parts: Sequence[PartWaves], dtype: type, workers: int
+        self, parameters: OceanParameters, parts: Sequence[PartWaves], dtype: type, workers: int | None
     ) -> None:
         self._parts = parts
         self._samples = parameters.resolution
@@ -103,7 +104,8 @@ class TileSum:
         beyond = slice(inner, n)
         areas = [(rows, slice(0, inner), True) for rows in blocks]
         areas += [(slice(0, inner), beyond, False), (beyond, slice(0, n), False)]
-        with ThreadPoolExecutor(self._workers) as pool:
+        workers = self._workers or default_workers(len(result) * n * n)
+        with ThreadPoolExecutor(workers) as pool:
             list(pool.map(lambda area: fill(*area), areas))
         return result
 

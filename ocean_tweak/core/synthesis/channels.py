@@ -112,10 +112,9 @@ def normal(rows: PositionRows, out: RealArray) -> None:
     for part, (first, second) in zip(parts, ((zx, yy), (xx, zy), (xy, yx)), strict=True):
         part -= first * second
     # each component in an array of its own: sums along an axis of three numbers take longer than all else
-    squares = [part * part for part in parts]
-    length = squares[X]
-    length += squares[Y]
-    length += squares[Z]
+    length = np.multiply(parts[X], parts[X], out=xx)
+    for part in parts[Y:]:
+        length += np.multiply(part, part, out=yy)
     np.sqrt(length, out=length)
     for component, part in enumerate(parts):
         np.divide(part, length, out=out[..., component])

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple, Protocol
@@ -27,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics.memo import MEMO
+from ..numerics.threads import default_workers, run_blocks
 from ..parameters.ocean_parameters import OceanParameters
 from ..waves.contribution import BlockShares, Shares, Sharing
 from .coefficients import InitialState, PropagatedState, propagate
@@ -91,7 +91,7 @@ class Synthesis:
 
     state, parameters, damping : the sea
     dtype : complex64 or complex128
-    workers : threads; the result does not depend on their number
+    workers : threads, None for as many as help; the result does not depend on their number
     sharing : waves that are no gradient of a potential
     """
 
@@ -99,7 +99,7 @@ class Synthesis:
     parameters: OceanParameters
     damping: TroughDamping | None = None
     dtype: type = np.complex64
-    workers: int = 1
+    workers: int | None = 1
     sharing: tuple[Sharing, ...] = ()
 
     def term(self, component: int, derivative: str = "", long: bool = False) -> Term:
@@ -130,12 +130,16 @@ class Synthesis:
         wanted: Iterable[tuple[int, str]],
         write: Callable[[slice, Rows], None],
         most: int = 0,
+        count: int = 0,
     ) -> None:
         """Make the components and derivatives wanted, and hand them to `write`, block of rows by block.
 
         most : columns that other parts of the same surface take, whose arrays are there meanwhile
+        count : of the fields of the whole surface: threads help with many
         """
+        wanted = frozenset(wanted)
         needed = self.columns(wanted)
+        workers = self._threads(max(count, len(wanted)))
         shape = self.state.grid.shape
         # fresh memory takes time: each thread has arrays that it fills again and again
         own = (shape, self.dtype, threading.get_ident())
@@ -143,7 +147,7 @@ class Synthesis:
         if arrays is None or len(arrays) < len(needed):
             arrays = np.empty((len(needed), *shape), self.dtype)
         first_pass = dict(zip(needed, arrays, strict=False))
-        shares = self._shares(time, needed)
+        shares = self._shares(time, needed, workers)
 
         def transform_along_y(block: slice) -> None:
             self._transform_columns(time, block, first_pass, shares)
@@ -153,23 +157,26 @@ class Synthesis:
 
         n = self.state.grid.resolution
         most = max(most, len(needed))
-        run_blocks(transform_along_y, self._blocks(n // 2 + 1, most), self.workers)
-        run_blocks(transform_along_x, self._blocks(n, most), self.workers)
+        run_blocks(transform_along_y, self._blocks(n // 2 + 1, most, workers), workers)
+        run_blocks(transform_along_x, self._blocks(n, most, workers), workers)
         MEMO.put("workspaces", own, arrays)
 
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
         """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
         with_rate = any(column.rate for column in columns)
-        shares = self._shares(time, columns)
+        shares = self._shares(time, columns, self._threads(len(columns)))
         added = [share.of_block(slice(None)) for share in shares]
         sources = _Sources(self, propagate(self.state, time, self.dtype, with_rate), slice(None), added)
         return {column: sources.coefficients(column).T for column in columns}
 
-    def _shares(self, time: float | Fraction, columns: Iterable[Column]) -> list[Shares]:
+    def _threads(self, fields: int) -> int:
+        return self.workers or default_workers(fields * self.state.grid.resolution**2)
+
+    def _shares(self, time: float | Fraction, columns: Iterable[Column], workers: int) -> list[Shares]:
         """What is added to some columns that is no gradient."""
         rates = {column.rate for column in columns}
         return [
-            waves.shares(float(time), False in rates, True in rates, self.dtype, self.workers)
+            waves.shares(float(time), False in rates, True in rates, self.dtype, workers)
             for waves in self.sharing
         ]
 
@@ -182,14 +189,14 @@ class Synthesis:
         wanted |= {(Z, derivative) for _, derivative in wanted}
         return {(*key, long) for key in wanted for long in (False, True)}
 
-    def _blocks(self, count: int, columns: int) -> Iterator[slice]:
+    def _blocks(self, count: int, columns: int, workers: int) -> Iterator[slice]:
         """Blocks of `count` rows or columns, beside a workspace of so many columns."""
         n = self.state.grid.resolution
         spare = max(1, _MEMORY - _COLUMN * columns)
         numbers = min(_BLOCK, n * n * spare // _TEMPORARIES)
         if self.sharing:  # what they take is told apart, and small blocks are slow
             numbers = _BLOCK
-        size = max(1, numbers // self.workers // n)
+        size = max(1, numbers // workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
     def _transform_columns(
@@ -338,24 +345,3 @@ def _inverse_real(coefficients: ComplexArray, out: RealArray | None) -> RealArra
     else:
         out[...] = np.fft.irfft(coefficients, axis=-1)
     return out
-
-
-def run_blocks(work: Callable[[slice], None], blocks: Iterable[slice], workers: int) -> None:
-    """Do the work for each block, on as many threads as asked for; an error in any stops all."""
-    if workers == 1:
-        for block in blocks:
-            work(block)
-        return
-    queue, lock = iter(blocks), threading.Lock()
-
-    def pull() -> None:
-        while True:
-            with lock:
-                block = next(queue, None)
-            if block is None:
-                return
-            work(block)
-
-    with ThreadPoolExecutor(workers) as pool:
-        for done in [pool.submit(pull) for _ in range(workers)]:
-            done.result()
