@@ -47,11 +47,10 @@ class Drawing:
         at = _rows(self._first, first, count).astype(np.intp)
         u, v = _rows(self._u, first, count), _rows(self._v, first, count)
         flat, below = [field.reshape(-1) for field in left], foam.shape[1] + 1
-        near, far = (
-            between(*([np.take(field[by + beside :], at) for field in flat] for beside in (0, 1)), u)
-            for by in (0, below)
+        here, beside, above, across = (
+            [np.take(field[offset:], at) for field in flat] for offset in (0, 1, below, below + 1)
         )
-        drawn = between(near, far, v)
+        drawn = between(between(here, beside, u), between(above, across, u), v)
         return self._windrows.drawn_out(foam, age, *drawn, _rows(self._share, first, count))
 
 
