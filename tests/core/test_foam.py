@@ -128,9 +128,10 @@ def test_crests_of_one_direction_can_be_white_all_over() -> None:
 
 
 def looking_at_each_moment(parameters: OceanParameters) -> Ocean:
-    """The sea whose foam interpolates nothing."""
+    """The sea whose foam interpolates nothing, and all of whose new foam breaks."""
     ocean = Ocean(parameters)
-    ocean.__dict__["foam_model"] = dataclasses.replace(ocean.foam_model, frequency=math.inf)
+    plain = dataclasses.replace(ocean.foam_model, frequency=math.inf, breaking_threshold=0.0)
+    ocean.__dict__["foam_model"] = plain
     return ocean
 
 

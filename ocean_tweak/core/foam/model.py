@@ -52,6 +52,8 @@ class FoamModel:
     """How foam is born and how it lives.
 
     threshold : compression at which c begins to rise from 0
+    breaking_threshold : the same for a crest that is seen to break, where that is more: on coarse samples
+        crests are compressed for long, and all but their tops is foam that spreads
     half_life : T in s
     drift : x and y in m/s
     spacing : between samples, m
@@ -67,6 +69,7 @@ class FoamModel:
     loop_duration: Fraction | None = None
     windrows: Windrows | None = None
     frequency: float = math.inf
+    breaking_threshold: float = 0.0
 
     @property
     def stride(self) -> int:
@@ -311,8 +314,9 @@ class FoamHistory:
 def breaking_of(model: FoamModel, compression: RealArray) -> RealArray:
     """c of the present, float32."""
     result = np.zeros(compression.shape, np.float32)
-    found = compression > model.threshold
-    strength = model.strength(compression[found])
+    threshold = max(model.threshold, model.breaking_threshold)
+    found = compression > threshold
+    strength = model.strength(compression[found] * (model.threshold / threshold))
     result[found] = strength * (strength >= FAINTEST)
     return result
 

@@ -37,6 +37,8 @@ _NONE = 1e-300
 #: the strains' highest frequency over the root mean square, and the standard deviations at which a threshold
 #: becomes rare
 _BAND, _RARE = 2.0, 3.7
+#: s; mean time for which a crest breaks at a place, at the most
+_BREAKS_FOR = 0.35
 #: of the range in which the threshold is looked for
 _HALVINGS = 40
 
@@ -268,7 +270,8 @@ def foam_model(
     spacing : of those samples, m
     """
     foam, wind = parameters.foam, foam_wind(parameters)
-    drift, threshold, rows, frequency = (0.0, 0.0), math.inf, None, math.inf
+    drift, rows = (0.0, 0.0), None
+    threshold = breaking = frequency = math.inf
     if wind is not None:
         rows = windrows(wind.speed, wind.direction, parameters.domain_size, parameters.seed)
         speed = foam.drift * wind.speed
@@ -278,8 +281,12 @@ def foam_model(
         strains = strains_of(drift)
         threshold = strains.threshold(coverage, foam.half_life)
         frequency = strains.highest_frequency(threshold)
+        # what is left of it lasts half_life/ln 2 in the mean
+        new = _BREAKS_FOR / (_BREAKS_FOR + foam.half_life / math.log(2.0))
+        breaking = max(threshold, strains.threshold(new * coverage, 0.0))
     return FoamModel(
         threshold=threshold,
+        breaking_threshold=breaking,
         half_life=foam.half_life,
         drift=drift,
         spacing=spacing,

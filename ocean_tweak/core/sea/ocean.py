@@ -254,7 +254,7 @@ class Ocean:
     def mean_breaking(self) -> float:
         """The mean over the horizontal plane of how strongly crests break at a time."""
         model = self.foam_model
-        return self._strains(model.drift).covered(model.threshold, 0.0)
+        return self._strains(model.drift).covered(max(model.threshold, model.breaking_threshold), 0.0)
 
     @property
     def foam_is_of_its_samples(self) -> bool:
