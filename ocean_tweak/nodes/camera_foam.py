@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that read foam on rings around a camera, as `core.sea.foam_rings` makes it.
+"""Geometry nodes that read foam around a camera, as `core.sea.foam_rings` and `core.sea.foam_fan` make it.
 
 Rings lie in one another, ring n with cells 2ⁿ times as large as the first one's. Their places are the points
-of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. One point more, the last,
-has what is beyond all rings, and stands at x = the frame that the foam is of.
+of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. A fan's are its points, row
+after row, and the surface's own vertices too; their z is the size of the cells there. One point more, the last,
+has what is beyond all rings, and stands at x = the frame that the foam is of, y = the columns of a fan.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ _FACTS_OUTPUTS = (
     Plug("Is Of Another Frame", "NodeSocketBool", None, "Whether there is foam, but of another frame"),
     Plug("Frame", "NodeSocketInt", None, "That it is of"),
     _RINGS,
+    Plug("Columns", "NodeSocketInt", 0, "Of the fan that the points are; 0 for rings"),
 )
 
 
@@ -39,8 +41,9 @@ def _build_facts(tree: bpy.types.NodeTree) -> None:
     points = build.given("Foam")
     count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
     rings = build.integer("DIVIDE_FLOOR", count, SAMPLES**2)
-    known = build.compare("GREATER_THAN", rings, 0)
-    frame, _, _ = coordinates(build, _position(build, points, build.integer("SUBTRACT", count, 1)))
+    known = build.compare("GREATER_THAN", count, 0)
+    last = _position(build, points, build.integer("SUBTRACT", count, 1))
+    frame, columns, _ = coordinates(build, last)
     now = output(build.add("GeometryNodeInputSceneTime"), "Frame")
     off = build.math("ABSOLUTE", build.math("SUBTRACT", now, frame), None)
     present = build.compare("LESS_THAN", off, 1.0, "FLOAT")
@@ -50,6 +53,7 @@ def _build_facts(tree: bpy.types.NodeTree) -> None:
             "Is Of Another Frame": build.logic("NIMPLY", known, present),
             "Frame": whole_number(build, frame, "ROUND"),
             "Rings": rings,
+            "Columns": whole_number(build, columns, "ROUND"),
         }
     )
 
@@ -118,6 +122,40 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish_with({"Value": value})
 
 
+def _build_fan(tree: bpy.types.NodeTree) -> None:
+    inputs = (
+        Plug("Foam", "NodeSocketGeometry", None, "The fan's places, and one point more"),
+        Plug("Columns", "NodeSocketInt", 2, "Of the fan"),
+        Plug("Corner", "NodeSocketVector", None, "From which its vertices are counted, in the ocean's space"),
+    )
+    outputs = (
+        Plug("Geometry", "NodeSocketGeometry", None, "A flat grid of the fan's places"),
+        Plug("Size", "NodeSocketFloat", None, "Of its cells where a vertex is"),
+        Plug("Value", "NodeSocketVector", None, "Foam, breaking and age at the vertex"),
+    )
+    build = Builder(tree, inputs, outputs)
+    points, columns = build.given("Foam"), build.given("Columns")
+    count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
+    rows = build.integer("DIVIDE_FLOOR", count, columns)
+    # the primitive counts along y first
+    grid = output(build.add("GeometryNodeMeshGrid", {"Vertices X": rows, "Vertices Y": columns}), "Mesh")
+    index = output(build.add("GeometryNodeInputIndex"), "Index")
+    value = output(named_attribute(build, RING_FOAM, "FLOAT_VECTOR"), "Attribute")
+    read = build.add("GeometryNodeCaptureAttribute", {"Geometry": grid}, domain="POINT")
+    for name, told in (
+        ("Place", _position(build, points, index)),
+        ("White", sample_index(build, points, value, index, "FLOAT_VECTOR")),
+    ):
+        read.capture_items.new("VECTOR", name)
+        build.tree.links.new(told, read.inputs[name])
+    x, y, size = coordinates(build, read.outputs["Place"])
+    place = build.vector(
+        "SUBTRACT", combined(build, x, y), build.vector("MULTIPLY", build.given("Corner"), (1.0, 1.0, 0.0))
+    )
+    grid = build.change("GeometryNodeSetPosition", output(read, "Geometry"), {"Position": place})
+    build.finish_with({"Geometry": grid, "Size": size, "Value": read.outputs["White"]})
+
+
 def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) -> Socket:
     """Which ring counts at a vertex: a fraction is between two, the number of rings is beyond them all.
 
@@ -151,6 +189,7 @@ def _position(build: Builder, points: Socket, index: Input) -> Socket:
     return sample_index(build, points, position, index, "FLOAT_VECTOR")
 
 
-RING_FACTS = GroupKind("Ocean Tweak Foam Facts", 1, _build_facts)
+RING_FACTS = GroupKind("Ocean Tweak Foam Facts", 2, _build_facts)
 RING = GroupKind("Ocean Tweak Foam Ring", 2, _build_ring)
 CAMERA_FOAM = GroupKind("Ocean Tweak Camera Foam", 2, _build)
+CAMERA_FAN = GroupKind("Ocean Tweak Camera Fan", 1, _build_fan)

@@ -17,7 +17,7 @@ from ..core.parameters.patch import MOST_PATCHES
 from .averaged import AVERAGED, SOCKETS
 from .averages import AVERAGES, OTHERS, SLOPES, ocean_carried
 from .building import Builder, Plug, Socket, output
-from .camera_foam import CAMERA_FOAM, RING_FACTS
+from .camera_foam import CAMERA_FAN, CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
 from .camera_patch import CAMERA_PATCH
 from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
@@ -77,7 +77,7 @@ INPUTS = (
     Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, and is 0 along its sides"),
     Plug(
         FOAM_INPUT, "NodeSocketObject", None,
-        "Points with foam on rings around a camera; none shows that of the ocean's mesh",
+        "Points with foam around a camera, or before it; none shows that of the ocean's mesh",
     ),
 )  # fmt: skip
 
@@ -88,8 +88,9 @@ class _Sea(NamedTuple):
     facts : of its mesh
     corner : its first vertex at rest
     eye : the camera, from the corner
-    foam : points on rings around the camera
+    foam : points around the camera
     of_foam : what is known of them
+    is_fan : whether they are the surface's vertices
     """
 
     facts: bpy.types.Node
@@ -97,6 +98,7 @@ class _Sea(NamedTuple):
     eye: Socket
     foam: Socket
     of_foam: bpy.types.Node
+    is_fan: Socket
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
@@ -106,13 +108,18 @@ def _build(tree: bpy.types.NodeTree) -> None:
     reach = _reach(build, sea)
     inputs = {name: build.given(name) for name in ("Finest Spacing", "Vertex Budget")}
     grid = build.group(node_group(CAMERA_GRID), {"Center": sea.eye, "Reach": reach, **inputs})
-    flat = build.change("GeometryNodeSetShadeSmooth", output(grid, "Geometry"))
+    inputs = {"Foam": sea.foam, "Columns": output(sea.of_foam, "Columns"), "Corner": sea.corner}
+    fan = build.group(node_group(CAMERA_FAN), inputs)
+    either = build.switch("GEOMETRY", sea.is_fan, *(output(each, "Geometry") for each in (grid, fan)))
+    flat = build.change("GeometryNodeSetShadeSmooth", either)
     away = build.vector("SUBTRACT", output(build.add("GeometryNodeInputPosition"), "Position"), sea.eye)
     laid = build.store(flat, TEXTURE_COORDINATES, _texture_coordinates(build, sea), "FLOAT2", "CORNER")
-    size = _size(build, grid, away)
-    shown = _finished(build, laid, _summed(build, sea, size), spaces, sea, away, size)
+    size = build.switch("FLOAT", sea.is_fan, _size(build, grid, away), output(fan, "Size"))
+    foam = build.switch("VECTOR", sea.is_fan, _of_rings(build, sea, size), output(fan, "Value"))
+    shown = _finished(build, laid, _summed(build, sea, size, foam), spaces, sea, away, size)
     painted = build.change("GeometryNodeSetMaterial", shown, {"Material": build.given("Material")})
-    warns = _warnings(build, sea, reach, output(grid, "Reached"))
+    reached = build.switch("FLOAT", sea.is_fan, output(grid, "Reached"), reach)
+    warns = _warnings(build, sea, reach, reached)
     # nobody asks a group for its warnings unless something hangs on them
     build.finish(build.switch("GEOMETRY", warns, painted, painted))
 
@@ -123,7 +130,10 @@ def _sea(build: Builder, spaces: Spaces) -> _Sea:
     eye = build.vector("SUBTRACT", spaces.point_of_ocean(_camera(build)), corner)
     given = {"Object": build.given(FOAM_INPUT)}
     foam = output(build.add("GeometryNodeObjectInfo", given, transform_space="ORIGINAL"), "Geometry")
-    return _Sea(facts, corner, eye, foam, build.group(node_group(RING_FACTS), {"Foam": foam}))
+    of_foam = build.group(node_group(RING_FACTS), {"Foam": foam})
+    is_fan = build.compare("GREATER_THAN", output(of_foam, "Columns"), 0)
+    is_fan = build.logic("AND", output(of_foam, "Is There"), is_fan)
+    return _Sea(facts, corner, eye, foam, of_foam, is_fan)
 
 
 def _camera(build: Builder) -> Socket:
@@ -179,17 +189,17 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
     return build.math("MAXIMUM", size, build.given("Finest Spacing"))
 
 
-def _summed(build: Builder, sea: _Sea, size: Socket) -> dict[str, Socket]:
-    """What is shown at a vertex: the patches, or the ocean's mesh; foam on rings, or that of the mesh.
+def _summed(build: Builder, sea: _Sea, size: Socket, foam_around: Socket) -> dict[str, Socket]:
+    """What is shown at a vertex: the patches, or the ocean's mesh; foam around the camera, or that of the mesh.
 
     Besides attributes there are, in the ocean's axes, slopes with the variance that they lack, and strain.
     """
     info = build.add("GeometryNodeObjectInfo", {"Object": build.given(PATCH_INPUTS[0])})
     is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
     own = _of_mesh(build, sea, size, is_one)
-    has_rings = build.logic("NIMPLY", output(sea.of_foam, "Is There"), is_one)
-    rings = dict(zip((FOAM, BREAKING, FOAM_AGE), _of_rings(build, sea, size), strict=True))
-    foam = {name: build.switch("FLOAT", has_rings, own[name], ring) for name, ring in rings.items()}
+    has_foam = build.logic("NIMPLY", output(sea.of_foam, "Is There"), is_one)
+    around = dict(zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, foam_around), strict=True))
+    foam = {name: build.switch("FLOAT", has_foam, own[name], value) for name, value in around.items()}
     sums = {
         socket: build.switch("VECTOR", is_one, (0.0, 0.0, 0.0), own[name]) for name, socket in SOCKETS.items()
     }
@@ -241,7 +251,7 @@ def _of_mesh(build: Builder, sea: _Sea, size: Socket, is_moving: Socket) -> dict
     }
 
 
-def _of_rings(build: Builder, sea: _Sea, size: Socket) -> tuple[Socket, Socket, Socket]:
+def _of_rings(build: Builder, sea: _Sea, size: Socket) -> Socket:
     """Foam, breaking and age on rings around a camera."""
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     inputs = {
@@ -250,7 +260,7 @@ def _of_rings(build: Builder, sea: _Sea, size: Socket) -> tuple[Socket, Socket, 
         "Place": build.vector("ADD", position, sea.corner),
         "Size": size,
     }
-    return coordinates(build, output(build.group(node_group(CAMERA_FOAM), inputs), "Value"))
+    return output(build.group(node_group(CAMERA_FOAM), inputs), "Value")
 
 
 def _cusp(build: Builder, strain: Socket) -> Socket:
@@ -371,4 +381,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 5, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 6, _build)

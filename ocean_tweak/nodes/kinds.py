@@ -50,6 +50,7 @@ ALL_KINDS = (
     camera_foam.RING_FACTS,
     camera_foam.RING,
     camera_foam.CAMERA_FOAM,
+    camera_foam.CAMERA_FAN,
     camera_surface.CAMERA_SURFACE,
     water.WATER,
     contact.CONTACT,

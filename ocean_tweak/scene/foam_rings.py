@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam on rings around the camera: points that the surface around the camera reads.
+"""Foam around the camera, or before one up in the air: points that the surface around the camera reads.
+
+On rings it is around a camera that is low, and in windows. A picture from the air waits for a fan, which is as
+dense as its pixels.
 
 It is made where somebody waits for it; in a window the history of another moment or of another place follows,
 and until then there is foam where crests break now.
@@ -14,15 +17,20 @@ from fractions import Fraction
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core import OceanParameters
 from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
-from ..core.sea.foam_rings import FINEST, SAMPLES, FoamRings, Place, Rings
+from ..core.sea.foam_fan import Fan, FoamFan, View
+from ..core.sea.foam_levels import FINEST, FoamLevels
+from ..core.sea.foam_rings import SAMPLES, FoamRings, Place, Rings
 from ..core.sea.placed_waves import repeating
 from ..nodes.camera_foam import RING_FOAM
+from ..nodes.modifier_inputs import get_input
+from .camera_view import view_of
 from .patch_points import Points
-from .plan import Plan, camera_place
+from .plan import Plan, camera_place, surface_modifier
 from .units import time_stretch
 
 # s after the foam that was made last, within which the next one is quickly made
@@ -33,18 +41,30 @@ _RINGS = "foam rings"
 
 
 class _Maker:
-    """The rings of a sea, and around which place they lie: it drifts along with the foam."""
+    """The foam of a sea: its fan, and its rings with the place around which they lie; it drifts along with the
+    foam."""
 
     def __init__(self, parameters: OceanParameters) -> None:
         self._parameters = parameters
-        self._rings = FoamRings(parameters)
+        self._levels = FoamLevels(parameters)
+        self._rings = FoamRings(self._levels)
+        self._fan: FoamFan | None = None
         self._place: tuple[Fraction, Place] | None = None
         self._busy = threading.Lock()
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the rings."""
-        return self._rings.nbytes
+        """Bytes of the rings and the fan."""
+        return self._rings.nbytes + (0 if self._fan is None else self._fan.nbytes)
+
+    def before(self, time: Fraction, view: View, places: int) -> Fan:
+        """The fan before a camera, with its history."""
+        with self._busy:
+            if self._fan is None or self._fan.places != places:
+                self._fan = FoamFan(self._levels, places)
+            made = self._fan.at(time, view)
+        MEMO.put(_RINGS, self._parameters, self)  # it has grown
+        return made
 
     def at(self, time: Fraction, place: Place) -> Rings:
         """Rings around a place, with their history."""
@@ -56,7 +76,7 @@ class _Maker:
 
     def follow(self, time: Fraction, place: Place) -> None:
         """Make rings around another place or moment, and only then let go of those that are shown."""
-        rings = FoamRings(self._parameters)
+        rings = FoamRings(self._levels)
         rings.at(time, place)
         with self._busy:
             self._rings, self._place = rings, (time, place)
@@ -77,6 +97,8 @@ class Around:
     sea : of several patches
     time : s
     place : of the camera
+    view : of one up in the air
+    vertices : of the surface, at the most
     frame : of the scene, in which it is shown
     scale : Blender units in a metre
     """
@@ -84,6 +106,8 @@ class Around:
     sea: OceanParameters
     time: Fraction
     place: Place
+    view: View | None
+    vertices: int
     frame: float
     scale: float
 
@@ -93,6 +117,9 @@ class Around:
         patient : otherwise it is shown without its history where that would take long
         """
         maker = _maker(self.sea)
+        if patient and self.view is not None:
+            _fill_fan(mesh, maker.before(self.time, self.view, self.vertices), self)
+            return True
         if patient:
             rings, is_complete = maker.at(self.time, self.place), True
         else:
@@ -117,7 +144,9 @@ def around(
     if not sea.patches or "foam" not in plan.channels or foam_outlook(sea).coverage == 0.0:
         return None
     place = Place(*camera_place(surface, scene, plan.scale))
-    return Around(sea, time, place, float(plan.frame / time_stretch(scene)), plan.scale)
+    vertices = get_input(surface_modifier(surface), "Vertex Budget")
+    frame = float(plan.frame / time_stretch(scene))
+    return Around(sea, time, place, view_of(surface, scene, plan.scale), vertices, frame, plan.scale)
 
 
 def _maker(sea: OceanParameters) -> _Maker:
@@ -126,12 +155,8 @@ def _maker(sea: OceanParameters) -> _Maker:
 
 def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:
     """Points ring after ring, x fastest, and the one beyond them, at x = the frame of the scene."""
-    count = len(rings.foam) * SAMPLES**2 + 1
-    if len(mesh.vertices) != count:
-        mesh.clear_geometry()
-        mesh.vertices.add(count)
-    places = np.zeros((count, 3), np.float32)
-    values = np.empty((count, 3), np.float32)
+    places = np.zeros((len(rings.foam) * SAMPLES**2 + 1, 3), np.float32)
+    values = np.empty_like(places)
     along = np.arange(SAMPLES)
     for number, (corner, foam) in enumerate(zip(rings.corners, rings.foam, strict=True)):
         block = slice(number * SAMPLES**2, (number + 1) * SAMPLES**2)
@@ -139,6 +164,23 @@ def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:
         places[block, 0], places[block, 1] = (part.ravel() for part in np.meshgrid(x, y))
         values[block] = np.stack(foam, axis=-1).reshape(-1, 3)
     values[-1], places[-1, 0] = rings.beyond, shown.frame
+    _write(mesh, places, values)
+
+
+def _fill_fan(mesh: bpy.types.Mesh, fan: Fan, shown: Around) -> None:
+    """Points row after row, with the size of the cells as z, and one more, at x = the frame of the scene, y =
+    the number of columns."""
+    last = shown.frame, fan.x.shape[1], 0.0
+    places = shown.scale * np.stack((fan.x, fan.y, fan.size), axis=-1).reshape(-1, 3)
+    values = np.stack(fan.foam, axis=-1).reshape(-1, 3)
+    _write(mesh, np.append(places, [last], 0).astype(np.float32), np.append(values, values[-1:], 0))
+
+
+def _write(mesh: bpy.types.Mesh, places: NDArray[np.float32], values: NDArray[np.float32]) -> None:
+    """Places in Blender units, and foam, breaking and age there; (points, 3) each."""
+    if len(mesh.vertices) != len(places):
+        mesh.clear_geometry()
+        mesh.vertices.add(len(places))
     mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     attribute = mesh.attributes.get(RING_FOAM) or mesh.attributes.new(RING_FOAM, "FLOAT_VECTOR", "POINT")
     attribute.data.foreach_set("vector", values.reshape(-1))

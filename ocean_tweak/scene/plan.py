@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
 import bpy
-from mathutils import Vector
+from mathutils import Matrix
 
 from ..core import Area, OceanParameters
 from ..core.numerics.machine import usable_memory
@@ -32,20 +33,22 @@ _LEAST_SAMPLES = 16
 _AROUND, _AREA_CELLS = 2, 512
 # m that a camera may be away from what was made around it
 _FAR_MOVED = 9.0
+# rad by which it may have turned
+_FAR_TURNED = math.radians(2.0)
 # bytes that a vertex of a grid with all its attributes takes, counting one copy for the evaluation
 _VERTEX_BYTES = 200
 
 
 class _Seen(NamedTuple):
-    """Where an evaluation has a camera, and where its object's own matrix has it at that time."""
+    """An evaluated camera's matrix, and its object's own at that time."""
 
-    stale: tuple[float, ...]
-    place: Vector
+    stale: Matrix
+    matrix: Matrix
 
 
 # by the session uid of the surface around it: where a camera was last seen, and what was last made for
 _seen: dict[int, _Seen] = {}
-_used: dict[int, Vector] = {}
+_used: dict[int, Matrix] = {}
 
 
 @dataclass(frozen=True)
@@ -207,27 +210,37 @@ def camera_place(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float
 
     scale : Blender units in a metre
     """
-    camera = _camera_of(surface, scene)
-    place = camera.matrix_world.translation
-    seen = _seen.get(surface.session_uid)
-    if seen is not None and seen.stale == tuple(place):
-        place = seen.place
-    x, y, _ = surface.parent.matrix_world.inverted_safe() @ place
-    _used[surface.session_uid] = place.copy()
+    matrix = camera_matrix(surface, scene)
+    x, y, _ = surface.parent.matrix_world.inverted_safe() @ matrix.translation
     return x / scale, y / scale
+
+
+def camera_matrix(surface: bpy.types.Object, scene: bpy.types.Scene) -> Matrix:
+    """Of the camera around which a surface shows its ocean, in the world."""
+    matrix = camera_of(surface, scene).matrix_world.copy()
+    seen = _seen.get(surface.session_uid)
+    if seen is not None and seen.stale == matrix:
+        matrix = seen.matrix
+    _used[surface.session_uid] = matrix
+    return matrix
 
 
 def camera_has_moved(
     surface: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scale: float
 ) -> bool:
-    """Whether an evaluation has the camera of a surface elsewhere than what lies around it was made for.
+    """Whether an evaluation has the camera of a surface elsewhere than what lies around it was made for, or it
+    looks elsewhere.
 
     In a render only the evaluation knows where a camera is: from now on `camera_place` goes by it.
     """
-    camera, uid = _camera_of(surface, scene), surface.session_uid
-    place = camera.evaluated_get(depsgraph).matrix_world.translation.copy()
-    _seen[uid] = _Seen(tuple(camera.matrix_world.translation), place)
-    return uid in _used and (_used[uid] - place).length > _FAR_MOVED * scale
+    camera, uid = camera_of(surface, scene), surface.session_uid
+    now = camera.evaluated_get(depsgraph).matrix_world.copy()
+    _seen[uid] = _Seen(camera.matrix_world.copy(), now)
+    if uid not in _used:
+        return False
+    before = _used[uid]
+    turned = before.to_quaternion().rotation_difference(now.to_quaternion()).angle
+    return turned > _FAR_TURNED or (before.translation - now.translation).length > _FAR_MOVED * scale
 
 
 def forget_cameras() -> None:
@@ -236,7 +249,8 @@ def forget_cameras() -> None:
     _used.clear()
 
 
-def _camera_of(surface: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object:
+def camera_of(surface: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object:
+    """Around which a surface shows its ocean; the surface itself where there is none."""
     return get_input(surface_modifier(surface), "Camera") or scene.camera or surface
 
 

@@ -54,8 +54,9 @@ def eye_of(ocean, camera):
 def expected_foam(extension, parameters, time, place, x, y, number=0):
     """One ring between its places, by the core and arithmetic."""
     rings = extension("core.sea.foam_rings")
-    made = rings.FoamRings(parameters).at(time, rings.Place(*place))
-    cell = rings.FINEST * 2.0**number
+    levels = extension("core.sea.foam_levels")
+    made = rings.FoamRings(levels.FoamLevels(parameters)).at(time, rings.Place(*place))
+    cell = levels.FINEST * 2.0**number
     column, row = (x - made.corners[number][0]) / cell, (y - made.corners[number][1]) / cell
     j, i = np.floor(column).astype(int), np.floor(row).astype(int)
     u, v = (column - j)[:, np.newaxis], (row - i)[:, np.newaxis]

@@ -9,7 +9,8 @@ import pytest
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, Patch, Places, WaveLayer
 from ocean_tweak.core.foam.threshold import foam_outlook
-from ocean_tweak.core.sea.foam_rings import FINEST, INNER, SAMPLES, FoamRings, Place
+from ocean_tweak.core.sea.foam_levels import FINEST, FoamLevels
+from ocean_tweak.core.sea.foam_rings import INNER, SAMPLES, FoamRings, Place
 from tests.core.patched_seas import summed
 
 # soon forgotten: each frame alone looks back over its memory
@@ -27,7 +28,7 @@ def sea():
 
 @pytest.fixture(scope="module")
 def rings(sea):
-    return FoamRings(sea).at(TIME, Place(300.0, -200.0))
+    return FoamRings(FoamLevels(sea)).at(TIME, Place(300.0, -200.0))
 
 
 def places_of(rings, number):
@@ -79,11 +80,11 @@ def test_new_and_old_foam_are_told_apart(rings):
 
 
 def test_it_is_the_same_from_elsewhere_and_whatever_came_before(sea, rings):
-    other = FoamRings(sea)
+    other = FoamRings(FoamLevels(sea))
     other.at(TIME - 1, Place(0.0, 0.0))
     other.at(TIME - Fraction(1, 8), Place(307.0, -195.0))
     moved = other.at(TIME, Place(309.0, -193.0))
-    alone = FoamRings(sea).at(TIME, Place(309.0, -193.0))
+    alone = FoamRings(FoamLevels(sea)).at(TIME, Place(309.0, -193.0))
     for number, (ours, theirs, again) in enumerate(zip(rings.foam, moved.foam, alone.foam, strict=True)):
         cell = FINEST * 2.0**number
         step = np.subtract(moved.corners[number], rings.corners[number]) / cell
@@ -117,7 +118,7 @@ def test_as_much_near_as_far():
     wanted = foam_outlook(sea).coverage
     found = []
     for seed in range(4):
-        rings = FoamRings(sea.replace(seed=seed, patches=patches)).at(TIME, Place(20.0, 10.0))
+        rings = FoamRings(FoamLevels(sea.replace(seed=seed, patches=patches))).at(TIME, Place(20.0, 10.0))
         whole = Ocean(sea.replace(seed=seed, patches=patches))
         of_seed = []
         for number, foam in enumerate(rings.foam):
@@ -136,7 +137,7 @@ def test_no_lattice_shows_at_two_samples_a_wave():
     power = np.zeros(SAMPLES // 2 + 1)
     for seed in range(3):
         sea = OceanParameters(seed=seed, layers=(layer,), patches=(patch,), foam=FOAM)
-        foam = FoamRings(sea).at(TIME, Place(64.0, 64.0)).foam[0].foam
+        foam = FoamRings(FoamLevels(sea)).at(TIME, Place(64.0, 64.0)).foam[0].foam
         for rows in (foam, foam.T):
             power += (np.abs(np.fft.rfft(rows * np.hanning(SAMPLES), axis=1)) ** 2).mean(axis=0)
     number = np.arange(8, 80)

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Places at rest, and foam on them, for a picture of the sea from the air: as dense as its pixels are.
+
+From a height h a pixel covers what is at the distance r, r along the horizon and r²/h towards it. The fan's
+columns are directions from the foot of the camera, dense within the picture and few beside it; its rows are
+r ∝ 1/u² for even steps of u, so that cells are r wide and r^1.5 long: near the geometric mean of both.
+
+Each row has the foam of the level (`foam_levels`) whose cells are the next smaller ones; near to the next level
+it goes over into that. Foam is made where the picture looks, and has the mean elsewhere. What counts as known of
+the breaking waves are those that the nearest row can show.
+
+The places drift along with the foam. A fan stays while the camera moves or turns little.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..foam.drifting import DriftingFoam
+from ..foam.model import Whitecaps
+from .foam_levels import FINEST, FoamLevels
+
+Array = NDArray[np.float64]
+
+#: rad, of the steps in which a fan turns and tilts, and by how much of the height it moves at once
+_TURN, _MOVE = math.radians(5.0), 0.125
+#: heights are of so many steps to an octave
+_HEIGHTS = 4
+#: how much nearer than the flat water at the picture's edge the fan begins to be dense: crests are higher
+_NEARER = 0.85
+#: rows before that, and columns beside the picture: they are for light alone
+_ROWS_BEFORE, _COLUMNS_BESIDE = 16, 48
+#: of the nearest of these, as a share of the dense rows' distance
+_FOOT = 0.02
+#: rows to a column of the picture
+_ROWS_TO_COLUMNS = 0.7
+#: share of a level's octave of cell sizes after which the next one begins to show
+_OVER = 0.85
+
+
+@dataclass(frozen=True)
+class View:
+    """What a camera sees of the water.
+
+    x, y : of the place below it, m
+    height : m
+    azimuth : rad counter-clockwise from +x, of the middle of the picture
+    half_angle : rad from there to the farthest direction in the picture
+    lowest : rad below the horizon, of the lowest line of sight
+    reach : m, how far water is to be shown
+    """
+
+    x: float
+    y: float
+    height: float
+    azimuth: float
+    half_angle: float
+    lowest: float
+    reach: float
+
+    def stepped(self, drift: tuple[float, float], time: float) -> View:
+        """One that sees as much, and is the same for all views near it; its place is that of the time 0."""
+        height = 2.0 ** (math.floor(_HEIGHTS * math.log2(self.height)) / _HEIGHTS)
+        move = _MOVE * height
+        x, y = (
+            move * round((along - time * speed) / move)
+            for along, speed in zip((self.x, self.y), drift, strict=True)
+        )
+        return replace(
+            self, x=x, y=y, height=height,
+            azimuth=_TURN * round(self.azimuth / _TURN),
+            # what moves aside by half a step of the place is seen at the near edge
+            half_angle=min(_TURN * math.ceil(self.half_angle / _TURN + 1.0), math.pi - _TURN),
+            lowest=_TURN * math.ceil(self.lowest / _TURN),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Fan:
+    """Foam at a time on places at rest; all arrays are of (rows, columns), and the last column is the first.
+
+    x, y : of the places, m
+    size : of the cells there, m
+    """
+
+    x: Array
+    y: Array
+    size: Array
+    foam: Whitecaps
+
+
+class _Rows(NamedTuple):
+    """Places of a level.
+
+    level : its number
+    rows : of the fan
+    share : (rows,) of the level there
+    foam : of the places in the picture
+    """
+
+    level: int
+    rows: slice
+    share: Array
+    foam: DriftingFoam
+
+
+class _Places(NamedTuple):
+    """Of a fan, as in `Fan`, at time 0; and how many columns are in the picture, and rows before it."""
+
+    x: Array
+    y: Array
+    size: Array
+    columns: int
+
+
+class FoamFan:
+    """The foam of a sea of patches before a camera up in the air. Making it is cheap.
+
+    It serves ascending times and a view that stays near; any other is made from the sea alone, and is the
+    same. One thread at a time goes on with it, and others wait.
+    """
+
+    def __init__(self, levels: FoamLevels, places: int) -> None:
+        """`places` is how many a fan has, at the most."""
+        self._levels = levels
+        self.places = places
+        self._busy = threading.Lock()
+        self._view: View | None = None
+        self._rows: tuple[_Rows, ...] = ()
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the places and their births."""
+        return sum(rows.foam.nbytes for rows in self._rows)
+
+    def at(self, time: float | Fraction, view: View) -> Fan:
+        """Foam before a camera at a time in s. It may be called on any thread."""
+        model = self._levels.seas[0].foam_model
+        now = model.reduced(time)
+        stepped = view.stepped(model.drift, float(now))
+        with self._busy:
+            places = _places(stepped, self.places)
+            if self._view != stepped:
+                self._view, self._rows = stepped, tuple(self._new_rows(places))
+            missing = [rows.foam.missing(now) for rows in self._rows]
+            # moment by moment, because levels share strains
+            for index in sorted({index for each in missing for index in each}):
+                for rows, of_rows in zip(self._rows, missing, strict=True):
+                    if index in of_rows:
+                        rows.foam.remember(index)
+            foam = self._shown(places, now)
+        drift_x, drift_y = (float(now) * speed for speed in model.drift)
+        return Fan(places.x + drift_x, places.y + drift_y, places.size, foam)
+
+    def _new_rows(self, places: _Places) -> list[_Rows]:
+        """One for each level that the picture shows."""
+        number = np.log2(np.maximum(places.size[_ROWS_BEFORE:, 0] / FINEST, 1.0))
+        found = []
+        for level, sea in enumerate(self._levels.seas):
+            below, above = (
+                np.clip((number - at - _OVER) / (1.0 - _OVER), 0.0, 1.0) for at in (level - 1, level)
+            )
+            share = (below if level else np.ones_like(number)) * (1.0 - above)
+            shown = np.flatnonzero(share > 0.0)
+            if len(shown):
+                rows = slice(_ROWS_BEFORE + shown[0], _ROWS_BEFORE + shown[-1] + 1)
+                at = rows, slice(places.columns)
+                foam = sea.new_drifting_foam(places.x[at].ravel(), places.y[at].ravel())
+                found.append(_Rows(level, rows, share[shown[0] : shown[-1] + 1], foam))
+        return found
+
+    def _shown(self, places: _Places, now: Fraction) -> Whitecaps:
+        beyond = self._levels.beyond
+        seen = max(FINEST, float(places.size[_ROWS_BEFORE, 0]))
+        total = [np.zeros(places.x.shape, np.float32) for _ in beyond]
+        known = np.zeros(len(places.x), np.float32)
+        most = np.zeros(places.x.shape, np.float32)
+        for rows in self._rows:
+            shape = len(rows.share), places.columns
+            own = Whitecaps(*(field.reshape(shape) for field in rows.foam.whitecaps(now)))
+            foam, breaking, age = self._levels.mixed(own, rows.level, seen)
+            share = rows.share.astype(np.float32)[:, np.newaxis]
+            at = rows.rows, slice(places.columns)
+            known[rows.rows] += share[:, 0]
+            total[0][at] += share * foam
+            total[1][at] += share * breaking
+            # a mean of two ages would be that of neither
+            total[2][at] = np.where(share * foam >= most[at], age, total[2][at])
+            most[at] = np.maximum(most[at], share * foam)
+        rest = np.ones(places.x.shape, np.float32)
+        rest[:, : places.columns] -= known[:, np.newaxis]
+        total[0] += rest * beyond.foam
+        total[1] += rest * beyond.breaking
+        total[2] = np.where(rest * beyond.foam > most, beyond.foam_age, total[2])
+        return Whitecaps(*total)
+
+
+def _places(view: View, count: int) -> _Places:
+    """Those of a fan of so many places, at the most."""
+    columns = int(math.sqrt(count / _ROWS_TO_COLUMNS))
+    columns -= _COLUMNS_BESIDE
+    rows = count // (columns + _COLUMNS_BESIDE) - _ROWS_BEFORE
+    near = _NEARER * view.height / math.tan(view.lowest)
+    u = np.linspace(1.0, math.sqrt(near / max(view.reach, 2.0 * near)), rows)
+    before, dense = near * np.linspace(_FOOT, 1.0, _ROWS_BEFORE + 1)[:-1], near / u**2
+    distance = np.concatenate((before, dense))
+    in_picture = np.linspace(-view.half_angle, view.half_angle, columns)
+    beside = np.linspace(view.half_angle, 2.0 * math.pi - view.half_angle, _COLUMNS_BESIDE + 1)[1:]
+    angle = view.azimuth + np.concatenate((in_picture, beside))
+    x = view.x + distance[:, np.newaxis] * np.cos(angle)
+    y = view.y + distance[:, np.newaxis] * np.sin(angle)
+    x[:, -1], y[:, -1] = x[:, 0], y[:, 0]
+    along = np.concatenate((np.full(_ROWS_BEFORE, before[1] - before[0]), np.gradient(dense)))
+    across = np.full(len(angle), beside[1] - beside[0])
+    across[:columns] = across[-1] = in_picture[1] - in_picture[0]
+    size = np.sqrt((along * distance)[:, np.newaxis] * across)
+    return _Places(x, y, size, columns)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a camera up in the air sees of an ocean."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..core.sea.foam_fan import View
+from ..nodes.modifier_inputs import get_input
+from .plan import camera_matrix, camera_of, surface_modifier
+
+#: m, from which on a camera is up in the air: lower ones have foam on rings around them, whatever they look at
+AERIAL = 20.0
+#: rad below the horizon, between which the lowest line of sight is for a fan to be before the camera
+_LOWEST = math.radians(2.0), math.radians(60.0)
+#: rad, of the picture to each side at the most
+_WIDEST = math.radians(100.0)
+#: places along each side of the picture that are looked at
+_ALONG = 9
+
+
+def view_of(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> View | None:
+    """What the camera of a surface sees of the water, at rest and in m, in the ocean's space.
+
+    None for one that is low, that looks down, or up, or is not one with a perspective.
+
+    scale : Blender units in a metre
+    """
+    camera = camera_of(surface, scene)
+    if camera.type != "CAMERA" or camera.data.type != "PERSP":
+        return None
+    matrix = surface.parent.matrix_world.inverted_safe() @ camera_matrix(surface, scene)
+    x, y, height = matrix.translation / scale
+    sight = _sight(camera, matrix, scene)
+    lowest = math.asin(-min(sight[:, 2].min(), 0.0))
+    if height < AERIAL or not _LOWEST[0] <= lowest <= _LOWEST[1]:
+        return None
+    middle = sight.mean(axis=0)
+    azimuth = math.atan2(middle[1], middle[0])
+    on_water = sight[sight[:, 2] <= 0.0]
+    aside = np.angle((on_water[:, 0] + 1j * on_water[:, 1]) * np.exp(-1j * azimuth))
+    half_angle = float(np.abs(aside).max())
+    if half_angle > _WIDEST:
+        return None
+    return View(x, y, height, azimuth, half_angle, lowest, _reach(surface, height, scale))
+
+
+def _sight(camera: bpy.types.Object, matrix: Matrix, scene: bpy.types.Scene) -> np.ndarray:
+    """(lines, 3) unit vectors through the edge of the picture."""
+    corners = np.array(camera.data.view_frame(scene=scene))
+    share = np.linspace(0.0, 1.0, _ALONG, endpoint=False)[:, np.newaxis]
+    edge = np.concatenate(
+        [a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)]
+    )
+    lines = edge @ np.array(matrix.to_3x3().normalized()).T
+    return np.asarray(lines / np.linalg.norm(lines, axis=1, keepdims=True))
+
+
+def _reach(surface: bpy.types.Object, height: float, scale: float) -> float:
+    """As far as the surface is asked to go, m: to the horizon, √(2Rh), or what is given instead."""
+    modifier = surface_modifier(surface)
+    if not get_input(modifier, "To Horizon"):
+        return float(get_input(modifier, "Reach") / scale)
+    return math.sqrt(2.0 * height * get_input(modifier, "Planet Radius") / scale)
