@@ -68,8 +68,8 @@ SHOTS = {
     "aerial-300m": Shot(
         "STORM", is_afloat=False,
         changes={
-            "eye": 300.0, "tilt": math.radians(14.0), "lens": 28.0, "exposure": -0.1,
-            "sun": math.radians(130.0),
+            "eye": 300.0, "tilt": math.radians(15.0), "lens": 28.0, "exposure": 0.3, "visibility": 14e3,
+            "sun": math.radians(-75.0), "sun_elevation": math.radians(26.0), "overcast": 0.45,
         },
     ),
 }  # fmt: skip

@@ -105,7 +105,7 @@ def dress(extension, parameters):
     above = mood.sky(LOOKING)
     world, sun = sky.new_world("Storm", above), sky.new_sun("Sun", above)
     material = water_material.water_material(mood.water)
-    water_material.set_air(material, mood.visibility, above.haze)
+    water_material.set_air(material, mood.visibility, above.haze(LOOKING))
     water_material.light_by(material, sun)
     place = surroundings.camera_place(mood, parameters, LOOKING)
     camera = None

@@ -2,9 +2,10 @@
 """Geometry nodes that read foam around a camera, as `core.sea.foam_rings` and `core.sea.foam_fan` make it.
 
 Rings lie in one another, ring n with cells 2ⁿ times as large as the first one's. Their places are the points
-of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. A fan's are its points, row
-after row, and the surface's own vertices too; their z is the size of the cells there. One point more, the last,
-has what is beyond all rings, and stands at x = the frame that the foam is of, y = the columns of a fan.
+of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. A fan's are its points,
+row after row, and the surface's own vertices too; their z is the size of the cells there. One point more,
+the last, has what is beyond all rings, and stands at x = the frame that the foam is of, y = the columns of a
+fan.
 """
 
 from __future__ import annotations

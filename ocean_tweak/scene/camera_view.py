@@ -13,7 +13,7 @@ from ..core.sea.foam_fan import View
 from ..nodes.modifier_inputs import get_input
 from .plan import camera_matrix, camera_of, surface_modifier
 
-#: m, from which on a camera is up in the air: lower ones have foam on rings around them, whatever they look at
+#: m, from which on a camera is up in the air: lower ones have foam on rings around them
 AERIAL = 20.0
 #: rad below the horizon, between which the lowest line of sight is for a fan to be before the camera
 _LOWEST = math.radians(2.0), math.radians(60.0)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam around the camera, or before one up in the air: points that the surface around the camera reads.
 
-On rings it is around a camera that is low, and in windows. A picture from the air waits for a fan, which is as
-dense as its pixels.
+On rings it is around a camera that is low, and in windows. A picture from the air waits for a fan, which is
+as dense as its pixels.
 
 It is made where somebody waits for it; in a window the history of another moment or of another place follows,
 and until then there is foam where crests break now.
@@ -41,8 +41,7 @@ _RINGS = "foam rings"
 
 
 class _Maker:
-    """The foam of a sea: its fan, and its rings with the place around which they lie; it drifts along with the
-    foam."""
+    """The foam of a sea: its fan, its rings, and around which place these lie: it drifts along."""
 
     def __init__(self, parameters: OceanParameters) -> None:
         self._parameters = parameters

@@ -228,8 +228,8 @@ def camera_matrix(surface: bpy.types.Object, scene: bpy.types.Scene) -> Matrix:
 def camera_has_moved(
     surface: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, scale: float
 ) -> bool:
-    """Whether an evaluation has the camera of a surface elsewhere than what lies around it was made for, or it
-    looks elsewhere.
+    """Whether an evaluation has the camera of a surface elsewhere than what lies around it was made for, or
+    turned elsewhere.
 
     In a render only the evaluation knows where a camera is: from now on `camera_place` goes by it.
     """

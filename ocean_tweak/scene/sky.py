@@ -46,8 +46,9 @@ _OVERCAST = (
     (0.0, (0.36, 0.40, 0.43)), (0.05, (0.32, 0.36, 0.395)), (0.16, (0.27, 0.31, 0.35)),
     (0.42, (0.43, 0.48, 0.53)), (1.0, (0.70, 0.76, 0.82)),
 )  # fmt: skip
+#: light beneath its edge towards the sun: colour, strength and how narrow it is
 _GLOW = (1.0, 0.90, 0.76)
-_OVERCAST_HAZE = (0.46, 0.50, 0.53)
+_GLOWING, _GLOW_POWER = 1.1, 9.0
 
 
 @dataclass(frozen=True)
@@ -69,13 +70,13 @@ class Sky:
         """Red, green and blue on a surface that faces the sun, W/m² of Blender's."""
         return _at(_SUN, self.sun_elevation, EXPOSURE * (1.0 - self.overcast) ** 2)
 
-    @property
-    def haze(self) -> tuple[float, float, float]:
-        """Radiance of the air at the horizon."""
+    def haze(self, azimuth: float) -> tuple[float, float, float]:
+        """Radiance of the air at the horizon, towards an azimuth in rad."""
+        # a clear horizon's mean: clouds take some of its light
         clear = np.array(_at(_HORIZONS[_sky_type()], self.sun_elevation, EXPOSURE))
-        # a whole horizon's mean: clouds take some of its light
-        shown = clear + self.overcast * (np.array(_OVERCAST_HAZE) - clear)
-        return tuple(float(part) for part in shown)
+        facing = max(math.cos(azimuth - self.sun_azimuth), 0.0)
+        cloud = np.array(_OVERCAST[0][1]) + _GLOWING * facing**_GLOW_POWER * np.array(_GLOW)
+        return tuple(float(part) for part in clear + self.overcast * (cloud - clear))
 
 
 def _at(table: np.ndarray, elevation: float, factor: float) -> tuple[float, float, float]:
@@ -157,10 +158,10 @@ def _overcast(shade: Shading, sky: Sky, direction: Socket, above: Socket) -> Soc
     torn = shade.math("MULTIPLY_ADD", shade.smooth(large, 0.33, 0.70, -0.50, 0.45), contrast, 1.0)
     ragged = shade.noise(shade.vector("MULTIPLY", direction, (1.0, 1.0, 5.0)), 2.6, Detail=6.0, Roughness=0.6)
     edge = shade.math("ADD", above, shade.math("MULTIPLY_ADD", ragged, 0.16, -0.08))
-    low = shade.smooth(edge, 0.0, 0.20, 1.1, 0.0)
+    low = shade.smooth(edge, 0.0, 0.20, _GLOWING, 0.0)
     flat = (math.cos(sky.sun_azimuth), math.sin(sky.sun_azimuth), 0.0)
     facing = shade.math("MAXIMUM", shade.number("DOT_PRODUCT", direction, flat), 0.0)
-    glow = shade.math("MULTIPLY", shade.math("POWER", facing, 9.0), low)
+    glow = shade.math("MULTIPLY", shade.math("POWER", facing, _GLOW_POWER), low)
     return shade.vector("ADD", shade.scale(gradient, torn), shade.scale(_GLOW, glow))
 
 

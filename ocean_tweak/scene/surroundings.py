@@ -87,7 +87,7 @@ def build(
     replaced = tuple(item.name for item in left)
     startup_file.remove(left)
     material = water_material.water_material(chosen.water)
-    water_material.set_air(material, chosen.visibility, chosen.sky().haze)
+    water_material.set_air(material, chosen.visibility, chosen.sky().haze(VIEW))
     water_material.assign(ocean, material)
     water_material.describe(ocean, parameters, scene)
     if chosen.rings:

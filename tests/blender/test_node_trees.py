@@ -34,6 +34,7 @@ KINDS = {
     "foam-facts": ("nodes.camera_foam", lambda module: module.RING_FACTS),
     "foam-ring": ("nodes.camera_foam", lambda module: module.RING),
     "camera-foam": ("nodes.camera_foam", lambda module: module.CAMERA_FOAM),
+    "camera-fan": ("nodes.camera_foam", lambda module: module.CAMERA_FAN),
     "camera-surface": ("nodes.camera_surface", lambda module: module.CAMERA_SURFACE),
     "grid-facts": ("nodes.surface", lambda module: module.GRID_FACTS),
     "cell": ("nodes.surface", lambda module: module.CELL),

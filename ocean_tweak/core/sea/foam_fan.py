@@ -5,9 +5,9 @@ From a height h a pixel covers what is at the distance r, r along the horizon an
 columns are directions from the foot of the camera, dense within the picture and few beside it; its rows are
 r ∝ 1/u² for even steps of u, so that cells are r wide and r^1.5 long: near the geometric mean of both.
 
-Each row has the foam of the level (`foam_levels`) whose cells are the next smaller ones; near to the next level
-it goes over into that. Foam is made where the picture looks, and has the mean elsewhere. What counts as known of
-the breaking waves are those that the nearest row can show.
+Each row has the foam of the level (`foam_levels`) whose cells are the next smaller ones; near to the next
+level it goes over into that. Foam is made where the picture looks, and has the mean elsewhere. What counts
+as known of the breaking waves are those that the nearest row can show.
 
 The places drift along with the foam. A fan stays while the camera moves or turns little.
 """

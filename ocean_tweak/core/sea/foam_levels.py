@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam of a sea as it is seen at several distances: each level knows half as fine waves as the one before.
 
-Level n has cells of the size FINEST·2ⁿ, and its foam is that of the sea without the waves shorter than four of
-them: it is born on the crests that can be seen at that distance, with the threshold that belongs to them, and
-no lattice shows.
+Level n has cells of the size FINEST·2ⁿ, and its foam is that of the sea without the waves shorter than four
+of them: it is born on the crests that can be seen at that distance, with the threshold that belongs to them,
+and no lattice shows.
 
 The coarser a level, the less it knows of what breaks. Of its foam F counts the share κ of the strains'
 variance that it holds, of that which is seen, and for the rest the mean W of the sea, κF + (1 - κ)W: the mean
-stays, and what cannot be known is even. Beyond the last level there is W alone. Dupuy & Bruneton (2012) average
-whitecaps over the waves that are too small to be seen for the same reason.
+stays, and what cannot be known is even. Beyond the last level there is W alone. Dupuy & Bruneton (2012)
+average whitecaps over the waves that are too small to be seen for the same reason.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ _CELLS_A_WAVE = 4.0
 #: samples of a patch along its shortest wave: read between them, a fourth of that wave's variance is lost,
 #: and less of longer ones
 _SAMPLES_A_WAVE = 4.25
-#: by how much longer a level's shortest wave may be than a patch's, and the patch is whole all the same: levels
-#: share the strains of a patch that they both have whole
+#: by how much longer a level's shortest wave may be than a patch's, and the patch is whole all the same:
+#: levels share the strains of a patch that they both have whole
 _WHOLE = 1.15
 #: a level whose waves have less of the strains' variance than this tells little
 _LEAST_SHARE = 0.15

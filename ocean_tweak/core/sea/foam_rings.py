@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam around a place, on square lattices in one another: dense near it, coarse far away.
 
-Ring n is of level n of the foam (`foam_levels`) and has its cells. Its places drift along with the foam and are
-whole cells apart from where the water of time 0 was, whatever place is asked for: who looks on from elsewhere
-sees the same foam.
+Ring n is of level n of the foam (`foam_levels`) and has its cells. Its places drift along with the foam and
+are whole cells apart from where the water of time 0 was, whatever place is asked for: who looks on from
+elsewhere sees the same foam.
 """
 
 from __future__ import annotations
