@@ -62,13 +62,13 @@ SHOTS = {
     "aerial-60m": Shot(
         "FRESH_BREEZE", (11.0, 150e3), is_afloat=False,
         changes={
-            "eye": 60.0, "tilt": math.radians(12.0), "lens": 28.0, "rings": 0, "sun": math.radians(25.0),
+            "eye": 60.0, "tilt": math.radians(12.0), "lens": 28.0, "rings": 0, "sun": math.radians(45.0),
         },
     ),
     "aerial-300m": Shot(
         "STORM", is_afloat=False,
         changes={
-            "eye": 300.0, "tilt": math.radians(15.0), "lens": 28.0, "exposure": 0.3, "visibility": 14e3,
+            "eye": 300.0, "tilt": math.radians(15.0), "lens": 28.0, "exposure": 0.3, "visibility": 22e3,
             "sun": math.radians(-75.0), "sun_elevation": math.radians(26.0), "overcast": 0.45,
         },
     ),

@@ -190,7 +190,7 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
 
 
 def _summed(build: Builder, sea: _Sea, size: Socket, foam_around: Socket) -> dict[str, Socket]:
-    """What is shown at a vertex: the patches, or the ocean's mesh; foam around the camera, or that of the mesh.
+    """What is shown at a vertex: the patches, or the ocean's mesh; foam around the camera, or of the mesh.
 
     Besides attributes there are, in the ocean's axes, slopes with the variance that they lack, and strain.
     """

@@ -40,6 +40,10 @@ _HORIZONS = {
     ),
 }  # fmt: skip
 
+#: what a clear horizon's radiance is beside that mean, away from the sun and towards it, and how narrow that
+#: is: measured at 25° and 60° to 75° from a sun 14° to 34° high
+_AROUND_SUN = (0.65, 1.77, 6.0)
+
 #: a closed cloud's radiance over sin(elevation): about three times as bright overhead as low down (Moon and
 #: Spencer 1942), which makes foam as bright as the sky behind it; at the horizon it thins out
 _OVERCAST = (
@@ -72,9 +76,11 @@ class Sky:
 
     def haze(self, azimuth: float) -> tuple[float, float, float]:
         """Radiance of the air at the horizon, towards an azimuth in rad."""
-        # a clear horizon's mean: clouds take some of its light
-        clear = np.array(_at(_HORIZONS[_sky_type()], self.sun_elevation, EXPOSURE))
         facing = max(math.cos(azimuth - self.sun_azimuth), 0.0)
+        aside, towards, power = _AROUND_SUN
+        around = aside + towards * facing**power
+        # a horizon without clouds: they take some of its light
+        clear = np.array(_at(_HORIZONS[_sky_type()], self.sun_elevation, EXPOSURE * around))
         cloud = np.array(_OVERCAST[0][1]) + _GLOWING * facing**_GLOW_POWER * np.array(_GLOW)
         return tuple(float(part) for part in clear + self.overcast * (cloud - clear))
 
