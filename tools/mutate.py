@@ -63,6 +63,8 @@ EQUIVALENT = {
     "statistics.loop_speed_change > _LARGEST_SPEED_CHANGE: > -> >=": "the very limit",
     "structure sea.query._sheets: "
     "np.hypot(x - start_x, y - start_y) < 2.0 * step: < -> <=": "a distance of the very limit",
+    "structure sea.query._sheets: "
+    "min(_NET, max(2, int(np.ceil(2.0 * reach / spacing)))): min -> max": "a finer net, which takes longer",
     "structure waves.wind_field.convolution.kernel: 2 * reach: * -> /": "no bump is wider than the patch",
     "structure sea.query.inside_quad: u < 1 + edge: < -> <=": "a place on the very edge",
     "structure parameters.former_json._path: "

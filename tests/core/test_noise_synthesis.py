@@ -258,6 +258,14 @@ def test_resolution_shows_more_of_the_same_sea() -> None:
         np.testing.assert_allclose(coarse[np.ix_(index, index)], fine[np.ix_(index, index)], atol=1e-12)
 
 
+def test_the_shortest_wave_of_an_odd_image_is_kept() -> None:
+    """20 waves over 41 pixels."""
+    image = np.broadcast_to(np.cos(2.0 * np.pi * 20.0 * np.arange(41) / 41.0), (41, 41))
+    layer = ImageLayer(image=Raster(image), filter="FRACTAL", fractal_dimension=4.0)
+    expected = np.broadcast_to(np.cos(2.0 * np.pi * 20.0 * np.arange(N) / N), (N, N))
+    assert np.corrcoef(expected.ravel(), elevation(state(layer)).ravel())[0, 1] == pytest.approx(1.0)
+
+
 def test_waves_are_told_where_the_noise_has_some() -> None:
     """On a grid finer than the noise nothing is told of waves that the noise is too coarse for."""
     fine = filtered(ImageLayer(noise_resolution=16), L, 64, "DEEP", Water())
