@@ -7,7 +7,8 @@ continuous derivatives, which the slopes and strains of a masked sea need: ∂(w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -27,11 +28,13 @@ _ROWS = 128
 
 
 MASK_SOURCES = ("IMAGE", "DISTANCE")
+#: lines of a mask, each as much work as a mask's place, and how many domains each may be long
+MOST_LINES, MOST_DOMAINS = 500, 4.0
 
 
 @dataclass(frozen=True)
 class Mask(Validated):
-    """Where a layer's or a patch's waves are: fully at weight 1, not at all at 0."""
+    """Where the waves of a layer, a patch or a whole sea are: fully at weight 1, not at all at 0."""
 
     source: str = choice("DISTANCE", MASK_SOURCES, "What gives the weight: an image, or a distance")
     image: Raster | None = raster("Weights from 0 to 1, stretched over the domain", channels=1)
@@ -41,16 +44,27 @@ class Mask(Validated):
     y: float = number(
         0.0, -1e6, 1e6, "m", "Distance: the place from which it is measured", "far outside of any domain"
     )
+    lines: Raster | None = raster(
+        "Distance: straight lines from which it is measured, not from a place: x and y of one end, x and y "
+        "of the other, m", channels=4, left_out=True,
+    )  # fmt: skip
     inner_radius: float = number(50.0, 0.0, 1e6, "m", "Distance up to which the weight is 0", "any domain")
     outer_radius: float = number(
         150.0, 1e-3, 1e6, "m", "Distance from which on the weight is 1", "any domain"
     )
     inverted: bool = switch(False, "Exchange 0 and 1: waves near the place, or where the image is dark")
+    strength: float = number(
+        1.0, 0.0, 1.0, "", "How much of the waves it takes where the weight is 0: all of them, or a share",
+        "a share", left_out=True,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if isinstance(self.image, Raster):
             object.__setattr__(self, "image", self.image.grey())
         super().__post_init__()
+        if self.lines is not None and self.lines.shape[0] * self.lines.shape[1] > MOST_LINES:
+            count = self.lines.shape[0] * self.lines.shape[1]
+            raise ParameterError("lines", f"{count} lines", f"must be at most {MOST_LINES}")
         if self.source == "IMAGE" and self.image is None:
             raise ParameterError("image", None, "give an image, whose brightness is the weight")
         if self.source == "DISTANCE" and self.inner_radius >= self.outer_radius:
@@ -80,6 +94,9 @@ def weights(masks: Sequence[Mask], domain_size: float, x: Array, y: Array) -> We
         own = _SOURCES[mask.source](mask, domain_size, x, y)
         if mask.inverted:
             own = Weights(1.0 - own.value, -own.by_x, -own.by_y)
+        if mask.strength < 1.0:
+            left, share = 1.0 - mask.strength, mask.strength
+            own = Weights(left + share * own.value, share * own.by_x, share * own.by_y)
         total = Weights(
             total.value * own.value,
             total.by_x * own.value + total.value * own.by_x,
@@ -121,14 +138,63 @@ def _by_image(mask: Mask, domain_size: float, x: Array, y: Array) -> Weights:
 
 
 def _by_distance(mask: Mask, domain_size: float, x: Array, y: Array) -> Weights:
-    """A smooth step over the distance from the nearest of the places that repeat with the domain."""
-    dx, dy = (
-        (p - at + 0.5 * domain_size) % domain_size - 0.5 * domain_size for p, at in ((x, mask.x), (y, mask.y))
-    )
+    """A smooth step over the distance from the nearest of places, or lines, that repeat with the domain."""
+    dx, dy = (_from_place if mask.lines is None else _from_lines)(mask, domain_size, x, y)
     distance = np.hypot(dx, dy)
     part = np.clip((distance - mask.inner_radius) / (mask.outer_radius - mask.inner_radius), 0.0, 1.0)
     rate = 6.0 * part * (1.0 - part) / (mask.outer_radius - mask.inner_radius) / np.maximum(distance, 1e-12)
     return Weights(part * part * (3.0 - 2.0 * part), rate * dx, rate * dy)
+
+
+def _from_place(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array]:
+    """x and y away from the nearest of its places, m."""
+    dx, dy = (
+        (p - at + 0.5 * domain_size) % domain_size - 0.5 * domain_size for p, at in ((x, mask.x), (y, mask.y))
+    )
+    return dx, dy
+
+
+def _from_lines(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array]:
+    """x and y away from the nearest point of its lines, m."""
+    x, y = np.broadcast_arrays(x % domain_size, y % domain_size)
+    nearest = np.full(x.shape, np.inf)
+    away_x, away_y = np.zeros(x.shape), np.zeros(x.shape)
+    for (ax, ay), (ux, uy) in _lines_in_reach(mask, domain_size):
+        along = np.clip(((x - ax) * ux + (y - ay) * uy) / max(ux * ux + uy * uy, 1e-12), 0.0, 1.0)
+        dx, dy = x - ax - along * ux, y - ay - along * uy
+        square = dx * dx + dy * dy
+        is_nearer = square < nearest
+        for kept, found in ((nearest, square), (away_x, dx), (away_y, dy)):
+            np.copyto(kept, found, where=is_nearer)
+    return away_x, away_y
+
+
+def _lines_in_reach(mask: Mask, domain_size: float) -> Iterator[tuple[Array, Array]]:
+    """Begin and extent of those lines, repeated with the domain, that may be the nearest of a place in it.
+
+    No place is farther than half a diagonal from the nearest repetition of a point.
+    """
+    assert mask.lines is not None
+    reach = min(mask.outer_radius, math.sqrt(0.5) * domain_size)
+    for line in mask.lines.values.reshape(-1, 2, 2).astype(np.float64):
+        first = np.ceil((-reach - line.max(axis=0)) / domain_size).astype(int)
+        last = np.floor((domain_size + reach - line.min(axis=0)) / domain_size).astype(int)
+        for i in range(first[0], last[0] + 1):
+            for j in range(first[1], last[1] + 1):
+                yield line[0] + domain_size * np.array([i, j]), line[1] - line[0]
+
+
+def check_lines(mask: Mask, domain_size: float) -> None:
+    """Raise ParameterError for lines that would be repeated with the domain too often."""
+    if mask.lines is None:
+        return
+    x0, y0, x1, y1 = np.moveaxis(mask.lines.values, -1, 0)
+    longest = float(max(np.abs(x1 - x0).max(), np.abs(y1 - y0).max()))
+    if longest > MOST_DOMAINS * domain_size:
+        raise ParameterError(
+            "mask.lines", f"{longest:g} m",
+            f"must be at most {MOST_DOMAINS * domain_size:g} m long along x and y, {MOST_DOMAINS:g} domains",
+        )  # fmt: skip
 
 
 _SOURCES = {"IMAGE": _by_image, "DISTANCE": _by_distance}

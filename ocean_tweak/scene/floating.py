@@ -189,6 +189,11 @@ def outermost(items: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     return [item for item in everything if not any(other in everything for other in _ancestors(item))]
 
 
+def floats(item: bpy.types.Object) -> bool:
+    """Whether an object floats, or goes with a parent that does."""
+    return any(float_carrier.carrier_of(each) is not None for each in (item, *_ancestors(item)))
+
+
 def let_ride(carrier: bpy.types.Object, ocean: bpy.types.Object, ride: Ride) -> None:
     """Give a carrier its ocean and its ride."""
     float_carrier.set_inputs(

@@ -132,18 +132,16 @@ def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
 
 @persistent
 def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Let masks follow their objects where these, or the ocean, are moved by hand."""
+    """Let masks follow their objects where these, or the ocean, are moved or edited by hand."""
     if depsgraph is None or not depsgraph.id_type_updated("OBJECT"):
         return
-    moved = {
-        update.id.original
-        for update in depsgraph.updates
-        if isinstance(update.id, bpy.types.Object) and update.is_updated_transform
-    }
-    for item in oceans_in(scene) if moved else ():
+    own = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
+    moved = {update.id.original for update in own if update.is_updated_transform}
+    edited = {update.id.original for update in own if update.is_updated_geometry}
+    for item in oceans_in(scene) if moved or edited else ():
         settings, library = settings_of(item), item.library
         objects = settings.mask_objects()
-        if library is None and objects and moved & {item, *objects}:
+        if library is None and objects and (item in moved or objects & (moved | edited)):
             settings.place_masks()
 
 

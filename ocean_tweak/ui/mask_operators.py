@@ -11,6 +11,9 @@ from ..scene.settings import OceanObjectError, settings_of
 from ..scene.vertex_weights import weights_seen
 from .active_ocean import OfActiveOcean, active_layer, refuse
 
+#: in the place of a patch's number: whose mask it is
+ACTIVE_LAYER, WHOLE_SEA = -1, -2
+
 
 class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
     """Read the weights of a mesh over or under the water into a mask."""
@@ -24,8 +27,8 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     patch: IntProperty(
-        name="Patch", default=-1, min=-1, options={"SKIP_SAVE"},
-        description="Number of the patch whose mask it is, from 0; -1 for the active layer's",
+        name="Patch", default=ACTIVE_LAYER, min=WHOLE_SEA, options={"SKIP_SAVE"},
+        description="Number of the patch whose mask it is, from 0; -1: the active layer's, -2: the sea's",
     )  # fmt: skip
     samples: IntProperty(
         name="Samples", default=128, min=2, max=1024,
@@ -58,6 +61,8 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
 
     def _mask(self, context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
         settings = settings_of(context.active_object)
+        if self.patch == WHOLE_SEA:
+            return settings.mask
         if self.patch >= 0:
             return settings.patches[self.patch].mask if self.patch < len(settings.patches) else None
         layer = active_layer(settings)

@@ -6,11 +6,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 import bpy
+import numpy as np
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
-from ..core import Mask, ParameterError
+from ..core import Mask, ParameterError, Raster
 from ..core.data.plain_data import to_plain
-from ..scene import source_images
+from ..scene import floating, mask_lines, source_images
 from ..scene.source_images import ImageSource
 from . import parameter_properties
 from .parameter_properties import changed
@@ -23,6 +24,13 @@ SOURCES = {
     "IMAGE": ("Image", "Waves as high as the image is bright; it covers the domain"),
     "VERTEX_GROUP": ("Vertex Group", "Waves as high as the weights of a mesh over or under the water"),
     "DISTANCE": ("Distance", "No waves near an object, all of them far from it"),
+}
+MEASURED_FROM = {
+    "ORIGIN": ("Origin", "The distance to the object's origin, or to a place"),
+    "SHAPE": (
+        "Shape",
+        "The distance to the nearest edge of the mesh, or to the curve: of a breakwater, a coast",
+    ),
 }
 #: those that end as an image
 _IMAGES = ("IMAGE", "VERTEX_GROUP")
@@ -70,6 +78,13 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
             name="Object", type=bpy.types.Object, options=set(), update=_placed, **_OVERRIDE,
             description="Waves are told by the distance to it. It is followed when it is moved by hand",
         ),
+        "measured_from": EnumProperty(
+            name="Measured From", default="ORIGIN", options=set(), update=_placed, **_OVERRIDE,
+            items=[(key, *texts) for key, texts in MEASURED_FROM.items()],
+            description="What of the object the distance is measured from, seen from above",
+        ),
+        # of the object's shape, in the ocean's axes and Blender units
+        "lines": StringProperty(options={"HIDDEN"}, **_OVERRIDE),
         "mesh": PointerProperty(
             name="Mesh", type=bpy.types.Object, options=set(), poll=_is_mesh, **_OVERRIDE,
             description="A mesh that lies over or under the water, with the weights",
@@ -90,8 +105,14 @@ def place(group: bpy.types.PropertyGroup) -> None:
     """Measure from where the mask's object is now, if it has one."""
     if group.object is None:
         return
-    ocean = group.id_data
-    x, y, _ = ocean.matrix_world.inverted_safe() @ group.object.matrix_world.translation
+    to_ocean = group.id_data.matrix_world.inverted_safe()
+    if group.measured_from == "SHAPE":
+        lines = mask_lines.to_text(mask_lines.lines_of(group.object, to_ocean))
+        if lines != group.lines:
+            group.lines = lines
+            changed(group, bpy.context)
+        return
+    x, y, _ = to_ocean @ group.object.matrix_world.translation
     for name, value in (("x", x), ("y", y)):
         if abs(getattr(group, name) - value) > 1e-5 * max(1.0, abs(value)):
             setattr(group, name, value)
@@ -104,7 +125,7 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
     values = parameter_properties.read(group, Mask, metres, ("source",))
     try:
         if group.source not in _IMAGES:
-            return Mask(**{**values, "source": "DISTANCE"})
+            return Mask(**{**values, "source": "DISTANCE", "lines": _lines(group, metres)})
         source = source_images.source_of(group)
         if source is None:
             remedy = "choose one, or no mask" if group.source == "IMAGE" else "press Read Weights"
@@ -113,6 +134,24 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
         return source_images.made_layer(Mask, (*values.items(), ("source", "IMAGE"), ("image", image)))
     except ParameterError as error:
         raise error.inside("mask") from None
+
+
+def _lines(group: bpy.types.PropertyGroup, metres: Fraction) -> Raster | None:
+    """Those that a distance is measured from; None for a place. Raises ParameterError for none."""
+    item = group.object
+    if item is not None and floating.floats(item):
+        raise ParameterError(
+            "object", item.name, "it floats on the water, which would follow itself: choose one that does not"
+        )
+    if group.measured_from == "ORIGIN":
+        return None
+    lines = mask_lines.from_text(group.lines)
+    if not len(lines):
+        name = "" if item is None else item.name
+        raise ParameterError(
+            "object", name, "it has no edges to measure from: choose a mesh or a curve with some"
+        )
+    return Raster(lines[np.newaxis] * float(metres), "lines")
 
 
 def write(
@@ -124,8 +163,7 @@ def write(
         return
     parameter_properties.write(group, Mask, to_plain(mask, brief=True), metres, ("source",))
     if mask.source == "DISTANCE":
-        if group.object is not None and not _is_at(group, mask, metres):
-            group.object = None
+        _write_distance(group, mask, metres)
         group.source = "DISTANCE"
         return
     source = source_images.source_with(mask.image, known_images)
@@ -133,6 +171,19 @@ def write(
     if group.source not in _IMAGES or group.image != source.image:
         group.source = "IMAGE"
     source_images.choose(group, source)
+
+
+def _write_distance(group: bpy.types.PropertyGroup, mask: Mask, metres: Fraction) -> None:
+    """The object stays where the mask measures from it as it is."""
+    if mask.lines is None:
+        group.measured_from, group.lines = "ORIGIN", ""
+        if group.object is not None and not _is_at(group, mask, metres):
+            group.object = None
+        return
+    lines = mask_lines.to_text(mask.lines.values.reshape(-1, 4) / float(metres))
+    if group.object is not None and lines != group.lines:
+        group.object = None
+    group.measured_from, group.lines = "SHAPE", lines
 
 
 def _is_at(group: bpy.types.PropertyGroup, mask: Mask, metres: Fraction) -> bool:

@@ -125,6 +125,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "water": PointerProperty(type=OCEAN_PG_water, **_OVERRIDE),
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
+        "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
         "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
@@ -236,6 +237,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["patches"] = patch_properties.read(self.patches, metres)
         if self.patches:  # the first of them tells the tile
             del data["resolution"], data["domain_size"]
+        data["mask"] = mask_properties.read(self.mask, metres)
         data["merged_resolution"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
@@ -257,8 +259,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     def source_images(self) -> set[ImageSource]:
         """The images from which waves or masks are made."""
-        of_patches = (mask_properties.image_source(patch.mask) for patch in self.patches)
-        return layer_properties.images(self.layers) | {source for source in of_patches if source is not None}
+        others = (mask_properties.image_source(each.mask) for each in (self, *self.patches))
+        return layer_properties.images(self.layers) | {source for source in others if source is not None}
 
     def mask_objects(self) -> set[bpy.types.Object]:
         """Those from which the distance of a mask is measured."""
@@ -272,7 +274,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
                 mask_properties.place(mask)
 
     def _masks(self) -> list[bpy.types.PropertyGroup]:
-        return [*layer_properties.masks(self.layers), *(patch.mask for patch in self.patches)]
+        return [*layer_properties.masks(self.layers), *(each.mask for each in (self, *self.patches))]
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
@@ -303,6 +305,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
                 self.loop_frames = round(parameters.loop_duration * parameters.timing.fps)
             layer_properties.write(self.layers, parameters, metres)
             patch_properties.write(self, parameters, metres)
+            mask_properties.write(self.mask, parameters.mask, metres, self.source_images())
         changed(self, bpy.context)
 
 

@@ -119,6 +119,86 @@ def test_it_follows_an_object_that_is_moved_by_hand(ocean, mask, empty_scene):
         assert np.abs(heights(ocean)[(away > 21.0) & (away < 60.0)]).max() > 0.05
 
 
+def new_wall(scene, kind):
+    """A breakwater from (30, 60) to (90, 60), as the edge of a mesh or as a curve."""
+    if kind == "MESH":
+        data = bpy.data.meshes.new("Wall")
+        data.from_pydata([(0.0, 0.0, 3.0), (60.0, 0.0, 5.0)], [(0, 1)], [])
+    else:
+        data = bpy.data.curves.new("Wall", "CURVE")
+        data.dimensions = "3D"
+        spline = data.splines.new("POLY")
+        spline.points.add(1)
+        spline.points[1].co = (60.0, 0.0, 2.0, 1.0)
+    item = bpy.data.objects.new("Wall", data)
+    item.location = (30.0, 60.0, 0.0)
+    scene.collection.objects.link(item)
+    bpy.context.view_layer.update()
+    return item
+
+
+def away_from_wall(x0, y0):
+    along = DOMAIN / SAMPLES * np.arange(SIDE)
+    x, y = along, along[:, np.newaxis]
+    return np.hypot(np.maximum(np.maximum(x0 - x, x - x0 - 60.0), 0.0), y - y0)
+
+
+@pytest.mark.parametrize("kind", ["MESH", "CURVE"])
+@pytest.mark.parametrize("owner", ["layer", "sea"])
+def test_a_distance_is_measured_from_a_shape_and_follows_it(ocean, mask, empty_scene, kind, owner):
+    group = mask if owner == "layer" else ocean.ocean_tweak.mask
+    ocean.location = (2.0, -4.0, 0.0)
+    wall = new_wall(empty_scene, kind)
+    group.inner_radius, group.outer_radius = 10.0, 20.0
+    group.object, group.measured_from, group.source = wall, "SHAPE", "DISTANCE"
+    for x, y in ((28.0, 64.0), (50.0, 90.0)):
+        wall.location = (x + 2.0, y - 4.0, 0.0)
+        bpy.context.view_layer.update()
+        bpy.context.view_layer.update()
+        found = ocean.ocean_tweak.to_parameters(empty_scene)
+        lines = (found.mask or found.layers[0].mask).lines.values
+        np.testing.assert_allclose(lines, [[[x, y, x + 60.0, y]]], atol=1e-4)
+        away = away_from_wall(x, y)
+        assert np.abs(heights(ocean)[away < 9.0]).max() == 0.0
+        assert np.abs(heights(ocean)[(away > 21.0) & (away < 40.0)]).max() > 0.05
+    if kind == "MESH":
+        wall.data.vertices[1].co.x = 20.0
+        wall.data.update_tag()
+        bpy.context.view_layer.update()
+        found = ocean.ocean_tweak.to_parameters(empty_scene)
+        assert (found.mask or found.layers[0].mask).lines.values[0, 0, 2] == pytest.approx(70.0)
+
+
+def test_a_shape_without_edges_is_told(ocean, mask, empty_scene):
+    empty = bpy.data.objects.new("Post", None)
+    empty_scene.collection.objects.link(empty)
+    mask.object, mask.measured_from, mask.source = empty, "SHAPE", "DISTANCE"
+    assert "it has no edges to measure from" in ocean.ocean_tweak.error
+    mask.measured_from = "ORIGIN"
+    assert not ocean.ocean_tweak.error
+
+
+def test_what_floats_is_no_mask(ocean, mask, empty_scene, extension):
+    """The water would follow what follows the water."""
+    boat, flag = (bpy.data.objects.new(name, None) for name in ("Boat", "Flag"))
+    for item in (boat, flag):
+        empty_scene.collection.objects.link(item)
+    flag.parent = boat
+    extension("scene.floating").float_on(boat, ocean, empty_scene)
+    for item in (boat, flag):
+        mask.object, mask.source = item, "DISTANCE"
+        assert "it floats on the water" in ocean.ocean_tweak.error
+        mask.source = "NONE"
+    assert not ocean.ocean_tweak.error
+
+
+def test_strength_leaves_a_share(ocean, mask, empty_scene):
+    mask.inner_radius, mask.outer_radius = 500.0, 600.0
+    whole = heights(ocean)
+    mask.strength, mask.source = 0.75, "DISTANCE"
+    np.testing.assert_allclose(heights(ocean), 0.25 * whole, atol=1e-5)
+
+
 def test_weights_of_a_mesh_are_read_from_above(ocean, mask, core, empty_scene):
     """Weight 1 on the left half, from 0 to 1 on the right upper quarter, nothing elsewhere."""
     half = DOMAIN / 2
@@ -188,7 +268,8 @@ def test_parameters_with_masks_come_back(ocean, core, make_parameters, empty_sce
         core.WaveLayer(mask=core.Mask(x=10.0, y=20.0, inner_radius=5.0, outer_radius=9.0, inverted=True)),
         core.WaveLayer(mask=image),
     )
-    parameters = with_layers(make_parameters(layers=layers), IMAGE=(core.ImageLayer(mask=image),))
+    wall = core.Mask(lines=core.Raster([[[1.0, 2.0, 30.1, 0.7]]]), strength=0.6)
+    parameters = with_layers(make_parameters(layers=layers, mask=wall), IMAGE=(core.ImageLayer(mask=image),))
     settings = ocean.ocean_tweak
     settings.from_parameters(parameters, empty_scene)
     assert settings.to_parameters(empty_scene) == parameters

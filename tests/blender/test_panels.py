@@ -219,6 +219,9 @@ def test_a_mask_says_what_it_lacks(draw, item):
     assert waits() == ""
     mask.source = "DISTANCE"
     assert waits() == ""
+    mesh.keyframe_insert("location", frame=1)
+    mask.object = mesh
+    assert "Beach has keys, which masks do not follow" in " ".join(draw(item))
 
 
 def test_a_number_and_its_unit_stay_in_one_line(extension):
@@ -383,8 +386,9 @@ def test_the_sea_and_what_it_means(draw, item, core, make_parameters):
         "ocean.match_sea_state", "OCEAN_MT_presets",
     }  # fmt: skip
     assert {name for name in once if drawn.count(name) != 1} == set()
-    # in the first panel and in the active layer's, its mask's, the water's or the foam's own
-    twice = {"source", "wind_speed", "wind_direction", "fetch_km", "swell", "depth"}
+    # in the first panel and in the active layer's, the water's or the foam's own
+    assert drawn.count("source") == 3  # its own, of the layer's mask and of the sea's
+    twice = {"wind_speed", "wind_direction", "fetch_km", "swell", "depth"}
     assert {name for name in twice if drawn.count(name) != 2} == set()
     statistics = core.Ocean(make_parameters()).statistics()
     assert f"{statistics.significant_wave_height:.2f} m" in drawn

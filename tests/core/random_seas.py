@@ -80,6 +80,9 @@ IMAGES = st.integers(1, 4).flatmap(
         st.lists(st.floats(0.0, 1.0, width=32), min_size=columns, max_size=columns), min_size=1, max_size=4
     )
 )
+LINES = st.lists(
+    st.lists(st.floats(-0.125, 0.125, width=32), min_size=4, max_size=4), min_size=1, max_size=3
+).map(lambda lines: Raster([lines]))
 MASKS = st.one_of(
     st.none(),
     instances(
@@ -88,11 +91,13 @@ MASKS = st.one_of(
         inner_radius=st.floats(0.0, 100.0),
         outer_radius=st.floats(101.0, 1e6),
         image=st.none(),
+        lines=st.one_of(st.none(), LINES),
     ),
     instances(
         Mask,
         source=st.just("IMAGE"),
         image=IMAGES.map(Raster),
+        lines=st.none(),
     ),
 )
 
@@ -119,6 +124,7 @@ def patched_seas() -> st.SearchStrategy[OceanParameters]:
     layers = st.builds(lambda layer, mask: (dataclasses.replace(layer, mask=mask),), LAYERS, MASKS)
     return instances(
         OceanParameters, patches=patches, merged_resolution=st.sampled_from([0, 16, 48]), layers=layers,
+        mask=MASKS,
         trough_damping=st.just(0.0), resolution=st.just(OPEN), domain_size=st.just(OPEN), **COMMON,
     )  # fmt: skip
 

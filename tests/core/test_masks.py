@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 
 import numpy as np
 import pytest
@@ -119,7 +120,87 @@ def test_a_grid_has_the_weights_of_its_samples() -> None:
     np.testing.assert_array_equal(weights_on_grid((HARBOUR, IMAGE), SIZE, 160), there)
 
 
+# lines
+
+WALL = dataclasses.replace(HARBOUR, lines=Raster([[[60.0, 90.0, 120.0, 170.0]]]))  # 100 m long
+
+
+@pytest.mark.parametrize(
+    ("along", "aside", "weight"),
+    [
+        # beside it, 20 m to 80 m away: 3t² - 2t³
+        (50.0, 0.0, 0.0), (50.0, 20.0, 0.0), (0.0, 35.0, 5 / 32), (100.0, 50.0, 0.5), (30.0, -65.0, 27 / 32),
+        # beyond its ends: (30, 40) is 50 m from them
+        (-35.0, 0.0, 5 / 32), (130.0, 40.0, 0.5), (-30.0, -40.0, 0.5),
+    ],
+)  # fmt: skip
+def test_a_distance_from_a_line(along: float, aside: float, weight: float) -> None:
+    """By the plane's geometry, the line's direction being (0.6, 0.8)."""
+    x = np.array([60.0 + 0.6 * along - 0.8 * aside])
+    y = np.array([90.0 + 0.8 * along + 0.6 * aside])
+    np.testing.assert_allclose(weights((WALL,), 1000.0, x, y).value, weight, atol=1e-6)
+
+
+def test_lines_of_no_length_are_places() -> None:
+    places = GENERATOR.uniform(0.0, SIZE, (2, 100))
+    point = dataclasses.replace(HARBOUR, lines=Raster([[[60.0, 90.0, 60.0, 90.0]]]))
+    found, expected = (weights((mask,), SIZE, *places) for mask in (point, HARBOUR))
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_the_nearest_of_lines_that_repeat() -> None:
+    """A diagonal as long as the domain, whose repetition is nearest to what is across its corner."""
+    lines = Raster([[[10.0, 10.0, 90.0, 90.0], [50.0, 10.0, 50.0, 10.0]]])
+    mask = Mask(lines=lines, inner_radius=1.0, outer_radius=41.0)
+    # (94, 10) - (100, 0) = (-6, 10), of which 16/√2 are across the diagonal through (90, 90) - (100, 100)
+    # less than to its ends: (10, 10) + (100, 0) is 16 away
+    found = 1.0 - weights((mask,), 100.0, np.array([94.0, 50.0]), np.array([10.0, 13.0])).value
+    far = (np.array([16.0, 3.0]) - 1.0) / 40.0
+    np.testing.assert_allclose(found, 1.0 - far**2 * (3.0 - 2.0 * far), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "lines", [np.zeros((1, 501, 4)), [[[0.0, 0.0, 0.0, 4.1 * SIZE]]], [[[0.0, 0.0, 1.0]]]]
+)
+def test_lines_that_cannot_be(lines: object) -> None:
+    with pytest.raises(ParameterError, match="lines"):
+        sea(mask=Mask(lines=Raster(lines)))
+
+
+def test_strength_is_a_share_of_what_it_takes() -> None:
+    x, y = GENERATOR.uniform(0.0, SIZE, (2, 100))
+    whole = weights((HARBOUR,), SIZE, x, y)
+    found = weights((dataclasses.replace(HARBOUR, strength=0.75),), SIZE, x, y)
+    np.testing.assert_allclose(1.0 - found.value, 0.75 * (1.0 - whole.value), atol=1e-12)
+    np.testing.assert_allclose(
+        (found.by_x, found.by_y), 0.75 * np.array((whole.by_x, whole.by_y)), atol=1e-12
+    )
+    none = weights((dataclasses.replace(HARBOUR, strength=0.0),), SIZE, x, y)
+    np.testing.assert_array_equal(none.value, 1.0)
+
+
+def test_json_keeps_strength_and_lines_and_has_neither_by_default() -> None:
+    made = sea(mask=dataclasses.replace(WALL, strength=0.0))
+    assert OceanParameters.from_json(made.to_json()) == made
+    plain = json.loads(sea().to_json())
+    assert "mask" not in plain
+    assert {"strength", "lines"}.isdisjoint(plain["layers"][0]["mask"])
+
+
 # masked seas
+
+
+@pytest.mark.parametrize("hero", [(), (HeroWave(crest_height=2.0, x=90.0, y=120.0),)])
+def test_a_mask_over_the_sea_lies_over_all_its_waves(hero: tuple[HeroWave, ...]) -> None:
+    places = Places(*GENERATOR.uniform(0.0, SIZE, (2, 30)))
+    bare = sea(layers=(STORM, RIPPLES, *hero))
+    plain, found = (
+        Ocean(parameters, "double").surface(3.0, {"displacement"}, places).displacement
+        for parameters in (bare, bare.replace(mask=WALL))
+    )
+    weight = weights((WALL,), SIZE, places.x, places.y).value[..., np.newaxis]
+    assert weight.min() < 0.1
+    np.testing.assert_allclose(found, weight * plain, atol=1e-6)
 
 
 def test_the_sea_is_the_weighted_sum_of_its_layers() -> None:

@@ -67,7 +67,8 @@ def _field_to_plain(field: dataclasses.Field[Any], value: Any, brief: bool) -> A
 def _is_unused(field: dataclasses.Field[Any], value: object) -> bool:
     """What is not there is left out, where its field says so: the JSON of a sea without it, and so the
     fingerprint of its frames, stays what it was before there was such a thing."""
-    return bool(field.metadata.get("left_out")) and (not value or value == field.default)
+    is_empty = not value and not isinstance(value, float)
+    return bool(field.metadata.get("left_out")) and (is_empty or value == field.default)
 
 
 def from_plain(cls: type, data: object) -> Any:

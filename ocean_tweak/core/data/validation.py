@@ -48,6 +48,7 @@ def number(
     changes: bool = False,
     may_be_told: bool = False,
     off: Off | None = None,
+    left_out: bool = False,
 ) -> Any:
     """A real-valued dataclass field with its range, unit, description and the reason for the range.
 
@@ -55,13 +56,14 @@ def number(
     changes : whether it can change during a shot; the rest sets which waves there are and how fast they run
     may_be_told : whether other fields may tell it, so that it is open until all are known, see `default_of`
     off : a number that stands for none
+    left_out : where it is the default, JSON has no such key
     """
     return dataclasses.field(
         default=OPEN if may_be_told else default,
         metadata={
             "kind": float, "minimum": minimum, "maximum": maximum, "useful": useful or (minimum, maximum),
             "unit": unit, "description": description, "why": why, "changes": changes,
-            "default": default, "off": off,
+            "default": default, "left_out": left_out, "off": off,
         },
     )  # fmt: skip
 
@@ -116,9 +118,15 @@ def switch(default: bool, description: str) -> Any:
     return dataclasses.field(default=default, metadata={"kind": bool, "description": description})
 
 
-def raster(description: str, channels: int, optional: bool = True) -> Any:
-    """A dataclass field that is an image or a grid of vectors with so many channels."""
-    metadata = {"kind": Raster, "channels": channels, "optional": optional, "description": description}
+def raster(description: str, channels: int, optional: bool = True, left_out: bool = False) -> Any:
+    """A dataclass field that is an image or a grid of vectors with so many channels.
+
+    left_out : where there is none, JSON has no such key
+    """
+    metadata = {
+        "kind": Raster, "channels": channels, "optional": optional, "description": description,
+        "left_out": left_out,
+    }  # fmt: skip
     return dataclasses.field(default=None, metadata=metadata)
 
 

@@ -30,7 +30,7 @@ from ..data.validation import (
     rational,
     switch,
 )
-from ..masks import Mask
+from ..masks import Mask, check_lines
 from ..spectral.water import Water
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave
@@ -182,6 +182,7 @@ class OceanParameters(Validated):
         0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them separate",
         "as the resolution of a sea", left_out=True,
     )  # fmt: skip
+    mask: Mask | None = nested(Mask, optional=True)
     foam: Foam = nested(Foam)
     timing: Timing = nested(Timing)
 
@@ -200,6 +201,9 @@ class OceanParameters(Validated):
             if Gives.SPECTRUM not in kind.gives and self.of(kind)
         ]
         check_patches(self.patches, self.trough_damping, on_the_first)
+        for each in (self, *self.layers, *self.patches):
+            if each.mask is not None:
+                check_lines(each.mask, self.domain_size)
         if self.is_masked and self.trough_damping > 0.0:
             raise ParameterError(
                 "trough_damping", self.trough_damping,
@@ -238,7 +242,7 @@ class OceanParameters(Validated):
     def is_masked(self) -> bool:
         """Whether a mask lies over some of its waves."""
         own: tuple[Contribution | Patch, ...] = (*self.active(), *self.patches)
-        return any(layer.mask is not None for layer in own)
+        return self.mask is not None or any(layer.mask is not None for layer in own)
 
     @property
     def needs_summation(self) -> bool:

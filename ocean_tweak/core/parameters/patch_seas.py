@@ -76,7 +76,8 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
     if None in masks:  # first come the waves that are everywhere
         masks.insert(0, masks.pop(masks.index(None)))
     for index, (sea, patch, rotation) in enumerate(zip(seas, patches, rotations(parameters), strict=True)):
-        of_patch = (patch.mask,) if patch is not None and patch.mask is not None else ()
+        over_all = (parameters.mask, None if patch is None else patch.mask)
+        of_patch = tuple(each for each in over_all if each is not None)
         found += [
             Part(_without_masks(under), rotation, of_patch if mask is None else (*of_patch, mask), index)
             for mask, under in _by_mask(sea, masks)
@@ -158,6 +159,7 @@ def _without_masks(parameters: OceanParameters) -> OceanParameters:
     if not parameters.is_masked:
         return parameters
     return parameters.replace(
+        mask=None,
         layers=tuple(
             layer if layer.mask is None else layer.changed(mask=None) for layer in parameters.layers
         ),

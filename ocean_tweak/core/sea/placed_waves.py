@@ -27,7 +27,7 @@ _RIM = 0.1
 
 
 class PlacedWaves:
-    """The waves of a layer that gives fields, in the sea's axes, under its mask."""
+    """The waves of a layer that gives fields, in the sea's axes, under its mask and the sea's."""
 
     def __init__(self, layer: Contribution, sea: OceanParameters) -> None:
         self._layer = layer
@@ -35,10 +35,10 @@ class PlacedWaves:
 
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """Components of the displacement at rest positions in m, of one flat shape."""
-        mask = self._layer.mask
-        if mask is None:
+        masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
+        if not masks:
             return dict(self._layer.fields(self._sea, x, y, time, frozenset(keys)))
-        under = weights((mask,), self._sea.domain_size, x, y)
+        under = weights(masks, self._sea.domain_size, x, y)
         return weighted(self._layer.fields(self._sea, x, y, time, unweighted(keys)), under)
 
     def field(self, time: float | Fraction) -> Field:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab. Panels only draw: nothing here computes a sea."""
 
-from . import details, floating, layers, material, output, patches, sea, spectrum, start
+from . import details, floating, layers, masks, material, output, patches, sea, spectrum, start
 from .start import draw_add_menu
 
 __all__ = ["CLASSES", "draw_add_menu"]
@@ -12,6 +12,7 @@ CLASSES = (
     *sea.CLASSES,
     *layers.CLASSES,
     *patches.CLASSES,
+    *masks.CLASSES,
     *spectrum.CLASSES,
     *details.CLASSES,
     *output.CLASSES,

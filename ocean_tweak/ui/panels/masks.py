@@ -4,16 +4,19 @@
 import bpy
 
 from ...scene import source_images
-from ..mask_operators import OCEAN_OT_read_weights
-from .drawing import message
+from ..mask_operators import ACTIVE_LAYER, WHOLE_SEA, OCEAN_OT_read_weights
+from .drawing import SubPanel, active_settings, message, split
 
 
 def draw_mask(
-    layout: bpy.types.UILayout, context: bpy.types.Context, group: bpy.types.PropertyGroup, patch: int = -1
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    group: bpy.types.PropertyGroup,
+    patch: int = ACTIVE_LAYER,
 ) -> None:
     """Draw a mask's settings, and what it lacks: without that the whole sea stands still.
 
-    patch : number of the patch whose mask it is; -1 for the active layer's
+    patch : number of the patch whose mask it is, ACTIVE_LAYER or WHOLE_SEA
     """
     layout.prop(group, "source")
     if group.source == "NONE":
@@ -24,9 +27,10 @@ def draw_mask(
         _draw_weights(layout, group, patch)
     else:
         _draw_distance(layout, group)
-    lacking = _lacking(group)
-    if lacking:
-        message(layout, context, lacking)
+    for text in (_lacking(group), _standing_still(group)):
+        if text:
+            message(layout, context, text)
+    layout.prop(group, "strength", slider=True)
     layout.prop(group, "inverted")
 
 
@@ -51,10 +55,12 @@ def _draw_weights(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, pa
 def _draw_distance(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -> None:
     column = layout.column(align=True)
     column.prop(group, "object")
-    places = column.column(align=True)
-    places.active = group.object is None
-    places.prop(group, "x")
-    places.prop(group, "y")
+    layout.row().prop(group, "measured_from", expand=True)
+    if group.measured_from == "ORIGIN":
+        places = layout.column(align=True)
+        places.active = group.object is None
+        places.prop(group, "x")
+        places.prop(group, "y")
     column = layout.column(align=True)
     column.prop(group, "inner_radius")
     column.prop(group, "outer_radius")
@@ -73,5 +79,28 @@ def _lacking(group: bpy.types.PropertyGroup) -> str:
     return "The sea waits for weights: press Read Weights"
 
 
+def _standing_still(group: bpy.types.PropertyGroup) -> str:
+    """What a mask does not do that its object does; empty where there is nothing."""
+    item = group.object
+    animation = None if group.source != "DISTANCE" or item is None else item.animation_data
+    if animation is None or animation.action is None:
+        return ""
+    return f"{item.name} has keys, which masks do not follow: this one stays where it was put by hand"
+
+
 def _has_weights(group: bpy.types.PropertyGroup) -> bool:
     return group.mesh is not None and group.vertex_group in group.mesh.vertex_groups
+
+
+class OCEAN_PT_mask(SubPanel, bpy.types.Panel):
+    """The mask that lies over the whole sea."""
+
+    bl_idname = "OCEAN_PT_mask"
+    bl_label = "Mask"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw its settings."""
+        draw_mask(split(self.layout), context, active_settings(context).mask, WHOLE_SEA)
+
+
+CLASSES = (OCEAN_PT_mask,)
