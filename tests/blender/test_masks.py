@@ -184,7 +184,7 @@ def test_what_floats_is_no_mask(ocean, mask, empty_scene, extension):
     for item in (boat, flag):
         empty_scene.collection.objects.link(item)
     flag.parent = boat
-    extension("scene.floating").float_on(boat, ocean, empty_scene)
+    extension("scene.floating").float_on(boat, ocean)
     for item in (boat, flag):
         mask.object, mask.source = item, "DISTANCE"
         assert "it floats on the water" in ocean.ocean_tweak.error
