@@ -201,9 +201,13 @@ class OceanParameters(Validated):
             if Gives.SPECTRUM not in kind.gives and self.of(kind)
         ]
         check_patches(self.patches, self.trough_damping, on_the_first)
-        for each in (self, *self.layers, *self.patches):
-            if each.mask is not None:
-                check_lines(each.mask, self.domain_size)
+        for mask in (
+            self.mask,
+            *(layer.mask for layer in self.layers),
+            *(patch.mask for patch in self.patches),
+        ):
+            if mask is not None:
+                check_lines(mask, self.domain_size)
         if self.is_masked and self.trough_damping > 0.0:
             raise ParameterError(
                 "trough_damping", self.trough_damping,
