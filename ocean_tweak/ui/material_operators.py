@@ -69,21 +69,23 @@ class OCEAN_OT_install_assets(bpy.types.Operator):
 
 
 def _colour(material: bpy.types.Material) -> tuple[float, ...]:
-    return water_material.colour_of(material) if water_material.water_node(material) else (0.0, 0.0, 0.0)
+    if water_material.water_node(material) is None:
+        return (0.0, 0.0, 0.0)
+    return tuple(part / BRIGHTEST for part in water_material.colour_of(material))
 
 
 def _set_colour(material: bpy.types.Material, colour: Sequence[float]) -> None:
-    if water_material.water_node(material):
-        water_material.set_colour(material, colour)
+    if water_material.water_node(material) is not None:
+        water_material.set_colour(material, [part * BRIGHTEST for part in colour])
 
 
 def register() -> None:
     """Give materials the colour of their water, which holds nothing itself."""
     bpy.types.Material.ocean_tweak_water_colour = bpy.props.FloatVectorProperty(
-        name="Water Color", subtype="COLOR", size=3, min=0.0, max=BRIGHTEST, precision=3, options=set(),
+        name="Water Color", subtype="COLOR", size=3, min=0.0, max=1.0, precision=3, options=set(),
         get=_colour, set=_set_colour,
-        description="Light that deep water gives back. Absorption and Backscatter of the material follow; "
-        "give those keys",
+        description="Colour of deep water; white is the brightest that water can be. Absorption and "
+        "Backscatter of the material follow, and can have keys",
     )  # fmt: skip
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whatever an artist types or a file holds, the ocean is shown or says why not, and no exception comes."""
 
+import contextlib
+import os
 import random
 
 import bpy
@@ -73,6 +75,72 @@ def test_random_edits_leave_no_exception(ocean, empty_scene, extension, patches,
             assert np.all(np.isfinite(places)), (prop.identifier, number)
     assert shown > edits // 3
     assert told > 0
+    settings.from_parameters(extension("core").OceanParameters(resolution=32), empty_scene)
+    assert not settings.error
+
+
+#: what an artist presses: operators by name with what they are told
+PRESSES = [
+    *(("layer_add", {"kind": kind}) for kind in ("WAVES", "WIND_FIELD", "IMAGE", "HERO_WAVE")),
+    *((f"layer_{what}", {}) for what in ("remove", "duplicate", "solo")),
+    *(("layer_move", {"direction": direction}) for direction in ("UP", "DOWN")),
+    *((name, {}) for name in ("patch_add", "patch_remove", "one_patch", "use_water_material")),
+    *(("apply_preset", {"key": key}) for key in ("open_sea", "harbour", "crossing_seas")),
+    *(("match_sea_state", {"height": height, "period": 4.0}) for height in (0.0, 1.0, 6.0)),
+]
+EDITS = 1000 if os.environ.get("OCEAN_TWEAK_LONG_TESTS") else 100
+
+
+def groups_of(settings):
+    """All that the panels show of an ocean's settings now."""
+    entries = [settings, settings.water, settings.foam, settings.timing, settings.usd, *settings.patches]
+    for layer in settings.layers:
+        entries += {id(layer): layer, id(layer.group): layer.group}.values()
+    return entries + [entry.mask for entry in entries if hasattr(entry, "mask")]
+
+
+def keep_small(settings):
+    """Fewer samples than a preset or a dragged number may want: they would only cost time."""
+    for group in (settings, *settings.patches, settings.foam, *(layer.group for layer in settings.layers)):
+        for name, largest in SMALL.items():
+            if getattr(group, name, 0) > largest:
+                setattr(group, name, largest)
+
+
+SMALL = {**LARGEST, "noise_resolution": 64, "columns": 8, "rows": 8, "origins": 2, "particles": 7}
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of seas that no float32 can hold
+def test_random_edits_and_presses_print_no_traceback(ocean, empty_scene, extension, capfd):
+    """Blender prints what an update or an operator raises, and goes on."""
+    chance = random.Random(21)
+    settings, shown = ocean.ocean_tweak, 0
+    for number in range(EDITS):
+        if chance.random() < 0.3:
+            name, told = chance.choice(PRESSES)
+            operator, what = getattr(bpy.ops.ocean, name), name
+            with settings.quiet(), contextlib.suppress(RuntimeError):  # it refuses, and says why
+                if operator.poll():
+                    operator(**told)
+            settings.use_foam = False
+            keep_small(settings)
+        else:
+            group = chance.choice(groups_of(settings))
+            prop = chance.choice(editable(group))
+            what = prop.identifier
+            value = some_value(chance, prop)
+            setattr(group, what, min(value, SMALL[what]) if what in SMALL else value)
+        if number % 7 == 0:
+            empty_scene.frame_set(chance.randint(-50, 5000))
+        said = capfd.readouterr()
+        assert "Traceback" not in said.out + said.err, (number, what, said.err)
+        shown += not settings.error
+        if settings.error:
+            assert len(settings.error) > 10, (number, what)
+            with contextlib.suppress(RuntimeError):
+                bpy.ops.ocean.apply_preset(key="open_sea")
+            keep_small(settings)
+    assert shown > EDITS // 3
     settings.from_parameters(extension("core").OceanParameters(resolution=32), empty_scene)
     assert not settings.error
 

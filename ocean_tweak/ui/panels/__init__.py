@@ -15,7 +15,7 @@ CLASSES = (
     *masks.CLASSES,
     *spectrum.CLASSES,
     *details.CLASSES,
-    *output.CLASSES,
     *material.CLASSES,
+    *output.CLASSES,
     *floating.CLASSES,
 )

@@ -9,7 +9,7 @@ from .drawing import OceanPanel, split
 
 #: inputs of the water's node, as they are called there
 _WATER = ("Crest Light", "Crest Glow", "Bubbles")
-_FOAM = ("Foam Amount", "Foam Size", "Foam Streaks", "Foam Color")
+_FOAM = ("Foam Amount", "Foam Size", "Foam Color")
 _SURFACE = ("Slopes", "Ripples", "Gusts")
 
 
