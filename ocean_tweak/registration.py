@@ -24,6 +24,7 @@ from .ui import (
     bake_operators,
     camera_operators,
     float_operators,
+    gizmos,
     layer_operators,
     mask_operators,
     material_operators,
@@ -65,6 +66,7 @@ CLASSES = (
     *object_menu.CLASSES,
     *scene_operators.CLASSES,
     *material_operators.CLASSES,
+    *gizmos.CLASSES,
 )
 
 _log = logging.getLogger(__name__)

@@ -16,11 +16,15 @@ LARGEST = {"resolution": 48, "viewport_resolution": 48, "mesh_resolution": 40, "
 LEFT_OUT = {"rna_type", "name", "is_ocean", "is_quiet", "source", "use_foam", "exact"}
 
 
+def is_array(prop):
+    return getattr(prop, "is_array", False)
+
+
 def editable(group):
     """The properties of a group that a panel may show."""
     return [
         prop for prop in group.bl_rna.properties
-        if prop.identifier not in LEFT_OUT and not prop.is_hidden and not prop.is_readonly
+        if prop.identifier not in LEFT_OUT and not (prop.is_hidden or prop.is_readonly or is_array(prop))
         and prop.type in ("FLOAT", "INT", "BOOLEAN", "ENUM")
     ]  # fmt: skip
 
@@ -28,6 +32,8 @@ def editable(group):
 def some_value(chance, prop):
     if prop.type == "BOOLEAN":
         return chance.random() < 0.5
+    if prop.type == "ENUM" and prop.is_enum_flag:
+        return {item.identifier for item in prop.enum_items if chance.random() < 0.5}
     if prop.type == "ENUM":
         return chance.choice(prop.enum_items.keys())
     low, high = prop.hard_min, min(prop.hard_max, LARGEST.get(prop.identifier, prop.hard_max))

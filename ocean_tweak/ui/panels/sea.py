@@ -229,7 +229,7 @@ def _rows(scene: bpy.types.Scene, values: dict[str, Any]) -> list[tuple[str, str
             ("Wavelength", length_text(scene, expected["peak_wavelength"])),
             ("Domain Holds", translated("{:.1f} wavelengths").format(values["wavelengths_per_domain"])),
         ]
-    return [*rows, ("Sample Spacing", length_text(scene, values["sample_spacing"]))]
+    return [*rows, ("Grid Spacing", length_text(scene, values["sample_spacing"]))]
 
 
 def _object_warnings(context: bpy.types.Context) -> list[str]:

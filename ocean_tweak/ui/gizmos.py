@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Handles of the active ocean in the 3D view: its size, and the active layer's wind or place.
+
+Each stands for a setting, which it reads and sets; what it drags is undone as one step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import bpy
+from mathutils import Matrix, Vector
+
+from ..scene.settings import is_ocean, settings_of
+from .active_ocean import active_layer
+
+#: m/s of wind that the arrow of its speed takes to be as long as a side of the domain
+_FULL_LENGTH = 60.0
+#: arrows lead along z: this turns z to x
+_ALONG_X = Matrix.Rotation(math.radians(90.0), 4, "Y")
+#: dials begin at y: this turns y to x
+_FROM_X = Matrix.Rotation(math.radians(-90.0), 4, "Z")
+_SIZE_COLOUR, _WIND_COLOUR, _WAVE_COLOUR = (0.9, 0.9, 0.9), (1.0, 0.65, 0.1), (0.2, 0.8, 1.0)
+
+_Object = bpy.types.Object
+
+
+class Handle(NamedTuple):
+    """One handle.
+
+    gizmo : Blender's kind of it, which has a number or a place, `offset`
+    colour : of its lines
+    style : what else it is told
+    read, write : the setting, in Blender units or rad; `read` gives None where the ocean has none now
+    place : matrix in the world
+    """
+
+    gizmo: str
+    colour: tuple[float, float, float]
+    style: dict[str, Any]
+    read: Callable[[_Object], Any]
+    write: Callable[[_Object, Any], None]
+    place: Callable[[_Object], Matrix]
+
+
+def _sized(item: _Object) -> Any:
+    """What holds the size of the domain: the first patch, or the ocean."""
+    settings = settings_of(item)
+    return settings.patches[0] if settings.patches else settings
+
+
+def _size(item: _Object) -> float:
+    return float(_sized(item).domain_size)
+
+
+def _set_size(item: _Object, value: float) -> None:
+    _sized(item).domain_size = max(value, 1e-3)
+
+
+def _group(item: _Object, *kinds: str) -> Any:
+    """Settings of the active layer where it is of one of these kinds."""
+    layer = active_layer(settings_of(item))
+    return layer.group if layer is not None and layer.kind in kinds else None
+
+
+def _blown(item: _Object) -> Any:
+    """Settings of the active layer where it has the same wind everywhere."""
+    group = _group(item, "WAVES", "WIND_FIELD", "IMAGE")
+    return None if group is None or getattr(group, "source", "UNIFORM") != "UNIFORM" else group
+
+
+def _directed(item: _Object) -> tuple[Any, str] | None:
+    """What has a direction, and its name there."""
+    wave = _group(item, "HERO_WAVE")
+    if wave is not None:
+        return wave, "direction"
+    group = _blown(item)
+    return None if group is None else (group, "wind_direction")
+
+
+def _direction(item: _Object) -> float | None:
+    found = _directed(item)
+    return None if found is None else float(getattr(*found))
+
+
+def _set_direction(item: _Object, value: float) -> None:
+    setattr(*_directed(item), value)
+
+
+def _speed(item: _Object) -> float | None:
+    group = _blown(item)
+    if group is None or getattr(group, "definition", "WIND") != "WIND":
+        return None
+    return group.wind_speed / _FULL_LENGTH * _size(item)
+
+
+def _set_speed(item: _Object, value: float) -> None:
+    _blown(item).wind_speed = max(value, 0.0) * _FULL_LENGTH / _size(item)
+
+
+def _focus(item: _Object) -> tuple[float, float, float] | None:
+    wave = _group(item, "HERO_WAVE")
+    return None if wave is None else (wave.x, wave.y, 0.0)
+
+
+def _set_focus(item: _Object, value: Vector) -> None:
+    wave = _group(item, "HERO_WAVE")
+    for name, part in zip("xy", value, strict=False):
+        if getattr(wave, name) != part:
+            setattr(wave, name, part)
+
+
+def _wavelength(item: _Object) -> float | None:
+    wave = _group(item, "HERO_WAVE")
+    return None if wave is None else float(wave.wavelength)
+
+
+def _set_wavelength(item: _Object, value: float) -> None:
+    _group(item, "HERO_WAVE").wavelength = max(value, 1e-3)
+
+
+def _at(item: _Object) -> Matrix:
+    """Where the active layer's handles are: a hero wave's at its focus, else in the middle of the domain."""
+    half = 0.5 * _size(item)
+    return item.matrix_world @ Matrix.Translation(_focus(item) or (half, half, 0.0))
+
+
+def _along(item: _Object) -> Matrix:
+    """From there along the direction of wind or wave."""
+    return _at(item) @ Matrix.Rotation(_direction(item) or 0.0, 4, "Z") @ _ALONG_X
+
+
+_DIAL = {"draw_options": {"ANGLE_START_Y", "ANGLE_VALUE"}}
+
+#: by name
+HANDLES = {
+    "size": Handle(
+        "GIZMO_GT_arrow_3d", _SIZE_COLOUR, {"draw_style": "BOX"}, _size, _set_size,
+        lambda item: item.matrix_world @ _ALONG_X,
+    ),
+    "direction": Handle(
+        "GIZMO_GT_dial_3d", _WIND_COLOUR, _DIAL, _direction, _set_direction, lambda item: _at(item) @ _FROM_X
+    ),
+    "speed": Handle("GIZMO_GT_arrow_3d", _WIND_COLOUR, {}, _speed, _set_speed, _along),
+    "focus": Handle(
+        "GIZMO_GT_move_3d", _WAVE_COLOUR, {"draw_options": {"ALIGN_VIEW", "FILL"}, "scale_basis": 0.15}, _focus, _set_focus,
+        lambda item: item.matrix_world.copy(),
+    ),
+    "wavelength": Handle(
+        "GIZMO_GT_arrow_3d", _WAVE_COLOUR, {"draw_style": "BOX"}, _wavelength, _set_wavelength, _along
+    ),
+}  # fmt: skip
+
+
+def _keep_step() -> None:
+    """Let undo take back what a handle has set."""
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.ed.undo_push(message="Pull Ocean Handle")
+
+
+class OCEAN_GGT_handles(bpy.types.GizmoGroup):
+    """The handles of the active ocean."""
+
+    bl_idname = "OCEAN_GGT_handles"
+    bl_label = "Ocean Handles"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "WINDOW"
+    bl_options = {"3D", "PERSISTENT"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """An ocean that can be changed is active, and live: a bake moves by no handle."""
+        item = context.active_object
+        if not is_ocean(item) or context.mode != "OBJECT":
+            return False
+        return item.is_editable and item.visible_get() and settings_of(item).source == "LIVE"
+
+    def setup(self, _context: bpy.types.Context) -> None:
+        """Make all of them; which are shown is told before each drawing."""
+        self.made = {name: self._make(handle) for name, handle in HANDLES.items()}
+        self.is_pulled = False
+
+    def _make(self, handle: Handle) -> bpy.types.Gizmo:
+        gizmo = self.gizmos.new(handle.gizmo)
+        for name, value in handle.style.items():
+            setattr(gizmo, name, value)
+        gizmo.color, gizmo.alpha = handle.colour, 0.7
+        gizmo.color_highlight, gizmo.alpha_highlight = (1.0, 1.0, 1.0), 1.0
+        zero = (0.0, 0.0, 0.0) if handle.read is _focus else 0.0
+
+        def read() -> Any:
+            item = bpy.context.active_object
+            value = handle.read(item) if is_ocean(item) else None
+            return zero if value is None else value
+
+        def write(value: Any) -> None:
+            item = bpy.context.active_object
+            if is_ocean(item) and handle.read(item) is not None:
+                handle.write(item, value)
+
+        gizmo.target_set_handler("offset", get=read, set=write)
+        return gizmo
+
+    def draw_prepare(self, context: bpy.types.Context) -> None:
+        """Put them where their settings are, and hide those of settings that there are not."""
+        item, was_pulled = context.active_object, self.is_pulled
+        self.is_pulled = any(gizmo.is_modal for gizmo in self.made.values())
+        if was_pulled and not self.is_pulled:
+            # Blender keeps no step for handles of Python, and while it draws none can be kept
+            bpy.app.timers.register(_keep_step)
+        for name, gizmo in self.made.items():
+            handle = HANDLES[name]
+            gizmo.hide = handle.read(item) is None
+            if not gizmo.hide and not gizmo.is_modal:  # what is dragged measures from where it began
+                gizmo.matrix_basis = handle.place(item).normalized()
+
+
+CLASSES = (OCEAN_GGT_handles,)
