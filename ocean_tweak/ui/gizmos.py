@@ -145,7 +145,8 @@ HANDLES = {
     ),
     "speed": Handle("GIZMO_GT_arrow_3d", _WIND_COLOUR, {}, _speed, _set_speed, _along),
     "focus": Handle(
-        "GIZMO_GT_move_3d", _WAVE_COLOUR, {"draw_options": {"ALIGN_VIEW", "FILL"}, "scale_basis": 0.15}, _focus, _set_focus,
+        "GIZMO_GT_move_3d", _WAVE_COLOUR, {"draw_options": {"ALIGN_VIEW", "FILL"}, "scale_basis": 0.15},
+        _focus, _set_focus,
         lambda item: item.matrix_world.copy(),
     ),
     "wavelength": Handle(
