@@ -36,8 +36,8 @@ PUBLIC = {
 #: methods that Blender or Python calls by their name
 CALLED_FROM_OUTSIDE = frozenset(
     (
-        "cancel", "check", "description", "draw", "draw_header", "draw_item", "draw_prepare", "emit", "execute",
-        "handleError", "invoke", "modal", "poll", "setup",
+        "cancel", "check", "description", "draw", "draw_header", "draw_item", "draw_prepare", "emit",
+        "execute", "handleError", "invoke", "modal", "poll", "setup",
     )
 )  # fmt: skip
 
