@@ -115,7 +115,8 @@ def _add_files_arguments(parser: _Arguments) -> None:
     )
     parser.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
-        help="PXR24 (default) keeps 2⁻¹⁶ of a value, the others are exact; HTJ2K needs Blender 5.2 to read",
+        help="PXR24 (default) keeps 2⁻¹⁶ of a displacement and 2⁻¹¹ of the largest foam, normal and "
+        "velocity, the others are exact; HTJ2K needs Blender 5.2 to read",
     )  # fmt: skip
 
 

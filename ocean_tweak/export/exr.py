@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fields as OpenEXR images: one map a file, plain channel names, float, data rather than colour.
+"""Fields as OpenEXR images: one map a file, plain channel names, data rather than colour.
+
+Maps of which less is enough have 16 bits where the compression may lose something, others 32.
 
 Row 0 of an EXR image is its top row, so arrays [y, x] are written with their rows reversed.
 """
@@ -9,9 +11,10 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import math
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -27,7 +30,7 @@ from ..core.data.plain_data import to_plain
 from ..core.data.printable import printable
 from ..core.parameters.ocean_parameters import OceanParameters, Patch
 from ..core.sea.regions import Area
-from ..core.synthesis.channels import MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
+from ..core.synthesis.channels import HALVED_MAPS, MOVING_MAP, SurfaceFields, channels_of, image_of, unit_of
 from .files import open_file, whole_file
 from .frame_files import frame_file
 
@@ -38,6 +41,13 @@ MOST_NUMBERS = 2**28
 
 #: largest relative error of a stored value, by compression
 COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0, "HTJ2K": 0.0}
+
+#: the compression that may lose something, and that of the maps which it lets have 16 bits
+COMPACT, _OF_HALVES = "PXR24", "PIZ"
+#: largest error of a number in 16 bits, as a share of the power of two above its channel's largest: what is
+#: finer would be noise to a codec
+HALF_ERROR = 2.0**-11
+_LARGEST_HALF = float(np.finfo(np.float16).max)
 
 #: what damaged images give: wrong bytes, text that is no text, JSON that is none or too deep
 _UNREADABLE = (RuntimeError, KeyError, ValueError, TypeError, OSError, RecursionError)
@@ -98,15 +108,17 @@ class ExrSequence:
     compression : a key of COMPRESSION_ERROR
     maps : keys of `core.synthesis.channels.MAPS`
     area : the square that they show, of the whole sea; None for the tile of the sea or of the patch
+    encoding : version of `core.data.formats.ENCODING`
     """
 
     directory: Path
     name: str
     parameters: OceanParameters
-    compression: str = "PXR24"
+    compression: str = COMPACT
     maps: tuple[str, ...] = (MOVING_MAP,)
     patch: int | None = None
     area: Area | None = None
+    encoding: int = formats.ENCODING
 
     @property
     def outputs(self) -> frozenset[str]:
@@ -144,14 +156,18 @@ class ExrSequence:
     def write_map(self, frame: Frame, fields: SurfaceFields, name: str) -> Path:
         """Write one of the frame's maps. Returns its path."""
         path = self.path(frame, name)
-        write_image(path, *self._content(frame, fields, name), self.parameters.timing.fps, self.compression)
+        _write(path, self.encoded(frame, fields, name))
         return path
 
     def encoded(self, frame: Frame, fields: SurfaceFields, name: str) -> bytes:
         """The bytes of one of a frame's maps. Raises ExrError for a value that is not finite."""
         image, metadata = self._content(frame, fields, name)
         path, fps = self.path(frame, name), self.parameters.timing.fps
-        return _encoded(path, image, metadata, fps, self.compression)
+        return _encoded(path, image, metadata, fps, self.compression, self.is_halved(name))
+
+    def is_halved(self, name: str) -> bool:
+        """Whether a map has 16 bits."""
+        return self.encoding > 1 and name in halved_maps(self.maps, self.compression)
 
     def _content(
         self, frame: Frame, fields: SurfaceFields, name: str
@@ -186,20 +202,34 @@ def write_image(
 
     Raises ExrError for a value that is not finite and OSError for what the disk refuses.
     """
-    encoded = _encoded(path, image, metadata, fps, compression)
+    _write(path, _encoded(path, image, metadata, fps, compression))
+
+
+def halved_maps(maps: Iterable[str], compression: str) -> frozenset[str]:
+    """Those of some maps that have 16 bits with a compression."""
+    return HALVED_MAPS.intersection(maps) if compression == COMPACT else frozenset()
+
+
+def _write(path: Path, encoded: bytes) -> None:
     # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
     with whole_file(path) as beside:
         beside.write_bytes(encoded)
 
 
 def _encoded(
-    path: Path, image: NDArray[np.floating], metadata: dict[str, Any], fps: Fraction, compression: str
+    path: Path,
+    image: NDArray[np.floating],
+    metadata: dict[str, Any],
+    fps: Fraction,
+    compression: str,
+    halved: bool = False,
 ) -> bytes:
     openexr = load_openexr()
     if not np.all(np.isfinite(image)):
         raise ExrError(f"{path}: the image holds values that are not finite")
+    codec = _OF_HALVES if halved else _OPENEXR_NAMES.get(compression, compression)
     header = {
-        "compression": getattr(openexr, f"{_OPENEXR_NAMES.get(compression, compression)}_COMPRESSION"),
+        "compression": getattr(openexr, f"{codec}_COMPRESSION"),
         "type": openexr.scanlineimage,
         "colorInteropID": "data",
         "framesPerSecond": fps,
@@ -208,12 +238,28 @@ def _encoded(
     # OpenEXR writes arrays that are not contiguous wrongly, without a word
     rows = np.asarray(image, np.float32)[::-1]
     channels = {name: np.ascontiguousarray(rows[..., index]) for index, name in enumerate("RGB")}
+    if halved:
+        channels = {name: _halved(path, channel) for name, channel in channels.items()}
     encoded = io.BytesIO()
     try:
         openexr.File(header, channels).write(encoded)
     except RuntimeError as error:
         raise ExrError(f"{path}: {error}") from error
     return encoded.getvalue()
+
+
+def _halved(path: Path, channel: NDArray[np.float32]) -> NDArray[np.float16]:
+    """A channel in 16 bits, within HALF_ERROR. Raises ExrError for numbers that are too large."""
+    largest = float(np.abs(channel).max())
+    if largest > _LARGEST_HALF:
+        raise ExrError(f"{path}: the image holds {largest:g}, and 16 bits hold {_LARGEST_HALF:g} at most")
+    if largest == 0.0:
+        return channel.astype(np.float16)
+    step = 2.0 * HALF_ERROR * 2.0 ** math.ceil(math.log2(largest))
+    rounded = channel * np.float32(1.0 / step)
+    np.rint(rounded, out=rounded)
+    rounded *= np.float32(step)
+    return rounded.astype(np.float16)
 
 
 def read_image(

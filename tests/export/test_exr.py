@@ -12,7 +12,7 @@ import OpenEXR
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Timing, WaveLayer
-from ocean_tweak.core.synthesis.channels import MAPS
+from ocean_tweak.core.synthesis.channels import MAPS, channels_of, image_of
 from ocean_tweak.export import files
 from ocean_tweak.export.exr import COMPRESSION_ERROR, ExrError, ExrSequence, read_image, silenced, write_image
 
@@ -173,3 +173,36 @@ def test_what_is_printed_is_found_again_after_threads_that_read_at_once(
     with silenced():
         print("of a library")
     assert capsys.readouterr().out == ""
+
+
+def test_maps_of_which_less_is_enough_have_16_bits_and_err_by_no_more_than_told(tmp_path: Path) -> None:
+    parameters = OceanParameters(resolution=64, layers=(WaveLayer(wind_speed=20.0),))
+    maps = ("disp", "foam", "normal", "vel", "slope")
+    fields = Ocean(parameters).surface(2.0, channels_of(maps))
+    for encoding, compression in ((2, "PXR24"), (1, "PXR24"), (2, "ZIP")):
+        sink = ExrSequence(tmp_path, "sea", parameters, compression, maps, encoding=encoding)
+        sink.write(1, fields)
+        for name in maps:
+            halved = (encoding, compression) == (2, "PXR24") and name not in ("disp", "slope")
+            with OpenEXR.File(str(sink.path(1, name)), separate_channels=True) as file:
+                assert file.channels()["R"].pixels.dtype == (np.float16 if halved else np.float32), name
+            pixels, _ = read_image(sink.path(1, name))
+            wanted = image_of(name, fields).astype(np.float64)
+            largest = np.abs(wanted).max(axis=(0, 1), keepdims=True)
+            # 2^-11 of the power of two above the largest number, which is less than twice as large
+            allowed = 2.0**-10 * largest if halved else 2.0**-16 * np.abs(wanted)
+            assert np.all(np.abs(pixels - wanted) <= allowed), name
+    normals = read_image(sink.path(1, "normal"))[0]
+    np.testing.assert_array_equal(normals, fields.normal)  # ZIP loses nothing
+
+
+def test_what_16_bits_cannot_hold_is_refused(tmp_path: Path) -> None:
+    parameters = OceanParameters(resolution=16)
+    sink = ExrSequence(tmp_path, "sea", parameters, maps=("vel",))
+    fields = Ocean(parameters).surface(0.0, {"velocity"})
+    fields.velocity[3, 4, 1] = 7e4
+    with pytest.raises(ExrError, match="the image holds 70000, and 16 bits hold 65504 at most"):
+        sink.write(1, fields)
+    fields.velocity[...] = 0.0
+    sink.write(1, fields)
+    assert not read_image(sink.path(1, "vel"))[0].any()

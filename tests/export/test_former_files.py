@@ -3,15 +3,19 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+import OpenEXR
 import pytest
 
 from ocean_tweak.cli import main
-from ocean_tweak.core import HeroWave, ImageLayer, OceanParameters, WaveLayer, WindFieldLayer
+from ocean_tweak.core import HeroWave, ImageLayer, Ocean, OceanParameters, WaveLayer, WindFieldLayer
 from ocean_tweak.core.parameters.fingerprint import frame_fingerprint
 from ocean_tweak.core.parameters.former_json import former, modern
 from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.export.cache.job import Job
 from ocean_tweak.export.sea_files import read_sea, write_sea
 
 FORMER = Path(__file__).parents[1] / "former"
@@ -76,3 +80,22 @@ def test_layers_of_usd_hold_that_sea(shot: Shot, tmp_path: Path) -> None:
     asset = Path(shutil.copytree(FORMER / "usd", tmp_path / "usd")) / "sea.usda"
     assert read_sea(asset) == shot
     assert main(["usd-verify", str(asset)]) == 0
+
+
+def test_a_bake_whose_maps_all_have_32_bits_goes_on_so(tmp_path: Path) -> None:
+    """As version 1 of the encoding made it: its hash is the one that version 1 gave."""
+    now = Job("sea", "1", Shot.from_dict({"resolution": 16}), ("disp", "vel"))
+    before = replace(now, encoding=1)
+    assert before.fingerprint.startswith("2ed089dfcb9afa8d")
+    assert now.fingerprint != before.fingerprint
+    assert "encoding" not in before.to_dict()
+    assert Job.from_dict(before.to_dict()).encoding == 1
+    assert Job.from_dict(now.to_dict()).encoding == 2
+    fields = [Ocean(now.shot.parameters).frame(1, now.outputs)]
+    for job, kind in ((before, np.float32), (now, np.float16)):
+        disp, vel = job.write(tmp_path, 1, fields)
+        for path, dtype in ((disp, np.float32), (vel, kind)):
+            with OpenEXR.File(str(path), separate_channels=True) as file:
+                assert file.channels()["G"].pixels.dtype == dtype
+    exact = Job("sea", "1", now.shot, now.maps, "ZIP", encoding=1)
+    assert exact == Job("sea", "1", now.shot, now.maps, "ZIP")  # nothing of it has 16 bits in any version

@@ -28,9 +28,18 @@ SYNTHESIS = 1
 FOAM = 3
 
 
+#: how a bake's maps are encoded: raised whenever the same fields give another file. In 1 all were 32 bits
+ENCODING = 2
+
+
 def told_foam(version: int, has_foam: bool) -> dict[str, int]:
     """What files and fingerprints tell of their foam; of the first version, as of none, they tell nothing."""
     return {"foam": version} if has_foam and version > 1 else {}
+
+
+def told_encoding(version: int, has_halved: bool) -> dict[str, int]:
+    """What they tell of how maps are encoded; of the first version, as of maps in 32 bits, nothing."""
+    return {"encoding": version} if has_halved and version > 1 else {}
 
 
 class NewerFormatError(ParameterError):

@@ -276,6 +276,9 @@ MAPS: dict[str, tuple[str, ...]] = {
     "foam_age": ("foam_age",),
 }
 
+#: maps of which 2^-11 of the largest number is enough; places need more, and so does what normals are made of
+HALVED_MAPS = frozenset({"foam", "normal", "vel", "foam_age"})
+
 #: the map that moves a surface: a sequence has it in every frame
 MOVING_MAP = "disp"
 

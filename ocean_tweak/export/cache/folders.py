@@ -12,7 +12,7 @@ import json
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain, combinations
+from itertools import chain, combinations, product
 from pathlib import Path
 
 from ...core.data import formats
@@ -134,8 +134,8 @@ def recovered_job(folder: Path) -> Job:
         except (ExrError, ValueError, KeyError):
             continue
         for maps in _all_choices(maps_for(shot.parameters, area)):
-            for foam in range(formats.FOAM, 0, -1):
-                job = Job(name, uid, shot, maps, compression, area=area, foam=foam)
+            for foam, encoding in product(range(formats.FOAM, 0, -1), range(formats.ENCODING, 0, -1)):
+                job = Job(name, uid, shot, maps, compression, area=area, foam=foam, encoding=encoding)
                 if job.fingerprint[:8] == match[2]:
                     return job
     raise CacheError(problem)

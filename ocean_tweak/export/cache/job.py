@@ -25,7 +25,7 @@ from ...core.parameters.shot import Shot
 from ...core.sea.placed_waves import check_repeats
 from ...core.sea.regions import TILE, Area, Tile, told_area
 from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, OF_MEMORY, SurfaceFields, channels_of
-from ..exr import COMPRESSION_ERROR, ExrSequence
+from ..exr import COMPACT, COMPRESSION_ERROR, ExrSequence, halved_maps
 from ..frame_files import BAKED, POINTS
 from ..points import PointSequence
 
@@ -53,6 +53,7 @@ class Job:
     frames : those that are asked for
     area : the square where the sea is baked; None for its own tile, or those of its patches
     foam : version of the foam in its maps; without such maps it is of no account
+    encoding : version of how its maps are encoded; where all have 32 bits it is of no account
 
     Raises ParameterError for what would name files elsewhere, and for maps that cannot be made.
     """
@@ -61,10 +62,11 @@ class Job:
     uid: str
     shot: Shot
     maps: tuple[str, ...] = (MOVING_MAP,)
-    compression: str = "PXR24"
+    compression: str = COMPACT
     frames: tuple[Frame, ...] = field(default=(), compare=False)
     area: Area | None = None
     foam: int = field(default=formats.FOAM, kw_only=True)
+    encoding: int = field(default=formats.ENCODING, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(name for name in BAKED if name in self.maps))
@@ -75,6 +77,8 @@ class Job:
         _check_maps(self.maps, self.shot.parameters, self.area)
         if not self.outputs & OF_MEMORY:
             object.__setattr__(self, "foam", formats.FOAM)
+        if not halved_maps(self.maps, self.compression):
+            object.__setattr__(self, "encoding", formats.ENCODING)
 
     @cached_property
     def fingerprint(self) -> str:
@@ -88,6 +92,7 @@ class Job:
                 "compression": self.compression,
                 **self._told_area(),
                 **self._told_foam(),
+                **self._told_encoding(),
             }
         )
 
@@ -105,6 +110,9 @@ class Job:
 
     def _told_foam(self) -> dict[str, int]:
         return formats.told_foam(self.foam, bool(self.outputs & OF_MEMORY))
+
+    def _told_encoding(self) -> dict[str, int]:
+        return formats.told_encoding(self.encoding, bool(halved_maps(self.maps, self.compression)))
 
     def _told_area(self) -> dict[str, Any]:
         return {} if self.area is None else {"area": self.area.to_dict()}
@@ -146,7 +154,9 @@ class Job:
         is_one = self.area is not None or not parameters.is_cascade
         patches: Iterable[int | None] = (None,) if is_one else range(len(parameters.patches))
         return tuple(
-            ExrSequence(folder, self.name, parameters, self.compression, self.images, patch, self.area)
+            ExrSequence(
+                folder, self.name, parameters, self.compression, self.images, patch, self.area, self.encoding
+            )
             for patch in patches
         )
 
@@ -196,6 +206,7 @@ class Job:
             "compression": self.compression,
             **self._told_area(),
             **self._told_foam(),
+            **self._told_encoding(),
             "shot": {"format": formats.SEA, **self.shot.to_dict()},
             "made_with": made_with(),
         }
@@ -206,7 +217,11 @@ class Job:
         """A job from plain data. Raises ValueError naming what is wrong."""
         if not isinstance(data, dict):
             raise ValueError("is not a JSON object")
-        for key, known in (("format", formats.JOB), ("synthesis", formats.SYNTHESIS), ("foam", formats.FOAM)):
+        versions = {
+            "format": formats.JOB, "synthesis": formats.SYNTHESIS, "foam": formats.FOAM,
+            "encoding": formats.ENCODING,
+        }  # fmt: skip
+        for key, known in versions.items():
             formats.check_format(data, known, key)
         if data.get("format") != formats.JOB or data.get("synthesis") != formats.SYNTHESIS:
             raise ValueError(
@@ -227,6 +242,7 @@ class Job:
         job = cls(
             name, uid, Shot.from_dict(data.get("shot")), tuple(maps), compression,
             parse_frames(frames) if frames else (), told_area(data), foam=data.get("foam", 1),
+            encoding=data.get("encoding", 1),
         )  # fmt: skip
         if job.fingerprint != data.get("fingerprint"):
             raise ValueError("was changed: its fingerprint is not that of its contents")
