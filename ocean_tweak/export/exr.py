@@ -156,7 +156,8 @@ class ExrSequence:
     def write_map(self, frame: Frame, fields: SurfaceFields, name: str) -> Path:
         """Write one of the frame's maps. Returns its path."""
         path = self.path(frame, name)
-        _write(path, self.encoded(frame, fields, name))
+        content, fps = self._content(frame, fields, name), self.parameters.timing.fps
+        write_image(path, *content, fps, self.compression, self.is_halved(name))
         return path
 
     def encoded(self, frame: Frame, fields: SurfaceFields, name: str) -> bytes:
@@ -191,26 +192,26 @@ class ExrSequence:
         return image_of(name, fields), metadata
 
 
+def halved_maps(maps: Iterable[str], compression: str) -> frozenset[str]:
+    """Those of some maps that have 16 bits with a compression."""
+    return HALVED_MAPS.intersection(maps) if compression == COMPACT else frozenset()
+
+
 def write_image(
     path: Path,
     image: NDArray[np.floating],
     metadata: dict[str, Any],
     fps: Fraction,
     compression: str = "PXR24",
+    halved: bool = False,
 ) -> None:
-    """Write an (N, M, 3) array [y, x] as float R, G, B; the file appears whole or not at all.
+    """Write an (N, M, 3) array [y, x] as R, G, B; the file appears whole or not at all.
+
+    halved : whether they have 16 bits, and the compression of those
 
     Raises ExrError for a value that is not finite and OSError for what the disk refuses.
     """
-    _write(path, _encoded(path, image, metadata, fps, compression))
-
-
-def halved_maps(maps: Iterable[str], compression: str) -> frozenset[str]:
-    """Those of some maps that have 16 bits with a compression."""
-    return HALVED_MAPS.intersection(maps) if compression == COMPACT else frozenset()
-
-
-def _write(path: Path, encoded: bytes) -> None:
+    encoded = _encoded(path, image, metadata, fps, compression, halved)
     # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
     with whole_file(path) as beside:
         beside.write_bytes(encoded)
