@@ -17,7 +17,7 @@ import bpy
 from .building import Builder, Input, Plug, Socket, output
 from .fields import alone, combined, connect, coordinates, named_attribute, whole_number
 from .loops import joined, repeated
-from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, SLOPE, STRAIN, VELOCITY
+from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, SLOPE, SLOPE_VARIANCE, STRAIN, VELOCITY
 from .surface import CELL
 from .versioned import GroupKind, node_group
 
@@ -66,16 +66,14 @@ def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
 def patch_carried(build: Builder, patch: Socket) -> Socket:
     """The mesh of one patch of a sea with what is averaged: how it moves, and its strain.
 
-    Slopes of means have as z what they lack of the slopes' squares.
+    Its attribute of slope variance is what its samples lack of the slopes' squares.
     """
-    slope, strain = (
-        output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute") for name in (SLOPE, STRAIN)
-    )
-    x, y, lost = coordinates(build, slope)
+    x, y, _ = coordinates(build, told(build, SLOPE))
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    lost = output(named_attribute(build, SLOPE_VARIANCE, "FLOAT"), "Attribute")
     squares = build.math("ADD", held, lost)
     sloped = build.store(patch, SLOPES, combined(build, x, y, squares), "FLOAT_VECTOR")
-    return build.store(sloped, OTHERS, strain, "FLOAT_VECTOR")
+    return build.store(sloped, OTHERS, told(build, STRAIN), "FLOAT_VECTOR")
 
 
 def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:

@@ -55,6 +55,10 @@ INPUTS = (
     Plug("Camera", "NodeSocketObject", None, "Where the grid is dense; without one, at the scene's camera"),
     Plug("Finest Spacing", "NodeSocketFloat", 0.25, "Size of the cells near the camera, in Blender units"),
     Plug("Vertex Budget", "NodeSocketInt", 200_000, "Vertices of the grid, at most"),
+    Plug(
+        "Viewport Vertex Budget", "NodeSocketInt", 50_000,
+        "Vertices of the grid in the viewport, at most; its cells are larger in proportion",
+    ),
     Plug("To Horizon", "NodeSocketBool", True, "Reach as far as the camera sees from its height"),
     Plug("Reach", "NodeSocketFloat", 5000.0, "How far the grid goes instead, in Blender units"),
     Plug("Curvature", "NodeSocketBool", True, "Let the water fall away as on a globe"),
@@ -106,15 +110,20 @@ def _build(tree: bpy.types.NodeTree) -> None:
     spaces = Spaces(build, build.given("Ocean"))
     sea = _sea(build, spaces)
     reach = _reach(build, sea)
-    inputs = {name: build.given(name) for name in ("Finest Spacing", "Vertex Budget")}
-    grid = build.group(node_group(CAMERA_GRID), {"Center": sea.eye, "Reach": reach, **inputs})
+    budget, coarser = _density(build)
+    finest = build.math("MULTIPLY", build.given("Finest Spacing"), coarser)
+    inputs = {"Center": sea.eye, "Reach": reach, "Vertex Budget": budget, "Finest Spacing": finest}
+    grid = build.group(node_group(CAMERA_GRID), inputs)
     inputs = {"Foam": sea.foam, "Columns": output(sea.of_foam, "Columns"), "Corner": sea.corner}
     fan = build.group(node_group(CAMERA_FAN), inputs)
     either = build.switch("GEOMETRY", sea.is_fan, *(output(each, "Geometry") for each in (grid, fan)))
     flat = build.change("GeometryNodeSetShadeSmooth", either)
     away = build.vector("SUBTRACT", output(build.add("GeometryNodeInputPosition"), "Position"), sea.eye)
     laid = build.store(flat, TEXTURE_COORDINATES, _texture_coordinates(build, sea), "FLOAT2", "CORNER")
-    size = build.switch("FLOAT", sea.is_fan, _size(build, grid, away), output(fan, "Size"))
+    # averages do not follow all of what cells are larger: the viewport rather shows waves of few cells than
+    # none
+    size = build.math("DIVIDE", _size(build, grid, away, finest), build.math("SQRT", coarser, None))
+    size = build.switch("FLOAT", sea.is_fan, size, output(fan, "Size"))
     foam = build.switch("VECTOR", sea.is_fan, _of_rings(build, sea, size), output(fan, "Value"))
     shown = _finished(build, laid, _summed(build, sea, size, foam), spaces, sea, away, size)
     painted = build.change("GeometryNodeSetMaterial", shown, {"Material": build.given("Material")})
@@ -177,7 +186,17 @@ def _texture_coordinates(build: Builder, sea: _Sea) -> Socket:
     return output(of_point, "Value")
 
 
-def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
+def _density(build: Builder) -> tuple[Socket, Socket]:
+    """Vertices of the grid, at most, and how much larger cells are in the viewport."""
+    whole = build.given("Vertex Budget")
+    few = build.integer("MINIMUM", whole, build.given("Viewport Vertex Budget"))
+    is_viewport = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
+    budget = build.switch("INT", is_viewport, whole, few)
+    ratio = build.math("DIVIDE", whole, build.integer("MAXIMUM", budget, 1))
+    return budget, build.math("MAXIMUM", build.math("SQRT", ratio, None), 1.0)
+
+
+def _size(build: Builder, grid: bpy.types.Node, away: Socket, finest: Socket) -> Socket:
     """Of the lattice's cells where a vertex is, without steps.
 
     A level of the lattice begins where the distance is half of its m cells, less half a cell: so
@@ -186,7 +205,7 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket) -> Socket:
     x, y, _ = coordinates(build, alone(build, "ABSOLUTE", away))
     cells = build.integer("SUBTRACT", output(grid, "Half"), 1)
     size = build.math("DIVIDE", build.math("MULTIPLY", build.math("MAXIMUM", x, y), 2.0), cells)
-    return build.math("MAXIMUM", size, build.given("Finest Spacing"))
+    return build.math("MAXIMUM", size, finest)
 
 
 def _summed(build: Builder, sea: _Sea, size: Socket, foam_around: Socket) -> dict[str, Socket]:
@@ -381,4 +400,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 6, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 7, _build)

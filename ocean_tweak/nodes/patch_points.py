@@ -31,7 +31,7 @@ INPUTS = (
 #: attribute of the result → the files' numbers
 _NUMBERS = {
     VELOCITY: CHANNELS["velocity"].columns,
-    SLOPE: (*CHANNELS["slope"].columns, SLOPE_VARIANCE),
+    SLOPE: CHANNELS["slope"].columns,
     STRAIN: CHANNELS["strain"].columns,
 }
 
@@ -51,18 +51,19 @@ def _build(tree: bpy.types.NodeTree) -> None:
     near_column, near_row = (build.integer("MODULO", number, cells) for number in (column, row))
     source = build.integer("ADD", build.integer("MULTIPLY", near_row, along), near_column)
 
-    def told(value: Socket) -> Socket:
-        return sample_index(build, points, value, source, "FLOAT_VECTOR")
+    def told(value: Socket, data_type: str = "FLOAT_VECTOR") -> Socket:
+        return sample_index(build, points, value, source, data_type)
 
     place = told(output(build.add("GeometryNodeInputPosition"), "Position"))
     moved = build.vector("SUBTRACT", place, _at_rest(build, near_column, near_row, along))
     values = {
         name: told(combined(build, *(_number(build, each) for each in _NUMBERS[name]))) for name in _NUMBERS
     }
+    variance = told(_number(build, SLOPE_VARIANCE), "FLOAT")
     values[VELOCITY] = build.scaled(values[VELOCITY], build.given("Velocity Scale"))
     scaled = build.scaled(moved, build.given("Scale"))
     values[DISPLACEMENT] = moved_on(build, scaled, values[VELOCITY], output(frame, "Seconds"))
-    grid = line
+    grid = build.store(line, SLOPE_VARIANCE, variance, "FLOAT")
     for name, value in values.items():
         grid = build.store(grid, name, value, "FLOAT_VECTOR")
     rest = build.scaled(_at_rest(build, column, row, along), build.given("Scale"))
@@ -96,4 +97,4 @@ def _at_rest(build: Builder, column: Socket, row: Socket, along: Socket) -> Sock
     return combined(build, x, y)
 
 
-PATCH_POINTS = GroupKind("Ocean Tweak Patch Points", 2, _build)
+PATCH_POINTS = GroupKind("Ocean Tweak Patch Points", 3, _build)

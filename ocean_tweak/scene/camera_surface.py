@@ -13,8 +13,8 @@ from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
 from . import patch_objects, portability, water_material
 from .plan import camera_surface_of
-from .refinement import follow_up
-from .refresh import Wanted, refresh
+from .refinement import show_new
+from .refresh import AROUND_CAMERA, Wanted
 from .settings import OceanObjectError, is_ocean, settings_of
 from .units import metres_per_unit
 
@@ -67,8 +67,8 @@ def add_camera_surface(
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
     _make_room(ocean)
     # its own mesh is without what does not repeat from now on
-    own = Wanted.SURFACE | Wanted.SAMPLES if repeating(parameters) is not parameters else Wanted(0)
-    follow_up(ocean, refresh(ocean, scene, own | Wanted.PATCHES | Wanted.NEIGHBOURS))
+    own = Wanted.SURFACE if repeating(parameters) is not parameters else Wanted(0)
+    show_new(ocean, scene, own | AROUND_CAMERA | Wanted.NEIGHBOURS)
     return surface
 
 

@@ -115,6 +115,8 @@ class Around:
 
         patient : otherwise it is shown without its history where that would take long
         """
+        if not patient and MEMO.find(_RINGS, self.sea) is None:
+            return False  # what rings there are takes longer to find than the foam on them
         maker = _maker(self.sea)
         if patient and self.view is not None:
             _fill_fan(mesh, maker.before(self.time, self.view, self.vertices), self)

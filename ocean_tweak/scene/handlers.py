@@ -39,7 +39,7 @@ from . import (
 from .animated import is_animated, shown_settings
 from .plan import camera_has_moved, camera_surface_of, forget_cameras
 from .refinement import show
-from .refresh import Wanted, is_live, of_a_frame
+from .refresh import AROUND_CAMERA, Wanted, is_live, of_a_frame
 from .settings import all_oceans, is_ocean, oceans_in, once_oceans_in, settings_of, shown_oceans, was_ocean
 from .units import metres_per_unit
 
@@ -102,7 +102,7 @@ def refresh_around_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
         scale = float(1 / metres_per_unit(scene))
         if surface is not None and camera_has_moved(surface, scene, depsgraph, scale):
             shown = shown_settings(item, depsgraph) if is_animated(item) else None
-            show(item, scene, Wanted.PATCHES | Wanted.HISTORY, shown)
+            show(item, scene, AROUND_CAMERA, shown)
 
 
 @_loud
@@ -218,7 +218,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     stored_values.mend_all()
     show_that_it_runs()
     # what a bake's groups of another version were not told
-    baked = Wanted.NOTES | Wanted.SURFACE | Wanted.PATCHES if upgrade_groups(ALL_KINDS) else Wanted.NOTES
+    baked = Wanted.NOTES | Wanted.SURFACE | AROUND_CAMERA if upgrade_groups(ALL_KINDS) else Wanted.NOTES
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
     float_carrier.take_over()
@@ -274,6 +274,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     """Undo restores settings, but neither the texels nor what was made anew since."""
     show_that_it_runs()
     live_image.forget_all()
+    patch_objects.forget_all()
     source_images.forget_all()
     float_carrier.follow()
     contact.refresh()
@@ -378,6 +379,7 @@ def _forget_all() -> None:
     portability.forget_all()
     MEMO.drop()
     live_image.forget_all()
+    patch_objects.forget_all()
     source_images.forget_all()
 
 

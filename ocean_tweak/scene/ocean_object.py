@@ -15,6 +15,7 @@ from .cache_place import new_uid
 from .camera_surface import camera_surface_of, remove_camera_surface
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
 from .modifiers import Textures
+from .refinement import show_new
 from .refresh import EXPECTED_ERRORS, refresh
 from .settings import METHODS, SOURCES, VIEWPORT_RESOLUTION, OceanSettings, settings_of
 
@@ -71,7 +72,7 @@ def add(
             _set_sequence(settings, sequence, baked)
         settings.source = source
     try:
-        refresh(item, scene)
+        show_new(item, scene)
     except EXPECTED_ERRORS:
         bpy.data.meshes.remove(item.data)  # and the object with it
         raise

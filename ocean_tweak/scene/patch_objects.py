@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hidden meshes that show the patches of a sea of several, one each, to the surface around the camera.
 
-They are points alone, as the nodes want them: no renderer sees them. Each holds all samples of its patch in
-the patch's own axes and is turned as the patch is. They are live, or nodes read them from baked files where
-the bake that moves the ocean's own mesh has them.
+They are points alone, as the nodes want them: no renderer sees them. Each holds samples of its patch in the
+patch's own axes and is turned as the patch is: all of them for a render, half as many along each side for a
+window, few while a value is dragged. They are live, or nodes read them from baked files where the bake that
+moves the ocean's own mesh has them.
 
 Of a sea under masks, a patch is as many meshes as it has masks. Their weights are on points over the domain.
 Waves that do not repeat are on one mesh more, over a square around the camera, and so is foam, on rings.
@@ -11,29 +12,36 @@ Waves that do not repeat are on one mesh more, over a square around the camera, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
+from ..core import OceanParameters
 from ..core.data.plain_data import to_plain
 from ..core.masks import Mask, weights
+from ..core.numerics.machine import usable_cores
 from ..core.parameters.fingerprint import fingerprint
 from ..core.parameters.patch_seas import Part, parts
 from ..core.sea.placed_waves import placed_fields
+from ..core.statistics.unresolved_slopes import unresolved_slope_variance
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
 from ..nodes.camera_surface import AREA_INPUT, FOAM_INPUT, PATCH_INPUTS
 from ..nodes.modifier_inputs import get_input, set_inputs
-from ..nodes.names import DISPLACEMENT, WEIGHT
+from ..nodes.names import DISPLACEMENT, SLOPE_VARIANCE, WEIGHT
 from . import evaluation, foam_rings, held_sea, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
-from .plan import Plan, camera_surface_of, surface_modifier
+from .plan import COARSE, Plan, camera_surface_of, in_window, surface_modifier
 from .settings import OceanObjectError, is_ocean, settings_of
 from .vertex_attributes import RealArray
 
 _NUMBER, _MASKS, _AREA, _FOAM = (f"ocean_tweak_{name}" for name in ("patch", "masks", "area", "foam_rings"))
+# what the meshes hold, by their session uid
+_shown: dict[int, Hashable] = {}
 #: cells of the weights along each side of the domain
 _WEIGHTS = 256
 
@@ -55,11 +63,13 @@ def refresh(
     points: Points | None,
     scene: bpy.types.Scene,
     patient: bool,
+    coarse: bool = False,
 ) -> bool:
     """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
 
     points : baked ones that they read
     patient : otherwise foam is shown without its history where that would take long
+    coarse : of few samples, and with the foam that there was
 
     Returns whether they show all that they will.
 
@@ -70,7 +80,8 @@ def refresh(
         return True
     surface = camera_surface_of(ocean)
     parameters = plan.parameters if points is None else points.parameters
-    made, weighted, is_complete = {}, None, True
+    made: dict[int, bpy.types.Object] = {}
+    weighted, is_complete = None, True
     if surface is None:
         remove(ocean)
     elif not parameters.patches:
@@ -82,7 +93,7 @@ def refresh(
                 f"Masks part this sea's patches into {len(of_sea)}, and a camera surface shows "
                 f"{len(PATCH_INPUTS)}: take masks or patches away, or the camera surface"
             )
-        made = dict(_refreshed(ocean, plan, points, of_sea))
+        made = _refreshed(ocean, plan, points, of_sea, coarse)
         weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
@@ -95,7 +106,7 @@ def refresh(
         set_inputs(modifier, inputs)
         # between whole frames foam stays: going back in time it would be made from nothing
         is_needed = plan.is_whole or (foam is not None and not foam.data.vertices)
-        if wanted is not None and foam.data.library is None and is_needed:
+        if wanted is not None and foam.data.library is None and is_needed and not coarse:
             is_complete = wanted.write(foam.data, patient)
     _keep_out_of_files(ocean)
     return is_complete
@@ -110,6 +121,28 @@ def _keep_out_of_files(ocean: bpy.types.Object) -> None:
     for child in ocean.children:
         if _FOAM in child or _NUMBER in child or _MASKS in child:
             held_sea.keep_out(child, is_live or _FOAM in child)
+
+
+def show_all_samples(ocean: bpy.types.Object, plan: Plan) -> None:
+    """Give live patches the samples that a render wants; nothing is done where they have them already."""
+    present = patches_of(ocean) if ocean.library is None else {}
+    live = {number: item for number, item in present.items() if patch_points.modifier_of(item) is None}
+    wanted = list[_Filling]()
+    for number, part in enumerate(parts(plan.parameters) if live else (), 1):
+        if number in live and live[number].data.library is None:
+            wanted.append(_Filling(live[number].data, part.parameters, part.parameters.resolution))
+    _fill(wanted, plan)
+
+
+def seas_in_window(plan: Plan) -> tuple[OceanParameters, ...]:
+    """The patches of a sea as a window shows them."""
+    whole = (part.parameters for part in parts(plan.parameters))
+    return tuple(sea.at_resolution(in_window(sea.resolution)) for sea in whole)
+
+
+def forget_all() -> None:
+    """Take no mesh for filled: a file was opened, or a step undone."""
+    _shown.clear()
 
 
 def are_live(ocean: bpy.types.Object) -> bool:
@@ -148,12 +181,14 @@ def _is_ours(item: bpy.types.Object) -> bool:
 
 
 def _refreshed(
-    ocean: bpy.types.Object, plan: Plan, points: Points | None, of_sea: Sequence[Part]
-) -> Iterator[tuple[int, bpy.types.Object]]:
+    ocean: bpy.types.Object, plan: Plan, points: Points | None, of_sea: Sequence[Part], coarse: bool
+) -> dict[int, bpy.types.Object]:
     """The patches by their number; those that are one too many go."""
     present = patches_of(ocean)
     kept = {present[number].name for number in range(1, len(of_sea) + 1) if number in present}
     _remove(child for child in ocean.children if _NUMBER in child and child.name not in kept)
+    made = dict[int, bpy.types.Object]()
+    wanted = list[_Filling]()
     for number, part in enumerate(of_sea, 1):
         item = present.get(number) or _new(ocean, f"Patch {number}", _NUMBER, number)
         if item.rotation_euler.z != np.float32(part.rotation):
@@ -161,14 +196,45 @@ def _refreshed(
         if item.data.users > 1:  # of a duplicate
             item.data = item.data.copy()
         if points is not None:
+            _shown.pop(item.data.session_uid, None)
             patch_points.read_points(item, number, part, points)
         elif item.data.library is None:
             patch_points.read_none(item)
-            patch = part.parameters
-            fields, _ = evaluation.surfaces_of(patch).fields(plan.time, ADDING, plan.is_whole)
-            grid = Grid(patch.domain_size * plan.scale, patch.resolution, patch.resolution)
-            _write(item.data, grid, fields, plan)
-        yield number, item
+            samples = in_window(part.parameters.resolution)
+            samples = min(COARSE, samples) if coarse else samples
+            wanted.append(_Filling(item.data, part.parameters, samples))
+        made[number] = item
+    _fill(wanted, plan)
+    return made
+
+
+class _Filling(NamedTuple):
+    """A mesh, the patch that it is to hold, and the samples of that along each side."""
+
+    mesh: bpy.types.Mesh
+    patch: OceanParameters
+    samples: int
+
+    @property
+    def sea(self) -> OceanParameters:
+        """The patch on these samples."""
+        return self.patch.at_resolution(self.samples)
+
+
+def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
+    """Put patches on points, where they are not there already. They are made on all cores."""
+    moment = (plan.time, plan.rate, plan.scale)
+    lacking = [each for each in wanted if _shown.get(each.mesh.session_uid) != (moment, *each[1:])]
+    if not lacking:
+        return
+    surfaces = [evaluation.surfaces_of(each.sea) for each in lacking]
+    with ThreadPoolExecutor(usable_cores()) as pool:
+        made = list(pool.map(lambda each: each.fields(plan.time, ADDING, plan.is_whole)[0], surfaces))
+    for each, fields in zip(lacking, made, strict=True):
+        lost = unresolved_slope_variance(each.sea) - unresolved_slope_variance(each.patch)
+        grid = Grid(each.patch.domain_size * plan.scale, each.samples, each.samples)
+        _write(each.mesh, grid, fields, plan, lost=max(lost, 0.0))
+        _shown[each.mesh.session_uid] = (moment, *each[1:])
 
 
 def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | None:
@@ -253,10 +319,12 @@ def _write(
     fields: Mapping[str, RealArray],
     plan: Plan,
     corner: tuple[float, float] = (0.0, 0.0),
+    lost: float = 0.0,
 ) -> None:
     """Put the fields ADDING of the plan's moment on points.
 
     corner : x and y of the first one at rest, m
+    lost : mean square slope of the waves that these samples lack
     """
     if len(mesh.vertices) != grid.vertices:
         mesh.clear_geometry()
@@ -264,6 +332,8 @@ def _write(
     values = {name: _in_units(CHANNELS[name], fields[name], plan) for name in sorted(ADDING)}
     for name, value in values.items():
         vertex_attributes.put(mesh, CHANNELS[name], value)
+    attribute = mesh.attributes.get(SLOPE_VARIANCE) or mesh.attributes.new(SLOPE_VARIANCE, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.full(grid.vertices, lost, np.float32))
     places: RealArray = grid.positions()
     places[:, :2] += np.float32(plan.scale) * np.array(corner, np.float32)
     places += values["displacement"].reshape(-1, 3)

@@ -28,6 +28,8 @@ from .units import frame_rate, frame_with_subframe, metres_per_unit, time_stretc
 COARSE = 128
 #: samples along each side at which foam is made for a viewport whose render makes its own
 VIEWPORT_FOAM = 128
+#: samples along each side of a patch that a window shows in any case
+_PATCH_SAMPLES = 256
 _LEAST_SAMPLES = 16
 #: domains along each side of the square of what does not repeat, and cells of it, at most
 _AROUND, _AREA_CELLS = 2, 512
@@ -151,6 +153,14 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
     for grid in (plan.viewport, plan.render):
         _check(grid)
     return plan
+
+
+def in_window(samples: int) -> int:
+    """Samples along each side of a patch that a window shows, of those of a render.
+
+    Planned patches have four in their shortest wave: two are enough to hold it.
+    """
+    return min(samples, max(_PATCH_SAMPLES, samples // 4 * 2))
 
 
 def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> float:

@@ -17,7 +17,7 @@ from typing import Any
 import bpy
 
 from ..core import OceanParameters
-from . import bake_state, evaluation, foam_rings, patch_points
+from . import bake_state, evaluation, foam_rings, patch_objects, patch_points
 from .modifiers import set_changed
 from .plan import camera_surface_of, plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, is_live, refresh, tell
@@ -29,7 +29,7 @@ PAUSE = 0.15
 _INTERVAL = 0.05
 
 #: what waits for all samples
-_AFTER_SAMPLES = Wanted.SAMPLES | Wanted.PATCHES | Wanted.NEIGHBOURS
+_AFTER_SAMPLES = Wanted.SAMPLES | Wanted.NEIGHBOURS
 _NOTHING = Wanted(0)
 
 
@@ -39,7 +39,11 @@ def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], o
     As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
     OceanObjectError for settings that are no sea.
     """
-    return evaluation.surfaces_of(plan_for(item, settings_of(item), scene).viewport_sea()).ocean.prepare
+    plan = plan_for(item, settings_of(item), scene)
+    seas = [plan.viewport_sea()]
+    if patch_objects.lack_points(item):
+        seas += patch_objects.seas_in_window(plan)
+    return lambda: [evaluation.surfaces_of(sea).ocean.prepare() for sea in seas]
 
 
 def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
@@ -171,6 +175,20 @@ def show(
         _outstanding.note(uid, Wanted.SAMPLES | Wanted.STATISTICS, True)
     elif Wanted.SURFACE in wanted and not (_is_playing() or _has_statistics(item, scene)):
         _outstanding.note(uid, Wanted.STATISTICS, True)
+    follow_up(item, missing)
+
+
+def show_new(item: bpy.types.Object, scene: bpy.types.Scene, wanted: Wanted = Wanted.ALL) -> None:
+    """Show something of an ocean for the first time; what takes long follows where somebody looks on.
+
+    Raises as `refresh`.
+    """
+    if not has_window():
+        refresh(item, scene, wanted)
+        return
+    missing = refresh(item, scene, wanted & ~(Wanted.HISTORY | Wanted.STATISTICS))
+    if Wanted.STATISTICS in wanted and not _has_statistics(item, scene):
+        _outstanding.note(item.session_uid, Wanted.STATISTICS, True)
     follow_up(item, missing)
 
 

@@ -49,7 +49,7 @@ class Wanted(Flag):
     """What of an ocean is to be as its settings and its scene's frame say.
 
     SURFACE : the viewport's mesh, and what moves it: modifiers, attributes and images
-    SAMPLES : all samples of a live surface; without it, it has few, on the same mesh
+    SAMPLES : all samples of a live surface and of patches; without it, they have few
     HISTORY : foam that remembers, however long that takes; without it, only where it is quickly made
     STATISTICS : those of the sea; without it, only where they are known
     PATCHES : meshes of the patches, of which a surface around the camera is made
@@ -78,6 +78,8 @@ class Wanted(Flag):
     CHANGE = ALL | BY_HAND
 
 
+#: all of what a surface around a camera is made of
+AROUND_CAMERA = Wanted.PATCHES | Wanted.SAMPLES | Wanted.HISTORY
 _NOTHING = Wanted(0)
 _OF_SEA = Wanted.SURFACE | Wanted.PATCHES | Wanted.RENDER
 
@@ -93,7 +95,7 @@ def of_a_frame(item: bpy.types.Object) -> Wanted:
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
     if patch_objects.are_live(item):
-        wanted |= Wanted.PATCHES | Wanted.HISTORY
+        wanted |= AROUND_CAMERA
     return wanted
 
 
@@ -153,10 +155,13 @@ def _refresh_sea(
         set_changed(scene.render, use_lock_interface=True)
     if Wanted.PATCHES in wanted:
         points = patch_points.points_of(settings, plan, scene)
-        if not patch_objects.refresh(item, plan, points, scene, Wanted.HISTORY in wanted):
+        patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
+        if not patch_objects.refresh(item, plan, points, scene, patient, coarse):
             missing |= Wanted.HISTORY
-    if Wanted.RENDER in wanted and plan.has_own_render and not is_baked:
-        _write_render(settings, plan)
+    if Wanted.RENDER in wanted:
+        patch_objects.show_all_samples(item, plan)
+        if plan.has_own_render and not is_baked:
+            _write_render(settings, plan)
     if Wanted.SURFACE in wanted:
         set_changed(settings, error="", **({} if text is None else {"statistics": text}))
         failures.is_well(item)

@@ -84,6 +84,17 @@ def faces_along_edges(mesh):
 
 def heights(item, points):
     """Of the surface above or below points (x, y), straight down."""
-    tree = BVHTree.FromObject(item, bpy.context.evaluated_depsgraph_get())
+    return _below(BVHTree.FromObject(item, bpy.context.evaluated_depsgraph_get()), points)
+
+
+def heights_of(mesh, points):
+    """As `heights`, of a mesh in world space, such as a render's."""
+    return _below(
+        BVHTree.FromPolygons(numbers(mesh, "position", 3), [face.vertices[:] for face in mesh.polygons]),
+        points,
+    )
+
+
+def _below(tree, points):
     down = Vector((0.0, 0.0, -1.0))
     return np.array([tree.ray_cast(Vector((x, y, 100.0)), down)[0].z for x, y in points])
