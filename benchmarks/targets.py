@@ -71,6 +71,16 @@ TARGETS = {
         "20,000 wave particles, displacement, slopes and Jacobian, 1024²", 3.0, "× one six-field frame"
     ),
     "cascades": Target("three 512² patches, 6 fields + minimum eigenvalue each", 3.2, "× one 512² patch"),
+    "foam alone": Target(
+        "foam of a frame by itself, 512² to 2048², one thread", 25.0, "× one six-field frame",
+        what_limits="looks at the past, each two thirds of a six-field frame: as many as the frequencies of "
+        "the strains ask for, 30 to 60; what would save some loses either short crests or their trace",
+    ),
+    "foam of places alone": Target(
+        "foam of a cascade at 200,000 places by itself", 30.0, "looks at them",
+        what_limits="the shortest patch, whose strains change too fast for fewer looks, and in windrows as "
+        "many places again from which old foam is drawn",
+    ),
     "growth": Target("time per sample, 4096² against 512²", 1.6, "×"),
     "memory": Target("memory of `surface()` beyond its outputs", 24.0, "bytes a sample"),
     "usd time": Target(
