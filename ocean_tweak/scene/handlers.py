@@ -27,6 +27,7 @@ from . import (
     former_settings,
     held_sea,
     live_image,
+    mask_painting,
     ocean_object,
     patch_objects,
     portability,
@@ -37,6 +38,7 @@ from . import (
     stored_values,
 )
 from .animated import is_animated, shown_settings
+from .mask_painting import is_painted, read_soon
 from .plan import camera_has_moved, camera_surface_of, forget_cameras
 from .refinement import show
 from .refresh import AROUND_CAMERA, Wanted, is_live, of_a_frame
@@ -132,7 +134,7 @@ def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
 
 @persistent
 def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Let masks follow their objects where these, or the ocean, are moved or edited by hand."""
+    """Let masks follow their objects where these, or the ocean, are moved, edited or painted by hand."""
     if depsgraph is None or not depsgraph.id_type_updated("OBJECT"):
         return
     own = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
@@ -143,6 +145,9 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
         objects = settings.mask_objects()
         if library is None and objects and (item in moved or objects & (moved | edited)):
             settings.place_masks()
+        painted = settings.painted_meshes()
+        if painted and (item in moved or any(is_painted(mesh, moved, edited) for mesh in painted)):
+            read_soon()
 
 
 @persistent
@@ -374,6 +379,7 @@ def _has_file() -> bool:
 def _forget_all() -> None:
     failures.forget_all()
     refinement.forget_all()
+    mask_painting.forget_all()
     refresh.forget_all()
     forget_cameras()
     portability.forget_all()

@@ -157,6 +157,12 @@ class OceanSettings(Protocol):
     def place_masks(self) -> None:
         """Measure the distances of masks from where their objects are now."""
 
+    def painted_meshes(self) -> set[bpy.types.Object]:
+        """Those whose weights masks have read."""
+
+    def read_masks(self, scene: bpy.types.Scene) -> None:
+        """Read these weights again. Raises OceanObjectError where that cannot be."""
+
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
 

@@ -6,9 +6,8 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import IntProperty
 
 from ..core import ParameterError
-from ..scene import source_images
 from ..scene.settings import OceanObjectError, settings_of
-from ..scene.vertex_weights import weights_seen
+from . import mask_properties
 from .active_ocean import OfActiveOcean, active_layer, refuse
 
 #: in the place of a patch's number: whose mask it is
@@ -41,21 +40,12 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
         if group is None:
             return refuse(self, "The active layer has no mask: choose waves, an image or a wind field")
         try:
-            seen = weights_seen(
-                context.active_object, group.mesh, group.vertex_group, context.scene, self.samples
-            )
+            share = mask_properties.read_weights(group, context.scene, self.samples)
         except (OceanObjectError, ParameterError) as error:
             return refuse(self, error)
-        # an image of an earlier reading that nobody else shows is replaced
-        before = group.image
-        candidates = [] if before is None else [source_images.ImageSource(before)]
-        source_images.choose(group, source_images.source_with(seen, candidates))
-        if before is not None and before != group.image and before.users == 0:
-            bpy.data.images.remove(before)
-        group.source = "VERTEX_GROUP"
-        covered = 100.0 * float(seen.values.mean())
         self.report(
-            {"INFO"}, translated("The weights let {share:.0f} % of the waves through").format(share=covered)
+            {"INFO"},
+            translated("The weights let {share:.0f} % of the waves through").format(share=100.0 * share),
         )
         return {"FINISHED"}
 

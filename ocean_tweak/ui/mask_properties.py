@@ -13,6 +13,7 @@ from ..core import Mask, ParameterError, Raster
 from ..core.data.plain_data import to_plain
 from ..scene import floating, mask_lines, source_images
 from ..scene.source_images import ImageSource
+from ..scene.vertex_weights import weights_seen
 from . import parameter_properties
 from .parameter_properties import changed
 
@@ -116,6 +117,29 @@ def place(group: bpy.types.PropertyGroup) -> None:
     for name, value in (("x", x), ("y", y)):
         if abs(getattr(group, name) - value) > 1e-5 * max(1.0, abs(value)):
             setattr(group, name, value)
+
+
+def has_read(group: bpy.types.PropertyGroup) -> bool:
+    """Whether the weights of a mesh that is still there have been read."""
+    return group.source == "VERTEX_GROUP" and None not in (group.mesh, group.image)
+
+
+def read_weights(group: bpy.types.PropertyGroup, scene: bpy.types.Scene, samples: int) -> float:
+    """Read the weights of the mask's mesh into its image. Returns the share of the waves that they let by.
+
+    Raises OceanObjectError for a mesh that has none over or under the domain, ParameterError for a damaged
+    image of before; then nothing is changed.
+    """
+    seen = weights_seen(group.id_data, group.mesh, group.vertex_group, scene, samples)
+    # an image of an earlier reading that nobody else shows is replaced
+    before = group.image
+    candidates = [] if before is None else [ImageSource(before)]
+    source_images.choose(group, source_images.source_with(seen, candidates))
+    if before is not None and before != group.image and before.users == 0:
+        bpy.data.images.remove(before)
+    if group.source != "VERTEX_GROUP":
+        group.source = "VERTEX_GROUP"
+    return float(seen.values.mean())
 
 
 def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:

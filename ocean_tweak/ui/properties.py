@@ -273,6 +273,16 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             if mask.source == "DISTANCE":
                 mask_properties.place(mask)
 
+    def painted_meshes(self) -> set[bpy.types.Object]:
+        """Those whose weights masks have read."""
+        return {mask.mesh for mask in self._masks() if mask_properties.has_read(mask)}
+
+    def read_masks(self, scene: bpy.types.Scene) -> None:
+        """Read these weights again. Raises OceanObjectError where that cannot be."""
+        for mask in self._masks():
+            if mask_properties.has_read(mask):
+                mask_properties.read_weights(mask, scene, mask.image.size[0])
+
     def _masks(self) -> list[bpy.types.PropertyGroup]:
         return [*layer_properties.masks(self.layers), *(each.mask for each in (self, *self.patches))]
 

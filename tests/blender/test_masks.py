@@ -223,6 +223,41 @@ def test_the_highest_face_counts_and_modifiers_too(ocean, mask, empty_scene):
     np.testing.assert_allclose(found, 1.0, atol=1e-5)
 
 
+def test_strokes_and_moves_are_read_by_themselves(ocean, mask, empty_scene, extension, monkeypatch):
+    painting, handlers = extension("scene.mask_painting"), extension("scene.handlers")
+    asked = []
+    monkeypatch.setattr(handlers, "read_soon", lambda: asked.append(True))
+    mesh = new_mesh("Coast", [((0.0, 0.0), (DOMAIN, DOMAIN), 0.0)], [0.25] * 4)
+    mask.mesh, mask.vertex_group = mesh, "Waves"
+    bpy.ops.ocean.read_weights(samples=16)
+    before = heights(ocean)
+
+    def is_read_after(change):
+        asked.clear()
+        change()
+        bpy.context.view_layer.update()
+        was_asked = bool(asked)
+        painting.read()
+        return was_asked
+
+    bpy.context.view_layer.update()
+    assert not is_read_after(lambda: None)
+    bpy.context.view_layer.objects.active = mesh
+    bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+    assert is_read_after(
+        lambda: (mesh.vertex_groups[0].add([0, 1, 2, 3], 0.75, "REPLACE"), mesh.data.update())
+    )
+    np.testing.assert_allclose(heights(ocean), 3.0 * before, atol=2e-3)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert not is_read_after(mesh.data.update)  # by something else: it may read the sea
+    assert is_read_after(lambda: setattr(mesh, "location", (0.5 * DOMAIN, 0.0, 0.0)))
+    assert np.abs(heights(ocean)[:, 4:12]).max() < 1e-3
+    mesh.location.x = 2.0 * DOMAIN
+    bpy.context.view_layer.update()
+    painting.read()
+    assert "move it there" in ocean.ocean_tweak.error
+
+
 def test_reading_again_keeps_one_image(ocean, mask):
     mask.mesh = new_mesh("Coast", [((0.0, 0.0), (DOMAIN, DOMAIN), 0.0)], [0.25] * 4)
     mask.vertex_group = "Waves"
