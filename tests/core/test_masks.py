@@ -149,14 +149,14 @@ def test_lines_of_no_length_are_places() -> None:
 
 
 def test_the_nearest_of_lines_that_repeat() -> None:
-    """A diagonal as long as the domain, whose repetition is nearest to what is across its corner."""
+    """A diagonal nearly as long as the domain, whose repetitions are nearest to what is beside its ends."""
     lines = Raster([[[10.0, 10.0, 90.0, 90.0], [50.0, 10.0, 50.0, 10.0]]])
     mask = Mask(lines=lines, inner_radius=1.0, outer_radius=41.0)
-    # (94, 10) - (100, 0) = (-6, 10), of which 16/√2 are across the diagonal through (90, 90) - (100, 100)
-    # less than to its ends: (10, 10) + (100, 0) is 16 away
-    found = 1.0 - weights((mask,), 100.0, np.array([94.0, 50.0]), np.array([10.0, 13.0])).value
-    far = (np.array([16.0, 3.0]) - 1.0) / 40.0
-    np.testing.assert_allclose(found, 1.0 - far**2 * (3.0 - 2.0 * far), atol=1e-9)
+    # (94, 10) is 16 m from (110, 10), which repeats (10, 10), and (6, 90) as far from (-10, 90)
+    places = np.array([[94.0, 10.0], [6.0, 90.0], [50.0, 13.0]])
+    found = weights((mask,), 100.0, *places.T).value
+    part = (np.array([16.0, 16.0, 3.0]) - 1.0) / 40.0
+    np.testing.assert_allclose(found, part**2 * (3.0 - 2.0 * part), atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -190,7 +190,7 @@ def test_json_keeps_strength_and_lines_and_has_neither_by_default() -> None:
 # masked seas
 
 
-@pytest.mark.parametrize("hero", [(), (HeroWave(crest_height=2.0, x=90.0, y=120.0),)])
+@pytest.mark.parametrize("hero", [(), (HeroWave(crest_height=2.0, x=90.0, y=120.0, time=3.0),)])
 def test_a_mask_over_the_sea_lies_over_all_its_waves(hero: tuple[HeroWave, ...]) -> None:
     places = Places(*GENERATOR.uniform(0.0, SIZE, (2, 30)))
     bare = sea(layers=(STORM, RIPPLES, *hero))
@@ -201,6 +201,12 @@ def test_a_mask_over_the_sea_lies_over_all_its_waves(hero: tuple[HeroWave, ...])
     weight = weights((WALL,), SIZE, places.x, places.y).value[..., np.newaxis]
     assert weight.min() < 0.1
     np.testing.assert_allclose(found, weight * plain, atol=1e-6)
+
+
+def test_a_hero_wave_is_not_under_the_mask_of_another_layer() -> None:
+    hero = HeroWave(crest_height=2.0, x=HARBOUR.x, y=HARBOUR.y, time=3.0)
+    masked = sea(layers=(dataclasses.replace(STORM, mask=HARBOUR), hero))
+    assert Ocean(masked, "double").height_at(HARBOUR.x, HARBOUR.y, 3.0) == pytest.approx(2.0, abs=0.05)
 
 
 def test_the_sea_is_the_weighted_sum_of_its_layers() -> None:

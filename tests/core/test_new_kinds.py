@@ -95,6 +95,15 @@ def test_height_queries_under_a_mask(surface: str, patches: tuple[Patch, ...]) -
     assert np.abs(expected).max() > 0.5
 
 
+def test_the_mask_of_a_sea_lies_over_what_does_not_repeat() -> None:
+    bare = sea(Ripple(), Hump(height=0.5))
+    found, whole = (
+        Ocean(parameters, "double").height_at(X, Y, TIME, "exact")
+        for parameters in (bare.replace(mask=HARBOUR, choppiness=0.0), bare.replace(choppiness=0.0))
+    )
+    np.testing.assert_allclose(found, weights((HARBOUR,), SIZE, X, Y).value * whole, atol=1e-9)
+
+
 def test_what_does_not_repeat_is_refused_on_a_tile_and_made_elsewhere() -> None:
     ocean = Ocean(sea(Hump()), "double")
     with pytest.raises(ParameterError, match=r"layers\.1 = 'HUMP': .* do not repeat .* an Area or Places"):

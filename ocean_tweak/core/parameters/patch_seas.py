@@ -72,7 +72,7 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
     found = []
     patches = parameters.patches or (None,)
     seas = _patch_seas(parameters.separate)
-    masks = list(dict.fromkeys(layer.mask for layer in parameters.active() if _is_parted(layer)))
+    masks = list(dict.fromkeys(layer.mask for layer in parameters.active() if _is_on_grid(layer)))
     if None in masks:  # first come the waves that are everywhere
         masks.insert(0, masks.pop(masks.index(None)))
     for index, (sea, patch, rotation) in enumerate(zip(seas, patches, rotations(parameters), strict=True)):
@@ -144,15 +144,15 @@ def _by_mask(
         return
     for mask in masks:
         layers = (
-            layer if (layer.mask if _is_parted(layer) else masks[0]) == mask else layer.changed(muted=True)
+            layer if (layer.mask if _is_on_grid(layer) else masks[0]) == mask else layer.changed(muted=True)
             for layer in sea.layers
         )
         yield mask, sea.replace(layers=tuple(layers))
 
 
-def _is_parted(layer: Contribution) -> bool:
-    """Whether a layer's waves are on a grid and may be under a mask; the rest goes with the first part."""
-    return layer.has("mask") and Gives.FIELDS not in layer.gives
+def _is_on_grid(layer: Contribution) -> bool:
+    """Whether a layer's waves are on a grid; the rest goes with the first part, which does not make them."""
+    return Gives.FIELDS not in layer.gives
 
 
 def _without_masks(parameters: OceanParameters) -> OceanParameters:
