@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures everything, prints it, and keeps a complete run in results/latest.json and docs/performance.md."""
+"""Measures everything, prints it, and keeps a complete run in results and docs/performance.md."""
 
 from __future__ import annotations
 
@@ -101,6 +101,7 @@ def _keep(result: dict[str, Any], rows: list[Row], complete: bool, smoke: bool) 
         print(f"{len(rows)} rows, all there, in {result['minutes']} minutes")
         return 0
     report.save(result, report.LATEST)
+    report.TABLES.write_text(report.tables(result), encoding="utf-8")
     report.update_document(result)
     print("== targets", *(" | ".join(cells) for cells in report.summary(rows)), sep="\n")
     return 0

@@ -32,6 +32,7 @@ def rows(plan: Plan) -> Iterator[Row]:
     with tempfile.TemporaryDirectory(dir=SCRATCH) as folder:
         for codec in CODECS:
             yield from _throughput(plan, codec, Path(folder))
+        yield from _maps(plan, Path(folder))
         for workers in (1, 2):
             yield _memory(plan, workers, Path(folder))
 
@@ -58,6 +59,34 @@ def _throughput(plan: Plan, codec: str, folder: Path) -> Iterator[Row]:
     yield ratio_row(
         GROUP, f"{name}: two workers against one", timings, "two workers", "one worker", faster=True,
         free_cores=probe, remark=f"seconds for {plan.bake_frames} frames",
+    )  # fmt: skip
+
+
+def _maps(plan: Plan, folder: Path) -> Iterator[Row]:
+    """All maps of a shot against displacement alone, made and written on one thread."""
+    parameters, written = sea(plan.bake), {}
+
+    def maker(*maps: str) -> Callable[[], None]:
+        sink, frames = ExrSequence(folder, "sea", parameters, maps=maps), itertools.count(1)
+        ocean = Ocean(parameters, workers=1)
+
+        def run() -> None:
+            for frame in itertools.islice(frames, plan.bake_frames):
+                paths = sink.write(frame, ocean.frame(frame, sink.outputs))
+                written[maps] = sum(path.stat().st_size for path in paths)
+
+        return run
+
+    alone, all_maps = ("disp",), ("disp", "foam", "normal", "vel")
+    timings = interleaved({"all": maker(*all_maps), "disp": maker(*alone)}, plan.rounds)
+    name = f"{', '.join(all_maps)} against disp, {plan.bake}², {DEFAULT}"
+    yield ratio_row(
+        GROUP, f"{name}: seconds", timings, "all", "disp", target="bake of maps, seconds",
+        remark=f"seconds for {plan.bake_frames} frames, one thread",
+    )  # fmt: skip
+    yield Row(
+        GROUP, f"{name}: bytes of a frame", written[all_maps] / written[alone], "×",
+        target="bake of maps, bytes",
     )  # fmt: skip
 
 

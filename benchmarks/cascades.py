@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+import numpy as np
+
 from ocean_tweak.core import Ocean, OceanParameters
 from ocean_tweak.core.parameters.patch import NO_LONGEST, Patch
 
@@ -28,6 +30,16 @@ def rows(plan: Plan) -> Iterator[Row]:
         GROUP, f"three patches of {resolution}² against one, {SIX.name}, 1 worker",
         timings, "three patches", "one patch", target="cascades",
     )  # fmt: skip
+    joined = 2 * resolution
+    sides = {
+        "joined": _displacement(three(resolution).on_one_grid(joined)),
+        "one patch": _displacement(sea(joined)),
+    }
+    timings = interleaved(sides, plan.rounds)
+    yield ratio_row(
+        GROUP, f"displacement of three patches joined on {joined}² against one patch, 1 worker",
+        timings, "joined", "one patch", target="joined",
+    )  # fmt: skip
 
 
 def three(resolution: int) -> OceanParameters:
@@ -40,6 +52,12 @@ def three(resolution: int) -> OceanParameters:
         patches.append(Patch(side, 0.6 * number, shortest, longest, resolution))
         longest = shortest
     return storm.replace(patches=tuple(patches))
+
+
+def _displacement(parameters: OceanParameters) -> Callable[[], object]:
+    ocean, n = Ocean(parameters, workers=1), parameters.resolution
+    out = {"displacement": np.empty((n, n, 3), np.float32)}
+    return lambda: ocean.surface(TIME, out, out=out)
 
 
 def _maker(parameters: OceanParameters) -> Callable[[], object]:

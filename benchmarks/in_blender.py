@@ -31,6 +31,11 @@ from ocean_tweak.scene.settings import METHODS
 #: of an ocean's settings, all of them on by default
 SWITCHES = ("use_foam", "use_normals", "use_velocity")
 
+WITH_ALL = "live, nodes, with foam, normals and velocity"
+
+#: frames one after the other that are timed together: foam looks at the sea in some of them only
+_PLAYED = 6
+
 Contender = tuple[bpy.types.Scene, bpy.types.Object]
 
 
@@ -79,20 +84,26 @@ def frame_rows(samples: int, arguments: argparse.Namespace) -> Iterator[Row]:
     ours = {f"live, {method.lower()}": live(samples, method) for method in METHODS}
     foaming = {
         "live, nodes, with foam": live(samples, "NODES", "use_foam"),
-        "live, nodes, with foam, normals and velocity": live(samples, "NODES", *SWITCHES),
+        WITH_ALL: live(samples, "NODES", *SWITCHES),
     }
-    frames = itertools.count(1)
-    sides = {name: to_mesh(contender, frames) for name, contender in {**modifiers, **ours, **foaming}.items()}
+    sides = {name: to_mesh(contender) for name, contender in {**modifiers, **ours, **foaming}.items()}
     timings = interleaved(sides, arguments.rounds)
     remove_scenes()
     side = modifier_resolution(samples) ** 2
-    remark = "" if side == samples else f"the modifier makes {side}²"
+    remark = f"seconds for {_PLAYED} frames"
+    if samples == arguments.latency:
+        yield ratio_row(
+            f"Blender, {arguments.place}", f"frame → mesh, {samples}², {WITH_ALL} against live, nodes",
+            timings, WITH_ALL, "live, nodes", target="maps", remark=remark,
+        )  # fmt: skip
+    remark += "" if side == samples else f"; the modifier makes {side}²"
     for mine, theirs in itertools.product(ours, ("Generate", "Displace")):
         judged = samples == arguments.judge and mine == "live, nodes" and theirs == "Generate"
         yield compare(arguments, samples, timings, mine, theirs, remark, "Blender" if judged else None)
     for mine, theirs in itertools.product(foaming, ("Generate with foam", "Displace with foam")):
-        judged = samples == arguments.judge and mine.endswith("foam") and theirs.startswith("Generate")
-        yield compare(arguments, samples, timings, mine, theirs, remark, "Blender, foam" if judged else None)
+        judged = samples == arguments.judge and theirs.startswith("Generate")
+        target = "Blender, all maps" if mine == WITH_ALL else "Blender, foam"
+        yield compare(arguments, samples, timings, mine, theirs, remark, target if judged else None)
 
 
 def compare(
@@ -162,17 +173,19 @@ def wind_changer(
     return run
 
 
-def to_mesh(contender: Contender, frames: Iterator[int]) -> Callable[[], None]:
-    """Goes to the next frame and asks for the mesh; raises RuntimeError when it does not move."""
+def to_mesh(contender: Contender) -> Callable[[], None]:
+    """Plays some frames and asks for the mesh of each; raises RuntimeError when it does not move."""
     scene, item = contender
     seen: list[tuple[float, ...]] = [()]
+    frames = itertools.count(1)
 
     def run() -> None:
-        scene.frame_set(next(frames))
-        place = tuple(mesh_of(scene, item).vertices[1].co)
-        if place == seen[0]:
-            raise RuntimeError(f"{scene.name}: the sea stands still")
-        seen[0] = place
+        for frame in itertools.islice(frames, _PLAYED):
+            scene.frame_set(frame)
+            place = tuple(mesh_of(scene, item).vertices[1].co)
+            if place == seen[0]:
+                raise RuntimeError(f"{scene.name}: the sea stands still")
+            seen[0] = place
 
     return run
 

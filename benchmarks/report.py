@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rows as a printed table, as JSON and as the generated part of docs/performance.md."""
+"""The rows as a printed table and as JSON; all of them as tables, and of docs/performance.md the targets."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from .rows import Row
 from .targets import TARGETS
 
 LATEST = ROOT / "benchmarks" / "results" / "latest.json"
+TABLES = LATEST.with_suffix(".md")
 DOCUMENT = ROOT / "docs" / "performance.md"
 BEGIN = "<!-- written by `make bench` from here: do not edit -->"
 END = "<!-- to here -->"
@@ -54,6 +55,9 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, str, str, str, str]]:
     result = []
     for key, target in TARGETS.items():
         judged = [row for row in rows if row.target == key]
+        if not judged:  # of a run before the target was set
+            result.append((target.work, str(target), "", "0", "not measured yet"))
+            continue
         worst = target.worst([row.value for row in judged])
         verdicts = {row.met for row in judged}
         met = next(verdict for verdict in (False, None, True) if verdict in verdicts)
@@ -77,12 +81,17 @@ def rows_of(report: dict[str, Any]) -> list[Row]:
 
 def markdown(report: dict[str, Any]) -> str:
     """The generated part of the document."""
+    return f"{_about(report)}\n\n{_table(_TARGETS_HEAD, summary(rows_of(report)))}"
+
+
+def tables(report: dict[str, Any]) -> str:
+    """All rows of a run, a table a group."""
     rows = rows_of(report)
-    parts = [_about(report), "### Targets", _table(_TARGETS_HEAD, summary(rows))]
+    parts = ["# All measurements of the last complete run", _about(report)]
     for group in dict.fromkeys(row.group for row in rows):
         cells = [_cells(row) for row in rows if row.group == group]
-        parts += [f"### {group[0].upper()}{group[1:]}", _table(_ROWS_HEAD, cells)]
-    return "\n\n".join(parts)
+        parts += [f"## {group[0].upper()}{group[1:]}", _table(_ROWS_HEAD, cells)]
+    return "\n\n".join(parts) + "\n"
 
 
 def update_document(report: dict[str, Any], path: Path = DOCUMENT) -> None:
