@@ -31,7 +31,7 @@ _NEAR = "ocean_tweak_is_near"
 NAME = "Ocean Tweak Water"
 
 #: of the Solid view: bright enough for waves to show, and as smooth as shows their crests
-_IN_SOLID, _ROUGHNESS_IN_SOLID = (0.13, 0.35, 0.45, 1.0), 0.25
+_IN_SOLID, _ROUGHNESS_IN_SOLID = (0.20, 0.44, 0.54, 1.0), 0.25
 #: and what it was before
 _DARK_IN_SOLID = (0.02, 0.08, 0.12, 1.0)
 

@@ -136,7 +136,7 @@ PLAN = {
         description=f"Length of the shortest waves that Plan Patches plans for {_range('finest')}",
     ),
     "plan_area": FloatProperty(
-        name="Without Repetition", default=1000.0, min=0.0, soft_min=10.0, precision=1, step=1000,
+        name="No Repeats In", default=1000.0, min=0.0, soft_min=10.0, precision=1, step=1000,
         unit="LENGTH", options=set(), **_OVERRIDE,
         description=f"Side of a square in which nothing shall be seen to repeat {_range('area')}",
     ),

@@ -36,6 +36,7 @@ LABELS = {
     "minimum_wind_speed": "Minimum Wind",
     "height": "Height By",
     "height_per_speed": "Per Wind Speed",
+    "group_length": "Length (waves)",
     "life": "Life (waves)",
     "mesh_resolution": "Mesh Quads",
     "law": "Foam Law",

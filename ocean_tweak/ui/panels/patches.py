@@ -50,7 +50,7 @@ class OCEAN_PT_patches(SubPanel, bpy.types.Panel):
         layout, settings = split(self.layout), active_settings(context)
         plan = layout.column(align=True)
         plan.prop(settings, "plan_finest")
-        plan.prop(settings, "plan_area", text="No Repeats In")  # the whole name is cut in a narrow sidebar
+        plan.prop(settings, "plan_area")
         plan.prop(settings, "plan_memory")
         layout.operator(patch_operators.OCEAN_OT_plan_patches.bl_idname, icon="MESH_GRID")
         if not settings.patches:
