@@ -30,9 +30,10 @@ def held(fields: Fields) -> Fields:
 
 def leave_out(mesh: bpy.types.Mesh) -> None:
     """Let a mesh with a live surface have only what a file keeps of it, until `take_back`."""
-    found = vertex_attributes.read(mesh)
-    _before[mesh.session_uid] = found
-    vertex_attributes.write(mesh, held(found))
+    if mesh.session_uid not in _before:  # or a linked duplicate has been here
+        found = vertex_attributes.read(mesh)
+        _before[mesh.session_uid] = found
+        vertex_attributes.write(mesh, held(found))
 
 
 def take_back() -> None:

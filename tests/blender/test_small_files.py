@@ -89,6 +89,14 @@ def test_all_is_back_after_saving_and_opening(surrounded, tmp_path):
     np.testing.assert_allclose(numbers(evaluated_mesh(surface), "position", 3), shown, atol=1e-4)
 
 
+def test_linked_duplicates_keep_their_surface(ocean, tmp_path):
+    """Until something changes one of them, they have one mesh."""
+    own = surface_on(ocean)
+    bpy.context.scene.collection.objects.link(ocean.copy())
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "sea.blend"))
+    assert_equal(surface_on(ocean), own)
+
+
 def test_a_save_that_fails_takes_nothing_away(surrounded, tmp_path):
     ocean, _ = surrounded
     own = surface_on(ocean)
