@@ -19,6 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+from benchmarks import horizon
 from benchmarks.measure import Timings, interleaved
 from benchmarks.plan import sea
 from benchmarks.rows import Row, ratio_row
@@ -46,6 +47,8 @@ def main() -> None:
     bpy.ops.wm.read_homefile(use_empty=True)
     rows = [row for size in arguments.sizes for row in frame_rows(size, arguments)]
     rows += latency_rows(arguments.latency, arguments)
+    rows += horizon.rows(live(512, "NODES"), arguments.rounds, f"Blender, {arguments.place}")
+    remove_scenes()
     report = {
         "blender": bpy.app.version_string,
         "python": sys.version.split()[0],

@@ -71,6 +71,14 @@ TARGETS = {
         "frame change → evaluated mesh at 512², foam, normals and velocity", 2.2, "× the same without maps",
         what_limits="eleven fields instead of three, and old foam; threads share both",
     ),
+    "horizon frame": Target(
+        "frame → mesh of To the Horizon, consecutive frames", 10.0, "× a plain sea of 512² without maps",
+        what_limits="foam around the camera, the waves of four patches, and the lattice, whose squares one "
+        "core joins anew in every frame of a camera that moves",
+    ),
+    "horizon render": Target("a vertex of its render", 2.0, "× one of its viewport"),
+    "horizon drag": Target("Wind dragged there until the first mesh", 8.0, "× a plain sea"),
+    "horizon click": Target("from the click on To the Horizon to a free window", 1.5, "s"),
     "bake": Target(
         "bake of `disp` at 1024², two workers", 1.15, "× (compute + encode)/2", needs_two_cores=True
     ),

@@ -216,9 +216,9 @@ class _Filling(NamedTuple):
     samples: int
 
     @property
-    def sea(self) -> OceanParameters:
-        """The patch on these samples."""
-        return self.patch.at_resolution(self.samples)
+    def is_coarse(self) -> bool:
+        """Whether these are fewer than a window shows at rest."""
+        return self.samples < in_window(self.patch.resolution)
 
 
 def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
@@ -227,13 +227,16 @@ def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
     lacking = [each for each in wanted if _shown.get(each.mesh.session_uid) != (moment, *each[1:])]
     if not lacking:
         return
-    surfaces = [evaluation.surfaces_of(each.sea) for each in lacking]
+    seas = [each.patch.at_resolution(each.samples) for each in lacking]
+    surfaces = [evaluation.surfaces_of(sea) for sea in seas]
     with ThreadPoolExecutor(usable_cores()) as pool:
         made = list(pool.map(lambda each: each.fields(plan.time, ADDING, plan.is_whole)[0], surfaces))
-    for each, fields in zip(lacking, made, strict=True):
-        lost = unresolved_slope_variance(each.sea) - unresolved_slope_variance(each.patch)
+    for each, sea, fields in zip(lacking, seas, made, strict=True):
+        lost = 0.0
+        if not each.is_coarse:  # to find it takes longer than the patch
+            lost = max(unresolved_slope_variance(sea) - unresolved_slope_variance(each.patch), 0.0)
         grid = Grid(each.patch.domain_size * plan.scale, each.samples, each.samples)
-        _write(each.mesh, grid, fields, plan, lost=max(lost, 0.0))
+        _write(each.mesh, grid, fields, plan, lost=lost)
         _shown[each.mesh.session_uid] = (moment, *each[1:])
 
 
