@@ -34,6 +34,7 @@ from .ui import (
     panels,
     parameter_operators,
     patch_operators,
+    pinning,
     preferences,
     preset_operators,
     previews,
@@ -64,6 +65,7 @@ CLASSES = (
     *float_operators.CLASSES,
     *node_operators.CLASSES,
     *object_menu.CLASSES,
+    *pinning.CLASSES,
     *scene_operators.CLASSES,
     *material_operators.CLASSES,
     *gizmos.CLASSES,
@@ -140,6 +142,7 @@ def register(package: str | None = None) -> None:
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
+    pinning.register()
     previews.register()
     material_operators.register()
     bpy.types.VIEW3D_MT_mesh_add.append(panels.draw_add_menu)
@@ -172,6 +175,7 @@ def unregister() -> None:
     bpy.types.VIEW3D_MT_mesh_add.remove(panels.draw_add_menu)
     material_operators.unregister()
     previews.unregister()
+    pinning.unregister()
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

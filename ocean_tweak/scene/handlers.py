@@ -26,6 +26,7 @@ from . import (
     float_carrier,
     former_settings,
     held_sea,
+    left_behind,
     live_image,
     mask_painting,
     ocean_object,
@@ -153,8 +154,15 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 @persistent
 def follow_by_hand(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Let floating objects go where they were moved to, and look after those that came and went."""
-    if depsgraph is None or any(map(depsgraph.id_type_updated, ("OBJECT", "COLLECTION", "SCENE"))):
+    if depsgraph is None or depsgraph.id_type_updated("OBJECT"):
         float_carrier.follow()
+
+
+@persistent
+def clear_after_deletion(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let what was made for a deleted ocean go with it."""
+    if depsgraph is not None and depsgraph.id_type_updated("COLLECTION") and left_behind.clear():
+        _look_around()
 
 
 @persistent
@@ -309,6 +317,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_around_camera),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
+    ("depsgraph_update_post", clear_after_deletion),
     ("depsgraph_update_post", look_around),
     ("depsgraph_update_post", follow_by_hand),
     ("depsgraph_update_post", refresh_for_render),

@@ -167,16 +167,17 @@ def shows_area(ocean: bpy.types.Object) -> bool:
 
 def remove(ocean: bpy.types.Object) -> None:
     """Take the meshes of an ocean's patches and their weights away."""
-    _remove(child for child in ocean.children if _is_ours(child))
+    _remove(child for child in ocean.children if is_ours(child))
 
 
 def remove_left() -> None:
     """Take away those whose ocean was deleted: nobody can choose them."""
-    own = (item for item in bpy.data.objects if _is_ours(item))
+    own = (item for item in bpy.data.objects if is_ours(item))
     _remove(item for item in own if not is_ocean(item.parent))
 
 
-def _is_ours(item: bpy.types.Object) -> bool:
+def is_ours(item: bpy.types.Object) -> bool:
+    """Whether an object was made to show a part of an ocean to its camera surface."""
     return any(key in item for key in (_NUMBER, _MASKS, _AREA, _FOAM))
 
 

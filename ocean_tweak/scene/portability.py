@@ -16,7 +16,7 @@ from ..nodes.modifier_inputs import all_inputs
 from . import float_carrier, patch_objects
 from .cache_place import shown_bake
 from .plan import camera_surface_of
-from .settings import all_oceans, oceans_in, settings_of, was_ocean
+from .settings import all_oceans, is_ocean, oceans_in, settings_of, was_ocean
 
 
 class Need(NamedTuple):
@@ -48,18 +48,22 @@ class Neighbours(NamedTuple):
     has_bake: bool = False
 
 
+#: an object's name, and the path of its library
+_Key = tuple[str, str | None]
+
+
 @dataclass
 class _Seen:
     """What was found when it was looked for last.
 
     of : what goes with each ocean, by its session uid
-    scenes : session uids of those that have an ocean
+    scenes : names of the oceans of each scene, each with the file that it is linked from, by session uid
     readers : session uids of the objects whose modifiers read oceans
     objects : how many the file had
     """
 
     of: dict[int, Neighbours] = field(default_factory=dict)
-    scenes: set[int] = field(default_factory=set)
+    scenes: dict[int, tuple[_Key, ...]] = field(default_factory=dict)
     readers: set[int] = field(default_factory=set)
     objects: int = 0
 
@@ -77,6 +81,15 @@ def has_ocean(scene: bpy.types.Scene) -> bool:
     return scene.session_uid in _found().scenes
 
 
+def known_oceans(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """The oceans of a scene by name; as `neighbours_of`."""
+    found = [bpy.data.objects.get(key) for key in _found().scenes.get(scene.session_uid, ())]
+    if not all(map(is_ocean, found)):  # one got another name
+        look()
+        found = [bpy.data.objects.get(key) for key in _seen.scenes.get(scene.session_uid, ())]
+    return [item for item in found if is_ocean(item)]
+
+
 def _found() -> _Seen:
     if len(bpy.data.objects) != _seen.objects:
         look()
@@ -86,7 +99,9 @@ def _found() -> _Seen:
 def look_at(ocean: bpy.types.Object) -> None:
     """Find what goes with an ocean."""
     has_surface = camera_surface_of(ocean) is not None
-    _seen.scenes.update(scene.session_uid for scene in ocean.users_scene)
+    for scene in ocean.users_scene:
+        keys = _seen.scenes.get(scene.session_uid, ())
+        _seen.scenes[scene.session_uid] = tuple(sorted({*keys, _key(ocean)}, key=_by_name))
     has_bake = settings_of(ocean).source == "SEQUENCE" and shown_bake(ocean) is not None
     _seen.of[ocean.session_uid] = Neighbours(needs_of(ocean), has_surface, has_bake)
 
@@ -97,9 +112,18 @@ def look() -> None:
     _seen.of.clear()
     _seen.objects = len(bpy.data.objects)
     _seen.readers = {item.session_uid for item in bpy.data.objects if _reads(item, oceans)}
-    _seen.scenes = {scene.session_uid for scene in bpy.data.scenes if any(True for _ in oceans_in(scene))}
+    keys = {scene: tuple(sorted(map(_key, oceans_in(scene)), key=_by_name)) for scene in bpy.data.scenes}
+    _seen.scenes = {scene.session_uid: found for scene, found in keys.items() if found}
     for ocean in oceans:
         look_at(ocean)
+
+
+def _key(ocean: bpy.types.Object) -> _Key:
+    return ocean.name, None if ocean.library is None else ocean.library.filepath
+
+
+def _by_name(key: _Key) -> tuple[str, str]:
+    return key[0], key[1] or ""
 
 
 def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:

@@ -1,23 +1,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators on the active ocean share."""
+"""The ocean that the sidebar shows, and what operators that change it share."""
 
 from collections.abc import Sized
 
 import bpy
 
 from ..core.data.printable import LONGEST, printable
+from ..scene.floating import carrier_of, ride_of
+from ..scene.portability import known_oceans
 from ..scene.settings import OceanSettings, is_ocean
 
 
+def shown_ocean(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The ocean that the sidebar shows and operators change; None where the scene has none.
+
+    The pinned one, else the active object, else the one that the active object floats on, else the scene's
+    first by name.
+    """
+    oceans, active = known_oceans(context.scene), context.active_object
+    pinned = getattr(context.scene, PINNED)
+    if pinned and pinned in (names := [ocean.name for ocean in oceans]):
+        return oceans[names.index(pinned)]
+    if is_ocean(active):
+        return active
+    carrier = carrier_of(active) if active is not None else None
+    below = ride_of(carrier)[0] if carrier is not None else None
+    return below if below in oceans else next(iter(oceans), None)
+
+
+#: the scene's property that holds the pinned ocean's name
+PINNED = "ocean_tweak_pinned"
+
+
 class OfActiveOcean:
-    """Operators that act on the active object."""
+    """Operators that act on the ocean that the sidebar shows."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """An ocean is active, and it is this file's own."""
-        item = context.active_object
-        if not is_ocean(item):
-            cls.poll_message_set("Select an ocean first")
+        """There is an ocean, and it is this file's own."""
+        item = shown_ocean(context)
+        if item is None:
+            cls.poll_message_set("There is no ocean in this scene: add one first")
             return False
         if item.library is not None:
             cls.poll_message_set("The ocean is linked from another file: make it local or override it")
@@ -38,7 +61,7 @@ class OfOwnList(OfActiveOcean):
         """The list can be changed."""
         if not super().poll(context):
             return False
-        if context.active_object.override_library:
+        if shown_ocean(context).override_library:
             cls.poll_message_set(cls.kept)
             return False
         return True

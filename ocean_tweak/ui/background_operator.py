@@ -11,7 +11,7 @@ from ..core import ParameterError
 from ..scene.command_process import CommandProcess
 from ..scene.refinement import redraw_views
 from ..scene.settings import OceanObjectError
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
 _LOOK = 0.1  # s
 
@@ -34,7 +34,7 @@ class BackgroundOperator(OfActiveOcean):
         """An ocean of this file that no process of this kind works for."""
         if not super().poll(context):
             return False
-        if cls.processes.running(context.active_object):
+        if cls.processes.running(shown_ocean(context)):
             cls.poll_message_set(cls.busy)
             return False
         return True
@@ -82,7 +82,7 @@ class BackgroundOperator(OfActiveOcean):
         return refuse(self, self._process.error or f"{self.doing} {self._process.name} failed without a word")
 
     def _start(self, context: bpy.types.Context) -> bool:
-        self._item, self._scene = context.active_object.name, context.scene.name
+        self._item, self._scene = shown_ocean(context).name, context.scene.name
         try:
             self._process = self.begin(context)
         except (ParameterError, OceanObjectError, OSError) as error:
@@ -116,7 +116,7 @@ class StopsProcess:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """It is under way."""
-        item = context.active_object
+        item = shown_ocean(context)
         if item is None or cls.processes.running(item) is None:
             cls.poll_message_set(cls.idle)
             return False
@@ -124,5 +124,5 @@ class StopsProcess:
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Ask for the end; the running operator sees it."""
-        self.processes.running(context.active_object).stop()
+        self.processes.running(shown_ocean(context)).stop()
         return {"FINISHED"}

@@ -16,7 +16,7 @@ from ..scene.image_sequence import find_sequence
 from ..scene.portability import needs_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .background_operator import BackgroundOperator, StopsProcess
 
 
@@ -42,7 +42,7 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
 
     def begin(self, context: bpy.types.Context) -> BakeProcess:
         """Bake the scene's frames."""
-        item, frames = context.active_object, scene_frames(context.scene)
+        item, frames = shown_ocean(context), scene_frames(context.scene)
         return bake_process.start(item, shot_of(item, context.scene, frames), frames)
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
@@ -104,7 +104,7 @@ class OCEAN_OT_look_at_bakes(OfActiveOcean, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Keep what is found for the panel."""
         try:
-            bake_versions.foresee(context.active_object, context.scene)
+            bake_versions.foresee(shown_ocean(context), context.scene)
         except (OSError, *ocean_object.EXPECTED_ERRORS) as error:
             return refuse(self, error)
         return {"FINISHED"}
@@ -125,7 +125,7 @@ class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask first."""
-        listing = bake_versions.known(context.active_object)
+        listing = bake_versions.known(shown_ocean(context))
         frames = {version.folder.name: version.frames for version in listing.versions} if listing else {}
         what = f"{self.version}, frames: {frames.get(self.version, 0)}"
         if not self.version:
@@ -137,7 +137,7 @@ class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete, and tell what stayed."""
         try:
-            cleaned = bake_versions.delete(context.active_object, [self.version] if self.version else [])
+            cleaned = bake_versions.delete(shown_ocean(context), [self.version] if self.version else [])
         except (OSError, CacheError, Held, *ocean_object.EXPECTED_ERRORS) as error:
             return refuse(self, error)
         size = readable_bytes(cleaned.bytes)
@@ -162,14 +162,14 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
         """The bake lies elsewhere."""
         if not super().poll(context):
             return False
-        if not settings_of(context.active_object).bake_is_elsewhere:
+        if not settings_of(shown_ocean(context)).bake_is_elsewhere:
             cls.poll_message_set("The ocean reads no bake from outside its cache folder")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Copy, then switch over."""
-        item = context.active_object
+        item = shown_ocean(context)
         try:
             ocean_object.use_sequence(item, context.scene, cache_place.take_along(item))
         except (OSError, *ocean_object.EXPECTED_ERRORS) as error:

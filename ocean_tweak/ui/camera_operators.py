@@ -9,7 +9,7 @@ from ..core import ParameterError
 from ..scene.camera_surface import add_camera_surface, remove_camera_surface
 from ..scene.portability import neighbours_of
 from ..scene.settings import OceanObjectError
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
 
 class OCEAN_OT_add_camera_surface(OfActiveOcean, bpy.types.Operator):
@@ -34,7 +34,7 @@ class OCEAN_OT_add_camera_surface(OfActiveOcean, bpy.types.Operator):
         """An ocean of this file is active, and has none yet."""
         if not super().poll(context):
             return False
-        if neighbours_of(context.active_object).has_surface:
+        if neighbours_of(shown_ocean(context)).has_surface:
             cls.poll_message_set("The ocean has a camera surface already")
             return False
         return True
@@ -42,7 +42,7 @@ class OCEAN_OT_add_camera_surface(OfActiveOcean, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make it, and say which camera it follows."""
         try:
-            add_camera_surface(context.active_object, context.scene, budget=self.budget)
+            add_camera_surface(shown_ocean(context), context.scene, budget=self.budget)
         except (OceanObjectError, ParameterError) as error:
             return refuse(self, error)
         if context.scene.camera is None:
@@ -64,14 +64,14 @@ class OCEAN_OT_remove_camera_surface(OfActiveOcean, bpy.types.Operator):
         """An ocean of this file is active, and has one."""
         if not super().poll(context):
             return False
-        if not neighbours_of(context.active_object).has_surface:
+        if not neighbours_of(shown_ocean(context)).has_surface:
             cls.poll_message_set("The ocean has no camera surface")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it."""
-        remove_camera_surface(context.active_object)
+        remove_camera_surface(shown_ocean(context))
         return {"FINISHED"}
 
 

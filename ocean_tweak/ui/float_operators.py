@@ -14,7 +14,7 @@ from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
 from ..scene.portability import has_ocean
 from ..scene.settings import OceanObjectError, is_ocean
-from .active_ocean import refuse
+from .active_ocean import refuse, shown_ocean
 
 _EXPECTED_ERRORS = (OceanObjectError, ParameterError, MemoryError, OSError)
 # s of a modal bake before the window may draw again
@@ -34,7 +34,7 @@ class _OnOcean:
     """Operators on the selected objects and an ocean."""
 
     ocean: StringProperty(
-        name="Ocean", description="The ocean to float on; empty for the active one, else the first by name"
+        name="Ocean", description="The ocean to float on; empty for the one that the sidebar shows"
     )
 
     @classmethod
@@ -53,8 +53,8 @@ class _OnOcean:
         return False
 
     def chosen_ocean(self, context: bpy.types.Context) -> bpy.types.Object:
-        """The ocean of that name, the active one or the first. Raises FloatError."""
-        return floating.chosen_ocean(context.scene, context.active_object, self.ocean)
+        """The ocean of that name, else the one that is shown. Raises FloatError."""
+        return floating.chosen_ocean(context.scene, shown_ocean(context), self.ocean)
 
 
 class _Rides(_OnOcean):

@@ -13,7 +13,7 @@ from ..core.waves.kinds import shown
 from ..core.waves.wind_field.presets import WIND_FIELDS, wind_field
 from ..scene.animated import clock_of, move_keys
 from ..scene.settings import OceanObjectError, settings_of
-from .active_ocean import OfOwnList, nearest, refuse
+from .active_ocean import OfOwnList, nearest, refuse, shown_ocean
 
 _WINDS = {
     "UNIFORM": ("Uniform", "The same wind everywhere (Li and Wang 2016, figure 9 B)"),
@@ -29,7 +29,7 @@ class _OfLayers(OfOwnList):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the list, and keep a layer active; keys follow their layers."""
-        item = context.active_object
+        item = shown_ocean(context)
         settings = settings_of(item)
         try:
             before = settings.to_parameters(context.scene)
@@ -87,7 +87,7 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
     def _new(self, parameters: OceanParameters) -> Contribution:
         if self.kind == "WIND_FIELD":
             return wind_field(self.wind, parameters.domain_size, parameters.water.gravity)
-        settings, scene = settings_of(bpy.context.active_object), bpy.context.scene
+        settings, scene = settings_of(shown_ocean(bpy.context)), bpy.context.scene
         time = clock_of(settings, scene, parameters.timing.start_frame).time
         return _kind(self.kind).to_begin_with(parameters, float(time))
 
@@ -121,7 +121,7 @@ class OCEAN_OT_layer_remove(_OfLayers, bpy.types.Operator):
         """One wave layer must stay."""
         if not super().poll(context):
             return False
-        settings = settings_of(context.active_object)
+        settings = settings_of(shown_ocean(context))
         kinds = [layer.kind for layer in settings.layers]
         if kinds.count("WAVES") < 2 and kinds[nearest(settings.active_layer, kinds)] == "WAVES":
             cls.poll_message_set("A sea has at least one layer of waves: mute it for flat water")
@@ -149,8 +149,8 @@ class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Move it, unless it stands at the end already."""
-        kinds = [layer.kind for layer in settings_of(context.active_object).layers]
-        here = nearest(settings_of(context.active_object).active_layer, kinds)
+        kinds = [layer.kind for layer in settings_of(shown_ocean(context)).layers]
+        here = nearest(settings_of(shown_ocean(context)).active_layer, kinds)
         there = here + (1 if self.direction == "DOWN" else -1)
         if not (0 <= there < len(kinds) and kinds[here] == kinds[there]):
             return {"CANCELLED"}

@@ -8,7 +8,7 @@ from bpy.props import IntProperty
 from ..core import ParameterError
 from ..scene.settings import OceanObjectError, settings_of
 from . import mask_properties
-from .active_ocean import OfActiveOcean, active_layer, refuse
+from .active_ocean import OfActiveOcean, active_layer, refuse, shown_ocean
 
 #: in the place of a patch's number: whose mask it is
 ACTIVE_LAYER, WHOLE_SEA = -1, -2
@@ -50,7 +50,7 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
         return {"FINISHED"}
 
     def _mask(self, context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
-        settings = settings_of(context.active_object)
+        settings = settings_of(shown_ocean(context))
         if self.patch == WHOLE_SEA:
             return settings.mask
         if self.patch >= 0:

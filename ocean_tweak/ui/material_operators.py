@@ -11,7 +11,7 @@ from ..core import ParameterError
 from ..scene import asset_library, contact, water_material
 from ..scene.settings import settings_of
 from ..scene.water_colour import BRIGHTEST
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
 
 class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
@@ -31,7 +31,7 @@ class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Make the material where the file has none, and assign it."""
-        item, scene = context.active_object, context.scene
+        item, scene = shown_ocean(context), context.scene
         try:
             parameters = settings_of(item).to_parameters(scene)
         except ParameterError as error:

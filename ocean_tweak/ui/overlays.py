@@ -18,6 +18,7 @@ from ..scene.animated import clock_of
 from ..scene.refresh import sea_of_settings
 from ..scene.settings import is_ocean, settings_of
 from ..scene.units import metres_per_unit
+from .active_ocean import shown_ocean
 
 #: arrows along each side of the patch
 _ARROWS = 16
@@ -109,7 +110,7 @@ def wind_now(
 
 def _draw_wind() -> None:
     context = bpy.context
-    item, space = context.active_object, context.space_data
+    item, space = shown_ocean(context), context.space_data
     if not (space.overlay.show_overlays and is_ocean(item) and item.visible_get()):
         return
     ends = wind_lines(item, context.scene)

@@ -15,7 +15,7 @@ from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import animate, shot_of
 from ..scene.source_images import open_image
 from ..scene.units import frame_rate, set_frame_rate, set_time_stretch, time_stretch
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
 
 def apply_parameters(context: bpy.types.Context, parameters: OceanParameters, use_frame_rate: bool) -> None:
@@ -26,7 +26,7 @@ def apply_parameters(context: bpy.types.Context, parameters: OceanParameters, us
         set_frame_rate(scene, parameters.timing.fps)
         set_time_stretch(scene, parameters.timing.stretch)
     try:
-        settings_of(context.active_object).from_parameters(parameters, scene)
+        settings_of(shown_ocean(context)).from_parameters(parameters, scene)
     except OceanObjectError:
         set_frame_rate(scene, before[0])
         set_time_stretch(scene, before[1])
@@ -58,7 +58,7 @@ class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper
             text = read_bytes(path, LARGEST_JSON).decode("utf-8")
             shot = sea_of_text(text, path.parent, open_image)
             apply_parameters(context, shot.parameters, self.use_frame_rate)
-            animate(context.active_object, context.scene, shot)
+            animate(shown_ocean(context), context.scene, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:
             return refuse(self, error)
         return {"FINISHED"}
@@ -80,7 +80,7 @@ class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write the file; settings that are no sea are refused."""
         try:
-            shot = shot_of(context.active_object, context.scene)
+            shot = shot_of(shown_ocean(context), context.scene)
             write_sea(self.filepath, shot)
         except (ParameterError, OSError) as error:
             return refuse(self, error)

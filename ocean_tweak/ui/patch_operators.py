@@ -9,7 +9,7 @@ from ..core.parameters.patch import MOST_PATCHES
 from ..core.sea.patch_editing import with_another_patch, without_patch
 from ..core.sea.patch_plan import planned
 from ..scene.settings import OceanObjectError, settings_of
-from .active_ocean import OfOwnList, nearest, refuse
+from .active_ocean import OfOwnList, nearest, refuse, shown_ocean
 from .patch_properties import wish_of
 
 
@@ -20,7 +20,7 @@ class _OfPatches(OfOwnList):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the list as a whole, or not at all."""
-        settings = settings_of(context.active_object)
+        settings = settings_of(shown_ocean(context))
         try:
             before = settings.to_parameters(context.scene)
             after, active = self.changed(before, context)
@@ -53,7 +53,7 @@ class OCEAN_OT_plan_patches(_OfPatches, bpy.types.Operator):
     def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
         """The patches that the core plans, shown on as many samples as the first has."""
         sea = parameters.without_patches
-        return planned(sea, wish_of(settings_of(context.active_object), context.scene)), 0
+        return planned(sea, wish_of(settings_of(shown_ocean(context)), context.scene)), 0
 
 
 class OCEAN_OT_patch_add(_OfPatches, bpy.types.Operator):
@@ -72,7 +72,7 @@ class OCEAN_OT_patch_add(_OfPatches, bpy.types.Operator):
         """There is room for one more."""
         if not super().poll(context):
             return False
-        if len(settings_of(context.active_object).patches) >= MOST_PATCHES:
+        if len(settings_of(shown_ocean(context)).patches) >= MOST_PATCHES:
             cls.poll_message_set("A sea has four patches at most")
             return False
         return True
@@ -93,7 +93,7 @@ class _OfPresentPatches(_OfPatches):
         """There are some."""
         if not super().poll(context):
             return False
-        if not settings_of(context.active_object).patches:
+        if not settings_of(shown_ocean(context)).patches:
             cls.poll_message_set("This ocean has no list of patches: plan them, or add one")
             return False
         return True
@@ -109,7 +109,7 @@ class OCEAN_OT_patch_remove(_OfPresentPatches, bpy.types.Operator):
 
     def changed(self, parameters: OceanParameters, context: bpy.types.Context) -> tuple[OceanParameters, int]:
         """The one that took over is active."""
-        index = nearest(settings_of(context.active_object).active_patch, parameters.patches)
+        index = nearest(settings_of(shown_ocean(context)).active_patch, parameters.patches)
         return without_patch(parameters, index), max(index - 1, 0)
 
 

@@ -14,7 +14,7 @@ from ..core.parameters.presets import Preset
 from ..export.files import write_text
 from ..scene import user_presets
 from ..scene.settings import OceanObjectError, settings_of
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
 _ERRORS = (ParameterError, OceanObjectError, OSError)
 
@@ -37,7 +37,7 @@ class OCEAN_OT_apply_preset(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Apply it as a whole, or not at all."""
-        settings = settings_of(context.active_object)
+        settings = settings_of(shown_ocean(context))
         presets = user_presets.all_presets()
         if self.key not in presets:
             return refuse(self, f"There is no preset {self.key!r}; there are {', '.join(presets)}")
@@ -78,7 +78,7 @@ class OCEAN_OT_save_preset(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write the file; the ocean has this preset's sea from now on."""
-        settings = settings_of(context.active_object)
+        settings = settings_of(shown_ocean(context))
         try:
             parameters = settings.to_parameters(context.scene)
             user_presets.save(Preset(self.title.strip(), self.text.strip(), parameters), self.replace)

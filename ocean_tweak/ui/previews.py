@@ -16,6 +16,7 @@ from ..core import OceanParameters
 from ..scene import user_presets
 from ..scene.refinement import has_window, redraw_views
 from ..scene.settings import is_ocean, settings_of
+from .active_ocean import shown_ocean
 from .spectrum_plot import SIZE, spectrum_plot
 
 _THUMBNAILS = Path(__file__).parent / "thumbnails"
@@ -132,7 +133,7 @@ def _custom_icon() -> int:
 
 def _chosen(_owner: object) -> int:
     """The preset whose sea the active ocean has."""
-    item = bpy.context.active_object
+    item = shown_ocean(bpy.context)
     if not is_ocean(item):
         return 0
     title = settings_of(item).preset

@@ -7,7 +7,7 @@ from bpy.props import BoolProperty, EnumProperty
 
 from ..scene import ocean_object, surroundings
 from ..scene.moods import MOODS
-from .active_ocean import refuse
+from .active_ocean import refuse, shown_ocean
 from .adding import InObjectMode, make_active
 
 _ENGINES = [
@@ -105,9 +105,10 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         return "; ".join(parts)
 
 
-def draw_add_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+def draw_add_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """Draw the entry in Add > Mesh."""
-    self.layout.operator_menu_enum(OCEAN_OT_add_scene.bl_idname, "mood", icon="SCENE_DATA")
+    text = "Ocean Scene" if shown_ocean(context) is None else "Ocean Scene (Another Ocean)"
+    self.layout.operator_menu_enum(OCEAN_OT_add_scene.bl_idname, "mood", text=text, icon="SCENE_DATA")
 
 
 def _new_scene(like: bpy.types.Scene) -> bpy.types.Scene:

@@ -12,7 +12,7 @@ from ..core import Ocean, OceanParameters, ParameterError, WaveLayer, layer_for_
 from ..core.parameters.presets import built_in
 from ..scene import conversion, ocean_object
 from ..scene.settings import OceanObjectError, settings_of
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
 #: wavelengths of the peak that a domain should hold
 _WAVELENGTHS = 4.5
@@ -67,7 +67,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Change the first layer; the others, if there are any, stay."""
-        settings = settings_of(context.active_object)
+        settings = settings_of(shown_ocean(context))
         try:
             before = settings.to_parameters(context.scene)
             matched, explanation = self._matched(before)

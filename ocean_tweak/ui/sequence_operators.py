@@ -14,7 +14,7 @@ from ..scene.refinement import show
 from ..scene.refresh import Wanted
 from ..scene.settings import settings_of
 from ..scene.shots import animate
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .parameter_operators import apply_parameters
 
 
@@ -36,7 +36,7 @@ class OCEAN_OT_use_sequence(OfActiveOcean, bpy.types.Operator, ImportHelper):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the sequence and switch to it."""
-        item, scene = context.active_object, context.scene
+        item, scene = shown_ocean(context), context.scene
         try:
             sequence = find_sequence(self.filepath)
             if self.use_parameters:
@@ -65,7 +65,7 @@ class OCEAN_OT_use_live(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Switch the source; what is wrong with the settings stands in the panel."""
-        settings_of(context.active_object).source = "LIVE"
+        settings_of(shown_ocean(context)).source = "LIVE"
         return {"FINISHED"}
 
 
@@ -82,14 +82,14 @@ class OCEAN_OT_settings_from_bake(OfActiveOcean, bpy.types.Operator):
         """A bake moves the ocean."""
         if not super().poll(context):
             return False
-        if settings_of(context.active_object).source != "SEQUENCE":
+        if settings_of(shown_ocean(context)).source != "SEQUENCE":
             cls.poll_message_set("No bake moves the ocean")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Take over the sea, or change nothing."""
-        item, scene = context.active_object, context.scene
+        item, scene = shown_ocean(context), context.scene
         shot = bake_state.baked_shot(settings_of(item))
         if shot is None:
             return refuse(self, "The files do not say what they were baked from")

@@ -17,7 +17,7 @@ from ..scene.portability import neighbours_of
 from ..scene.settings import OceanObjectError, settings_of
 from ..scene.shots import scene_frames, shot_of
 from ..scene.usd import UsdCheck, UsdExport
-from .active_ocean import OfActiveOcean, refuse
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .adding import InObjectMode, make_active
 from .background_operator import BackgroundOperator, StopsProcess
 from .usd_properties import draw_choices
@@ -59,7 +59,7 @@ class OCEAN_OT_export_usd(_UsdBackgroundOperator, bpy.types.Operator):
 
     def begin(self, context: bpy.types.Context) -> UsdExport:
         """Write the scene's frames."""
-        item, frames = context.active_object, scene_frames(context.scene)
+        item, frames = shown_ocean(context), scene_frames(context.scene)
         return usd.start_export(item, shot_of(item, context.scene, frames), frames)
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
@@ -93,14 +93,14 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Open the browser where the ocean goes already."""
         try:
-            self.filepath = str(usd.usd_file(context.active_object))
+            self.filepath = str(usd.usd_file(shown_ocean(context)))
         except (OceanObjectError, OSError) as error:
             return refuse(self, error)
         return super().invoke(context, event)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the choices of the panel."""
-        item = context.active_object
+        item = shown_ocean(context)
         self.layout.use_property_split = True
         draw_choices(self.layout, settings_of(item).usd, neighbours_of(item).has_bake)
 
@@ -109,7 +109,7 @@ class OCEAN_OT_export_usd_as(_NeedsUsd, OfActiveOcean, bpy.types.Operator, Expor
         file = Path(self.filepath)
         if file.suffix not in SUFFIXES:  # what stands behind a dot may be a version
             file = file.with_name(file.name + _EXTENSION)
-        settings_of(context.active_object).usd.file = str(file)
+        settings_of(shown_ocean(context)).usd.file = str(file)
         try:
             return bpy.ops.ocean.export_usd("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")
         except RuntimeError as error:  # what the other operator reported
@@ -130,7 +130,7 @@ class OCEAN_OT_verify_usd(_UsdBackgroundOperator, bpy.types.Operator):
 
     def begin(self, context: bpy.types.Context) -> UsdCheck:
         """Read what the ocean's settings say."""
-        return usd.start_check(context.active_object)
+        return usd.start_check(shown_ocean(context))
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
         """Say what is wrong."""

@@ -10,7 +10,7 @@ from ..scene import source_images, wind_recording
 from ..scene.refinement import show
 from ..scene.settings import OceanObjectError, settings_of
 from . import layer_properties
-from .active_ocean import OfActiveOcean, active_layer, refuse
+from .active_ocean import OfActiveOcean, active_layer, refuse, shown_ocean
 
 
 class OCEAN_OT_record_wind(OfActiveOcean, bpy.types.Operator):
@@ -53,7 +53,7 @@ class OCEAN_OT_record_wind(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Record as a whole, or change nothing."""
-        item, scene, group = context.active_object, context.scene, _active_wind(context)
+        item, scene, group = shown_ocean(context), context.scene, _active_wind(context)
         if self.last < self.first:
             return refuse(self, f"The last frame {self.last} lies before the first one, {self.first}")
         frames = sorted({*range(self.first, self.last + 1, self.step), self.last})
@@ -100,17 +100,17 @@ class OCEAN_OT_reload_image(OfActiveOcean, bpy.types.Operator):
         image = _active_image(context)
         image.reload()
         source_images.forget(image)
-        show(context.active_object, context.scene)
+        show(shown_ocean(context), context.scene)
         return {"FINISHED"}
 
 
 def _active_wind(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
-    layer = active_layer(settings_of(context.active_object))
+    layer = active_layer(settings_of(shown_ocean(context)))
     return layer.wind_field if layer is not None and layer.kind == "WIND_FIELD" else None
 
 
 def _active_image(context: bpy.types.Context) -> bpy.types.Image | None:
-    layer = active_layer(settings_of(context.active_object))
+    layer = active_layer(settings_of(shown_ocean(context)))
     return layer_properties.source_image(layer) if layer is not None else None
 
 
@@ -118,7 +118,7 @@ def _keep(
     context: bpy.types.Context, group: bpy.types.PropertyGroup, keys: tuple[wind_recording.WindKey, ...]
 ) -> None:
     """Let a wind field use keys. Raises ParameterError, and changes nothing, where the sea cannot."""
-    settings = settings_of(context.active_object)
+    settings = settings_of(shown_ocean(context))
     before = {name: getattr(group, name) for name in ("recording", "recording_hash", "source")}
     with settings.quiet():
         layer_properties.set_recording(group, keys)
@@ -128,7 +128,7 @@ def _keep(
             for name, value in before.items():
                 setattr(group, name, value)
             raise
-    show(context.active_object, context.scene)
+    show(shown_ocean(context), context.scene)
 
 
 CLASSES = (OCEAN_OT_record_wind, OCEAN_OT_reload_image)

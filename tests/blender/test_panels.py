@@ -105,7 +105,7 @@ def item(ocean_object, make_parameters, empty_scene):
 def test_without_an_ocean_there_is_a_way_to_one(draw):
     scenes = ["With sky and camera:", *["ocean.add_scene"] * 4]  # calm, fresh breeze, storm, horizon
     floating = [f"object.ocean_tweak_float{end}" for end in ("", "_bake", "_remove")]
-    offered = ["No ocean is active", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
+    offered = ["No ocean in this scene", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
     assert draw(None) == offered
 
 

@@ -4,6 +4,7 @@
 import bpy
 
 from .. import camera_operators, material_operators, parameter_operators
+from ..active_ocean import shown_ocean
 from ..field_drawing import draw_fields, draw_switched
 from .drawing import SubPanel, active_settings, split
 
@@ -96,7 +97,7 @@ class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
         attributes = layout.column(heading="Attributes")
         attributes.prop(settings, "use_normals")
         attributes.prop(settings, "use_velocity")
-        camera_operators.draw_camera_surface(layout, context.active_object)
+        camera_operators.draw_camera_surface(layout, shown_ocean(context))
 
 
 class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):

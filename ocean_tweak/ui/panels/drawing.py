@@ -11,8 +11,8 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ...scene.command_process import CommandProcess
-from ...scene.settings import OceanSettings, is_ocean, settings_of
-from ..active_ocean import active_layer
+from ...scene.settings import OceanSettings, settings_of
+from ..active_ocean import active_layer, shown_ocean
 
 CATEGORY = "Ocean Tweak"
 _LABEL_SHARE = 0.4  # of the width, as Blender's own split layouts
@@ -31,12 +31,12 @@ class SidebarPanel:
 
 
 class OceanPanel(SidebarPanel):
-    """Shown for an active ocean."""
+    """Shown where the scene has an ocean."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """An ocean is active."""
-        return is_ocean(context.active_object)
+        """The scene has an ocean."""
+        return shown_ocean(context) is not None
 
 
 class SubPanel(OceanPanel):
@@ -57,8 +57,8 @@ def split(layout: bpy.types.UILayout, animated: bool = False) -> bpy.types.UILay
 
 
 def active_settings(context: bpy.types.Context) -> OceanSettings:
-    """Settings of the active ocean."""
-    return settings_of(context.active_object)
+    """Settings of the ocean that is shown."""
+    return settings_of(shown_ocean(context))
 
 
 def active_waves(settings: OceanSettings) -> bpy.types.PropertyGroup | None:

@@ -9,7 +9,7 @@ from ...scene import source_images
 from ...scene.refresh import sea_of_settings
 from ...scene.units import metres_per_unit
 from .. import layer_operators, parameter_properties, wind_operators
-from ..active_ocean import active_layer, nearest
+from ..active_ocean import active_layer, nearest, shown_ocean
 from ..field_drawing import draw_fields
 from ..layer_properties import kind_of
 from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
@@ -181,7 +181,7 @@ def _draw_hero_wave(
         return
     before = settings.layers[: nearest(settings.active_layer, settings.layers)]
     number = [layer.kind for layer in before].count("HERO_WAVE")
-    sea = sea_of_settings(context.active_object, scene)
+    sea = sea_of_settings(shown_ocean(context), scene)
     outlook = None if sea is None else HeroWave.outlook(sea)
     waves = () if outlook is None else outlook.waves
     wave = next((found for found in waves if found.number == number), None)

@@ -5,6 +5,7 @@ import bpy
 
 from ...scene import water_material
 from .. import material_operators
+from ..active_ocean import shown_ocean
 from .drawing import OceanPanel, split
 
 #: inputs of the water's node, as they are called there
@@ -21,7 +22,7 @@ class OCEAN_PT_material(OceanPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button that gives it water, and that water's colour, foam and surface."""
-        material = context.active_object.active_material
+        material = shown_ocean(context).active_material
         operator = material_operators.OCEAN_OT_use_water_material.bl_idname
         text = "Water Material" if material is None else material.name
         self.layout.operator_menu_enum(operator, "water", text=text, icon="MATFLUID")

@@ -18,6 +18,7 @@ from ...scene.portability import neighbours_of
 from ...scene.settings import OceanSettings
 from ...scene.shots import scene_frames
 from .. import bake_operators, sequence_operators, usd_operators
+from ..active_ocean import shown_ocean
 from ..usd_properties import draw_choices
 from .drawing import OceanPanel, active_settings, message, progress_bar, row, split
 
@@ -34,7 +35,7 @@ class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the cache, the button or the progress, and what is shown."""
         layout, settings = split(self.layout), active_settings(context)
-        bake = bake_process.running(context.active_object)
+        bake = bake_process.running(shown_ocean(context))
         if bake is not None:
             progress_bar(layout, bake, bake_operators.OCEAN_OT_stop_bake.bl_idname)
         else:
@@ -83,7 +84,7 @@ def _sequence(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _needs(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw what a render needs the extension for."""
-    needs = neighbours_of(context.active_object).needs
+    needs = neighbours_of(shown_ocean(context)).needs
     if not needs:
         return
     column = layout.column(align=True)
@@ -102,7 +103,7 @@ def _folder_name(settings: OceanSettings) -> str:
 
 def _disk(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw what the next bake takes and what is on disk, as it was found when somebody looked last."""
-    listing = bake_versions.known(context.active_object)
+    listing = bake_versions.known(shown_ocean(context))
     look = bake_operators.OCEAN_OT_look_at_bakes.bl_idname
     if listing is None:
         layout.operator(look, icon="DISK_DRIVE")
@@ -154,7 +155,7 @@ class OCEAN_PT_usd(OceanPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw where the layers go, what they hold, and the buttons or the progress."""
-        layout, item = split(self.layout), context.active_object
+        layout, item = split(self.layout), shown_ocean(context)
         settings, process = active_settings(context).usd, usd.running(item)
         if not library.is_installed():
             message(layout, context, library.MISSING_IN_BLENDER, alert=True)

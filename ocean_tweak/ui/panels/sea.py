@@ -24,8 +24,10 @@ from .. import (
     sequence_operators,
     wording,
 )
+from ..active_ocean import shown_ocean
 from ..field_drawing import draw_fields
 from ..layer_properties import first_waves
+from ..pinning import draw_shown
 from .drawing import (
     OceanPanel,
     active_settings,
@@ -51,6 +53,7 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
         """Draw the preset, the settings, what is wrong with them, and the waves that they make."""
         layout = split(self.layout, animated=True)
         settings = active_settings(context)
+        draw_shown(layout, context)
         if settings.error:
             message(layout, context, wording.readable(settings.error), alert=True)
         if settings.source == "SEQUENCE":
@@ -136,7 +139,7 @@ def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
 
 def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw the sea that is shown: the statistics that the last change left, and warnings."""
-    settings, item = active_settings(context), context.active_object
+    settings, item = active_settings(context), shown_ocean(context)
     column = layout.box().column(align=True)
     is_baked = settings.source == "SEQUENCE" and bool(settings.baked_sea)
     baked: dict[str, Any] = parsed(settings.baked_sea) if is_baked else {}
@@ -233,7 +236,7 @@ def _rows(scene: bpy.types.Scene, values: dict[str, Any]) -> list[tuple[str, str
 
 
 def _object_warnings(context: bpy.types.Context) -> list[str]:
-    item, scene = context.active_object, context.scene
+    item, scene = shown_ocean(context), context.scene
     frame = scene.frame_current
     settings = active_settings(context)
     warnings = []

@@ -4,6 +4,7 @@
 import bpy
 
 from ...scene.refresh import sea_of_settings
+from ..active_ocean import shown_ocean
 from ..field_drawing import draw_fields
 from ..previews import PREVIEWS
 from .drawing import SubPanel, active_settings, active_waves, split
@@ -32,7 +33,7 @@ class OCEAN_PT_spectrum(SubPanel, bpy.types.Panel):
         """Draw energy over period and over direction, then the models."""
         layout = split(self.layout)
         settings = active_settings(context)
-        sea = sea_of_settings(context.active_object, context.scene)
+        sea = sea_of_settings(shown_ocean(context), context.scene)
         icon = 0 if sea is None else PREVIEWS.spectrum(sea)  # without a sea the panel above says why
         if icon:
             layout.template_icon(icon_value=icon, scale=_FRACTIONS)
