@@ -21,6 +21,7 @@ from .camera_foam import CAMERA_FAN, CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
 from .camera_patch import CAMERA_PATCH
 from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
+from .foam_pile import FOAM_PILE
 from .frame_warnings import joined_text
 from .names import (
     BREAKING,
@@ -43,12 +44,16 @@ EARTH_RADIUS = 6_371_000.0  # m
 _LEAST_HEIGHT = 2.0 / EARTH_RADIUS
 #: cells of the lattice in the shortest wave that is left
 SHORTEST_CELLS = 4.0
+#: of the smallest cells in a lump of fresh foam
+_LUMP_CELLS = 80.0
 #: of the sea's patches, where it has several; under masks a patch may be several too
 PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
 #: of what does not repeat
 AREA_INPUT = "Area"
 #: of foam on rings around a camera
 FOAM_INPUT = "Foam"
+#: of fresh foam on it
+PILE_INPUT = "Foam Pile"
 
 INPUTS = (
     OCEAN_INPUT,
@@ -82,6 +87,10 @@ INPUTS = (
     Plug(
         FOAM_INPUT, "NodeSocketObject", None,
         "Points with foam around a camera, or before it; none shows that of the ocean's mesh",
+    ),
+    Plug(
+        PILE_INPUT, "NodeSocketFloat", 0.0,
+        "Height of foam on breaking crests, as a share of their elevation; heights of the water stay",
     ),
 )  # fmt: skip
 
@@ -321,6 +330,12 @@ def _finished(
     lost = coordinates(build, values[SLOPES])[2]
     place = build.vector("ADD", output(build.add("GeometryNodeInputPosition"), "Position"), sea.corner)
     place = build.vector("ADD", build.vector("ADD", place, drop), values[DISPLACEMENT])
+    inputs = {
+        "Displacement": values[DISPLACEMENT], "Velocity": values[VELOCITY], "Breaking": values[BREAKING],
+        "Height": build.given(PILE_INPUT),
+        "Lump": build.math("MULTIPLY", build.given("Finest Spacing"), _LUMP_CELLS),
+    }  # fmt: skip
+    place = build.vector("ADD", place, output(build.group(node_group(FOAM_PILE), inputs), "Offset"))
     shown = {
         **{name: ("FLOAT", values[name]) for name in (FOAM, BREAKING, FOAM_AGE, CUSP)},
         SLOPE_VARIANCE: ("FLOAT", build.switch("FLOAT", fade, 0.0, lost)),
@@ -400,4 +415,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 7, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 8, _build)

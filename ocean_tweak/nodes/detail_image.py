@@ -30,7 +30,7 @@ def ripple_image() -> bpy.types.Image:
 
 def lace_image() -> bpy.types.Image:
     """The lace of foam in red, and in green and blue how it changes along x and y over a whole side."""
-    return _image("Ocean Tweak Lace", 1, _lace)
+    return _image("Ocean Tweak Lace", 2, _lace)
 
 
 def gust_image() -> bpy.types.Image:

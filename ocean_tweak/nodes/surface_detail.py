@@ -6,6 +6,8 @@ They are of unit size: a shader gives them their length in metres and their stre
 
 from __future__ import annotations
 
+from statistics import NormalDist
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +24,8 @@ _LACE = ((LACE_CELLS, 1.0), (29, 0.3))
 #: logarithm of how much larger than the mean a cell can be, and how many cells far it then reaches
 _SIZES = 0.9
 _REACH = 2
+#: how far the water has carried the walls, as a share of the side, and how uneven the foam lies on them
+_CARRIED, _UNEVEN = 0.035, 0.04
 
 
 def ripple_slopes(resolution: int, seed: int = 0) -> Array:
@@ -40,17 +44,18 @@ def ripple_slopes(resolution: int, seed: int = 0) -> Array:
 
 
 def foam_lace(resolution: int, seed: int = 1) -> Array:
-    """(N, N) in 0…1, evenly distributed: a share F of foam covers where this is below F.
+    """(N, N), normally distributed: a share F of foam covers where this is below the normal quantile of F.
 
-    The walls between cells of many sizes are covered first, as in foam that thins out.
+    The walls between cells of many sizes are covered first, as in foam that thins out; eddies have drawn them
+    into curves, so that no cell is round.
     """
     place = (np.arange(resolution) + 0.5) / resolution
     x, y = np.meshgrid(place, place)
-    bend_x, bend_y = (0.01 * _smooth_noise(resolution, seed + number) for number in (10, 11))
-    height = 0.04 * _smooth_noise(resolution, seed + 12)
+    moved_x, moved_y = (_CARRIED * _smooth_noise(resolution, seed + number) for number in (39, 40))
+    height = _UNEVEN * _smooth_noise(resolution, seed + 12)
     for number, (cells, weight) in enumerate(_LACE):
-        height += weight * _wall_distance(x + bend_x, y + bend_y, cells, seed + number)
-    return _evened(height)
+        height += weight * _wall_distance(x + moved_x, y + moved_y, cells, seed + number)
+    return _normal_quantile(_evened(height))
 
 
 def gradient(field: Array) -> Array:
@@ -80,6 +85,13 @@ def _evened(field: Array) -> Array:
     order = np.empty(field.size)
     order[np.argsort(field, axis=None, kind="stable")] = np.arange(field.size) + 0.5
     return order.reshape(field.shape) / field.size
+
+
+def _normal_quantile(share: Array) -> Array:
+    """Of shares between 0 and 1; exact at a thousand of them, which are dense at both ends."""
+    value = np.linspace(-5.0, 5.0, 1001)
+    normal = NormalDist()
+    return np.interp(share, [normal.cdf(each) for each in value], value)
 
 
 def _wall_distance(x: Array, y: Array, cells: int, seed: int) -> Array:

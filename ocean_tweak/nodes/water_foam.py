@@ -2,48 +2,54 @@
 """Foam on the water: where it covers, how thick it is, and how it shades.
 
 The ocean says which share F of the water is white, and how old that foam is; laces of several sizes say
-where. Foam is what all laces leave: the holes of each are cut out of the others. A lace of weight a covers
-F^a; weights add up to 1 and laces are independent, so together they cover F, whatever the age. Age moves
-weight from small cells to large ones, and from 7 Beaufort on to cells that the wind has drawn out: holes
-grow. A lace whose cells are below a pixel fades into its mean F^a (as in Dupuy and Bruneton 2012), so F stays
-with the distance.
+where. A lace is normally distributed over the water. Independent laces of the variances v, which add up to 1,
+have a normally distributed sum S, and foam covers where S is below the normal quantile of F: it covers F,
+whatever the variances. Age moves variance from small cells to large ones, and from 7 Beaufort on to cells
+that the wind has drawn out: holes grow. A lace whose cells are below a pixel counts by its variance alone: of
+S, whose seen part is s and whose unseen part has the variance u, a share Φ((Φ⁻¹(F) - s)/√u) of the pixel is
+covered (as Dupuy and Bruneton 2012 do with slopes), so F stays with the distance.
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from .building import Socket
 from .names import BREAKING, FOAM, FOAM_AGE
 from .shading import Shading
-from .water_pattern import WIND_SPEED, Lace, Place, lace
+from .water_pattern import WIND_SPEED, Place, lace
 
 #: laces: length of their cells in Foam Sizes, turn away from the wind in rad, and how much narrower they are
 #: across; three for foam as it was made, and two for what the wind has drawn out
-_LACES = ((0.04, 0.7, 1), (0.17, 0.15, 2), (0.5, -0.4, 1), (0.7, 0.04, 3), (1.5, 0.0, 5))
-#: weights of the laces: of foam that is being made, of some seconds, old, and old in streaks
-_FRESH = (0.48, 0.44, 0.08, 0.0, 0.0)
-_YOUNG = (0.35, 0.45, 0.20, 0.0, 0.0)
-_OLD = (0.12, 0.28, 0.60, 0.0, 0.0)
-_DRAWN_OUT = (0.10, 0.14, 0.05, 0.33, 0.38)
+_LACES = ((0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (0.5, 0.04, 3), (1.4, 0.0, 5))
+#: variances of the laces: of foam that is being made, of some seconds, old, and old in streaks
+_FRESH = (0.20, 0.60, 0.20, 0.0, 0.0)
+_YOUNG = (0.10, 0.36, 0.54, 0.0, 0.0)
+_OLD = (0.04, 0.16, 0.80, 0.0, 0.0)
+_DRAWN_OUT = (0.03, 0.11, 0.05, 0.36, 0.45)
 _YOUTH = 0.8  # s, in which foam loses half of what it had while it was made
 _BREAKS = 0.2  # strength of breaking from which foam is new
 _GROWTH = (0.5, 9.0)  # s, between which holes grow
 _FADING = 2.5  # s, half-life of foam that says nothing of its age
-_STREAKS = (
-    13.9,
-    20.8,
-)  # m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
-#: width of a lace's rim as a share of its heights, of old and of fresh foam
-_RIM = (0.14, 0.07)
+#: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
+_STREAKS = (13.9, 20.8)
+#: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
+_SOFT = (0.2, 0.1)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.5, 2.0)
-#: height of a pile of fresh foam in cells, and what old foam has of it
-_PILE, _FLAT = 0.4, 0.12
-#: light that fresh piles keep from themselves, a cell of height; measured under an even sky
-_SHADOW = 0.37
+#: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
+_PAGE = (1.5976, 0.070566)
+#: from a rim inwards, in standard deviations of the laces: until foam is thick, and how far its slope reaches
+_THICK, _SLOPING = 1.2, 0.6
+#: how far inside foam its points are where no lace is seen, by the share's quantile: constant and slope
+_INSIDE = (0.55, 0.22)
+#: height of foam at its rim in cells, of old and of fresh foam, and of the billows of fresh foam
+_EDGE, _BILLOW = (0.03, 0.05), 0.04
+#: light that creases of fresh foam keep from themselves, and of piles that are too small to be seen
+_CREASED, _SHADOW = 0.30, 0.21
 #: brightness of a rim, which is thin and wet, of old and of fresh foam
-_RIM_LIGHT = (0.62, 0.92)
+_RIM_LIGHT = (0.6, 0.85)
 
 
 class Foam(NamedTuple):
@@ -88,79 +94,115 @@ def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
     return Foam(share, shade.math("MAXIMUM", by_age, by_birth), age)
 
 
+class _Laid(NamedTuple):
+    """All laces at a point.
+
+    height : sum of what is seen of them
+    slope : of that, over the size of their cells
+    unseen : variance of the rest
+    """
+
+    height: Socket
+    slope: Socket
+    unseen: Socket
+
+
 def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> Cover:
     """Foam with its laces."""
-    rim = shade.mix(foam.youth, *_RIM)
-    high = shade.math("MULTIPLY", shade.mix(foam.youth, _PILE * _FLAT, _PILE), given["Foam Relief"])
-    amount: Socket | float = 1.0
-    thickness: Socket | float = 0.0
-    unseen: Socket | float = 0.0
-    slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
-    for weight, (size, turn, stretch) in zip(_weights(shade, given, foam), _LACES, strict=True):
-        cell = shade.math("MULTIPLY", given["Foam Size"], size)
-        layer = lace(shade, at, cell, turn, stretch)
-        share = shade.math("POWER", foam.share, weight)
-        cells = shade.math("DIVIDE", shade.math("MULTIPLY", at.footprint, float(stretch)), cell)
-        far = shade.smooth(cells, *_FADE)
-        hidden = shade.math("MULTIPLY", weight, far)
-        amount = shade.math("MULTIPLY", amount, _covered(shade, layer, share, rim, far))
-        depth = _depth(shade, layer, share, foam.youth, far)
-        thickness = shade.math("MULTIPLY_ADD", depth, weight, thickness)
-        pile = _pile(shade, layer, share, foam.youth, shade.math("SUBTRACT", weight, hidden))
-        slope = shade.vector("ADD", slope, pile)
-        unseen = shade.math("ADD", unseen, hidden)
-    # heights between samples may be a little below 0
+    laid = _laid(shade, given, at, foam)
+    soft = shade.mix(foam.youth, *(value**2 for value in _SOFT))
+    kept = shade.math("SUBTRACT", 1.0, soft)
+    height = shade.math("MULTIPLY", laid.height, shade.math("SQRT", kept))
+    inwards = shade.math("SUBTRACT", _quantile(shade, foam.share), height)
+    spread = shade.math("SQRT", shade.math("MULTIPLY_ADD", laid.unseen, kept, soft))
+    amount = _normal_share(shade, shade.math("DIVIDE", inwards, spread))
+    # a share of 0 has no quantile, and heights between samples may be a little below 0
     has_any = shade.math("GREATER_THAN", foam.share, 1e-4)
-    shadow = shade.math("MULTIPLY", shade.math("MULTIPLY", unseen, foam.youth), -_SHADOW)
-    light = shade.mix(thickness, shade.mix(foam.youth, *_RIM_LIGHT), 1.0)
     return Cover(
         amount=shade.math("MULTIPLY", amount, has_any),
-        light=shade.math("MULTIPLY", light, shade.math("MULTIPLY_ADD", shadow, high, 1.0, clamp=True)),
-        slope=shade.scale(slope, high),
+        light=_light(shade, foam, laid, inwards),
+        slope=shade.scale(laid.slope, _steepness(shade, given, foam, inwards)),
     )
 
 
-def _weights(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, ...]:
+def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _Laid:
+    height: Socket | float = 0.0
+    unseen: Socket | float = 0.0
+    slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
+    for variance, (size, turn, stretch) in zip(_variances(shade, given, foam), _LACES, strict=True):
+        cell = shade.math("MULTIPLY", given["Foam Size"], size)
+        layer = lace(shade, at, cell, turn, stretch)
+        cells = shade.math("DIVIDE", shade.math("MULTIPLY", at.footprint, float(stretch)), cell)
+        hidden = shade.math("MULTIPLY", variance, shade.smooth(cells, *_FADE))
+        weight = shade.math("SQRT", shade.math("SUBTRACT", variance, hidden))
+        height = shade.math("MULTIPLY_ADD", layer.height, weight, height)
+        slope = shade.vector("ADD", slope, shade.scale(layer.slope, weight))
+        unseen = shade.math("ADD", unseen, hidden)
+    return _Laid(height, slope, unseen)
+
+
+def _variances(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, ...]:
     """Of each lace; their sum is 1."""
     by_wind = shade.smooth(shade.value(WIND_SPEED, "OBJECT"), *_STREAKS)
     asked = given["Foam Streaks"]
     streaks = shade.mix(shade.math("LESS_THAN", asked, 0.0), asked, by_wind)
     grown = shade.smooth(foam.age, *_GROWTH)
-    weights = []
+    variances = []
     for part in (slice(0, 3), slice(2, 5)):
         old = shade.mix_vectors(streaks, _OLD[part], _DRAWN_OUT[part])
         aged = shade.mix_vectors(grown, _YOUNG[part], old)
-        weights.append(shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part])))
-    return *weights[0], *weights[1][1:]
+        variances.append(shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part])))
+    return *variances[0], *variances[1][1:]
 
 
-def _covered(shade: Shading, layer: Lace, share: Socket, rim: Socket, far: Socket) -> Socket:
-    """How much a lace leaves at a point; in the mean the share, as its rim is as wide to both sides of it."""
-    room = shade.math("MINIMUM", share, shade.math("SUBTRACT", 1.0, share))
-    half = shade.math("MAXIMUM", shade.math("MINIMUM", rim, room), 1e-3)
-    outer, inner = shade.math("ADD", share, half), shade.math("SUBTRACT", share, half)
-    return shade.mix(far, shade.smooth(layer.height, inner, outer, 1.0, 0.0), share)
+def _normal_share(shade: Shading, value: Socket) -> Socket:
+    """Share of a normal distribution that lies below a value, Φ."""
+    a, b = _PAGE
+    held = shade.math("MAXIMUM", shade.math("MINIMUM", value, 9.0), -9.0)
+    steep = shade.math("MULTIPLY_ADD", shade.math("MULTIPLY", held, held), -b, -a)
+    return shade.math(
+        "DIVIDE", 1.0, shade.math("ADD", shade.math("EXPONENT", shade.math("MULTIPLY", held, steep)), 1.0)
+    )
 
 
-def _depth(shade: Shading, layer: Lace, share: Socket, youth: Socket, far: Socket) -> Socket:
-    """How much foam lies above a point, 0…1; one half in the mean where there is any.
+def _quantile(shade: Shading, share: Socket) -> Socket:
+    """The value below which a share of a normal distribution lies: where ax + bx³ = ln(F/(1 - F)).
 
-    Old foam is highest along its walls, and fresh foam billows between them.
+    x = 2√(a/3b) sinh(asinh(y)/3) with y = 3/(2a) √(3b/a) ln(F/(1 - F)).
     """
-    risen = shade.math("DIVIDE", layer.height, shade.math("MAXIMUM", share, 1e-3), clamp=True)
-    near = shade.mix(youth, shade.math("SUBTRACT", 1.0, risen), risen)
-    return shade.mix(far, near, 0.5)
+    a, b = _PAGE
+    held = shade.math("MAXIMUM", shade.math("MINIMUM", share, 1.0 - 1e-4), 1e-5)
+    odds = shade.math("DIVIDE", held, shade.math("SUBTRACT", 1.0, held))
+    y = shade.math("MULTIPLY", shade.math("LOGARITHM", odds, math.e), 1.5 / a * math.sqrt(3.0 * b / a))
+    root = shade.math("SQRT", shade.math("MULTIPLY_ADD", y, y, 1.0))
+    third = shade.math("MULTIPLY", shade.math("LOGARITHM", shade.math("ADD", y, root), math.e), 1.0 / 3.0)
+    return shade.math("MULTIPLY", shade.math("SINH", third), 2.0 * math.sqrt(a / (3.0 * b)))
 
 
-def _pile(shade: Shading, layer: Lace, share: Socket, youth: Socket, weight: Socket) -> Socket:
-    """Slope of foam that is flat where it is highest.
+def _light(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
+    """What is left of the brightness: rims are thin, and fresh foam has deep creases between its billows."""
+    inside = shade.math("MULTIPLY_ADD", inwards, _INSIDE[1], _INSIDE[0])
+    thick = shade.smooth(shade.mix(laid.unseen, inwards, inside), 0.0, _THICK)
+    light = shade.mix(thick, shade.mix(foam.youth, *_RIM_LIGHT), 1.0)
+    creased = shade.smooth(laid.height, -1.6, 0.4, _CREASED, 0.0)
+    lost = shade.mix(laid.unseen, creased, _SHADOW)
+    return shade.math(
+        "MULTIPLY", light, shade.math("MULTIPLY_ADD", lost, shade.math("MULTIPLY", foam.youth, -1.0), 1.0)
+    )
 
-    By the lace's height r in its share, old foam is 1 - r² high, and fresh foam 1 - (1 - r)².
+
+def _steepness(shade: Shading, given: dict[str, Socket], foam: Foam, inwards: Socket) -> Socket:
+    """What the slope of foam is of that of its laces.
+
+    Foam falls off towards its rim, where laces rise; fresh foam billows between their walls.
     """
-    risen = shade.math("DIVIDE", layer.height, shade.math("MAXIMUM", share, 0.05), clamp=True)
-    inside = shade.math("MULTIPLY", shade.math("LESS_THAN", risen, 1.0), 2.0)
-    steep = shade.math("SUBTRACT", youth, risen)
-    return shade.scale(layer.slope, shade.math("MULTIPLY", shade.math("MULTIPLY", steep, inside), weight))
+    part = shade.math("DIVIDE", inwards, _SLOPING)
+    bell = shade.math("EXPONENT", shade.math("MULTIPLY", shade.math("MULTIPLY", part, part), -1.0))
+    edge = shade.math("MULTIPLY", bell, shade.mix(foam.youth, *_EDGE))
+    billow = shade.math(
+        "MULTIPLY", shade.math("MULTIPLY", foam.youth, shade.smooth(inwards, 0.0, _SLOPING)), _BILLOW
+    )
+    return shade.math("MULTIPLY", shade.math("SUBTRACT", billow, edge), given["Foam Relief"])
 
 
 def foam_shader(shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket) -> Socket:

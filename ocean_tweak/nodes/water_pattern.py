@@ -110,7 +110,7 @@ def ripples(shade: Shading, at: Place, size: Socket, turn: float, travel: Socket
 class Lace(NamedTuple):
     """The lace of foam as it lies at a point.
 
-    height : 0…1, evenly distributed: a share F of foam covers what is below F
+    height : normally distributed, with mean 0 and variance 1
     slope : its gradient along the ocean's x and y, over the size of a cell
     """
 

@@ -49,8 +49,8 @@ AFLOAT = {
         new_boat,
         boat_hull.LENGTH,
         boat_hull.DRAFT,
-        4.0 * boat_hull.LENGTH,
         6.0 * boat_hull.LENGTH,
+        9.0 * boat_hull.LENGTH,
     ),
 }
 

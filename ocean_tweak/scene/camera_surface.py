@@ -8,7 +8,7 @@ import bpy
 from ..core import OceanParameters
 from ..core.sea.placed_waves import repeating
 from ..nodes.camera_grid import finest_spacing
-from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS
+from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS, PILE_INPUT
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
 from . import patch_objects, portability, water_material
@@ -21,6 +21,7 @@ from .units import metres_per_unit
 __all__ = ["add_camera_surface", "camera_surface_of", "remove_camera_surface"]
 
 _BUDGET = 200_000
+_PILE = 0.06  # of foam on breaking crests, as a share of their elevation
 #: cells that a ring of the surface keeps from its middle to its edge, up to the horizon of a camera at 125 m
 _LEAST_CELLS = 32
 _FARTHEST = 40e3  # m
@@ -62,6 +63,7 @@ def add_camera_surface(
         "Finest Spacing": _finest_spacing(parameters, budget) / metres,
         "Vertex Budget": budget,
         "Planet Radius": EARTH_RADIUS / metres,
+        PILE_INPUT: _PILE,
         "Material": ocean.material_slots[0].material if ocean.material_slots else None,
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 import bpy
+import numpy as np
 
 from ..core import ParameterError
 from ..core.foam.threshold import foam_wind
@@ -31,9 +32,9 @@ _OCEAN, _LEVEL = "ocean_tweak_contact", "ocean_tweak_waterline"
 #: of the beam
 _FOAM_WIDTH, _RIPPLE_LENGTH = 0.12, 0.25
 _WIDEST_FOAM, _LONGEST_RIPPLE = 1.5, 2.0  # m
-#: of the wind, m/s, that leaves a little foam around a hull, and as much as can be
-_QUIET, _FRESH = 2.0, 10.0
-_LEAST_FOAM, _MOST_FOAM = 0.2, 0.85
+#: by the wind in m/s: foam at a hull, and how much wider it lies around it
+_FOAM_BY_WIND = (2.0, 10.0), (0.2, 0.85)
+_WIDER_BY_WIND = (12.0, 25.0), (1.0, 2.5)
 _WET_BAND = 0.12  # of the beam
 #: inputs of a collar that are links
 _LINKED = {"Vector", "Foam Map", "Height", "Time"}
@@ -270,7 +271,9 @@ def _fitted(item: bpy.types.Object, ocean: bpy.types.Object, hull: Hull | None, 
     if hull is None or line is None:
         return {}
     metres = float(metres_per_unit(scene_of(item)))
-    return {**_placed(hull, line, level, metres), **_sized(line, metres), "Foam": _foam_of(ocean)}
+    wind = _wind_speed(ocean)
+    foam = float(np.interp(wind, *_FOAM_BY_WIND))
+    return {**_placed(hull, line, level, metres), **_sized(line, metres, wind), "Foam": foam}
 
 
 def _placed(hull: Hull, line: Waterline, level: float, metres: float) -> dict[str, object]:
@@ -285,19 +288,18 @@ def _placed(hull: Hull, line: Waterline, level: float, metres: float) -> dict[st
     }
 
 
-def _sized(line: Waterline, metres: float) -> dict[str, object]:
+def _sized(line: Waterline, metres: float, wind: float) -> dict[str, object]:
     beam = 2.0 * min(line.half_length, line.half_beam) * metres
     return {
-        "Foam Width": min(_FOAM_WIDTH * beam, _WIDEST_FOAM),
+        "Foam Width": min(_FOAM_WIDTH * beam, _WIDEST_FOAM) * float(np.interp(wind, *_WIDER_BY_WIND)),
         "Ripple Length": min(_RIPPLE_LENGTH * beam, _LONGEST_RIPPLE),
     }
 
 
-def _foam_of(ocean: bpy.types.Object) -> float:
-    """More where the wind is strong."""
+def _wind_speed(ocean: bpy.types.Object) -> float:
+    """Of the wind that makes an ocean's foam, m/s; 0 without one."""
     try:
         wind = foam_wind(settings_of(ocean).to_parameters(scene_of(ocean)))
     except ParameterError:
         wind = None
-    share = 0.0 if wind is None else min(max((wind.speed - _QUIET) / (_FRESH - _QUIET), 0.0), 1.0)
-    return _LEAST_FOAM + share * (_MOST_FOAM - _LEAST_FOAM)
+    return 0.0 if wind is None else wind.speed

@@ -34,6 +34,7 @@ class Mood:
     tilt : of the camera below the horizon
     rings : of copies around the ocean; 0 for a surface around the camera in their place
     floats : before the camera, a key of `afloat.AFLOAT`
+    vertices : of the surface around the camera, at most; a long lens sees few of them
     """
 
     label: str
@@ -52,6 +53,7 @@ class Mood:
     tilt: float
     rings: int
     floats: str = "BUOY"
+    vertices: int = 200_000
 
     def sea(self, timing: Timing) -> OceanParameters:
         """The sea's parameters."""
@@ -76,7 +78,7 @@ def _storm() -> OceanParameters:
     """A wind of 25 m/s over 800 km, as in figure 6 of Horvath (2015), down to waves of half a metre."""
     layer = WaveLayer(wind_speed=25.0, fetch=800e3, wind_direction=VIEW + _degrees(160.0), swell=0.2)
     # crests just fold, and foam lives as long as the bubbles of such seas let it
-    foam = Foam(coverage=2.5, half_life=6.0)
+    foam = Foam(coverage=3.0, half_life=6.0)
     sea = OceanParameters(seed=_STORM_SEED, layers=(layer,), choppiness=1.25, foam=foam)
     return planned(sea, Wish(finest=0.5, area=2000.0))
 
@@ -105,9 +107,9 @@ MOODS = {
     "STORM": Mood(
         "Storm", "25 m/s over 800 km: waves of fifteen metres, breaking crests and streaks of foam",
         waves=_storm, water="STORM",
-        sun=_degrees(-60.0), sun_elevation=_degrees(14.0), clouds=0.6, overcast=0.6,
-        visibility=30e3, exposure=0.2, eye=3.0, crest_distance=8.0, lens=38.0, tilt=_degrees(-3.0), rings=0,
-        floats="BOAT",
+        sun=_degrees(-105.0), sun_elevation=_degrees(20.0), clouds=0.6, overcast=0.5,
+        visibility=5e3, exposure=0.4, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
+        floats="BOAT", vertices=1_000_000,
     ),
     "HORIZON": Mood(
         "To the Horizon", "9 m/s and a swell, from ripples before the camera to the horizon",

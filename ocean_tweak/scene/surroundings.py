@@ -100,7 +100,7 @@ def build(
         ride(camera, place, parameters, scene)
     kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
     if not chosen.rings:
-        add_camera_surface(ocean, scene)
+        add_camera_surface(ocean, scene, budget=chosen.vertices)
     if wishes.afloat:
         add_afloat(chosen.floats, place, camera, parameters, ocean, scene, target)
     return Made(ocean, camera, kept, replaced)

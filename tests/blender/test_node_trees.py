@@ -35,6 +35,7 @@ KINDS = {
     "foam-ring": ("nodes.camera_foam", lambda module: module.RING),
     "camera-foam": ("nodes.camera_foam", lambda module: module.CAMERA_FOAM),
     "camera-fan": ("nodes.camera_foam", lambda module: module.CAMERA_FAN),
+    "foam-pile": ("nodes.foam_pile", lambda module: module.FOAM_PILE),
     "camera-surface": ("nodes.camera_surface", lambda module: module.CAMERA_SURFACE),
     "grid-facts": ("nodes.surface", lambda module: module.GRID_FACTS),
     "cell": ("nodes.surface", lambda module: module.CELL),

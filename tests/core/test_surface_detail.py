@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from statistics import NormalDist
+
 import numpy as np
 import pytest
 
@@ -28,11 +30,21 @@ def test_every_octave_of_ripples_has_the_same_slopes():
     assert energy[k < 7.9].sum() < 1e-9 * energy.sum()
 
 
-@pytest.mark.parametrize("pattern", [foam_lace, gusts])
-def test_a_share_of_the_values_lies_below_that_share(pattern):
-    values = pattern(128)
+QUANTILE = NormalDist().inv_cdf
+
+
+def test_a_share_of_the_gusts_lies_below_that_share():
+    values = gusts(128)
     for share in (0.1, 0.5, 0.9):
         assert np.mean(values < share) == pytest.approx(share, abs=1e-3)
+
+
+def test_the_lace_is_normally_distributed():
+    values = foam_lace(128)
+    for share in (0.01, 0.1, 0.5, 0.9):
+        assert np.mean(values < QUANTILE(share)) == pytest.approx(share, abs=1e-3)
+    assert np.mean(values) == pytest.approx(0.0, abs=1e-3)
+    assert np.var(values) == pytest.approx(1.0, rel=1e-2)
 
 
 @pytest.mark.parametrize("pattern", [foam_lace, gusts])
@@ -60,7 +72,7 @@ def test_a_spline_of_the_weights_has_the_field_s_values():
 def test_between_the_samples_too_a_share_of_the_lace_lies_below_that_share():
     between = _spline(spline_weights(foam_lace(256)), 0.5)
     for share in (0.05, 0.3, 0.7, 0.95):
-        assert np.mean(between < share) == pytest.approx(share, abs=5e-3)
+        assert np.mean(between < QUANTILE(share)) == pytest.approx(share, abs=5e-3)
 
 
 def test_the_gradient_is_that_of_a_wave():
@@ -73,7 +85,7 @@ def test_the_gradient_is_that_of_a_wave():
 
 def test_cells_of_the_lace_are_small_and_large():
     """Holes of an old lace, by their areas: the largest has more than ten times that of the median."""
-    holes = foam_lace(256) > 0.35
+    holes = foam_lace(256) > QUANTILE(0.35)
     areas = _areas(holes)
     assert areas.max() > 10.0 * np.median(areas)
 
