@@ -112,12 +112,12 @@ def test_as_much_as_the_law_has_at_every_distance(sea):
     found = []
     for seed in range(3):
         own = sea.replace(seed=seed, patches=sea.patches)
-        made = FoamFan(FoamLevels(own), PLACES).at(TIME, VIEW)
+        made = FoamFan(FoamLevels(own), 4 * PLACES).at(TIME, VIEW)
         area = Ocean(own).surface(TIME, {"jacobian"}, on=Places(made.x, made.y)).jacobian
         area = np.maximum(area, 0.0) * made.size**2
         distance, angle = seen_from(made, VIEW)
         inside = np.abs(angle) < VIEW.half_angle
-        bands = ((75.0, 140.0), (140.0, 400.0), (400.0, 900.0))
+        bands = ((58.0, 90.0), (90.0, 130.0), (130.0, 900.0))
         chosen = [inside & (distance > low) & (distance < high) for low, high in bands]
         found.append([np.average(made.foam.foam[each], weights=area[each]) for each in chosen])
     assert np.mean(found, axis=0) == pytest.approx(wanted, rel=0.2)
