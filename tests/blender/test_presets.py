@@ -159,3 +159,10 @@ def test_a_new_preset_is_offered_a_name_that_is_free(ocean, own_folder, extensio
         names.append(extension("ui.preset_operators").free_title())
         assert bpy.ops.ocean.save_preset(title=names[-1]) == {"FINISHED"}
     assert names == ["My Sea", "My Sea 2"]
+
+
+def test_names_under_pictures_are_not_cut(extension, own_folder, empty_scene):
+    """Seven buttons wide, a picture has room for 23 letters."""
+    items = extension("ui.previews")._items(None, bpy.context)
+    assert len(items) > 20
+    assert [name for _, name, *_ in items if len(name) > 23] == []

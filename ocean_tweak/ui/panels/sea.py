@@ -107,7 +107,7 @@ def _presets(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     buttons = layout.row(align=True)
     if context.window_manager is not None and hasattr(context.window_manager, "ocean_tweak_preset"):
         buttons.template_icon_view(
-            context.window_manager, "ocean_tweak_preset", show_labels=True, scale=4.0, scale_popup=8.0
+            context.window_manager, "ocean_tweak_preset", show_labels=True, scale=4.0, scale_popup=7.0
         )
         buttons = buttons.column(align=True)
     title = active_settings(context).preset or "Presets"
