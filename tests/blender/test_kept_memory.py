@@ -2,7 +2,10 @@
 """What live oceans keep: no more than the budget over any number of frames, and nothing of another file."""
 
 import gc
+import os
+import sys
 import tracemalloc
+from pathlib import Path
 
 import bpy
 import pytest
@@ -124,3 +127,36 @@ def test_another_file_keeps_nothing_of_this_one(memo, ocean, empty_scene):
     assert {"surfaces", "waves"} <= memo.report().keys()
     bpy.ops.wm.read_homefile(use_empty=True)
     assert memo.report() == {}
+
+
+LONG = "OCEAN_TWEAK_LONG_TESTS" in os.environ
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="resident memory is read from /proc")
+def test_a_session_takes_no_more_however_long_it_is(memo, ocean_object, make_parameters, core, empty_scene):
+    """2,000 frames and 300 edits, or a tenth of both: what the process holds at the end, it held before."""
+    frames, edits, budget = (2000, 300, 4 * MB) if LONG else (200, 30, 4 * MB)
+    memo.budget = budget
+    item = ocean_object.add(empty_scene, make_parameters(resolution=64, foam=core.Foam(half_life=0.5)))
+
+    def live_through(first, last):
+        for frame in range(first, last + 1):
+            empty_scene.frame_set(frame)
+            if frame % (frames // edits) == 0:
+                item.ocean_tweak.layers[0].wind_speed = 8.0 + (frame * 0.61803) % 7.0
+            assert item.ocean_tweak.error == ""
+            assert sum(memo.report().values()) <= budget
+
+    live_through(1, 150)  # fills what is kept
+    gc.collect()
+    before = resident()
+    live_through(151, 150 + frames)
+    gc.collect()
+    # a sea with its surfaces takes 0.3 MB and more, so that each edit's would be seen
+    assert resident() - before < max(0.1 * edits, 6.0) * MB
+
+
+def resident():
+    """Bytes of this process in memory."""
+    words = Path("/proc/self/statm").read_text(encoding="ascii").split()
+    return int(words[1]) * os.sysconf("SC_PAGE_SIZE")
