@@ -109,8 +109,12 @@ def draw_spectrum() -> None:
 
 _NONE = ("NONE", "Custom", "The settings are those of no preset")
 
-#: under its picture a longer name would be cut
-_SHORTER = "Beaufort ", "Bft "
+
+@cache
+def _short(title: str) -> str:
+    """A title that is not cut under its picture; kept, since Blender reads it later."""
+    return title.replace("Beaufort ", "Bft ")
+
 
 # Blender wants the texts of an enumeration's items to be kept alive
 _kept: list[tuple[str, str, str, int, int]] = []
@@ -122,7 +126,7 @@ def _items(_owner: object, context: bpy.types.Context | None) -> list[tuple[str,
         return [(*_NONE, _custom_icon(), 0)]
     presets = user_presets.all_presets()
     _kept[:] = [(*_NONE, _custom_icon(), 0)] + [
-        (key, preset.title.replace(*_SHORTER), preset.description, PREVIEWS.thumbnail(key), number)
+        (key, _short(preset.title), preset.description, PREVIEWS.thumbnail(key), number)
         for number, (key, preset) in enumerate(presets.items(), start=1)
     ]
     return _kept

@@ -163,6 +163,8 @@ def test_a_new_preset_is_offered_a_name_that_is_free(ocean, own_folder, extensio
 
 def test_names_under_pictures_are_not_cut(extension, own_folder, empty_scene):
     """Seven buttons wide, a picture has room for 23 letters."""
-    items = extension("ui.previews")._items(None, bpy.context)
+    items = list(extension("ui.previews")._items(None, bpy.context))
     assert len(items) > 20
+    again = extension("ui.previews")._items(None, bpy.context)
+    assert all(one[1] is other[1] for one, other in zip(items, again, strict=True))  # kept for Blender
     assert [name for _, name, *_ in items if len(name) > 23] == []
