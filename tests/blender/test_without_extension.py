@@ -56,12 +56,14 @@ def positions(item):
     return numbers(evaluated_mesh(item), "position", 3)
 
 
-def test_a_baked_horizon_moves(horizon, saved, tmp_path):
+def test_a_baked_horizon_moves(extension, horizon, saved, tmp_path):
     """Its project saved elsewhere, then moved. The render reads all samples, the window means of those."""
     ocean, surface = horizon
     live = {}
     for frame in (3, 1):
         saved.frame_set(frame)
+        refresh = extension("scene.refresh")
+        refresh.refresh(ocean, saved, refresh.Wanted.RENDER)  # all samples
         live[frame] = positions(surface)
     assert np.abs(live[3] - live[1]).max() > 0.05
     assert bpy.ops.ocean.bake() == {"FINISHED"}
