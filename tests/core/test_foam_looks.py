@@ -77,6 +77,14 @@ def test_waves_within_the_band_are_interpolated() -> None:
         np.testing.assert_allclose(wave[:6], np.cos(frequency * moment + phase)[:6], atol=0.05)
 
 
+@pytest.mark.parametrize("stride", [1, 2, 5])
+def test_no_more_looks_are_kept_than_are_used(stride: int) -> None:
+    looks = Looks(lambda _: np.zeros(1000, np.float32), stride, 0.5)
+    for moment in range(200):
+        looks.at(moment)
+        assert looks.nbytes <= (0 if stride == 1 else 7 * 4000)
+
+
 def test_looks_are_as_far_apart_as_frequencies_allow() -> None:
     assert stride_of(math.inf, 0.125) == 1
     assert stride_of(0.0, 0.125) == 8

@@ -77,6 +77,8 @@ class Looks:
         since = moment % self._stride
         if since == 0:
             look = self._look(moment)
+            if self._stride == 1:
+                self._looks.clear()  # none is used again
             places = np.flatnonzero(look > self._threshold)
             return Compressed(places, look[places])
         if self._after != moment - since:

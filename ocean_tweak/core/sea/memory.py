@@ -116,10 +116,10 @@ def _need_in_area(
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:
-    """The fields themselves; births with their times, what draws them out, a compression and temporaries at
-    the foam's own resolution."""
+    """The fields themselves; births with their times, the looks that they are from, what draws them out, a
+    compression and temporaries at the foam's own resolution."""
     own = parameters.foam.resolution or parameters.resolution
-    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 84 * own**2
+    return 4 * len(OF_MEMORY) * parameters.resolution**2 + 104 * own**2
 
 
 def _columns(group: Iterable[str], gradient: bool) -> int:
