@@ -36,6 +36,7 @@ def shown(extension, ocean_object, parameters, camera, empty_scene):
     item = extension("scene.camera_surface").add_camera_surface(ocean, empty_scene, budget=150_000)
     settings = {"Finest Spacing": 0.25, "To Horizon": False, "Reach": 1500.0, "Curvature": False}
     settings["Viewport Vertex Budget"] = 150_000  # as in a render
+    settings["Foam Pile"] = 0.0  # which moves vertices away from the water
     extension("nodes.modifier_inputs").set_inputs(item.modifiers[0], settings)
     empty_scene.frame_set(9)
     return ocean, item

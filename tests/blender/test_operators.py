@@ -167,7 +167,7 @@ def test_operators_want_an_ocean(empty_scene):
         bpy.ops.ocean.use_sequence, bpy.ops.ocean.use_live,
     ):  # fmt: skip
         assert not operator.poll()
-        with pytest.raises(RuntimeError, match="Select an ocean first"):
+        with pytest.raises(RuntimeError, match="There is no ocean in this scene"):
             operator()
 
 

@@ -119,7 +119,7 @@ def test_operators_say_why_not(ocean, three, empty_scene, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.read_homefile(use_empty=True)
     for name in names:
-        with pytest.raises(RuntimeError, match="Select an ocean first"):
+        with pytest.raises(RuntimeError, match="There is no ocean in this scene"):
             getattr(bpy.ops.ocean, name)()
     with bpy.data.libraries.load(path, link=True) as (_, into):
         into.objects = ["Ocean"]

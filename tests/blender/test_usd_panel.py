@@ -52,7 +52,7 @@ def test_without_openusd_the_buttons_say_what_to_install(ocean, monkeypatch):
 @needs_usd
 def test_without_an_ocean_there_is_nothing_to_export(empty_scene):
     for operator in (bpy.ops.ocean.export_usd, bpy.ops.ocean.export_usd_as, bpy.ops.ocean.verify_usd):
-        with pytest.raises(RuntimeError, match="Select an ocean first"):
+        with pytest.raises(RuntimeError, match="There is no ocean in this scene"):
             operator()
     assert not bpy.ops.ocean.stop_usd.poll()
     assert bpy.ops.ocean.import_usd.poll()
