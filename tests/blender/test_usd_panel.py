@@ -70,7 +70,7 @@ def drawn_by(draw, item):
 
 def test_the_panel_and_the_browser_show_the_choices(ocean, extension):
     panel, browser = extension("ui.panels.output").OCEAN_PT_usd, extension("ui.usd_operators")
-    always = {"form", "up_axis", "metres_per_unit", "subframes", "tiles", "proxy", "variants", "force"}
+    always = {"form", "up_axis", "metres_per_unit", "subframes", "tiles", "use_proxy", "variants", "force"}
     for draw in (panel.draw, browser.OCEAN_OT_export_usd_as.draw):
         ocean.ocean_tweak.usd.form = "clips"
         assert always | {"attributes", "half"} <= set(drawn_by(draw, ocean))

@@ -111,6 +111,10 @@ def normal(rows: PositionRows, out: RealArray) -> None:
     parts = [yx * zy, zx * xy, xx * yy]
     for part, (first, second) in zip(parts, ((zx, yy), (xx, zy), (xy, yx)), strict=True):
         part -= first * second
+    largest = max(max(float(np.max(part)), -float(np.min(part))) for part in parts)
+    if largest > 1e18:  # whose square is no float32
+        for part in parts:
+            part /= largest
     # each component in an array of its own: sums along an axis of three numbers take longer than all else
     length = np.multiply(parts[X], parts[X], out=xx)
     for part in parts[Y:]:
