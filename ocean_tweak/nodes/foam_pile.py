@@ -18,6 +18,8 @@ _FORWARD = 0.7
 _WHOLE = 0.6
 #: how uneven it is
 _UNEVEN = 4.5
+#: how high it gets, of its mean: a lone lump would be a spike
+_HIGHEST = 1.9
 
 _INPUTS = (
     Plug("Displacement", "NodeSocketVector", None, "Of the water, in the ocean's axes"),
@@ -48,7 +50,7 @@ def _lumps(build: Builder) -> Socket:
     place = build.vector("DIVIDE", position, combined(build, *(build.given("Lump"),) * 3))
     noise = build.add("ShaderNodeTexNoise", {"Vector": place, "Scale": 1.0, "Detail": 1.5})
     off = build.math("MULTIPLY", build.math("SUBTRACT", noise.outputs[0], 0.5), _UNEVEN)
-    return build.math("MAXIMUM", build.math("ADD", off, 1.0), 0.0)
+    return build.math("MINIMUM", build.math("MAXIMUM", build.math("ADD", off, 1.0), 0.0), _HIGHEST)
 
 
-FOAM_PILE = GroupKind("Ocean Tweak Foam Pile", 1, _build)
+FOAM_PILE = GroupKind("Ocean Tweak Foam Pile", 2, _build)

@@ -35,7 +35,7 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.2, 0.1)
+_SOFT = (0.36, 0.2)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.5, 2.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
@@ -81,13 +81,16 @@ class Cover(NamedTuple):
 def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
     """What the mesh says of foam.
 
-    Foam whose age is not told (an older bake, one without the map) has the age that has thinned it out.
+    Foam whose age is not told (an older bake, or a collar's beyond the mesh's own) has the age
+    that has thinned it out.
     """
     own = shade.math("MULTIPLY", shade.value(FOAM), given["Foam Amount"])
     share = shade.math("MAXIMUM", own, given["Foam Map"], clamp=True)
     told = shade.value(FOAM_AGE)
     halvings = shade.math("LOGARITHM", shade.math("MAXIMUM", share, 1e-3), 0.5)
     is_told = shade.math("GREATER_THAN", told, 0.0)
+    meshes = shade.math("DIVIDE", own, shade.math("MAXIMUM", share, 1e-3))
+    is_told = shade.math("MULTIPLY", is_told, meshes, clamp=True)
     age = shade.mix(is_told, shade.math("MULTIPLY", halvings, _FADING), told)
     by_age = shade.math("POWER", 0.5, shade.math("DIVIDE", age, _YOUTH))
     by_birth = shade.smooth(shade.value(BREAKING), 0.0, _BREAKS)

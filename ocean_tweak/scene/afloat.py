@@ -30,25 +30,28 @@ class Afloat:
 
     new : makes it, by name and the metres in a Blender unit
     waterline : waves shorter than this do not move it
-    draft : of its keel below the water, where its origin is
+    keel : how far that is below its origin
+    draft : of its keel below the water
     nearest, farthest : from the camera
     """
 
     label: str
     new: Callable[[str, float], bpy.types.Object]
     waterline: float
+    keel: float
     draft: float
     nearest: float
     farthest: float
 
 
 AFLOAT = {
-    "BUOY": Afloat("Buoy", new_buoy, buoy.DIAMETER, buoy.DRAFT, 24.0, 34.0),
+    "BUOY": Afloat("Buoy", new_buoy, buoy.DIAMETER, buoy.DRAFT, buoy.DRAFT, 24.0, 34.0),
     "BOAT": Afloat(
         "Fishing Boat",
         new_boat,
         boat_hull.LENGTH,
         boat_hull.DRAFT,
+        boat_hull.DRAFT + boat_hull.LADEN,
         6.0 * boat_hull.LENGTH,
         9.0 * boat_hull.LENGTH,
     ),
@@ -76,8 +79,8 @@ def add_afloat(
     item.rotation_euler.z = heading
     collection.objects.link(item)
     scene.view_layers.update()
-    draft = chosen.draft / metres
-    ride = Ride(waterline=chosen.waterline / metres, draft=draft, keel=draft, tilt=0.8)
+    waterline, draft, keel = (part / metres for part in (chosen.waterline, chosen.draft, chosen.keel))
+    ride = Ride(waterline=waterline, draft=draft, keel=keel, tilt=0.8)
     float_on(item, ocean, ride, is_wet=True)
     return item
 

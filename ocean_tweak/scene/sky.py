@@ -47,12 +47,12 @@ _AROUND_SUN = (0.65, 1.77, 6.0)
 #: a closed cloud's radiance over sin(elevation): about three times as bright overhead as low down (Moon and
 #: Spencer 1942), which makes foam as bright as the sky behind it; at the horizon it thins out
 _OVERCAST = (
-    (0.0, (0.36, 0.40, 0.43)), (0.05, (0.32, 0.36, 0.395)), (0.16, (0.27, 0.31, 0.35)),
-    (0.42, (0.43, 0.48, 0.53)), (1.0, (0.70, 0.76, 0.82)),
+    (0.0, (0.30, 0.335, 0.36)), (0.05, (0.27, 0.305, 0.335)), (0.16, (0.16, 0.19, 0.22)),
+    (0.42, (0.42, 0.47, 0.52)), (1.0, (0.92, 1.00, 1.07)),
 )  # fmt: skip
 #: light beneath its edge towards the sun: colour, strength and how narrow it is
 _GLOW = (1.0, 0.90, 0.76)
-_GLOWING, _GLOW_POWER = 1.1, 9.0
+_GLOWING, _GLOW_POWER = 0.95, 16.0
 
 
 @dataclass(frozen=True)
@@ -160,8 +160,8 @@ def _overcast(shade: Shading, sky: Sky, direction: Socket, above: Socket) -> Soc
     gradient = shade.ramp(above, _OVERCAST)
     plane = _plane(shade, direction, above, 0.09)
     large = shade.noise(plane, 0.55, Detail=7.0, Roughness=0.56, Distortion=0.35)
-    contrast = shade.smooth(above, 0.0, 0.12, 0.25, 1.0)
-    torn = shade.math("MULTIPLY_ADD", shade.smooth(large, 0.33, 0.70, -0.50, 0.45), contrast, 1.0)
+    contrast = shade.smooth(above, 0.0, 0.12, 0.35, 1.0)
+    torn = shade.math("MULTIPLY_ADD", shade.smooth(large, 0.33, 0.67, -0.55, 0.60), contrast, 1.0)
     ragged = shade.noise(shade.vector("MULTIPLY", direction, (1.0, 1.0, 5.0)), 2.6, Detail=6.0, Roughness=0.6)
     edge = shade.math("ADD", above, shade.math("MULTIPLY_ADD", ragged, 0.16, -0.08))
     low = shade.smooth(edge, 0.0, 0.20, _GLOWING, 0.0)

@@ -45,7 +45,7 @@ WATERS: dict[str, tuple[str, str, dict[str, object]]] = {
     "STORM": (
         "Stormy", "Green-grey, full of bubbles, with streaks of foam",
         {
-            "Absorption": (0.36, 0.080, 0.070, 1.0), "Backscatter": (0.0040, 0.0065, 0.0070, 1.0),
+            "Absorption": (0.36, 0.080, 0.070, 1.0), "Backscatter": (0.0022, 0.0038, 0.0040, 1.0),
             "Crest Light": 0.4,
         },
     ),
