@@ -17,7 +17,7 @@ from .solids import Array, Paint, Solid, loft
 #: over all, beam, and of the keel below the waterline aft
 LENGTH, BEAM, DRAFT = 15.4, 5.0, 2.1
 #: how much deeper it lies with fish in its hold
-LADEN = 0.45
+LADEN = 0.6
 BULWARK = 0.8  # above the deck
 #: where the foredeck rises to the rail, of the length
 BREAK = 0.70

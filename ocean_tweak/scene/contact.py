@@ -34,7 +34,7 @@ _FOAM_WIDTH, _RIPPLE_LENGTH = 0.12, 0.25
 _WIDEST_FOAM, _LONGEST_RIPPLE = 1.5, 2.0  # m
 #: by the wind in m/s: foam at a hull, and how much wider it lies around it
 _FOAM_BY_WIND = (2.0, 10.0), (0.2, 0.95)
-_WIDER_BY_WIND = (12.0, 25.0), (1.0, 4.0)
+_WIDER_BY_WIND = (12.0, 25.0), (1.0, 5.0)
 _WET_BAND = 0.12  # of the beam
 #: inputs of a collar that are links
 _LINKED = {"Vector", "Foam Map", "Height", "Time"}

@@ -107,7 +107,7 @@ MOODS = {
     "STORM": Mood(
         "Storm", "25 m/s over 800 km: waves of fifteen metres, breaking crests and streaks of foam",
         waves=_storm, water="STORM",
-        sun=_degrees(30.0), sun_elevation=_degrees(12.0), clouds=0.6, overcast=0.95,
+        sun=_degrees(24.0), sun_elevation=_degrees(12.0), clouds=0.6, overcast=0.95,
         visibility=2.5e3, exposure=0.0, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
         floats="BOAT", vertices=1_000_000,
     ),

@@ -52,7 +52,7 @@ _OVERCAST = (
 )  # fmt: skip
 #: light beneath its edge towards the sun: colour, strength and how narrow it is
 _GLOW = (1.0, 0.90, 0.76)
-_GLOWING, _GLOW_POWER = 0.95, 16.0
+_GLOWING, _GLOW_POWER = 1.8, 24.0
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def _overcast(shade: Shading, sky: Sky, direction: Socket, above: Socket) -> Soc
     torn = shade.math("MULTIPLY_ADD", shade.smooth(large, 0.33, 0.67, -0.55, 0.60), contrast, 1.0)
     ragged = shade.noise(shade.vector("MULTIPLY", direction, (1.0, 1.0, 5.0)), 2.6, Detail=6.0, Roughness=0.6)
     edge = shade.math("ADD", above, shade.math("MULTIPLY_ADD", ragged, 0.16, -0.08))
-    low = shade.smooth(edge, 0.0, 0.20, _GLOWING, 0.0)
+    low = shade.smooth(edge, 0.05, 0.16, _GLOWING, 0.0)
     flat = (math.cos(sky.sun_azimuth), math.sin(sky.sun_azimuth), 0.0)
     facing = shade.math("MAXIMUM", shade.number("DOT_PRODUCT", direction, flat), 0.0)
     glow = shade.math("MULTIPLY", shade.math("POWER", facing, _GLOW_POWER), low)

@@ -102,7 +102,7 @@ def test_a_share_of_foam_covers_that_share(cover, wind):
             shown = cover(share, age, breaking, wind)
             assert shown.mean() == pytest.approx(share, rel=0.07, abs=0.01), (age, share)
             # rims fade: a little less is half covered at least
-            assert np.mean(shown > 0.5) == pytest.approx(share, rel=0.18, abs=0.01), (age, share)
+            assert np.mean(shown > 0.5) == pytest.approx(share, rel=0.15, abs=0.015), (age, share)
             assert 0.0 <= shown.min() <= shown.max() <= 1.0
 
 
@@ -114,8 +114,9 @@ def test_it_covers_as_much_from_afar_and_pales_into_its_mean(cover, inputs):
         assert shown.mean() == pytest.approx(0.3, rel=0.06), height
         spread.append(shown.std())
     assert spread == sorted(spread, reverse=True)
-    # the largest cells are 9 m wide, a pixel's footprint is as many mm as the camera is m away
-    assert spread[0] > 0.4
+    # the largest cells are 9 m wide, a pixel's footprint is as many mm as the camera is m away;
+    # rims fade, or the first would be √(0.3·0.7) = 0.46
+    assert spread[0] > 0.36
     assert spread[-1] < 1e-3
 
 
@@ -152,6 +153,12 @@ def test_foam_that_says_nothing_of_its_age_has_the_age_that_thinned_it_out(cover
     """2.5 s for each half."""
     for share in (0.15, 0.6):
         np.testing.assert_allclose(cover(share), cover(share, -2.5 * math.log2(share)), atol=1e-3)
+
+
+def test_foam_of_a_map_has_not_the_age_of_the_sea_s_own(cover, inputs):
+    alone = cover(0.6)
+    inputs["Foam Map"].default_value = 0.6
+    np.testing.assert_allclose(cover(0.0, 30.0), alone, atol=1e-3)
 
 
 def test_eevee_draws_the_same_foam(cover, inputs, monkeypatch):
