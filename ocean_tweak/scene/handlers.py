@@ -26,7 +26,6 @@ from . import (
     float_carrier,
     former_settings,
     held_sea,
-    left_behind,
     live_image,
     mask_painting,
     ocean_object,
@@ -138,9 +137,12 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
     """Let masks follow their objects where these, or the ocean, are moved, edited or painted by hand."""
     if depsgraph is None or not depsgraph.id_type_updated("OBJECT"):
         return
-    own = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
-    moved = {update.id.original for update in own if update.is_updated_transform}
-    edited = {update.id.original for update in own if update.is_updated_geometry}
+    moved, edited = set(), set()
+    for update in depsgraph.updates:  # one at a time: Blender may take a kept one for its own object
+        is_moved, is_edited = update.is_updated_transform, update.is_updated_geometry
+        if isinstance(item := update.id, bpy.types.Object):
+            moved |= {item.original} if is_moved else set()
+            edited |= {item.original} if is_edited else set()
     for item in oceans_in(scene) if moved or edited else ():
         settings, library = settings_of(item), item.library
         objects = settings.mask_objects()
@@ -156,13 +158,6 @@ def follow_by_hand(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | Non
     """Let floating objects go where they were moved to, and look after those that came and went."""
     if depsgraph is None or depsgraph.id_type_updated("OBJECT"):
         float_carrier.follow()
-
-
-@persistent
-def clear_after_deletion(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Let what was made for a deleted ocean go with it."""
-    if depsgraph is not None and depsgraph.id_type_updated("COLLECTION") and left_behind.clear():
-        _look_around()
 
 
 @persistent
@@ -317,7 +312,6 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_around_camera),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
-    ("depsgraph_update_post", clear_after_deletion),
     ("depsgraph_update_post", look_around),
     ("depsgraph_update_post", follow_by_hand),
     ("depsgraph_update_post", refresh_for_render),
