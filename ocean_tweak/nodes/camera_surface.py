@@ -20,9 +20,10 @@ from .building import Builder, Plug, Socket, output
 from .camera_foam import CAMERA_FAN, CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
 from .camera_patch import CAMERA_PATCH
-from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
+from .fields import alone, combined, coordinates, named_attribute, sample_index, whole_number
 from .foam_pile import FOAM_PILE
 from .frame_warnings import joined_text
+from .globe import EARTH_RADIUS, curved_normal, reach_of
 from .names import (
     BREAKING,
     CUSP,
@@ -39,9 +40,6 @@ from .sample import OCEAN_INPUT, Spaces
 from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
 
-EARTH_RADIUS = 6_371_000.0  # m
-#: a camera lower than this part of the radius, 2 m, or under water sees as far as from there
-_LEAST_HEIGHT = 2.0 / EARTH_RADIUS
 #: cells of the lattice in the shortest wave that is left
 SHORTEST_CELLS = 4.0
 #: of the smallest cells in a lump of fresh foam
@@ -118,7 +116,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, INPUTS)
     spaces = Spaces(build, build.given("Ocean"))
     sea = _sea(build, spaces)
-    reach = _reach(build, sea)
+    reach = reach_of(build, sea.eye)
     budget, coarser = _density(build)
     finest = build.math("MULTIPLY", build.given("Finest Spacing"), coarser)
     inputs = {"Center": sea.eye, "Reach": reach, "Vertex Budget": budget, "Finest Spacing": finest}
@@ -164,17 +162,6 @@ def _camera(build: Builder) -> Socket:
     # there is no node for it, but an object that is not there has no scale
     is_given = build.compare("GREATER_THAN", alone(build, "LENGTH", output(given, "Scale")), 0.0, "FLOAT")
     return build.switch("VECTOR", is_given, output(scenes, "Location"), output(given, "Location"))
-
-
-def _reach(build: Builder, sea: _Sea) -> Socket:
-    """The distance √(2Rh) of the horizon, or the one that is asked for."""
-    radius = build.given("Planet Radius")
-    height = build.math(
-        "MAXIMUM", coordinates(build, sea.eye)[2], build.math("MULTIPLY", radius, _LEAST_HEIGHT)
-    )
-    horizon = build.math("MULTIPLY", build.math("MULTIPLY", radius, 2.0), height)
-    horizon = build.math("SQRT", horizon, None)
-    return build.switch("FLOAT", build.given("To Horizon"), build.given("Reach"), horizon)
 
 
 def _texture_coordinates(build: Builder, sea: _Sea) -> Socket:
@@ -326,7 +313,10 @@ def _finished(
 ) -> Socket:
     """The grid with its attributes and normals, moved to where the water is."""
     node = build.add("GeometryNodeCaptureAttribute", {"Geometry": grid}, domain="POINT")
-    fade, drop, normal = build.given("Fade"), *_curved_normal(build, values, spaces, away)
+    fade, drop, normal = (
+        build.given("Fade"),
+        *curved_normal(build, (values[SLOPES], values[OTHERS]), spaces, away),
+    )
     lost = coordinates(build, values[SLOPES])[2]
     place = build.vector("ADD", output(build.add("GeometryNodeInputPosition"), "Position"), sea.corner)
     place = build.vector("ADD", build.vector("ADD", place, drop), values[DISPLACEMENT])
@@ -358,34 +348,6 @@ def _finished(
     inputs = {"Custom Normal": node.outputs["Normal"]}
     grid = build.change("GeometryNodeSetMeshNormal", grid, inputs, mode="FREE", domain="POINT")
     return build.change("GeometryNodeSetPosition", grid, {"Position": node.outputs["Place"]})
-
-
-def _curved_normal(
-    build: Builder, values: dict[str, Socket], spaces: Spaces, away: Socket
-) -> tuple[Socket, Socket]:
-    """How far the globe has fallen, and the asker's normal of the water on it."""
-    drop, tilt = _curved(build, away)
-    tilt_x, tilt_y, _ = coordinates(build, tilt)
-    x, y, _ = coordinates(build, values[SLOPES])
-    xx, yy, shear = coordinates(build, values[OTHERS])
-    tangents = (
-        combined(build, build.math("ADD", xx, 1.0), shear, build.math("ADD", x, tilt_x)),
-        combined(build, shear, build.math("ADD", yy, 1.0), build.math("ADD", y, tilt_y)),
-    )
-    return drop, spaces.normal_of_asker(*tangents)
-
-
-def _curved(build: Builder, away: Socket) -> tuple[Socket, Socket]:
-    """How far a globe has fallen at a distance d, d²/2R downwards, and the slopes of that."""
-    flat = build.vector("MULTIPLY", away, (1.0, 1.0, 0.0))
-    radius = build.math("MAXIMUM", build.given("Planet Radius"), 1e-3)
-    amount = build.switch("FLOAT", build.given("Curvature"), 0.0, build.math("DIVIDE", -1.0, radius))
-    tilt = build.scaled(flat, amount)
-    square = build.add("ShaderNodeVectorMath", operation="DOT_PRODUCT")
-    for socket, value in zip(square.inputs, (flat, tilt), strict=False):
-        connect(build, socket, value)
-    down = build.math("MULTIPLY", output(square, "Value"), 0.5)
-    return combined(build, 0.0, 0.0, down), tilt
 
 
 def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Socket:

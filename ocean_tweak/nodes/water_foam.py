@@ -35,7 +35,7 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.3, 0.18)
+_SOFT = (0.2, 0.1)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.5, 2.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)

@@ -8,7 +8,8 @@ import bpy
 from ..core import OceanParameters
 from ..core.sea.placed_waves import repeating
 from ..nodes.camera_grid import finest_spacing
-from ..nodes.camera_surface import CAMERA_SURFACE, EARTH_RADIUS, PILE_INPUT
+from ..nodes.camera_surface import CAMERA_SURFACE, PILE_INPUT
+from ..nodes.globe import EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
 from . import patch_objects, portability, water_material

@@ -79,6 +79,12 @@ def touches(item: bpy.types.Object) -> bool:
     return _OCEAN in item and isinstance(item.get(_LEVEL), float)
 
 
+def ocean_of(item: bpy.types.Object) -> bpy.types.Object | None:
+    """Whose water touches an object; None for a dry one."""
+    ocean = item.get(_OCEAN)
+    return ocean if isinstance(ocean, bpy.types.Object) else None
+
+
 def level_of(item: bpy.types.Object) -> float:
     """How high above the origin of what touches the water that water is, Blender units."""
     return float(item[_LEVEL])

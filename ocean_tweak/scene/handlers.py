@@ -26,8 +26,9 @@ from . import (
     float_carrier,
     former_settings,
     held_sea,
+    left_behind,
     live_image,
-    mask_painting,
+    mask_following,
     ocean_object,
     patch_objects,
     portability,
@@ -38,7 +39,6 @@ from . import (
     stored_values,
 )
 from .animated import is_animated, shown_settings
-from .mask_painting import is_painted, read_soon
 from .plan import camera_has_moved, camera_surface_of, forget_cameras
 from .refinement import show
 from .refresh import AROUND_CAMERA, Wanted, is_live, of_a_frame
@@ -143,14 +143,7 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
         if isinstance(item := update.id, bpy.types.Object):
             moved |= {item.original} if is_moved else set()
             edited |= {item.original} if is_edited else set()
-    for item in oceans_in(scene) if moved or edited else ():
-        settings, library = settings_of(item), item.library
-        objects = settings.mask_objects()
-        if library is None and objects and (item in moved or objects & (moved | edited)):
-            settings.place_masks()
-        painted = settings.painted_meshes()
-        if painted and (item in moved or any(is_painted(mesh, moved, edited) for mesh in painted)):
-            read_soon()
+    mask_following.follow(scene, moved, edited)
 
 
 @persistent
@@ -158,6 +151,13 @@ def follow_by_hand(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | Non
     """Let floating objects go where they were moved to, and look after those that came and went."""
     if depsgraph is None or depsgraph.id_type_updated("OBJECT"):
         float_carrier.follow()
+
+
+@persistent
+def clear_after_deletion(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let what was made for a deleted ocean go with it."""
+    if depsgraph is not None and depsgraph.id_type_updated("COLLECTION") and left_behind.clear():
+        _look_around()
 
 
 @persistent
@@ -312,6 +312,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_around_camera),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
+    ("depsgraph_update_post", clear_after_deletion),
     ("depsgraph_update_post", look_around),
     ("depsgraph_update_post", follow_by_hand),
     ("depsgraph_update_post", refresh_for_render),
@@ -382,7 +383,7 @@ def _has_file() -> bool:
 def _forget_all() -> None:
     failures.forget_all()
     refinement.forget_all()
-    mask_painting.forget_all()
+    mask_following.forget_all()
     refresh.forget_all()
     forget_cameras()
     portability.forget_all()

@@ -23,6 +23,19 @@ def camera(empty_scene):
 
 
 @pytest.fixture
+def foaming_patches(core, make_parameters):
+    """A sea of two patches, one of them turned, with much foam that is soon gone."""
+    layer = core.WaveLayer(wind_speed=12.0, fetch=8e3, wind_direction=0.4)
+    patches = (
+        core.Patch(domain_size=120.0, shortest_wavelength=12.0, resolution=40),
+        core.Patch(
+            domain_size=31.0, longest_wavelength=12.0, shortest_wavelength=3.0, rotation=0.9, resolution=48
+        ),
+    )
+    return make_parameters(layers=(layer,), patches=patches, foam=core.Foam(half_life=0.3, coverage=4.0))
+
+
+@pytest.fixture
 def around(extension, empty_scene):
     """A surface of its own around the camera, with inputs by name."""
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests inside Blender share: seas small enough to be quick, and what they must look like."""
 
+import sys
 from fractions import Fraction
 from types import SimpleNamespace
 
@@ -13,6 +14,17 @@ from tests import blender_fixtures
 # fixtures for every test here
 package, extension = blender_fixtures.package, blender_fixtures.extension
 empty_scene = blender_fixtures.empty_scene
+
+
+@pytest.fixture(autouse=True)
+def nothing_fails_unseen(monkeypatch):
+    """What Blender calls by itself, handlers and timers, only prints its errors: they fail the test here."""
+    errors = []
+    monkeypatch.setattr(sys, "excepthook", lambda _type, error, _traceback: errors.append(error))
+    yield
+    if errors:
+        raise errors[0]
+
 
 SAMPLES = 32
 DOMAIN = 150.0  # m

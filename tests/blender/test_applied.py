@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from .conftest import evaluated_mesh, vertices
-from .test_panels import draw  # noqa: F401
+from .layouts import draw  # noqa: F401
 
 METHODS = ("NODES", "DISPLACE")
 

@@ -7,8 +7,8 @@ import bpy
 import pytest
 
 from .conftest import sea_of
+from .layouts import draw  # noqa: F401 - a fixture
 from .test_animation import key
-from .test_panels import draw  # noqa: F401 - a fixture
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import shutil
 import bpy
 import pytest
 
-from .test_panels import draw  # noqa: F401 - a fixture
+from .layouts import draw  # noqa: F401 - a fixture
 
 UID = "0123abcd"
 

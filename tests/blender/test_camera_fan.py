@@ -14,21 +14,9 @@ from .camera_views import numbers
 from .conftest import evaluated_mesh
 
 # fixtures for the tests here
-camera = camera_views.camera
+camera, parameters = camera_views.camera, camera_views.foaming_patches
 
 BUDGET = 20_000
-
-
-@pytest.fixture
-def parameters(core, make_parameters):
-    layer = core.WaveLayer(wind_speed=12.0, fetch=8e3, wind_direction=0.4)
-    patches = (
-        core.Patch(domain_size=120.0, shortest_wavelength=12.0, resolution=40),
-        core.Patch(
-            domain_size=31.0, longest_wavelength=12.0, shortest_wavelength=3.0, rotation=0.9, resolution=48
-        ),
-    )
-    return make_parameters(layers=(layer,), patches=patches, foam=core.Foam(half_life=0.3, coverage=4.0))
 
 
 @pytest.fixture

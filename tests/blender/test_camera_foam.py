@@ -11,21 +11,9 @@ from .conftest import evaluated_mesh
 from .test_refinement import run_until
 
 # fixtures for the tests here
-camera = camera_views.camera
+camera, parameters = camera_views.camera, camera_views.foaming_patches
 
 NAMES = ("foam", "breaking", "foam_age")
-
-
-@pytest.fixture
-def parameters(core, make_parameters):
-    layer = core.WaveLayer(wind_speed=12.0, fetch=8e3, wind_direction=0.4)
-    patches = (
-        core.Patch(domain_size=120.0, shortest_wavelength=12.0, resolution=40),
-        core.Patch(
-            domain_size=31.0, longest_wavelength=12.0, shortest_wavelength=3.0, rotation=0.9, resolution=48
-        ),
-    )
-    return make_parameters(layers=(layer,), patches=patches, foam=core.Foam(half_life=0.3, coverage=4.0))
 
 
 @pytest.fixture

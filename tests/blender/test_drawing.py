@@ -12,8 +12,8 @@ import bpy
 import numpy as np
 import pytest
 
+from .layouts import draw  # noqa: F401
 from .test_bake_state import baked  # noqa: F401
-from .test_panels import draw  # noqa: F401
 
 #: what Python tells its audit hooks of files and folders
 _OF_DISKS = ("open", "os.listdir", "os.scandir", "os.mkdir", "glob.glob")

@@ -224,9 +224,9 @@ def test_the_highest_face_counts_and_modifiers_too(ocean, mask, empty_scene):
 
 
 def test_strokes_and_moves_are_read_by_themselves(ocean, mask, empty_scene, extension, monkeypatch):
-    painting, handlers = extension("scene.mask_painting"), extension("scene.handlers")
+    painting = extension("scene.mask_following")
     asked = []
-    monkeypatch.setattr(handlers, "read_soon", lambda: asked.append(True))
+    monkeypatch.setattr(painting, "read_soon", lambda: asked.append(True))
     mesh = new_mesh("Coast", [((0.0, 0.0), (DOMAIN, DOMAIN), 0.0)], [0.25] * 4)
     mask.mesh, mask.vertex_group = mesh, "Waves"
     bpy.ops.ocean.read_weights(samples=16)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from .conftest import SAMPLES, evaluated_mesh, vertices
+from .layouts import draw  # noqa: F401
 from .surfaces import ALL_MAPS, read
-from .test_panels import draw  # noqa: F401
 
 METHODS = ("NODES", "DISPLACE")
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from .conftest import SAMPLES, evaluated_mesh
+from .layouts import draw  # noqa: F401
 from .surfaces import read
-from .test_panels import draw  # noqa: F401
 
 TOLERANCE = 1e-4  # m
 COARSE = 16

@@ -74,6 +74,44 @@ def test_where_there_is_none_nothing_is_shown(empty_scene, buoy, shown):
         bpy.ops.ocean.apply_preset(key="gale")
 
 
+def test_a_deleted_ocean_takes_along_what_was_made_for_it(
+    ocean, lake, buoy, select, extension, shown, make_parameters, empty_scene, window
+):
+    surroundings, floating = extension("scene.surroundings"), extension("scene.floating")
+    extension("scene.camera_surface").add_camera_surface(lake, empty_scene)
+    with window.override():
+        for item in (ocean, lake):
+            surroundings.add_horizon(item, make_parameters(), empty_scene, empty_scene.collection, 2)
+        other = buoy.copy()
+        empty_scene.collection.objects.link(other)
+        floating.float_on(buoy, ocean)
+        floating.float_on(other, lake)
+        bpy.context.view_layer.update()
+        before = {item.name for item in empty_scene.objects}
+        bpy.ops.ed.undo_push(message="before")
+        select(lake)
+        bpy.ops.object.delete()
+        bpy.context.view_layer.update()
+        left = {"Ocean", "Ocean Horizon", "Buoy", "Buoy.001"}
+
+        def floating_ones():
+            bpy.context.view_layer.update()
+            scene = bpy.context.scene
+            return {item.name for item in scene.objects if floating.carrier_of(item) is not None}
+
+        assert {item.name for item in empty_scene.objects} == left
+        assert floating_ones() == {"Buoy"}
+        assert shown() == "Ocean"
+        bpy.ops.ed.undo_push(message="deleted")
+        bpy.ops.ed.undo()
+        assert {item.name for item in bpy.context.scene.objects} == before
+        assert floating_ones() == {"Buoy", "Buoy.001"}
+        bpy.ops.ed.redo()
+        bpy.context.view_layer.update()
+        assert {item.name for item in bpy.context.scene.objects} == left
+        assert floating_ones() == {"Buoy"}
+
+
 def test_menus_say_that_an_ocean_is_another_one(ocean, extension):
     texts = []
 

@@ -8,7 +8,7 @@ import bpy
 import pytest
 
 from . import usd_assets
-from .test_panels import Layout
+from .layouts import Layout
 from .usd_assets import needs_usd
 
 # fixtures for every test here

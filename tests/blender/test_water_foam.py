@@ -101,8 +101,7 @@ def test_a_share_of_foam_covers_that_share(cover, wind):
         for share in (0.04, 0.3, 0.7, 0.96):
             shown = cover(share, age, breaking, wind)
             assert shown.mean() == pytest.approx(share, rel=0.07, abs=0.01), (age, share)
-            # rims fade: a little less is half covered at least
-            assert np.mean(shown > 0.5) == pytest.approx(share, rel=0.15, abs=0.015), (age, share)
+            assert np.mean(shown > 0.5) == pytest.approx(share, rel=0.10, abs=0.01), (age, share)
             assert 0.0 <= shown.min() <= shown.max() <= 1.0
 
 
@@ -114,9 +113,8 @@ def test_it_covers_as_much_from_afar_and_pales_into_its_mean(cover, inputs):
         assert shown.mean() == pytest.approx(0.3, rel=0.06), height
         spread.append(shown.std())
     assert spread == sorted(spread, reverse=True)
-    # the largest cells are 9 m wide, a pixel's footprint is as many mm as the camera is m away;
-    # rims fade, or the first would be √(0.3·0.7) = 0.46
-    assert spread[0] > 0.36
+    # the largest cells are 9 m wide, a pixel's footprint is as many mm as the camera is m away
+    assert spread[0] > 0.4
     assert spread[-1] < 1e-3
 
 

@@ -10,8 +10,8 @@ import pytest
 from . import camera_views
 from .camera_views import numbers
 from .conftest import evaluated_mesh
+from .layouts import Layout
 from .other_blender import look, run_script
-from .test_panels import Layout
 
 camera = camera_views.camera
 

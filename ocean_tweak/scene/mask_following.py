@@ -1,28 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks of painted weights follow the brush: they are read again a moment after each stroke, or move.
+"""Masks follow the hand: at once where the object that they are told by is moved or edited, and a moment
+after each stroke where they are painted weights.
 
-Only in a window, where somebody paints, and by a timer: reading looks at the evaluated mesh, which has to be
-there.
+These are read in a window only, where somebody paints, and by a timer: reading looks at the evaluated mesh,
+which has to be there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Set
 
 import bpy
 
 from ..core import ParameterError
 from .refinement import has_window
 from .refresh import tell
-from .settings import OceanObjectError, settings_of, shown_oceans
+from .settings import OceanObjectError, oceans_in, settings_of, shown_oceans
+
+Objects = Set[bpy.types.Object]
 
 # s without a stroke after which weights are read
 _PAUSE = 0.3
 
 
-def is_painted(
-    mesh: bpy.types.Object, moved: Container[bpy.types.Object], edited: Container[bpy.types.Object]
-) -> bool:
+def follow(scene: bpy.types.Scene, moved: Objects, edited: Objects) -> None:
+    """Let masks of a scene's oceans follow what was moved, edited or painted: these or the masks' objects."""
+    for item in oceans_in(scene) if moved or edited else ():
+        settings = settings_of(item)
+        objects = settings.mask_objects()
+        if item.library is None and objects and (item in moved or objects & (moved | edited)):
+            settings.place_masks()
+        painted = settings.painted_meshes()
+        if painted and (item in moved or any(is_painted(mesh, moved, edited) for mesh in painted)):
+            read_soon()
+
+
+def is_painted(mesh: bpy.types.Object, moved: Objects, edited: Objects) -> bool:
     """Whether a mesh's weights may lie otherwise on the water now.
 
     One that changes by itself does not count: it may read the sea.

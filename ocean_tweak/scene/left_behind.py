@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a deleted ocean leaves behind: what was made for it goes with it, what floated on it stands still.
+
+An ocean that others read is in no collection when it was deleted, but stays in the file until it is saved.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ..nodes.camera_surface import CAMERA_SURFACE
+from ..nodes.horizon import HORIZON
+from ..nodes.versioned import is_of_kind
+from . import contact, float_carrier, floating, patch_objects
+from .settings import was_ocean
+
+
+def clear() -> bool:
+    """Remove horizons, surfaces and patches of deleted oceans, and let nothing float on or touch them.
+
+    Returns whether there are any.
+    """
+    deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
+    if not deleted:
+        return False
+    for item in [item for item in bpy.data.objects if item.library is None and item.users_collection]:
+        if item.parent in deleted and _is_made_for_it(item):
+            _take_away(item)
+            continue
+        carrier = float_carrier.carrier_of(item)
+        if carrier is not None and floating.ride_of(carrier)[0] in deleted:
+            floating.sink(item)
+        elif contact.ocean_of(item) in deleted:
+            contact.part(item)
+    return True
+
+
+def _take_away(item: bpy.types.Object) -> None:
+    """Take an object out of the file that is saved, as Blender's own Delete does with what is still read.
+
+    This is done amid an evaluation, in which Blender cannot bear that an object with a geometry is freed.
+    """
+    item.modifiers.clear()  # they would keep the ocean
+    for collection in item.users_collection:
+        collection.objects.unlink(item)
+
+
+def _is_made_for_it(item: bpy.types.Object) -> bool:
+    """Whether the extension gave an ocean this child."""
+    kinds = (HORIZON, CAMERA_SURFACE)
+    groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
+    return patch_objects.is_ours(item) or any(is_of_kind(group, kind) for group in groups for kind in kinds)
