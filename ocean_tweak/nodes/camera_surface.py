@@ -358,7 +358,10 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
         "The vertices of the budget reach", whole[0], "units instead of", whole[1],
         "units: raise Vertex Budget or Finest Spacing, or ask for less Reach",
     )  # fmt: skip
-    below = "The camera is under water: the surface reaches as far as it is seen from 2 m above"
+    below = (
+        "The camera is below the mean sea level, in a trough or under water: the surface reaches as far as "
+        "it is seen from 2 m above"
+    )
     old = joined_text(
         build,
         "Foam around the camera is that of frame", output(sea.of_foam, "Frame"),
