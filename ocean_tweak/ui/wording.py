@@ -65,7 +65,7 @@ class Scaled(NamedTuple):
 
     name : of the property
     label : with the unit
-    factor : what of the field one of that unit is
+    factor : value of the field for one of that unit
     useful : the range of a slider, in that unit
     """
 
