@@ -16,7 +16,7 @@ from . import patch_objects, portability, water_material
 from .plan import camera_surface_of
 from .refinement import show_new
 from .refresh import AROUND_CAMERA, Wanted
-from .settings import OceanObjectError, is_ocean, settings_of
+from .settings import OceanObjectError, is_ocean, link_beside, settings_of
 from .units import metres_per_unit
 
 __all__ = ["add_camera_surface", "camera_surface_of", "remove_camera_surface"]
@@ -54,8 +54,7 @@ def add_camera_surface(
     name = f"{ocean.name} Camera Surface"
     surface = bpy.data.objects.new(name, bpy.data.meshes.new(name))
     surface.parent = ocean
-    for collection in ocean.users_collection:
-        collection.objects.link(surface)
+    link_beside(surface, ocean)
     water_material.describe_near(surface, parameters, scene)
     modifier = surface.modifiers.new(name, "NODES")
     modifier.node_group = node_group(CAMERA_SURFACE)

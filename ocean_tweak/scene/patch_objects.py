@@ -36,7 +36,7 @@ from . import evaluation, foam_rings, held_sea, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
 from .plan import COARSE, Plan, camera_surface_of, in_window, surface_modifier
-from .settings import OceanObjectError, is_ocean, settings_of
+from .settings import OceanObjectError, is_ocean, link_beside, settings_of
 from .vertex_attributes import RealArray
 
 _NUMBER, _MASKS, _AREA, _FOAM = (f"ocean_tweak_{name}" for name in ("patch", "masks", "area", "foam_rings"))
@@ -312,8 +312,7 @@ def _new(ocean: bpy.types.Object, role: str, key: str, value: object) -> bpy.typ
     item[key] = value
     item.parent = ocean
     item.hide_viewport = item.hide_render = item.hide_select = True
-    for collection in ocean.users_collection:
-        collection.objects.link(item)
+    link_beside(item, ocean)
     return item
 
 

@@ -184,6 +184,13 @@ def scene_of(item: bpy.types.Object) -> bpy.types.Scene:
     return scene if scene in scenes or not scenes else scenes[0]
 
 
+def link_beside(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
+    """Put an object where an ocean is: into its collections, or into its scene where they take in nothing."""
+    own = [each for each in ocean.users_collection if each.is_editable and each.override_library is None]
+    for collection in own or [scene_of(ocean).collection]:
+        collection.objects.link(item)
+
+
 def is_ocean(item: bpy.types.Object | None) -> bool:
     """Whether an object was made as an ocean and still has the modifier that moves it.
 

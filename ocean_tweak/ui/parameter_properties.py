@@ -349,11 +349,11 @@ def _limited(field: _Field, update: _Update) -> _Update:
     def limited(group: Any, context: bpy.types.Context) -> None:
         if not group.id_data.ocean_tweak.is_quiet:
             value, metres = getattr(group, field.name), metres_per_unit(scene_of(group.id_data))
-            length = float(shortest_decimal(value) * metres) if math.isfinite(value) else value
-            end = _to_blender(field, _within(field, length), metres)
-            if np.float32(end) != np.float32(value) and math.isfinite(end):
-                setattr(group, field.name, end)  # which updates
-                return
+            if math.isfinite(value):  # else the core names it
+                end = _to_blender(field, _within(field, float(shortest_decimal(value) * metres)), metres)
+                if np.float32(end) != np.float32(value):
+                    setattr(group, field.name, end)  # which updates
+                    return
         update(group, context)
 
     return limited
