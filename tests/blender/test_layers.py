@@ -4,6 +4,8 @@
 import bpy
 import pytest
 
+from .conftest import sea_of
+
 
 def layers(item):
     return item.ocean_tweak.to_parameters(bpy.context.scene).layers
@@ -81,3 +83,11 @@ def test_fetch_in_kilometres_is_the_fetch(ocean, empty_scene, metres):
     layer.fetch_km = 120.0
     assert layers(ocean)[0].fetch == pytest.approx(120e3)
     assert layer.fetch_km == pytest.approx(120.0)
+
+
+def test_a_drift_in_percent_is_a_share_of_the_wind(ocean):
+    foam = ocean.ocean_tweak.foam
+    foam.drift_percent = 3.5
+    assert sea_of(ocean).foam.drift == pytest.approx(0.035)
+    foam.drift = 0.01
+    assert foam.drift_percent == pytest.approx(1.0)
