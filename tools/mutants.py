@@ -8,7 +8,7 @@ no cache holds what another, or the unchanged program, has made.
 from __future__ import annotations
 
 import ast
-import random
+import hashlib
 import re
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
@@ -177,10 +177,14 @@ _NAMES = {"maximum": "minimum", "minimum": "maximum", "max": "min", "min": "max"
 
 
 def of_structure(root: Path, count: int, seed: int) -> Iterator[Mutant]:
-    """A random sample of operators, bounds and functions of the core that are taken for their neighbours."""
+    """A sample of operators, bounds and functions of the core that are taken for their neighbours.
+
+    It is drawn by a hash of each change's name: where code stays, the sample does too.
+    """
     files = sorted(path for path in (root / CORE).rglob("*.py") if path != root / CONSTANTS)
     found = [mutant for path in files for mutant in _changes(path.relative_to(root), path.read_text("utf-8"))]
-    for mutant in random.Random(seed).sample(found, min(count, len(found))):
+    found.sort(key=lambda mutant: hashlib.sha256(f"{seed} {mutant.name}".encode()).digest())
+    for mutant in found[:count]:
         yield replace(mutant, tests=_tests_of(root, mutant.path))
 
 
