@@ -80,6 +80,8 @@ BROKEN = "cannot be imported"
 #: a change may make the core wait for what never comes: longer than this many times what all tests take
 PATIENCE = 10.0
 
+#: of a test file, or of what all of them share
+BROKEN_IMPORT = re.compile(r"^(?:ERROR |ImportError while loading conftest)", re.MULTILINE)
 FAILED_TEST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 
 
@@ -206,7 +208,7 @@ def _first_failure_of(tests: Sequence[str], copy: Path, limit: float | None = No
     if answer.returncode == 0:
         return None
     found = FAILED_TEST.search(answer.stdout)
-    if answer.returncode in (2, 3, 4) and "ERROR" in answer.stdout:  # while the tests were collected
+    if answer.returncode in (2, 3, 4) and BROKEN_IMPORT.search(answer.stdout):  # while they were collected
         return BROKEN
     if answer.returncode != 1 or not found:
         raise ToolError(f"the tests could not be run:\n{answer.stdout[-2000:]}")

@@ -104,6 +104,8 @@ def test_what_cannot_be_imported_says_nothing_of_the_tests(tmp_path: Path) -> No
     (folder / "test_two.py").write_text("def test_a(): assert False\n")
     assert mutate._first_failure_of(["test_one.py"], tmp_path) == mutate.BROKEN
     assert mutate._first_failure_of(["test_two.py"], tmp_path) == "tests/core/test_two.py::test_a"
+    (folder / "conftest.py").write_text("1 / 0\n")
+    assert mutate._first_failure_of(["test_two.py"], tmp_path) == mutate.BROKEN
 
 
 def test_a_change_without_end_is_noticed(tmp_path: Path) -> None:
