@@ -72,6 +72,10 @@ EQUIVALENT = {
     "structure waves.hero.group._blocks: along * cosine: * -> /": "more places are tried, which hold no wave",
     "structure waves.image.filters._modified_pierson_moskowitz: "
     "grid.ky[rows[row], 0][:, np.newaxis, np.newaxis] + offset[:,: + -> -": "the offsets lie evenly about 0",
+    "structure sea.query.newton: "
+    "np.hypot(off_x, off_y) > _TOLERANCE * spacing: > -> >=": "an error of the very limit",
+    "structure foam.drifting.missing: "
+    "self._last > index: > -> >=": "made again where it is at hand, which only takes longer",
 }
 
 #: said of a change with which the core cannot even be imported: no test had to notice it

@@ -38,12 +38,12 @@ def test_a_constant_wind_in_keys_is_the_constant_wind() -> None:
             np.testing.assert_allclose(one, other, rtol=2e-5, atol=1e-4)
 
 
-def test_births_of_a_growing_wind_follow_the_integral() -> None:
-    """Wind 5 + t/2 from 0 to 20 s: ∫g/(√(2π)V)dt = 2g/√(2π)·ln(1 + t/10)."""
-    field = WindFieldLayer(
-        **{**LONE, "keys": keyed((0.0, [[[5.0, 0.0]]]), (20.0, [[[15.0, 0.0]]])), "life": 50}
-    )
-    births = Emission(field, layer_origins(field, 0, 100.0), 100.0, G).births(19.0)
+@pytest.mark.parametrize("begin", [0.0, 40.0])
+def test_births_of_a_growing_wind_follow_the_integral(begin: float) -> None:
+    """Wind 5 + t/2 for 20 s: ∫g/(√(2π)V)dt = 2g/√(2π)·ln(1 + t/10)."""
+    winds = keyed((begin, [[[5.0, 0.0]]]), (begin + 20.0, [[[15.0, 0.0]]]))
+    field = WindFieldLayer(**{**LONE, "keys": winds, "start_time": begin, "life": 50})
+    births = Emission(field, layer_origins(field, 0, 100.0), 100.0, G).births(begin + 19.0)
     born = 19.0 - births.age
     phase = 2.0 * G / math.sqrt(2.0 * math.pi) * np.log1p(born / 10.0)
     np.testing.assert_allclose(phase, np.arange(1, len(born) + 1), atol=3e-4)

@@ -12,6 +12,7 @@ from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
 from ocean_tweak.core.data.errors import ParameterError
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.sea.memory import memory_need
 from ocean_tweak.core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ocean_tweak.core.synthesis.channels import OF_WAVES
 from ocean_tweak.core.waves.image.parameters import ImageLayer
@@ -114,6 +115,12 @@ def test_periods_are_those_that_a_place_sees() -> None:
     still = Ocean(sea(replace(moving, translation_speed=0.0))).statistics()
     assert still.to_dict()["seed"]["peak_period"] is None
     assert still.warnings == ()
+
+
+def test_memory_while_an_image_is_filtered_is_told_beside_other_layers() -> None:
+    wind, image = WaveLayer(wind_speed=8.0), ImageLayer(wind_speed=7.0, noise_resolution=256)
+    beside, alone = (memory_need(sea(image, layers=(layer,))).building for layer in (wind, FLAT))
+    assert beside == alone > memory_need(sea(layers=(wind,))).building
 
 
 def test_warnings_do_not_misfire() -> None:

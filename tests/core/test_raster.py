@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from ocean_tweak.core.data.errors import ParameterError
-from ocean_tweak.core.data.raster import Raster
+from ocean_tweak.core.data.raster import MOST_NUMBERS, Raster, check_numbers
 
 RAMP = np.arange(12.0).reshape(3, 4)
 
@@ -96,3 +96,9 @@ BIG = base64.b64encode(zlib.compress(b"\0" * 10_000_000)).decode()
 def test_refused(data: object, told: str) -> None:
     with pytest.raises(ParameterError, match=told):
         Raster.from_plain(data)
+
+
+def test_as_many_numbers_as_are_allowed() -> None:
+    check_numbers(MOST_NUMBERS)
+    with pytest.raises(ParameterError, match="must hold at most"):
+        check_numbers(MOST_NUMBERS + 1)
