@@ -37,6 +37,9 @@ WITH_ALL = "live, nodes, with foam, normals and velocity"
 #: frames one after the other that are timed together: foam looks at the sea in some of them only
 _PLAYED = 6
 
+#: of seas: those that are alike share surfaces and foam, and would throw each other back in time
+_seeds = itertools.count(1)
+
 Contender = tuple[bpy.types.Scene, bpy.types.Object]
 
 
@@ -244,9 +247,12 @@ def built_in(samples: int, geometry: str, foam: bool = False) -> Contender:
 
 
 def live(samples: int, method: str, *switches: str) -> Contender:
-    """Our ocean with these of SWITCHES on; without any it makes what the modifier makes, displacement."""
+    """Our ocean with these of SWITCHES on; without any it makes what the modifier makes, displacement.
+
+    Each has a sea of its own.
+    """
     scene = new_scene(f"live {method}")
-    item = ocean_object.add(scene, sea(samples), method, "LIVE")
+    item = ocean_object.add(scene, sea(samples).replace(seed=next(_seeds)), method, "LIVE")
     with item.ocean_tweak.quiet():
         for name in SWITCHES:
             setattr(item.ocean_tweak, name, name in switches)
