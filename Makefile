@@ -60,10 +60,11 @@ build:      ## the extension's zip, into build/
 	@$(PYTHON) -m tools.setup python-5.2 blender
 	@$(VENV) -m tools.build
 
-docs:       ## write the documentation that is made from the code
+docs:       ## write the documentation that is made from the code, and build the site into build/site/
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.parameters_doc
 	@$(VENV) -m tools.architecture
+	@$(VENV) -m tools.website
 
 papers:     ## make the tables and pictures of docs/papers anew (some minutes)
 	@$(PYTHON) -m tools.setup python-5.2

@@ -15,7 +15,7 @@ from . import stamps
 from .project import REQUIREMENTS, TOOLS, ToolError, run_logged
 
 #: by environment; those of Blender are the wheels', which are made for one Python each
-PYTHON_OF = {"python-5.2": "3.13", "python-4.5": "3.11", "farm": "3.13", "papers": "3.13"}
+PYTHON_OF = {"python-5.2": "3.13", "python-4.5": "3.11", "farm": "3.13", "papers": "3.13", "docs": "3.13"}
 #: pytest where the Python inside a real Blender can import it: it is pure Python
 PYTEST_IN_BLENDER = TOOLS / "pytest"
 _UV_PACKAGE = "uv==0.13.9"

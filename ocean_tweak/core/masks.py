@@ -34,7 +34,13 @@ MOST_LINES, MOST_DOMAINS = 500, 4.0
 
 @dataclass(frozen=True)
 class Mask(Validated):
-    """Where the waves of a layer, a patch or a whole sea are: fully at weight 1, not at all at 0."""
+    """Where the waves of a layer, a patch or a whole sea are: fully at weight 1, not at all at 0.
+
+    Examples
+    --------
+    >>> Mask(x=200.0, y=200.0, inner_radius=30.0, outer_radius=80.0).source
+    'DISTANCE'
+    """
 
     source: str = choice("DISTANCE", MASK_SOURCES, "What gives the weight: an image, or a distance")
     image: Raster | None = raster("Weights from 0 to 1, stretched over the domain", channels=1)

@@ -25,6 +25,13 @@ def read_sea(path: str | os.PathLike[str]) -> Shot:
 
     Raises ParameterError, which names the field, its value and what is allowed, for what is no sea, OSError
     or UnicodeDecodeError for a file that cannot be read, and UsdError, a RuntimeError, for a layer.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import OceanParameters
+    >>> write_sea("breeze.json", OceanParameters(seed=5))
+    >>> read_sea("breeze.json").parameters.seed
+    5
     """
     path = Path(path)
     if path.suffix in SUFFIXES:
@@ -48,6 +55,13 @@ def write_sea(path: str | os.PathLike[str], sea: Shot | OceanParameters) -> None
 
     The file appears whole: on any error an old one stays as it was. Raises ParameterError for the name of
     a layer of USD, which the command `usd` writes, and OSError for what the disk refuses.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import OceanParameters, WaveLayer
+    >>> write_sea("gale.json", OceanParameters(layers=(WaveLayer(wind_speed=18.0),)))
+    >>> read_sea("gale.json").at(frame=12).parameters.layers[0].wind_speed
+    18.0
     """
     path = Path(path)
     if path.suffix in SUFFIXES:

@@ -7,7 +7,13 @@ from .printable import printable, shown
 
 
 class ParameterError(ValueError):
-    """A parameter that cannot be used: names the field, its value and what is allowed."""
+    """A parameter that cannot be used: names the field, its value and what is allowed.
+
+    Examples
+    --------
+    >>> print(ParameterError("depth", -1.0, "must be above 0 m").inside("water"))
+    water.depth = -1.0: must be above 0 m
+    """
 
     def __init__(self, field: str, value: object, reason: str) -> None:
         self.field = field

@@ -48,6 +48,11 @@ class Raster:
     name : what it is called in messages, such as its file's name; it does not make two rasters differ
 
     Raises ParameterError, naming it, for another shape or numbers that are not finite in float32.
+
+    Examples
+    --------
+    >>> Raster([[0.0, 0.5], [1.0, 0.25]], name="ramp").shape
+    (2, 2, 1)
     """
 
     def __init__(self, values: ArrayLike, name: str = "") -> None:

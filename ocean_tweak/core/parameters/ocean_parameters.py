@@ -71,7 +71,13 @@ _Layer = TypeVar("_Layer", bound=Contribution)
 
 @dataclass(frozen=True)
 class Foam(Validated):
-    """How whitecaps cover the sea and how long they last."""
+    """How whitecaps cover the sea and how long they last.
+
+    Examples
+    --------
+    >>> Foam(half_life=4.0).coverage
+    1.0
+    """
 
     coverage: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the share of the sea under foam; 1 is what the wind leaves at sea",
@@ -106,6 +112,11 @@ class Timing(Validated):
     """How frames of the shot become seconds: ocean time 0 is at ``start_frame``.
 
     ``fps`` is kept as an exact fraction, so that 24000/1001 is what it says.
+
+    Examples
+    --------
+    >>> Timing(fps=Fraction(24000, 1001), start_frame=1001).time(1025)
+    Fraction(1001, 1000)
     """
 
     fps: Fraction = rational(
@@ -126,11 +137,23 @@ class Timing(Validated):
     )  # fmt: skip
 
     def time(self, frame: float | Fraction) -> Fraction:
-        """Ocean time in seconds at a frame, which may hold a sub-frame; exact."""
+        """Ocean time in seconds at a frame, which may hold a sub-frame; exact.
+
+        Examples
+        --------
+        >>> Timing(fps=25).time(51)
+        Fraction(2, 1)
+        """
         return (Fraction(frame) / self.stretch - self.start_frame) / self.fps
 
     def frame(self, time: float) -> float:
-        """The frame at an ocean time in seconds."""
+        """The frame at an ocean time in seconds.
+
+        Examples
+        --------
+        >>> Timing(fps=25).frame(2.0)
+        51.0
+        """
         return float(self.stretch) * (self.start_frame + time * float(self.fps))
 
 
@@ -139,6 +162,16 @@ class OceanParameters(Validated):
     """Everything that determines a sea. Equal parameters give equal fields.
 
     Raises ParameterError (a ValueError) naming the field, its value and what is allowed.
+
+    Examples
+    --------
+    >>> sea = OceanParameters(layers=(WaveLayer(wind_speed=25.0, fetch=800e3),))
+    >>> OceanParameters.from_json(sea.to_json()) == sea
+    True
+    >>> OceanParameters(domain_size=0.0)
+    Traceback (most recent call last):
+        ...
+    ocean_tweak.core.data.errors.ParameterError: domain_size = 0.0: must be from 0.1 to 100000 m
     """
 
     resolution: int = integer(
@@ -302,6 +335,11 @@ class OceanParameters(Validated):
 
         Of a sea of patches, another resolution is that of the first, and the others keep their ratio to it;
         of merged ones, it is that of their one grid.
+
+        Examples
+        --------
+        >>> OceanParameters(seed=1).replace(seed=2, domain_size=250.0).domain_size
+        250.0
         """
         if self.patches and "patches" not in changes:
             if "resolution" in changes and self.merged_resolution:
@@ -319,7 +357,13 @@ class OceanParameters(Validated):
         return dataclasses.replace(self, **changes)
 
     def at_resolution(self, resolution: int) -> OceanParameters:
-        """The same sea on other samples; layers that these do not hold, short hero waves, are muted."""
+        """The same sea on other samples; layers that these do not hold, short hero waves, are muted.
+
+        Examples
+        --------
+        >>> OceanParameters(resolution=512).at_resolution(128).resolution
+        128
+        """
         return self.replace(resolution=resolution, layers=self._held_by(resolution))
 
     def on_one_grid(self, resolution: int) -> OceanParameters:
@@ -349,16 +393,37 @@ class OceanParameters(Validated):
         """Plain dictionaries, lists and numbers, as they stand in a JSON file.
 
         brief : of images only name, shape and hash: for headers; they cannot be read back
+
+        Examples
+        --------
+        >>> OceanParameters().to_dict()["water"]["gravity"]
+        9.81
         """
         return to_plain(self, brief)
 
     def to_json(self, indent: int | None = 2) -> str:
-        """JSON text that `from_json` reads back to equal parameters."""
+        """JSON text that `from_json` reads back to equal parameters.
+
+        Examples
+        --------
+        >>> OceanParameters.from_json(OceanParameters(seed=7).to_json()).seed
+        7
+        """
         return json.dumps({"format": formats.SEA, **self.to_dict()}, indent=indent, ensure_ascii=False)
 
     @classmethod
     def from_dict(cls, data: object) -> OceanParameters:
-        """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused."""
+        """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused.
+
+        Examples
+        --------
+        >>> OceanParameters.from_dict({"layers": [{"wind_speed": 8.0}]}).layers[0].wind_speed
+        8.0
+        >>> OceanParameters.from_dict({"water": {"depth": -5.0}})
+        Traceback (most recent call last):
+            ...
+        ocean_tweak.core.data.errors.ParameterError: water.depth = -5.0: must be from 0.1 to 11000 m
+        """
         check_numbers(numbers_in(data))
         data = modern(data)
         if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
@@ -367,7 +432,13 @@ class OceanParameters(Validated):
 
     @classmethod
     def from_json(cls, text: str) -> OceanParameters:
-        """Parameters from JSON text. Raises ParameterError for what is not valid JSON or not valid."""
+        """Parameters from JSON text. Raises ParameterError for what is not valid JSON or not valid.
+
+        Examples
+        --------
+        >>> OceanParameters.from_json('{"water": {"depth": 12.5}}').water.depth
+        12.5
+        """
         return cls.from_dict(parse_json(text))
 
 

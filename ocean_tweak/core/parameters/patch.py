@@ -27,7 +27,13 @@ REPEATING_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Patch(Validated):
-    """One of a sea's patches, which repeats in its own axes. Its band's ends are sharp."""
+    """One of a sea's patches, which repeats in its own axes. Its band's ends are sharp.
+
+    Examples
+    --------
+    >>> Patch(domain_size=50.0, resolution=256, longest_wavelength=8.0).spacing
+    0.1953125
+    """
 
     domain_size: float = number(
         400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",

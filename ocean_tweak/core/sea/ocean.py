@@ -51,6 +51,14 @@ class Ocean:
 
     Raises ValueError for an unknown precision or a number of workers below 1. Whatever makes the waves
     raises MemoryError, before that, where the machine is too small.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+    >>> parameters = OceanParameters(resolution=64, layers=(WaveLayer(wind_speed=12.0, fetch=150e3),))
+    >>> sea = Ocean(parameters)
+    >>> sea.surface(time=2.5).displacement.shape
+    (64, 64, 3)
     """
 
     def __init__(
@@ -72,6 +80,14 @@ class Ocean:
 
         Displacement, velocity, slope and strain of the sea are the sums of theirs, each turned by the patch's
         rotation; its other fields are not sums. Any other sea is its own only patch.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters, Patch
+        >>> large = Patch(domain_size=400.0, resolution=64, shortest_wavelength=25.0)
+        >>> small = Patch(domain_size=50.0, resolution=64, longest_wavelength=25.0)
+        >>> [patch.parameters.domain_size for patch in Ocean(OceanParameters(patches=(large, small))).patches]
+        [400.0, 50.0]
         """
         return self._separate if self.parameters.is_cascade else (self,)
 
@@ -89,11 +105,26 @@ class Ocean:
         return tuple(Ocean(part.parameters, self.precision, self._workers) for part in parts(self.parameters))
 
     def memory(self, outputs: Iterable[str] = ("displacement",), on: Tile | Area = TILE) -> MemoryNeed:
-        """Bytes that the sea takes, and each surface with these outputs."""
+        """Bytes that the sea takes, and each surface with these outputs.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters
+        >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
+        >>> sea.memory({"displacement"}).surface >= 64 * 64 * 3 * 4
+        True
+        """
         return memory_need(self.parameters, outputs, self.precision, on)
 
     def prepare(self) -> None:
-        """Make the waves, which all surfaces share; the first surface does so otherwise."""
+        """Make the waves, which all surfaces share; the first surface does so otherwise.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters
+        >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
+        >>> sea.prepare()
+        """
         for waves in self._parts:
             waves.initial_state  # noqa: B018
 
@@ -125,6 +156,16 @@ class Ocean:
 
         Raises ValueError for an unknown output, a time that is not finite, an array that does not fit, or a
         tile of what has none: separate patches, which have one each, and waves that do not repeat.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Area, Ocean, OceanParameters
+        >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
+        >>> fields = sea.surface(2.5, {"displacement", "normal"})
+        >>> fields.normal.shape, fields.normal.dtype
+        ((64, 64, 3), dtype('float32'))
+        >>> sea.surface(2.5, on=Area(size=50.0, resolution=16)).displacement.shape
+        (16, 16, 3)
         """
         wanted = checked_outputs(outputs)
         _check_time(time)
@@ -149,7 +190,15 @@ class Ocean:
         outputs: Iterable[str] = ("displacement",),
         on: Tile | Area | Places = TILE,
     ) -> SurfaceFields:
-        """Fields at a frame of the shot, which may hold a sub-frame."""
+        """Fields at a frame of the shot, which may hold a sub-frame.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters
+        >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
+        >>> sea.frame(25).time  # frame 1 is 0 s, and 24 frames are a second
+        1.0
+        """
         return self.surface(self.parameters.timing.time(frame), outputs, on)
 
     def points_at(
@@ -169,6 +218,13 @@ class Ocean:
 
         Raises ValueError for an unknown surface, a time or place that is not finite, or an exact surface with
         trough damping: no sum of waves.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters
+        >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
+        >>> sea.points_at([0.0, 10.0], 5.0, time=2.5, velocity=True).velocity.shape
+        (2, 3)
         """
         if surface not in ("mesh", "exact"):
             raise ValueError(f"surface = {surface!r}: must be mesh or exact")
@@ -184,13 +240,29 @@ class Ocean:
     def height_at(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, surface: str = "mesh"
     ) -> NDArray[np.float64]:
-        """Height of the surface in m above places x and y in m, at a time in s; see `points_at`."""
+        """Height of the surface in m above places x and y in m, at a time in s; see `points_at`.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters
+        >>> sea = Ocean(OceanParameters(resolution=64, domain_size=200.0, seed=3))
+        >>> sea.height_at([0.0, 200.0], 5.0, time=2.5).round(3)  # the domain repeats after 200 m
+        array([-0.354, -0.354])
+        """
         return self.points_at(x, y, time, surface).height
 
     def statistics(self) -> Statistics:
         """Wave height, period and wavelength: of the spectrum, as resolved, and of this seed.
 
         Of merged patches, of the waves that their one grid holds; in all cases without masks.
+
+        Examples
+        --------
+        >>> from ocean_tweak.core import Ocean, OceanParameters, WaveLayer
+        >>> swell = WaveLayer(definition="SEA_STATE", significant_wave_height=2.0, peak_period=9.0)
+        >>> sea = Ocean(OceanParameters(resolution=64, layers=(swell,)))
+        >>> round(sea.statistics().significant_wave_height, 2)
+        2.0
         """
         parameters = self._added_up
         patches = patch_parameters(parameters)

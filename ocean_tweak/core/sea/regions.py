@@ -21,7 +21,14 @@ MOST_SAMPLES = 8192
 
 @dataclass(frozen=True)
 class Tile:
-    """The (N, N) samples [y, x] of a sea's own domain, which repeats."""
+    """The (N, N) samples [y, x] of a sea's own domain, which repeats.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import Ocean, OceanParameters
+    >>> Ocean(OceanParameters(resolution=64)).surface(0.0, on=Tile()).displacement.shape
+    (64, 64, 3)
+    """
 
 
 TILE = Tile()
@@ -36,6 +43,12 @@ class Area:
     corner : x and y of the first sample, m
 
     Raises ValueError for a square without size or samples.
+
+    Examples
+    --------
+    >>> x, y = Area(size=40.0, resolution=4, corner=(100.0, 0.0)).rest_positions()
+    >>> x[0]
+    array([100., 110., 120., 130.])
     """
 
     size: float
@@ -53,7 +66,13 @@ class Area:
             raise ValueError(f"corner = {self.corner!r}: must be x and y in m")
 
     def rest_positions(self) -> tuple[Array, Array]:
-        """x and y in m, (N, N) each."""
+        """x and y in m, (N, N) each.
+
+        Examples
+        --------
+        >>> Area(size=2.0, resolution=2).rest_positions()[1].tolist()
+        [[0.0, 0.0], [1.0, 1.0]]
+        """
         along = self.size / self.resolution * np.arange(self.resolution)
         return _checked(self.corner[0] + along, (self.corner[1] + along)[:, np.newaxis])
 
@@ -97,13 +116,24 @@ class Places:
     """Rest positions x and y in m, of shapes that broadcast: fields have their shape.
 
     Raises ValueError where they are asked for and not finite.
+
+    Examples
+    --------
+    >>> Places([0.0, 1.0, 2.0], 5.0).rest_positions()[1]
+    array([5., 5., 5.])
     """
 
     x: ArrayLike
     y: ArrayLike
 
     def rest_positions(self) -> tuple[Array, Array]:
-        """x and y in m, of one shape."""
+        """x and y in m, of one shape.
+
+        Examples
+        --------
+        >>> Places(3.0, [0.0, 1.0]).rest_positions()[0]
+        array([3., 3.])
+        """
         return _checked(self.x, self.y)
 
 

@@ -32,13 +32,24 @@ def wind_factor(wind_speed_10: float, height: float) -> float:
 
     Horvath (2015), § 5.1.3, corrected: the drag coefficient is (0.8 + 0.065 U_10)·10⁻³, and the log law
     has its 1/κ: 1 + 2.5 √C_10 ln(z/10).
+
+    Examples
+    --------
+    >>> round(wind_factor(10.0, height=19.5), 3)
+    1.064
     """
     drag = constants.DRAG_OFFSET + constants.DRAG_SLOPE * wind_speed_10
     return 1.0 + math.sqrt(drag) / constants.KARMAN * math.log(height / 10.0)
 
 
 def wind_at_10_m(wind_speed: float, height: float) -> float:
-    """U_10 in m/s of a wind measured at another height in m: the inverse of `wind_factor`."""
+    """U_10 in m/s of a wind measured at another height in m: the inverse of `wind_factor`.
+
+    Examples
+    --------
+    >>> round(wind_at_10_m(10.6, height=19.5), 2)
+    9.97
+    """
     result = wind_speed
     for _ in range(100):
         result, previous = wind_speed / wind_factor(result, height), result
@@ -48,7 +59,13 @@ def wind_at_10_m(wind_speed: float, height: float) -> float:
 
 
 def wind_at(wind_speed_10: float, height: float) -> float:
-    """U_z in m/s at a height in m, for a wind of U_10 m/s at 10 m."""
+    """U_z in m/s at a height in m, for a wind of U_10 m/s at 10 m.
+
+    Examples
+    --------
+    >>> round(wind_at(10.0, height=19.5), 2)
+    10.64
+    """
     return wind_speed_10 * wind_factor(wind_speed_10, height)
 
 
@@ -63,7 +80,13 @@ def _fourth(omega: float) -> float:
 
 
 def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
-    """S = A/ω⁵ exp(-B/ω⁴), A in m²/s⁴ and B in 1/s⁴. Horvath (2015), eq. 20."""
+    """S = A/ω⁵ exp(-B/ω⁴), A in m²/s⁴ and B in 1/s⁴. Horvath (2015), eq. 20.
+
+    Examples
+    --------
+    >>> generalized_ab([0.5, 1.0], A=0.78, B=0.74).round(3)
+    array([0.   , 0.372])
+    """
     omega = np.asarray(omega, np.float64)
     if not math.isfinite(A * B):  # the peak lies beyond all waves
         return np.zeros_like(omega)
@@ -74,7 +97,13 @@ def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
 
 def pierson_moskowitz_peak(U: float, g: float = constants.GRAVITY) -> float:
     """ω_p in rad/s of the Pierson-Moskowitz spectrum, 0.855 g/U. Horvath (2015), eq. 19, as it follows from
-    the factor 0.74 of eq. 18."""
+    the factor 0.74 of eq. 18.
+
+    Examples
+    --------
+    >>> round(pierson_moskowitz_peak(U=10.0), 3)
+    0.839
+    """
     factor = (constants.PM_BETA / constants.DEVELOPMENT) ** 0.25
     return _over(factor * g, constants.PM_WIND_FACTOR * U)
 
@@ -83,23 +112,46 @@ def phillips_peak(U: float, g: float = constants.GRAVITY) -> float:
     """ω_p in rad/s of the Phillips (Tessendorf) spectrum: (4B/5)^¼ with B = (g/U)⁴, U at 19.5 m.
 
     Horvath (2015), eq. 27.
+
+    Examples
+    --------
+    >>> round(phillips_peak(U=10.0), 3)
+    0.904
     """
     return _over(constants.DEVELOPMENT**-0.25 * g, constants.PM_WIND_FACTOR * U)
 
 
 def full_development_fetch(U: float, g: float = constants.GRAVITY) -> float:
     """Fetch in m beyond which a sea grows no more: where JONSWAP's peak frequency (eq. 28) falls to
-    Pierson and Moskowitz's (eq. 19 of Horvath 2015), g F / U² ≈ 17 036."""
+    Pierson and Moskowitz's (eq. 19 of Horvath 2015), g F / U² ≈ 17 036.
+
+    Examples
+    --------
+    >>> round(full_development_fetch(U=10.0) / 1e3)  # km
+    174
+    """
     return (constants.JONSWAP_PEAK / constants.PM_PEAK) ** 3 * U**2 / g
 
 
 def jonswap_alpha(U: float, F: float, g: float = constants.GRAVITY) -> float:
-    """α of JONSWAP, dimensionless. Horvath (2015), eq. 28."""
+    """α of JONSWAP, dimensionless. Horvath (2015), eq. 28.
+
+    Examples
+    --------
+    >>> round(jonswap_alpha(U=10.0, F=100e3), 4)
+    0.0101
+    """
     return constants.JONSWAP_ALPHA * _over(U**2, F * g) ** constants.JONSWAP_ALPHA_EXPONENT
 
 
 def jonswap_peak(U: float, F: float, g: float = constants.GRAVITY) -> float:
-    """ω_p of JONSWAP in rad/s. Horvath (2015), eq. 28, corrected: the cube root is missing in print."""
+    """ω_p of JONSWAP in rad/s. Horvath (2015), eq. 28, corrected: the cube root is missing in print.
+
+    Examples
+    --------
+    >>> round(jonswap_peak(U=10.0, F=100e3), 3)
+    1.008
+    """
     return constants.JONSWAP_PEAK * _over(g**2, U * F) ** (1.0 / 3.0)
 
 
@@ -114,6 +166,11 @@ def jonswap(
 
     Horvath (2015), eq. 28, corrected: γ^r, where the paper prints γ⁴. With γ = 1 it is the generalised
     A,B spectrum of eq. 20.
+
+    Examples
+    --------
+    >>> jonswap([0.5, 1.0, 2.0], alpha=0.0118, omega_p=1.0).round(4)
+    array([0.    , 1.0737, 0.0328])
     """
     base = generalized_ab(omega, alpha * g**2, constants.DEVELOPMENT * _fourth(omega_p))
     if gamma == 1.0 or math.isinf(omega_p):
@@ -128,6 +185,11 @@ def kitaigorodskii(omega_h: ArrayLike) -> Array:
     """Kitaigorodskii's depth factor Φ in 0…1 over ω_h = ω√(h/g).
 
     Horvath (2015), eq. 29, in closed form: tanh²(kh) / (1 + 2kh / sinh 2kh) with ω² = g k tanh kh.
+
+    Examples
+    --------
+    >>> kitaigorodskii([0.5, 1.0, 2.0]).round(3)
+    array([0.125, 0.483, 0.993])
     """
     unit = Water(depth=1.0, gravity=1.0)
     kh = dispersion.wave_number(omega_h, "FINITE_DEPTH", unit)
@@ -139,6 +201,11 @@ def thompson_vincent(omega_h: ArrayLike) -> Array:
     """Thompson and Vincent's (1983) approximation of Kitaigorodskii's factor, within 0.023 of it.
 
     Horvath (2015), after eq. 29, completed: 1 for ω_h ≥ 2, where the printed branch turns down.
+
+    Examples
+    --------
+    >>> thompson_vincent([0.5, 1.0, 2.0])
+    array([0.125, 0.5  , 1.   ])
     """
     w = np.clip(np.asarray(omega_h, np.float64), 0.0, 2.0)
     return np.where(w <= 1.0, 0.5 * w**2, 1.0 - 0.5 * (2.0 - w) ** 2)
@@ -158,7 +225,13 @@ def tma(
     gamma: float = constants.PEAK_ENHANCEMENT,
     depth_factor: str = "KITAIGORODSKII",
 ) -> Array:
-    """TMA spectrum: JONSWAP times the depth factor. Horvath (2015), eq. 30."""
+    """TMA spectrum: JONSWAP times the depth factor. Horvath (2015), eq. 30.
+
+    Examples
+    --------
+    >>> tma([0.5, 1.0, 2.0], alpha=0.0118, omega_p=1.0, water=Water(depth=10.0)).round(4)
+    array([0.    , 0.5275, 0.0326])
+    """
     omega = np.asarray(omega, np.float64)
     factor = DEPTH_FACTORS[depth_factor](omega * np.sqrt(water.depth / water.gravity))
     return jonswap(omega, alpha, omega_p, gamma, water.gravity) * factor

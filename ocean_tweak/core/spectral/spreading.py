@@ -44,6 +44,11 @@ class Spreading:
     swell : ξ of Horvath (2015), eq. 45
     exponent : s of COSINE_2S
     wind_frequency : U ω_p / g, which Mitsuyasu's and Hasselmann's models know
+
+    Examples
+    --------
+    >>> Spreading("MITSUYASU", swell=0.5, wind_frequency=1.0).swell
+    0.5
     """
 
     model: str
@@ -59,18 +64,36 @@ WIND_MODELS = frozenset({"HASSELMANN", "MITSUYASU"})
 
 
 def wrap_angle(theta: ArrayLike) -> Array:
-    """The same direction in [-π, π)."""
+    """The same direction in [-π, π).
+
+    Examples
+    --------
+    >>> wrap_angle([3.5, -0.25]).round(4)
+    array([-2.7832, -0.25  ])
+    """
     return (np.asarray(theta, np.float64) + np.pi) % (2.0 * np.pi) - np.pi
 
 
 def cosine_power(theta: ArrayLike, s: ArrayLike) -> Array:
-    """|cos(θ/2)|^2s, the Longuet-Higgins shape. Horvath (2015), eq. 33 and 44; Chen (2014), eq. 29."""
+    """|cos(θ/2)|^2s, the Longuet-Higgins shape. Horvath (2015), eq. 33 and 44; Chen (2014), eq. 29.
+
+    Examples
+    --------
+    >>> cosine_power([0.0, np.pi / 2], s=2.0).round(3)
+    array([1.  , 0.25])
+    """
     cosine = np.maximum(np.abs(np.cos(0.5 * np.asarray(theta, np.float64))), 1e-150)
     return np.exp(2.0 * np.asarray(s, np.float64) * np.log(cosine))
 
 
 def donelan_banner_beta(ratio: ArrayLike) -> Array:
-    """β_s of Donelan-Banner over ω/ω_p. Horvath (2015), eq. 38; the first branch holds down to ω = 0."""
+    """β_s of Donelan-Banner over ω/ω_p. Horvath (2015), eq. 38; the first branch holds down to ω = 0.
+
+    Examples
+    --------
+    >>> donelan_banner_beta([0.6, 1.2, 2.0]).round(2)
+    array([1.34, 1.8 , 0.96])
+    """
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     below = constants.DONELAN_BELOW * x**constants.DONELAN_EXPONENT
     middle = constants.DONELAN_MIDDLE * x**-constants.DONELAN_EXPONENT
@@ -80,7 +103,13 @@ def donelan_banner_beta(ratio: ArrayLike) -> Array:
 
 
 def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
-    """s of Mitsuyasu's model over ω/ω_p. Horvath (2015), eq. 35 and 36."""
+    """s of Mitsuyasu's model over ω/ω_p. Horvath (2015), eq. 35 and 36.
+
+    Examples
+    --------
+    >>> mitsuyasu_s([0.8, 1.0, 1.5], wind_frequency=1.0).round(2)
+    array([ 3.77, 11.5 ,  4.17])
+    """
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     # s grows without end as the wind falls
     slow = max(wind_frequency, 1e-30)
@@ -91,7 +120,13 @@ def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
 
 def hasselmann_s(ratio: ArrayLike, wind_frequency: float) -> Array:
     """s of Hasselmann's model over ω/ω_p. Horvath (2015), eq. 37, corrected: the second branch begins at
-    1.05 ω_p, as Hasselmann, Dunckel & Ewing (1980) have it."""
+    1.05 ω_p, as Hasselmann, Dunckel & Ewing (1980) have it.
+
+    Examples
+    --------
+    >>> hasselmann_s([0.8, 1.0, 1.5], wind_frequency=1.0).round(2)
+    array([2.82, 6.97, 4.2 ])
+    """
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     growth = wind_frequency - constants.HASSELMANN_WIND_OFFSET
     exponent = constants.HASSELMANN_ABOVE_EXPONENT + constants.HASSELMANN_WIND_FACTOR * growth
@@ -102,7 +137,13 @@ def hasselmann_s(ratio: ArrayLike, wind_frequency: float) -> Array:
 
 
 def swell_s(ratio: ArrayLike, swell: float) -> Array:
-    """s_ξ of the swell factor over ω/ω_p. Horvath (2015), eq. 45."""
+    """s_ξ of the swell factor over ω/ω_p. Horvath (2015), eq. 45.
+
+    Examples
+    --------
+    >>> swell_s([0.8, 1.0, 1.5], swell=1.0).round(2)
+    array([13.57, 12.19,  9.32])
+    """
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
     return constants.SWELL_SHAPE * np.tanh(1.0 / x) * swell**2
 
@@ -231,12 +272,23 @@ def directional_spreading(omega_ratio: ArrayLike, theta: ArrayLike, spreading: S
 
     omega_ratio : ω/ω_p, > 0, broadcast against theta
     theta : angle to the wind in rad, any value (it is wrapped: sech² is not periodic)
+
+    Examples
+    --------
+    >>> directional_spreading(1.0, [0.0, 1.0, np.pi], Spreading("DONELAN_BANNER")).round(4)
+    array([1.14  , 0.0467, 0.    ])
     """
     return spreading_shape(omega_ratio, spreading).density(np.abs(wrap_angle(theta)), spreading)
 
 
 def mean_cosine(omega_ratio: ArrayLike, spreading: Spreading) -> Array:
-    """∫D cos θ dθ over ω/ω_p: how strongly the waves keep to the wind's direction, -1…1."""
+    """∫D cos θ dθ over ω/ω_p: how strongly the waves keep to the wind's direction, -1…1.
+
+    Examples
+    --------
+    >>> mean_cosine([0.8, 1.0, 2.0], Spreading("DONELAN_BANNER")).round(3)
+    array([0.9  , 0.925, 0.669])
+    """
     theta, weight = direction_rule()
     ratio = np.asarray(omega_ratio, np.float64)[..., np.newaxis]
     return 2.0 * (directional_spreading(ratio, theta, spreading) * np.cos(theta)) @ weight

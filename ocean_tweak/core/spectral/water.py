@@ -11,7 +11,13 @@ from . import constants
 
 @dataclass(frozen=True)
 class Water(Validated):
-    """The body of water: the same for every wave layer."""
+    """The body of water: the same for every wave layer.
+
+    Examples
+    --------
+    >>> Water(depth=15.0).gravity
+    9.81
+    """
 
     depth: float = number(
         200.0, 0.1, 11e3, "m", "Depth of the water. Long waves lose height where it is shallow",

@@ -64,6 +64,12 @@ def layer_for_sea_state(
     template : gives everything else, its spectrum included; TMA by default
 
     Raises ParameterError for a height or period out of range.
+
+    Examples
+    --------
+    >>> match = layer_for_sea_state(significant_wave_height=3.0, peak_period=7.0)
+    >>> print(match.explanation)
+    Hs 3 m with Tp 7 s is made by a wind of 15.5 m/s over 91.5 km
     """
     water = water or Water()
     template = template or WaveLayer()

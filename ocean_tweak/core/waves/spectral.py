@@ -37,7 +37,13 @@ _KEPT = 4
 
 @dataclass(frozen=True)
 class WaveLayer(Contribution):
-    """One wave system, given by its wind and fetch or by its height and period."""
+    """One wave system, given by its wind and fetch or by its height and period.
+
+    Examples
+    --------
+    >>> WaveLayer(wind_speed=25.0, fetch=800e3, wind_direction=0.5).spectrum
+    'TMA'
+    """
 
     kind = "WAVES"
     gives = Gives.SPECTRUM | Gives.LOOPS

@@ -32,6 +32,14 @@ class HeroWave(Contribution):
 
     Its waves obey the sea's dispersion relation: at its focus the group is what these numbers say; before
     and after it runs along its direction, and is longer, wider and lower.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import HeroWave, Ocean, OceanParameters, WaveLayer
+    >>> wave = HeroWave(x=200.0, y=200.0, time=5.0, wavelength=40.0, crest_height=1.5)
+    >>> sea = Ocean(OceanParameters(resolution=128, layers=(WaveLayer(wind_speed=0.0), wave)))
+    >>> round(float(sea.surface(5.0).displacement[..., 2].max()), 1)
+    1.5
     """
 
     kind = "HERO_WAVE"

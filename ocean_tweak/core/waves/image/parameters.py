@@ -41,7 +41,16 @@ _WORKING_ARRAYS = 3
 
 @dataclass(frozen=True)
 class ImageLayer(Contribution):
-    """Waves out of one image, which is stretched over the patch and filtered there."""
+    """Waves out of one image, which is stretched over the patch and filtered there.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from ocean_tweak.core import ImageLayer, OceanParameters, Raster, WaveLayer
+    >>> drawing = ImageLayer(image=Raster(np.random.default_rng(1).random((64, 64))))
+    >>> [layer.kind for layer in OceanParameters(layers=(WaveLayer(wind_speed=0.0), drawing)).layers]
+    ['WAVES', 'IMAGE']
+    """
 
     kind = "IMAGE"
     gives = Gives.COEFFICIENTS | Gives.STATE | Gives.LOOPS

@@ -31,7 +31,13 @@ MOST_KEYS = 1024
 
 @dataclass(frozen=True)
 class WindKey(Validated):
-    """The wind over the patch at one time."""
+    """The wind over the patch at one time.
+
+    Examples
+    --------
+    >>> WindKey(30.0, Raster([[[18.0, 0.0]]])).time
+    30.0
+    """
 
     time: float = number(
         0.0, -1e6, 1e6, "s", "Ocean time at which the wind is this; linear between two, held outside",
@@ -50,6 +56,13 @@ class WindFieldLayer(Contribution):
     """Waves that follow a wind field. Each keeps the wind of the place and time of its birth.
 
     A wave of wind V has the length λ = V²/g, the period T = √(2π)·V/g and the speed V/√(2π).
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import Raster, WindFieldLayer, WindKey
+    >>> calm, gale = Raster([[[0.0, 0.0]]]), Raster([[[18.0, 0.0]]])
+    >>> WindFieldLayer(keys=(WindKey(0.0, calm), WindKey(30.0, gale))).keys[1].time
+    30.0
     """
 
     kind = "WIND_FIELD"
