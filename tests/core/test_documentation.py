@@ -221,14 +221,20 @@ def test_scatter_told_in_the_parameters(wavelengths: int, scatter: float) -> Non
     assert np.std(heights) / np.mean(heights) == pytest.approx(scatter, rel=0.2)
 
 
-# README.md
+# README.md, CONTRIBUTING.md and docs/command-line.md
 
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+COMMAND_LINE = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+def blocks(language: str, text: str = README) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.splitlines()) <= 120
 
 
 def test_python_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) -> None:
@@ -240,14 +246,15 @@ def test_python_of_the_readme_runs(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 COMMANDS = [
-    line.split()[3:] for block in blocks("sh") for line in block.splitlines() if "-m ocean_tweak" in line
+    line.split()[3:]
+    for block in [*blocks("sh"), *blocks("sh", COMMAND_LINE)]
+    for line in block.splitlines()
+    if "-m ocean_tweak" in line
 ]
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
-def test_commands_of_the_readme_run(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_commands_run(command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.chdir(tmp_path)
     assert cli.main([*command, "--set", "resolution=16"]) == 0
@@ -256,16 +263,16 @@ def test_commands_of_the_readme_run(
 
 
 def test_links_of_the_readme_lead_somewhere() -> None:
-    links = [link for link in re.findall(r"\]\(([^)]+)\)", README) if "://" not in link]
+    links = [link for link in re.findall(r"\]\(([^)]+)\)", README + CONTRIBUTING) if "://" not in link]
     assert len(links) > 3
     assert [link for link in links if not (ROOT / link).exists()] == []
 
 
-def test_readme_lists_every_make_target() -> None:
+def test_every_make_target_is_listed() -> None:
     targets = set(
         re.findall(r"^([a-z-]+):.*##", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
     )
-    assert targets == set(re.findall(r"^\| `make ([a-z-]+)`", README, re.MULTILINE))
+    assert targets == set(re.findall(r"^\| `make ([a-z-]+)`", CONTRIBUTING, re.MULTILINE))
 
 
 def test_what_docstrings_name_by_its_room_is_there() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from tools.project import ROOT
 
-DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 LARGEST = 200_000  # bytes
 PICTURES = sorted(path for path in (ROOT / "docs").rglob("*") if path.suffix in {".jpg", ".png", ".svg"})
 
