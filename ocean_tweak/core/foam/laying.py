@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numerics.choice import chosen
 from ..numerics.memo import total_bytes
 from ..numerics.threads import row_blocks, run_blocks
 from .windrows import Windrows
@@ -46,9 +47,11 @@ class Drawing:
         foam, age = (_rows(field[:-1, :-1], first, count) for field in left)
         at = _rows(self._first, first, count).astype(np.intp)
         u, v = _rows(self._u, first, count), _rows(self._v, first, count)
+        # all places are there; to let them wrap is quicker than to have them checked
         flat, below = [field.reshape(-1) for field in left], foam.shape[1] + 1
         here, beside, above, across = (
-            [np.take(field[offset:], at) for field in flat] for offset in (0, 1, below, below + 1)
+            [np.take(field[offset:], at, mode="wrap") for field in flat]
+            for offset in (0, 1, below, below + 1)
         )
         drawn = between(between(here, beside, u), between(above, across, u), v)
         return self._windrows.drawn_out(foam, age, *drawn, _rows(self._share, first, count))
@@ -132,4 +135,4 @@ def between(near: Sequence[RealArray], far: Sequence[RealArray], share: RealArra
     np.subtract(foam, own, out=own)
     newer = other > own
     own += other
-    return own, np.where(newer, other_age, age)
+    return own, chosen(newer, other_age, age)

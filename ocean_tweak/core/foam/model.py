@@ -40,6 +40,9 @@ LATTICE_RATE = 8
 #: foam thinner than this is none
 FAINTEST = 2.0**-6
 
+#: half-lives since the birth of foam after which it certainly is none, with the sign of an exponent
+_LONG_GONE = np.float32(math.log2(FAINTEST) - 1.0)
+
 #: what it takes to fade and lay old foam on a sample, in numbers to be transformed
 _WORK_OF_OLD_FOAM = 6
 
@@ -190,6 +193,8 @@ class Births:
         foam = self._latest[part] - np.float32(last - self._zero)
         foam -= np.float32(now / model.step - last)
         foam *= np.float32(1.0 / self._halving)
+        # a power that is no normal number takes twenty times as long
+        np.clip(foam, _LONG_GONE, np.float32(1.0), out=foam)
         np.exp2(foam, out=foam)
         foam *= foam >= FAINTEST
         age = ((last - self._first) - self._moments[part]).astype(np.float32)

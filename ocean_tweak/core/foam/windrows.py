@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics import random
+from ..numerics.choice import chosen
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -90,7 +91,7 @@ class Windrows:
         """
         own = foam * (1.0 - self.strength * _drawn(age))
         other = drawn * share * (self.strength * _drawn(drawn_age))
-        return np.minimum(own + other, np.float32(1.0)), np.where(other > own, drawn_age, age)
+        return np.minimum(own + other, np.float32(1.0)), chosen(other > own, drawn_age, age)
 
     @property
     def _waves(self) -> tuple[float, float, _Waves, _Waves]:
