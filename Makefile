@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-all test-core test-long test-window mutate same-seas lint bench bench-smoke build docs guide papers clean
+.PHONY: help setup demo test test-all test-core test-long test-window mutate same-seas lint bench bench-smoke build release docs guide papers clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -59,6 +59,10 @@ bench-smoke: ## see that every measurement runs (under a minute; judges no time)
 build:      ## the extension's zip, into build/
 	@$(PYTHON) -m tools.setup python-5.2 blender
 	@$(VENV) -m tools.build
+
+release:    ## what is published: one zip for all platforms, one for each, and notes, into build/release/; checks them
+	@$(PYTHON) -m tools.setup python-5.2 blender
+	@$(VENV) -m tools.release
 
 docs:       ## write the documentation that is made from the code, and build the site into build/site/
 	@$(PYTHON) -m tools.setup python-5.2

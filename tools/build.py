@@ -38,7 +38,8 @@ def extension(blender: real_blender.RealBlender, *arguments: str, env: dict[str,
 def main() -> int:
     """Build the zip; return the exit code."""
     try:
-        print(f"built {build(real_blender.find()).relative_to(ROOT)}")
+        path = build(real_blender.find())
+        print(f"built {path.relative_to(ROOT)}, {path.stat().st_size / 1e6:.1f} MB")
     except real_blender.NoBlender as missing:
         print(f"no real Blender to build with: {missing}", file=sys.stderr)
         return 1

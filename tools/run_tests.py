@@ -33,13 +33,13 @@ INSTALLED = ("tests/extension",)
 #: of the suite for Blender, what depends on its version
 OF_EVERY_VERSION = (
     "alembic", "animation", "assets", "every_operator", "foreign_colours", "life_of_an_ocean", "node_trees",
-    "old_groups", "overrides", "registration", "rendering", "shot_files", "source_images", "stored_paths",
-    "usd_import", "velocity_blur", "view_layers", "without_extension",
+    "old_groups", "overrides", "registration", "rendering", "scripting_documentation", "shot_files",
+    "source_images", "stored_paths", "usd_import", "velocity_blur", "view_layers", "without_extension",
 )  # fmt: skip
 #: and what depends on whether the extension is installed, beside a Blender that is no module
 OF_THE_ZIP = (
     "alembic", "assets", "every_operator", "life_of_an_ocean", "node_trees", "registration", "rendering",
-    "shot_files", "source_images", "without_extension",
+    "scripting_documentation", "shot_files", "source_images", "without_extension",
 )  # fmt: skip
 #: of the core's, what depends on NumPy's version
 OF_EVERY_NUMPY = ("energy", "fields", "foam", "surface", "surface_detail", "surface_query")

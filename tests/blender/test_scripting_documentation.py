@@ -18,7 +18,7 @@ def test_examples_run(empty_scene, package, tmp_path, monkeypatch):
     for number, example in enumerate(EXAMPLES, start=1):
         # a checkout is an extension of another repository
         exec(compile(example.replace(INSTALLED, package), f"example {number}", "exec"), names)
-    assert len(EXAMPLES) == 8
+    assert len(EXAMPLES) == 9
     assert names["facts"]["spectrum"]["significant_wave_height"] > 1.5
     assert len(list(Path("cache").glob("Ocean*/v001-*/*_disp.*.exr"))) == 3
     assert names["surface"].displacement.shape == (128, 128, 3)

@@ -41,9 +41,11 @@ def test_blender_minimum_is_a_blender_the_tests_run_in():
     assert pinned("python-4.5.txt", "bpy").split(".")[:2] == minimum
 
 
-@pytest.mark.parametrize("python", ["cp311", "cp313"])
-@pytest.mark.parametrize("platform", ["manylinux.*x86_64", "win_amd64", "macosx.*arm64", "macosx.*x86_64"])
-def test_every_official_blender_finds_its_wheel(python, platform):
+@pytest.mark.parametrize("python", ["cp311", "cp313", "cp314"])
+@pytest.mark.parametrize(
+    "platform", ["manylinux.*x86_64", "win_amd64", "win_arm64", "macosx.*arm64", "macosx.*x86_64"]
+)
+def test_every_blender_finds_its_wheel(python, platform):
     fitting = [
         name for name in wheels.wheel_names() if re.search(rf"-{python}-{python}-{platform}\.whl$", name)
     ]
@@ -73,3 +75,19 @@ def test_only_the_wheels_of_the_manifest_stay(monkeypatch, tmp_path):
     wheels.download()
     assert [file.name for file in folder.iterdir()] == wheels.wheel_names()[:1]
     assert asked == wheels.wheel_names()[1:]
+
+
+def test_what_is_cited_has_the_version():
+    assert f"\nversion: {MANIFEST['version']}\n" in (ROOT / "CITATION.cff").read_text()
+
+
+def test_every_platform_has_as_many_wheels():
+    """Blender's own names, by the end of the wheels'."""
+    ends = {
+        "linux-x64": "manylinux_2_28_x86_64", "macos-arm64": "macosx_11_0_arm64",
+        "macos-x64": "macosx_10_15_x86_64", "windows-arm64": "win_arm64", "windows-x64": "win_amd64",
+    }  # fmt: skip
+    assert sorted(MANIFEST["platforms"]) == sorted(ends)
+    assert len(wheels.wheel_names()) == 3 * len(ends)
+    for end in ends.values():
+        assert sum(name.endswith(f"{end}.whl") for name in wheels.wheel_names()) == 3

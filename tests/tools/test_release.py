@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `make release` refuses to publish."""
+
+import zipfile
+
+import pytest
+
+from tools import release, wheels
+from tools.project import ROOT, ToolError
+
+
+def faults_of(tmp_path, source, name="scene/a.py"):
+    path = tmp_path / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(source)
+    return list(release.code_faults(tmp_path))
+
+
+def test_the_extension_as_it_is_has_no_faults():
+    assert list(release.manifest_faults(wheels.manifest())) == []
+    assert list(release.code_faults(ROOT / "ocean_tweak")) == []
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ("import urllib.request", "urllib"),
+        ("from http import client", "http"),
+        ("def f():\n    import socket", "socket"),
+        ("import sys\nsys.path.append('x')", "sys.path"),
+        ("import sys\nsys.path[:0] = ['x']", "sys.path"),
+        ("import sys\ndel sys.path[0]", "sys.path"),
+        ("import sys\nsys.path += ['x']", "sys.path"),
+    ],
+)
+def test_network_and_search_path_are_faults(tmp_path, source, told):
+    (fault,) = faults_of(tmp_path, source)
+    assert told in fault
+    assert "scene/a.py" in fault
+
+
+@pytest.mark.parametrize(
+    "source", ["import sys\nfor entry in sys.path:\n    print(entry)", "from . import http", "import json"]
+)
+def test_what_only_looks_like_it_is_none(tmp_path, source):
+    assert faults_of(tmp_path, source) == []
+
+
+def test_what_is_allowed_in_one_file_is_not_in_another(tmp_path):
+    assert faults_of(tmp_path, "import socket", "cli/stopping.py") == []
+    assert len(faults_of(tmp_path, "import socket", "cli/other.py")) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"tagline": "Ends with a full stop."}, "tagline"),
+        ({"permissions": {"files": "x" * 65}}, "files"),
+        ({"permissions": {"network": "Fetch tides"}}, "offline"),
+        ({"version": "1.0"}, "version"),
+    ],
+)
+def test_manifests_that_are_sent_back(change, told):
+    (fault,) = release.manifest_faults({**wheels.manifest(), **change})
+    assert told in fault
+
+
+def test_zips_hold_nothing_else(tmp_path):
+    path = tmp_path / "a.zip"
+    names = [
+        "LICENSE", "NOTICES.md", "blender_manifest.toml", "ocean_tweak/ui/thumbnails/gale.jpg",
+        "wheels/openexr-3.5.3-cp313-cp313-win_amd64.whl",
+    ]  # fmt: skip
+    with zipfile.ZipFile(path, "w") as file:
+        for name in names:
+            file.writestr(name, "")
+    assert list(release.zip_faults(path)) == []
+    with zipfile.ZipFile(path, "a") as file:
+        file.writestr("ocean_tweak/library.so", "")
+        file.writestr("ocean_tweak/photo.jpg", "")
+    assert [fault.split(" holds ")[1].split(":")[0].split(",")[0] for fault in release.zip_faults(path)] == [
+        "ocean_tweak/library.so", "ocean_tweak/photo.jpg",
+    ]  # fmt: skip
+
+
+def test_notes_are_those_of_the_version(tmp_path):
+    path = tmp_path / "a.zip"
+    path.write_bytes(b"x" * 1_500_000)
+    version = wheels.manifest()["version"]
+    notes = release.release_notes([path], version)
+    assert notes.startswith(f"# Ocean Tweak {version}\n")
+    assert "| `a.zip` | 1.5 MB |" in notes
+    assert "### Added" in notes
+    assert "## [" not in notes
+    with pytest.raises(ToolError, match=r"no section \[9\.9\.9\]"):
+        release.release_notes([path], "9.9.9")
