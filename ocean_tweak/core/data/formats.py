@@ -25,7 +25,7 @@ LAYER = 1
 #: the waves themselves: raised whenever the same parameters give another surface
 SYNTHESIS = 1
 #: the foam: raised whenever the same waves get other foam. Only what holds foam is known by it
-FOAM = 3
+FOAM = 4
 
 
 #: how a bake's maps are encoded: raised whenever the same fields give another file. In 1 all were 32 bits

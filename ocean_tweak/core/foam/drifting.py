@@ -80,6 +80,7 @@ class DriftingFoam:
         breaking = breaking_of(model, self._compression_at(*self.places(now), now))
         if self._births is None:
             return seen(breaking, breaking, np.zeros_like(breaking))
+        self._births.settle()
         foam, age = self._births.left(now)
         if model.windrows is not None:
             count, (_, _, share) = self._x.size, self._sources

@@ -17,13 +17,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numerics.memo import total_bytes
+
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
 #: looks before a moment, and after it, that tell of it
 _SIDE = 3
 #: phase in rad by which the highest frequency that is kept may turn from a look to the next
-_REACH = 2.25
+_REACH = 2.45
 #: moments from a look to the next, at the most
 _MOST = 8
 #: power that is not within the band, over that which is
@@ -43,7 +45,7 @@ def stride_of(frequency: float, step: float) -> int:
 
 
 class Compressed(NamedTuple):
-    """Places as numbers of a flat array, and their compression. All others are less compressed."""
+    """Places as numbers of a flat array, the same array while they are the same, and their compression."""
 
     places: NDArray[np.intp]
     compression: RealArray
@@ -70,31 +72,35 @@ class Looks:
     @property
     def nbytes(self) -> int:
         """Bytes of all that is kept."""
-        return sum(array.nbytes for array in (*self._looks.values(), self._followed, *self._around))
+        return total_bytes((*self._looks.values(), self._followed, *self._around))
 
     def at(self, moment: int) -> Compressed:
-        """Where the sea is compressed by more than the threshold."""
+        """Places among which are all that are compressed by more than the threshold."""
         since = moment % self._stride
-        if since == 0:
-            look = self._look(moment)
-            if self._stride == 1:
-                self._looks.clear()  # none is used again
-            places = np.flatnonzero(look > self._threshold)
-            return Compressed(places, look[places])
         if self._after != moment - since:
             self._follow(moment - since)
+        if since == 0:
+            return Compressed(self._followed, self._around[_SIDE - 1])
         compression = np.zeros(self._followed.shape, np.float32)
+        share = np.empty_like(compression)
         for weight, values in zip(_weights(since, self._stride), self._around, strict=True):
-            compression += weight * values  # no product of matrices: how that adds up differs by machine
-        found = compression > self._threshold
-        return Compressed(self._followed[found], compression[found])
+            # no product of matrices: how that adds up differs by machine
+            compression += np.multiply(values, weight, out=share)
+        return Compressed(self._followed, compression)
 
     def _follow(self, look: int) -> None:
-        """Follow places from a look to the next."""
-        near = np.maximum(self._look(look), self._look(look + self._stride)) > _NEAR * self._threshold
+        """Follow places from a look to the next that may be compressed by more than the threshold."""
+        if self._stride == 1:
+            values = self._compression_at(look).ravel()
+            self._after, self._followed = look, np.flatnonzero(values > self._threshold)
+            self._around = [np.take(values, self._followed)] * _SIDE
+            return
+        here, following = self._look(look), self._look(look + self._stride)
+        near = here > _NEAR * self._threshold
+        near |= following > _NEAR * self._threshold
         around = [self._look(look + number * self._stride) for number in range(1 - _SIDE, _SIDE + 1)]
         self._after, self._followed = look, np.flatnonzero(near)
-        self._around = [values[self._followed] for values in around]
+        self._around = [np.take(values, self._followed) for values in around]
         self._looks = {
             at: values for at, values in self._looks.items() if at > look + (1 - _SIDE) * self._stride
         }

@@ -49,6 +49,9 @@ _WORK_OF_OLD_FOAM = 6
 #: from no foam to full foam the compression rises by this share of the threshold
 _SOFTNESS = 0.25
 
+#: strength of what is as good as no foam
+_NO_FOAM = 2.0**-10
+
 
 @dataclass(frozen=True)
 class FoamModel:
@@ -104,10 +107,21 @@ class FoamModel:
         time = float(now) if self.loop_duration is None else 0.0
         return self.drift[0] * time, self.drift[1] * time
 
-    def strength(self, compression: RealArray) -> Array:
-        """c in 0…1."""
-        x = np.clip((compression.astype(np.float64) / self.threshold - 1.0) / _SOFTNESS, 0.0, 1.0)
-        return x * x * (3.0 - 2.0 * x)
+    def strength(self, compression: RealArray, least: float = 0.0) -> RealArray:
+        """c in 0…1, in the precision of the compression; nowhere less than `least`."""
+        x = compression * compression.dtype.type(1.0 / (_SOFTNESS * self.threshold))
+        x -= compression.dtype.type(1.0 / _SOFTNESS)
+        np.clip(x, _rise_of(least) if least else 0.0, 1.0, out=x)
+        factor = x * compression.dtype.type(-2.0)
+        factor += compression.dtype.type(3.0)
+        x *= x
+        x *= factor
+        return x
+
+
+def _rise_of(strength: float) -> float:
+    """Share of the way from no foam to full foam at which it is born so strong: the smoothstep's inverse."""
+    return 0.5 - math.sin(math.asin(1.0 - 2.0 * strength) / 3.0)
 
 
 def births(count: int = 8) -> tuple[Array, Array]:
@@ -115,8 +129,7 @@ def births(count: int = 8) -> tuple[Array, Array]:
     which foam is born with each."""
     halvings = round(-math.log2(FAINTEST))
     strength = 2.0 ** ((np.arange(halvings * count) + 0.5) / count - halvings)
-    x = 0.5 - np.sin(np.arcsin(1.0 - 2.0 * strength) / 3.0)  # the smoothstep's inverse
-    return strength, 1.0 + _SOFTNESS * x
+    return strength, 1.0 + _SOFTNESS * np.array([_rise_of(each) for each in strength])
 
 
 class Whitecaps(NamedTuple):
@@ -141,6 +154,20 @@ class Whitecaps(NamedTuple):
         return seen(where.read(self.breaking).astype(np.float32), foam, age)
 
 
+class _Followed(NamedTuple):
+    """Births at places that are the same for some lattice times.
+
+    places, moved : as they are added
+    most, since : of each place, B in units after the lattice time `zero`, and lattice times from there to it
+    """
+
+    places: NDArray[np.intp]
+    moved: tuple[int, ...]
+    most: RealArray
+    since: NDArray[np.int8]
+    zero: int
+
+
 class Births:
     """At each place the birth of which there is most left, by now and at any later time.
 
@@ -156,31 +183,59 @@ class Births:
         self._unit = 2.0 ** (math.ceil(math.log2(4 * model.memory + 4)) - 23)
         self._latest = np.full(shape, -np.inf, np.float32)  # B
         self._moments = np.zeros(shape, np.int32)  # lattice times after the first
+        self._followed: _Followed | None = None
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the births and their times."""
-        return self._latest.nbytes + self._moments.nbytes
+        """Bytes of the births and their times, and of those that are followed."""
+        followed = self._followed or ()
+        return self._latest.nbytes + self._moments.nbytes + total_bytes(followed[2:])
 
     def add(self, compressed: Compressed, index: int, moved: tuple[int, ...] = (0,)) -> None:
-        """Those of a lattice time, moved by whole samples along each axis; of equal ones the later counts."""
-        if index - self._zero > self._model.memory:
-            self._latest -= np.float32(index - self._zero)
-            self._zero = index
-        strength = self._model.strength(compressed.compression)
-        born = strength >= FAINTEST
-        births = np.rint(self._halving / self._unit * np.log2(strength[born])).astype(np.float32)
+        """Those of a lattice time, moved by whole samples along each axis; of equal ones the later counts.
+
+        They are with all others from when these are `settled`.
+        """
+        places, compression = compressed
+        followed = self._followed
+        if followed is None or followed.places is not places or followed.moved != moved:
+            self.settle()
+            most, since = np.full(places.shape, -np.inf, np.float32), np.zeros(places.shape, np.int8)
+            followed = self._followed = _Followed(places, moved, most, since, index)
+        births = self._model.strength(compression.astype(np.float32, copy=False), _NO_FOAM)
+        np.log2(births, out=births)
+        births *= np.float32(self._halving / self._unit)
+        np.rint(births, out=births)
+        births += np.float32((index - followed.zero) / self._unit)
+        newer = births >= followed.most
+        np.maximum(followed.most, births, out=followed.most)
+        # a twentieth of the time that copying where something is true takes
+        later = np.int8(index - followed.zero) - followed.since
+        later *= newer.view(np.int8)
+        np.add(followed.since, later, out=followed.since)
+
+    def settle(self) -> None:
+        """Put what was born at places that are followed with what was born before."""
+        followed, self._followed = self._followed, None
+        if followed is None:
+            return
+        if followed.zero - self._zero > self._model.memory:
+            self._latest -= np.float32(followed.zero - self._zero)
+            self._zero = followed.zero
+        born = np.flatnonzero(followed.most >= self._halving * math.log2(FAINTEST) / self._unit)
+        births = np.take(followed.most, born)
         births *= np.float32(self._unit)
-        births += np.float32(index - self._zero)
-        places = compressed.places[born]
-        if any(moved):
+        births += np.float32(followed.zero - self._zero)
+        places = np.take(followed.places, born)
+        if any(followed.moved):
             axes = np.unravel_index(places, self._latest.shape)
-            to = tuple(axis + by for axis, by in zip(axes, moved, strict=True))
+            to = tuple(axis + by for axis, by in zip(axes, followed.moved, strict=True))
             places = np.ravel_multi_index(to, self._latest.shape, mode="wrap")
-        newer = births >= self._latest.take(places)
-        places = places[newer]
-        self._latest.put(places, births[newer])
-        self._moments.put(places, index - self._first)
+        newer = np.flatnonzero(births >= self._latest.take(places))
+        places = np.take(places, newer)
+        self._latest.put(places, np.take(births, newer))
+        since = np.take(followed.since, np.take(born, newer))
+        self._moments.put(places, since.astype(np.int32) + np.int32(followed.zero - self._first))
 
     def left(self, now: Fraction, part: slice = slice(None)) -> tuple[RealArray, RealArray]:
         """F of what is left by now, and its age in s; what is remembered beyond the faintest is none.
@@ -301,6 +356,7 @@ class FoamHistory:
             births.add(compressed, step, self._moved(step))
             self.tell(step - first + 1, index + 1 - first)
         assert births is not None
+        births.settle()
         is_new = self._births is None
         self._births, self._last = births, index
         if is_new:
