@@ -75,17 +75,22 @@ class Surfaces:
         """Make the foam, with its history or without; what it is kept under, before its channels' names."""
         if "foam" not in kept and (patient or maker.is_near(time)):
             known = kept.get("cusp") if self.ocean.foam_is_of_its_samples else None
-            self._keep(kept, "", maker.at(time, None if known is None else known[:-1, :-1]))
+            made = Whitecaps(*map(self._array, Whitecaps._fields))
+            inner = Whitecaps(*(field[:-1, :-1] for field in made))
+            maker.at(time, None if known is None else known[:-1, :-1], inner)
+            self._keep(kept, "", made)
         if "foam" in kept:
             return ""
         if _INSTANT + "foam" not in kept:
-            foam = _instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
+            foam = self._array(_INSTANT + "foam")
+            foam[:-1, :-1] = _instant_foam(self.ocean.parameters, kept["cusp"][:-1, :-1])
             self._keep(kept, _INSTANT, Whitecaps(foam, foam, np.zeros_like(foam)))
         return _INSTANT
 
     def _keep(self, kept: dict[str, RealArray], before: str, made: Whitecaps) -> None:
         for name, field in made._asdict().items():
-            kept[before + name] = self._closed(before + name, field)
+            _close(field)
+            kept[before + name] = field
 
     def foam_of(self, is_whole: bool) -> FoamMaker:
         """What makes the foam of whole frames, or of those between."""
@@ -99,13 +104,6 @@ class Surfaces:
         for field in made.values():
             _close(field)
         kept.update(made)
-
-    def _closed(self, name: str, field: RealArray) -> RealArray:
-        """An (N, N) field with its far edges."""
-        result = self._array(name)
-        result[:-1, :-1] = field
-        _close(result)
-        return result
 
     def _array(self, name: str) -> RealArray:
         if name in self._spare:
@@ -136,15 +134,18 @@ class FoamMaker:
         # the window's thread and the one that makes foam ahead of it
         self._busy = threading.Lock()
 
-    def at(self, time: Fraction, compression: RealArray | None = None) -> Whitecaps:
+    def at(
+        self, time: Fraction, compression: RealArray | None = None, out: Whitecaps | None = None
+    ) -> Whitecaps:
         """(N, N) each. It may be called on any thread, and waits for another one.
 
         compression : (M, M) that the foam of this time is made of, where it is known
+        out : arrays to fill
         """
         with self._busy:
             if self._history is None:
                 self._history = self._ocean.new_foam_history()
-            made = self._history.whitecaps(time, compression)
+            made = self._history.whitecaps(time, compression, out)
             self._last = self._reduced(time)
         return made
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Area, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer
+from ocean_tweak.core.foam import laying
 from ocean_tweak.core.foam.model import FoamHistory, FoamModel, births
 from ocean_tweak.core.foam.threshold import (
     foam_outlook,
@@ -18,7 +19,6 @@ from ocean_tweak.core.foam.threshold import (
     gaussian_strains,
     strain_covariances,
 )
-from ocean_tweak.core.numerics.interpolation import resampled
 from ocean_tweak.core.sea.regions import TILE
 from ocean_tweak.core.synthesis.channels import OF_MEMORY
 
@@ -351,10 +351,25 @@ def test_covariances_of_strains_are_those_of_the_fields() -> None:
         np.testing.assert_allclose(fields.T @ fields / len(fields), expected, rtol=1e-4, atol=1e-9)
 
 
-def test_resampling_is_bilinear_and_periodic() -> None:
+def put_on(field: np.ndarray, samples: int, rows: int) -> np.ndarray:
+    """A field on other samples, so many rows at a time."""
+    finer = laying.Finer(len(field), samples)
+    blocks = [slice(first, min(first + rows, samples)) for first in range(0, samples, rows)]
+
+    def given(first: int, count: int) -> list[np.ndarray]:
+        return [laying.rows_of(field, first, count)]
+
+    return np.concatenate([finer.rows(block, given, laying.linear)[0] for block in blocks])
+
+
+@pytest.mark.parametrize("rows", [1, 2, 4])
+def test_resampling_is_bilinear_and_periodic(rows: int) -> None:
     field = np.array([[0.0, 1.0], [2.0, 3.0]], np.float32)
     np.testing.assert_allclose(
-        resampled(field, 4),
+        put_on(field, 4, rows),
         [[0, 0.5, 1, 0.5], [1, 1.5, 2, 1.5], [2, 2.5, 3, 2.5], [1, 1.5, 2, 1.5]],
     )
-    np.testing.assert_array_equal(resampled(resampled(field, 8), 2), field)
+    np.testing.assert_array_equal(put_on(put_on(field, 8, rows), 2, rows), field)
+    thirds = put_on(field, 6, rows)
+    np.testing.assert_allclose(thirds[0], np.array([0, 1, 2, 3, 2, 1]) / 3, rtol=1e-6)
+    np.testing.assert_allclose(put_on(thirds, 4, rows)[::2, ::2], field, atol=1e-6)

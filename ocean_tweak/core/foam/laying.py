@@ -8,14 +8,13 @@ an old birth would be the age of neither.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics.choice import chosen
 from ..numerics.memo import total_bytes
-from ..numerics.threads import row_blocks, run_blocks
 from .windrows import Windrows
 
 RealArray = NDArray[np.floating]
@@ -44,9 +43,9 @@ class Drawing:
 
     def rows(self, left: Foam, first: int, count: int) -> Foam:
         """(count, M) old foam and its age as they lie in the windrows, from a row on; see `laid`."""
-        foam, age = (_rows(field[:-1, :-1], first, count) for field in left)
-        at = _rows(self._first, first, count).astype(np.intp)
-        u, v = _rows(self._u, first, count), _rows(self._v, first, count)
+        foam, age = (rows_of(field[:-1, :-1], first, count) for field in left)
+        at = rows_of(self._first, first, count).astype(np.intp)
+        u, v = rows_of(self._u, first, count), rows_of(self._v, first, count)
         # all places are there; to let them wrap is quicker than to have them checked
         flat, below = [field.reshape(-1) for field in left], foam.shape[1] + 1
         here, beside, above, across = (
@@ -54,34 +53,26 @@ class Drawing:
             for offset in (0, 1, below, below + 1)
         )
         drawn = between(between(here, beside, u), between(above, across, u), v)
-        return self._windrows.drawn_out(foam, age, *drawn, _rows(self._share, first, count))
+        return self._windrows.drawn_out(foam, age, *drawn, rows_of(self._share, first, count))
 
 
-def laid(left: Foam, shift: Sequence[float], drawing: Drawing | None, workers: int) -> Foam:
-    """(M, M) foam that is left, drawn out and then read `shift` rows and columns on.
+def laid(left: Foam, shift: Sequence[float], drawing: Drawing | None, first: int, count: int) -> Foam:
+    """(count, M) rows of foam that is left, from one on, drawn out and then read `shift` rows and columns on.
 
     left : (M+1, M+1), whose last row and column are the first ones again
     """
-    n = len(left[0]) - 1
-    foam, age = np.empty((n, n), np.float32), np.empty((n, n), np.float32)
     (down, by_rows), (across, by_columns) = map(_whole_and_share, shift)
-
-    def lay(block: slice) -> None:
-        count = block.stop - block.start
-        at = block.start + down, count + (1 if by_rows else 0)
-        if drawing is None:
-            found = [_rows(field[:-1, :-1], *at) for field in left]
-        else:
-            found = [*drawing.rows(left, *at)]
-        if by_rows:
-            found = [*between([field[:-1] for field in found], [field[1:] for field in found], by_rows)]
-        if across:
-            found = [np.roll(field, -across, axis=1) for field in found]
-        if by_columns:
-            found = [*between(found, [np.roll(field, -1, axis=1) for field in found], by_columns)]
-        foam[block], age[block] = found
-
-    run_blocks(lay, row_blocks(n, n), workers)
+    at = first + down, count + (1 if by_rows else 0)
+    found = [rows_of(field[:-1, :-1], *at) for field in left]
+    if drawing is not None:
+        found = [*drawing.rows(left, *at)]
+    if by_rows:
+        found = [*between([field[:-1] for field in found], [field[1:] for field in found], by_rows)]
+    if across:
+        found = [np.roll(field, -across, axis=1) for field in found]
+    if by_columns:
+        found = [*between(found, [np.roll(field, -1, axis=1) for field in found], by_columns)]
+    foam, age = found
     return foam, age
 
 
@@ -90,41 +81,66 @@ def _whole_and_share(shift: float) -> tuple[int, np.float32]:
     return whole, np.float32(shift - whole)
 
 
-def _rows(field: RealArray, first: int, count: int) -> RealArray:
+def rows_of(field: RealArray, first: int, count: int) -> RealArray:
     """So many rows of a field that repeats, from any row on."""
     n = len(field)
     first %= n
     if first + count <= n:
         return field[first : first + count]
-    return np.concatenate((field[first:], field[: first + count - n]))
+    return np.take(field, range(first, first + count), 0, mode="wrap")
 
 
-def put_on(foam: Foam, samples: int) -> Foam:
-    """Periodic (M, M) foam on (samples, samples), the first sample being the same."""
-    for axis in (0, 1):
-        if foam[0].shape[axis] != samples:
-            foam = _stretched(foam, axis, samples)
-    return foam
+#: some fields a share of the way from samples to the next ones
+Mix = Callable[[Sequence[RealArray], Sequence[RealArray], RealArray | np.float32], Sequence[RealArray]]
 
 
-def _stretched(foam: Foam, axis: int, samples: int) -> Foam:
-    own = foam[0].shape[axis]
-    if samples % own:
+class Finer:
+    """(M, M) fields that repeat, put on more or fewer samples, (N, N): the first one is the same."""
+
+    def __init__(self, own: int, samples: int) -> None:
         place = np.arange(samples) * (own / samples)
-        before = place.astype(np.intp)
-        share = (place - before).astype(np.float32).reshape((-1, 1) if axis == 0 else (1, -1))
-        near, far = ([np.take(field, at, axis) for field in foam] for at in (before, (before + 1) % own))
-        return between(near, far, share)
-    # so many to a sample: each of them has one share, and whole arrays are read, not places
-    times = samples // own
-    shape = (samples, foam[0].shape[1]) if axis == 0 else (foam[0].shape[0], samples)
-    result = np.empty(shape, np.float32), np.empty(shape, np.float32)
-    after = [np.roll(field, -1, axis) for field in foam]
-    for number in range(times):
-        found = between(foam, after, np.float32(number / times)) if number else foam
-        for whole, field in zip(result, found, strict=True):
-            whole[(slice(None),) * axis + (slice(number, None, times),)] = field
-    return result
+        self._own, self._samples = own, samples
+        self._before = place.astype(np.intp)
+        self._share = (place - self._before).astype(np.float32)
+
+    def rows(
+        self, block: slice, given: Callable[[int, int], Sequence[RealArray]], mix: Mix
+    ) -> Sequence[RealArray]:
+        """(rows, N) fields.
+
+        block : the rows of N
+        given : so many rows of M, from one on, which may be beyond the last
+        """
+        if self._own == self._samples:
+            return given(block.start, block.stop - block.start)
+        before, share = self._before[block], self._share[block, np.newaxis]
+        first = int(before[0])
+        fields = given(first, int(before[-1]) - first + 2)
+        near, far = ([np.take(field, before + (step - first), 0) for field in fields] for step in (0, 1))
+        return self._along_rows(mix(near, far, share), mix)
+
+    def _along_rows(self, fields: Sequence[RealArray], mix: Mix) -> Sequence[RealArray]:
+        if self._samples % self._own:
+            near, far = (
+                [np.take(field, (self._before + step) % self._own, 1) for field in fields] for step in (0, 1)
+            )
+            return mix(near, far, self._share)
+        # so many to a sample: each of them has one share, and whole rows are read, not places
+        times = self._samples // self._own
+        result = [np.empty((len(field), self._samples), np.float32) for field in fields]
+        after = [np.roll(field, -1, 1) for field in fields]
+        for number in range(times):
+            found = mix(fields, after, np.float32(number / times)) if number else fields
+            for whole, field in zip(result, found, strict=True):
+                whole[:, number::times] = field
+        return result
+
+
+def linear(
+    near: Sequence[RealArray], far: Sequence[RealArray], share: RealArray | np.float32
+) -> Sequence[RealArray]:
+    """Plain fields a share of the way from one sample to the next."""
+    return [field + share * (other - field) for field, other in zip(near, far, strict=True)]
 
 
 def between(near: Sequence[RealArray], far: Sequence[RealArray], share: RealArray | np.float32) -> Foam:

@@ -19,12 +19,13 @@ import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..numerics.interpolation import between, close, resampled
+from ..numerics.interpolation import between, close
 from ..numerics.memo import MEMO, total_bytes
 from ..numerics.threads import default_workers, row_blocks, run_blocks
 from . import laying
@@ -295,27 +296,43 @@ class FoamHistory:
         """Bytes of the births, of the looks that they are from, and of what draws them out."""
         return total_bytes((self._births, self._looks, self._drawing))
 
-    def whitecaps(self, time: float | Fraction, compression: RealArray | None = None) -> Whitecaps:
+    def whitecaps(
+        self,
+        time: float | Fraction,
+        compression: RealArray | None = None,
+        out: Whitecaps | None = None,
+    ) -> Whitecaps:
         """(N, N) foam at a time.
 
         compression : (M, M) of that time, where it is known already
+        out : arrays to fill
         """
-        model = self._model
-        now = model.reduced(time)
+        now, n = self._model.reduced(time), self._resolution
+        made = out or Whitecaps(*(np.empty((n, n), np.float32) for _ in Whitecaps._fields))
+        workers = self._workers or default_workers(_WORK_OF_OLD_FOAM * n * n)
         with self._busy:
             if compression is None:
                 compression = self._compression_at(now)
-            breaking = resampled(breaking_of(model, compression), self._resolution)
-            if model.memory == 0:
-                return seen(breaking, breaking, np.zeros_like(breaking))
-            old = self._old_foam(now, len(compression))
-        return seen(breaking, *laying.put_on(old, self._resolution))
+            breaking = breaking_of(self._model, compression)
+            old = self._old_foam(now, len(breaking), workers) if self._model.memory else None
+            finer = laying.Finer(len(breaking), n)
 
-    def _old_foam(self, now: Fraction, n: int) -> laying.Foam:
-        """(n, n) what is left of earlier foam where it lies now, and its age."""
+            def lay(rows: slice) -> None:
+                def breaks(first: int, count: int) -> list[RealArray]:
+                    return [laying.rows_of(breaking, first, count)]
+
+                (new,) = finer.rows(rows, breaks, laying.linear)
+                foam = (new, np.zeros_like(new)) if old is None else finer.rows(rows, old, laying.between)
+                for whole, part in zip(made, seen(new, *foam), strict=True):
+                    whole[rows] = part
+
+            run_blocks(lay, row_blocks(n, n), workers)
+        return made
+
+    def _old_foam(self, now: Fraction, n: int, workers: int) -> Callable[[int, int], laying.Foam]:
+        """Gives so many rows, from one on, of what is left of earlier foam where it lies now, and its age."""
         model = self._model
         births = self._births_until(math.floor(now / model.step), n)
-        workers = self._workers or default_workers(_WORK_OF_OLD_FOAM * n * n)
         left = np.empty((n + 1, n + 1), np.float32), np.empty((n + 1, n + 1), np.float32)
 
         def fill(rows: slice) -> None:
@@ -325,11 +342,11 @@ class FoamHistory:
         drifted, drift = model.drifted(now), [v * float(now) for v in model.drift]
         past = [a - b for a, b in zip(drift, drifted, strict=True)]
         if any(past):  # windrows stand still
-            for whole, moved in zip(left, laying.laid(left, self._samples(past), None, workers), strict=True):
+            for whole, moved in zip(left, laying.laid(left, self._samples(past), None, 0, n), strict=True):
                 whole[:-1, :-1] = moved
         for field in left:
             close(field)
-        return laying.laid(left, self._samples(drifted), self._drawing, workers)
+        return partial(laying.laid, left, self._samples(drifted), self._drawing)
 
     def _samples(self, by: Sequence[float]) -> list[float]:
         """Rows and columns on from which foam is read that has moved by x and y in m."""

@@ -117,14 +117,6 @@ def stretched(field: RealArray, axis: int, samples: int) -> RealArray:
     return result
 
 
-def resampled(field: RealArray, resolution: int) -> RealArray:
-    """A periodic (M, M) field on (N, N) samples, bilinear; the first sample is the same."""
-    size = field.shape[0]
-    if size == resolution:
-        return field
-    return stretched(stretched(wrapped(field), 0, resolution), 1, resolution)[:-1, :-1]
-
-
 def spline_weights(position: Array) -> tuple[NDArray[np.intp], Array]:
     """The three samples around each place, (3, …), and how much each counts there; they add up to 1."""
     nearest, off = _nearest(position)
