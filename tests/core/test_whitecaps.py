@@ -133,9 +133,10 @@ def test_windrows_lie_along_any_wind(direction: float) -> None:
     rows = windrows(25.0, direction, 1000.0, 3)
     assert rows is not None
     x, y = np.random.default_rng(4).uniform(0.0, 1000.0, (2, 2000))
-    here = rows.sources(x, y)[2]
+    foam = np.full(x.shape, 0.2, np.float32)
+    here = rows.gathered(foam, rows.sources(x, y)[2])
     along, across = (
-        np.std(rows.sources(x + math.cos(angle), y + math.sin(angle))[2] - here)
+        np.std(rows.gathered(foam, rows.sources(x + math.cos(angle), y + math.sin(angle))[2]) - here)
         for angle in (direction, direction + 0.5 * math.pi)
     )
     assert across > 4.0 * along
@@ -163,17 +164,64 @@ def test_windrows_repeat_with_the_sea_and_keep_the_mean(direction: float) -> Non
     rows = windrows(25.0, direction, 600.0, 3)
     assert rows is not None
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0.0, 600.0, 4.0), np.arange(0.0, 600.0, 4.0)))
-    source_x, source_y, share = rows.sources(x, y)
+    source_x, source_y, lines = rows.sources(x, y)
     again_x, again_y, again = rows.sources(x + 1200.0, y - 600.0)
-    for found, expected in ((again_x - 1200.0, source_x), (again_y + 600.0, source_y), (again, share)):
+    for found, expected in ((again_x - 1200.0, source_x), (again_y + 600.0, source_y), (again, lines)):
         assert np.mean(np.abs(found - expected) > 1e-3) < 1e-3  # but where a cell ends
     # drawn along the wind, by a part of half a cell
     along = (source_x - x) * math.cos(direction) + (source_y - y) * math.sin(direction)
     across = (source_y - y) * math.cos(direction) - (source_x - x) * math.sin(direction)
     assert 15.0 < np.max(np.abs(along)) < 20.0
     assert np.max(np.abs(across)) < 0.1 * np.max(np.abs(along))
+    share = rows.gathered(np.full(lines.shape, 0.2, np.float32), lines) / 0.2
     assert np.mean(share) == pytest.approx(1.0, abs=0.15)
     assert np.max(share) / np.min(share) > 10.0
+
+
+@pytest.mark.parametrize("spacing", [0.5, 8.0])
+def test_gathering_foam_into_lines_keeps_how_much_there_is(spacing: float) -> None:
+    """Of thin foam and thick, at places all over ten square kilometres and of several seeds."""
+    seas = []
+    for seed in range(4):
+        rows = windrows(25.0, 0.4, 3200.0, seed, spacing)
+        assert rows is not None
+        seas.append(rows.sources(*np.random.default_rng(seed).uniform(0.0, 3200.0, (2, 20000)))[2])
+    pattern = np.concatenate(seas)
+    for share in (0.02, 0.1, 0.3, 0.6, 0.95):
+        gathered = rows.gathered(np.full(pattern.shape, share, np.float32), pattern)
+        assert np.mean(gathered) == pytest.approx(share, rel=0.05, abs=0.005)
+        assert gathered.min() >= 0.0
+        assert gathered.max() <= 1.0
+    assert not np.any(rows.gathered(np.zeros(pattern.shape, np.float32), pattern))
+    assert np.std(rows.gathered(np.full(pattern.shape, 0.2, np.float32), pattern)) > 0.15
+
+
+def lines_across(spacing: float, step: float) -> np.ndarray:
+    """(40, places) logarithms of what lines gather, on ways across the wind, places `step` m apart."""
+    rows = windrows(25.0, 0.0, 4096.0, 5, spacing)
+    assert rows is not None
+    x, y = np.meshgrid(np.linspace(0.0, 4096.0, 40, endpoint=False), np.arange(0.0, 4096.0, step))
+    return np.log(rows.sources(x, y)[2].T)
+
+
+def test_lines_have_all_spacings_from_metres_to_a_hundred_and_more() -> None:
+    """Each octave of them across the wind has a part of the variance, and none has most of it."""
+    power = np.mean(np.abs(np.fft.rfft(lines_across(0.0, 1.0), axis=1)) ** 2, axis=0)
+    spacing = 4096.0 / np.maximum(np.arange(len(power)), 1e-3)
+    octaves = [5.0 * 2.0**number for number in range(6)]
+    parts = [np.sum(power[(spacing >= low) & (spacing < 2.0 * low)]) / np.sum(power[1:]) for low in octaves]
+    assert min(parts) > 0.05
+    assert max(parts) < 0.35
+
+
+def test_lines_that_samples_cannot_hold_are_left_out() -> None:
+    """Neighbours tell of each other on coarse samples too; lines of all widths there would be speckle."""
+    for spacing in (2.0, 8.0, 16.0):
+        held = lines_across(spacing, spacing)
+        alike = np.corrcoef(held[:, 1:].ravel(), held[:, :-1].ravel())[0, 1]
+        assert alike > 0.4
+    everything = lines_across(0.0, 16.0)
+    assert np.corrcoef(everything[:, 1:].ravel(), everything[:, :-1].ravel())[0, 1] < 0.3
 
 
 def test_windrows_leave_the_new_foam_and_the_mean_of_the_old() -> None:

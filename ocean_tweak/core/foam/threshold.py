@@ -273,7 +273,9 @@ def foam_model(
     drift, rows = (0.0, 0.0), None
     threshold = breaking = frequency = math.inf
     if wind is not None:
-        rows = windrows(wind.speed, wind.direction, parameters.domain_size, parameters.seed)
+        # separate patches have finer samples than those over the domain
+        finest = parameters.patches[-1].spacing if parameters.is_cascade else spacing
+        rows = windrows(wind.speed, wind.direction, parameters.domain_size, parameters.seed, finest)
         speed = foam.drift * wind.speed
         drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
     coverage = _coverage(parameters)

@@ -3,8 +3,13 @@
 
 Water that rolls about axes along the wind (Langmuir 1938) draws foam out and gathers it. So old foam is read
 not where it was born but nearer to the middle of a cell that is long along the wind: in each cell it is
-stretched about that middle. Across the wind the cells are shifted against each other. What is seen there
-counts more in some lines than in others, 1 on average, so that the mean of the foam stays what it was.
+stretched about that middle. Across the wind the cells are shifted against each other.
+
+What was drawn out is gathered by a pattern of lines g that is normally distributed over the water: foam that
+covered the share F covers F' with F'/(1 - F') = o(F) exp(σg). The odds o(F) are those with which the mean of
+F' over g is F: so there is as much foam as before, closed where it was thick, threads where it was thin. The
+lines have all spacings that are seen at sea, the narrow ones between the wide ones. Those narrower than what
+the samples hold are left out of g and of its variance, as what cannot be told apart is even.
 
 Cells and lines drift with the foam. They are made of waves that fit the side of the sea's square, so they
 are the same on a tile, on one grid of several patches, and at places; in a loop they stand still.
@@ -16,6 +21,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from statistics import NormalDist
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,20 +39,50 @@ _FROM, _WHOLE = 13.9, 20.8
 #: m; length of a cell along the wind, by how much foam in it is stretched, and how far neighbours are shifted
 #: against each other, rad. A sea that is shorter than two cells has none
 _CELL, _STRETCH, _SHIFT = 50.0, 4.0, 2.0
-#: wavelengths in m across the wind of what shifts cells, and of what gathers foam into lines
-_FINE, _COARSE = (12.0, 60.0), (30.0, 100.0)
-#: how much longer they are along the wind
-_ASPECT = 8.0
-#: waves of which each is made
-_WAVES = 16
-#: how much more lines hold than what is between them: standard deviation of the logarithm, the most over the
-#: mean, and what that keeps of the mean
-_CONTRAST, _MOST, _KEPT = 1.0, 4.0, 0.931
+#: of the variance that says where foam lies, the lines' share where samples hold them all; and σ² over the
+#: ratio of that share to the rest: a logistic distribution against a normal one
+_GATHERED, _LOGISTIC = 0.7, 2.9
+#: steps of the share F in the table of o(F), of the logarithm of odds that it is made of, and of g
+_SHARES, _ODDS, _NORMAL = 4096, np.linspace(-14.0, 14.0, 561), np.linspace(-5.0, 5.0, 161)
 #: s; half of the foam that a crest has left is drawn out in this time
-_DRAWN_IN = 0.4
+_DRAWN_IN = 0.9
+#: samples in a wave, or from a thread to the next, from which on it begins to count, and counts whole
+_HELD = (2.0, 4.0)
+
+#: of threads: what their waves are at their edge, in standard deviations; narrower ones would be dotted
+_THINNEST = 0.03
 
 #: places that are looked at together
 _CHUNK = 2**16
+
+
+class _Kind(NamedTuple):
+    """Waves of one kind.
+
+    across : their shortest and longest wavelength across the wind, m
+    aspect : how much longer they are along it
+    number : of the waves
+    variance : of what they are in the lines, of 1
+    threads : whether lines are where the waves are 0: threads that wander, part and meet, two to a wave;
+        otherwise patches where they are high
+    """
+
+    across: tuple[float, float]
+    aspect: float
+    number: int
+    variance: float
+    threads: bool
+
+
+#: what shifts cells
+_SHIFTING = _Kind((12.0, 60.0), 8.0, 12, 1.0, False)
+#: wide lines, narrow lines in between, streaks, and the stretches of sea that have more lines or fewer
+_LINES = (
+    _Kind((60.0, 300.0), 14.0, 12, 0.34, True),
+    _Kind((16.0, 60.0), 16.0, 14, 0.34, True),
+    _Kind((5.0, 20.0), 16.0, 14, 0.18, False),
+    _Kind((60.0, 250.0), 2.5, 10, 0.14, False),
+)
 
 
 @dataclass(frozen=True)
@@ -56,78 +93,137 @@ class Windrows:
     direction : of the wind, rad
     side : of the square that they repeat with, m
     seed : of the sea
+    spacing : of the samples that they are seen on, m
     """
 
     strength: float
     direction: float
     side: float
     seed: int
+    spacing: float
 
     def sources(self, x: Array, y: Array) -> tuple[Array, Array, RealArray]:
-        """Where the foam comes from that is drawn out to places in m, which drift with it, and how much of
-        it there is, 1 on average; of the places' shape.
+        """Where the foam comes from that is drawn out to places in m, which drift with it, and the lines that
+        gather it, exp(σg); of the places' shape.
         """
-        along_x, along_y, shift, gather = self._waves
+        pattern = self._pattern
+        along_x, along_y = pattern.cell
         source_x, source_y = np.empty(x.shape), np.empty(y.shape)
-        share = np.empty(x.shape, np.float32)
+        lines = np.empty(x.shape, np.float32)
         length = math.hypot(along_x, along_y)
         for part in _parts(x.size):
             px, py = x.flat[part], y.flat[part]
-            phase = along_x * px + along_y * py + _SHIFT * shift.at(px, py)
+            phase = along_x * px + along_y * py + _SHIFT * pattern.shift.at(px, py)
             # from the middle of its cell, in radians of the cell
             off = np.mod(phase + math.pi, 2.0 * math.pi) - math.pi
             off *= (1.0 - 1.0 / _STRETCH) / length
             source_x.flat[part] = px - off * (along_x / length)
             source_y.flat[part] = py - off * (along_y / length)
-            share.flat[part] = _gathered(gather.at(px, py))
-        return source_x, source_y, share
+            lines.flat[part] = np.exp(pattern.contrast * pattern.lines_at(px, py))
+        return source_x, source_y, lines
+
+    def gathered(self, foam: RealArray, lines: RealArray) -> RealArray:
+        """The share in 0…1 that foam covers when it lies in lines; none stays none.
+
+        lines : exp(σg), as `sources` gives it
+        """
+        at = (foam * np.float32(_SHARES) + np.float32(0.5)).astype(np.int32)
+        odds = np.take(_odds(self._pattern.contrast), at, mode="clip")
+        odds *= lines
+        return np.asarray(odds / (odds + np.float32(1.0)))
 
     def drawn_out(
-        self, foam: RealArray, age: RealArray, drawn: RealArray, drawn_age: RealArray, share: RealArray
+        self, foam: RealArray, age: RealArray, drawn: RealArray, drawn_age: RealArray, lines: RealArray
     ) -> tuple[RealArray, RealArray]:
         """Old foam and its age of what lies where it was born, and of what was drawn out.
 
         The first goes over into the second as it ages. The age is that of the larger part.
         """
         own = foam * (1.0 - self.strength * _drawn(age))
-        other = drawn * share * (self.strength * _drawn(drawn_age))
+        other = self.gathered(drawn, lines) * (self.strength * _drawn(drawn_age))
         return np.minimum(own + other, np.float32(1.0)), chosen(other > own, drawn_age, age)
 
     @property
-    def _waves(self) -> tuple[float, float, _Waves, _Waves]:
-        return _waves(self.direction, self.side, self.seed)
+    def _pattern(self) -> _Pattern:
+        return _pattern(self.direction, self.side, self.seed, self.spacing)
 
 
-def windrows(wind_speed: float, direction: float, side: float, seed: int) -> Windrows | None:
+def windrows(
+    wind_speed: float, direction: float, side: float, seed: int, spacing: float = 0.0
+) -> Windrows | None:
     """The windrows of a wind in m/s at 10 m; None where it is too weak, or the sea too small."""
     part = min(1.0, max(0.0, (wind_speed - _FROM) / (_WHOLE - _FROM)))
     strength = part * part * (3.0 - 2.0 * part)
     if strength == 0.0 or side < 2.0 * _CELL:
         return None
-    return Windrows(strength, direction, side, seed)
+    return Windrows(strength, direction, side, seed, spacing)
 
 
 @dataclass(frozen=True)
 class _Waves:
-    """A sum of waves with a variance of 1: wave vectors in rad/m and phases."""
+    """A sum of waves: wave vectors in rad/m, amplitudes and phases."""
 
     kx: Array
     ky: Array
+    amplitude: Array
     phase: Array
 
     def at(self, x: Array, y: Array) -> RealArray:
         """Its values at places in m, float32."""
         total = np.zeros(x.shape, np.float32)
-        for kx, ky, phase in zip(self.kx, self.ky, self.phase, strict=True):
+        for kx, ky, amplitude, phase in zip(self.kx, self.ky, self.amplitude, self.phase, strict=True):
+            if amplitude == 0.0:
+                continue
             angle = (kx * x + ky * y + phase) / (2.0 * math.pi)
             angle -= np.floor(angle)
-            total += np.cos(angle.astype(np.float32) * np.float32(2.0 * math.pi))
-        return total * np.float32(math.sqrt(2.0 / len(self.kx)))
+            total += np.float32(amplitude) * np.cos(angle.astype(np.float32) * np.float32(2.0 * math.pi))
+        return total
+
+    @property
+    def variance(self) -> float:
+        return float(np.sum(self.amplitude**2)) / 2.0
 
 
-@lru_cache(maxsize=8)
-def _waves(direction: float, side: float, seed: int) -> tuple[float, float, _Waves, _Waves]:
-    """The wave vector of the cells, and what shifts them and gathers foam, on the lattice of the square."""
+@dataclass(frozen=True)
+class _Pattern:
+    """What the samples hold of the windrows.
+
+    cell : wave vector of the cells, rad/m
+    shift : that neighbouring cells have against each other
+    lines : waves of each kind of lines
+    """
+
+    cell: tuple[float, float]
+    shift: _Waves
+    lines: tuple[_Waves, ...]
+
+    @property
+    def held(self) -> float:
+        """Share of the lines' variance that is held, 0…1."""
+        return sum(kind.variance * waves.variance for kind, waves in zip(_LINES, self.lines, strict=True))
+
+    @property
+    def contrast(self) -> float:
+        """σ, the standard deviation of the logarithm of odds that lines make."""
+        gathered = _GATHERED * self.held
+        return math.sqrt(_LOGISTIC * gathered / (1.0 - gathered))
+
+    def lines_at(self, x: Array, y: Array) -> RealArray:
+        """g at places in m: of a normal distribution with the variance 1, or 0 where nothing is held."""
+        total = np.zeros(x.shape, np.float32)
+        for kind, waves in zip(_LINES, self.lines, strict=True):
+            if waves.variance == 0.0:
+                continue
+            value = waves.at(x, y) * np.float32(1.0 / math.sqrt(waves.variance))
+            if kind.threads:
+                value = np.interp(np.abs(value), *_threads()).astype(np.float32)
+            total += np.float32(math.sqrt(kind.variance * waves.variance)) * value
+        return total * np.float32(1.0 / math.sqrt(self.held)) if self.held else total
+
+
+@lru_cache(maxsize=16)
+def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Pattern:
+    """The windrows on the lattice of the square."""
     step = 2.0 * math.pi / side
 
     def fitting(along: Array, across: Array) -> tuple[Array, Array]:
@@ -136,21 +232,41 @@ def _waves(direction: float, side: float, seed: int) -> tuple[float, float, _Wav
             (s * along + c * across) / step
         )
 
-    def waves(kind: int, shortest: float, longest: float) -> _Waves:
-        key = random.mix(np.arange(_WAVES, dtype=np.uint64) + np.uint64(random.combine(seed, kind)))
+    def waves(stream: int, kind: _Kind) -> _Waves:
+        key = random.mix(np.arange(kind.number, dtype=np.uint64) + np.uint64(random.combine(seed, stream)))
+        shortest, longest = kind.across
+        longest = min(longest, 0.5 * side)
         # as many in each octave, one after the other
-        octaves = (np.arange(_WAVES) + random.uniform(key, 0)) / _WAVES
+        octaves = (np.arange(kind.number) + random.uniform(key, 0)) / kind.number
         across = 2.0 * math.pi / longest * (longest / shortest) ** octaves
-        along = across / _ASPECT * random.normal(key, 1)
-        return _Waves(*fitting(along, across), 2.0 * math.pi * random.uniform(key, 3))
+        along = across / kind.aspect * random.normal(key, 1)
+        kx, ky = fitting(along, across)
+        length = 2.0 * math.pi / np.maximum(np.hypot(kx, ky), 0.5 * step)
+        samples = length / max(spacing, 1e-6) / (2.0 if kind.threads else 1.0)
+        held = np.clip((samples - _HELD[0]) / (_HELD[1] - _HELD[0]), 0.0, 1.0)
+        return _Waves(kx, ky, held * math.sqrt(2.0 / kind.number), 2.0 * math.pi * random.uniform(key, 3))
 
     (cell_x,), (cell_y,) = fitting(np.array([2.0 * math.pi / _CELL]), np.zeros(1))
-    return float(cell_x), float(cell_y), waves(1, *_FINE), waves(2, *_COARSE)
+    lines = tuple(waves(stream, kind) for stream, kind in enumerate(_LINES, 2))
+    return _Pattern((float(cell_x), float(cell_y)), waves(1, _SHIFTING), lines)
 
 
-def _gathered(waves: RealArray) -> RealArray:
-    share = np.minimum(np.exp(_CONTRAST * waves - 0.5 * _CONTRAST**2), np.float32(_MOST))
-    return np.asarray(share / np.float32(_KEPT))
+@lru_cache(maxsize=1)
+def _threads() -> tuple[Array, Array]:
+    """Distances of a normal number from 0, and what is normally distributed and highest where that is 0."""
+    normal, away = NormalDist(), np.linspace(_THINNEST, 5.0, 500)
+    return away, np.array([-normal.inv_cdf(2.0 * normal.cdf(each) - 1.0) for each in away.tolist()])
+
+
+@lru_cache(maxsize=16)
+def _odds(contrast: float) -> RealArray:
+    """o(F) for shares F from 0 to 1 in steps of 1/_SHARES."""
+    weight = np.exp(-0.5 * _NORMAL**2)
+    gathered = 1.0 / (1.0 + np.exp(-_ODDS[:, np.newaxis] - contrast * _NORMAL))
+    share = np.sum(gathered * (weight / np.sum(weight)), axis=1)
+    odds = np.exp(np.interp(np.arange(_SHARES + 1) / _SHARES, share, _ODDS))
+    odds[0] = 0.0
+    return np.asarray(odds.astype(np.float32))
 
 
 def _drawn(age: RealArray) -> RealArray:
