@@ -96,6 +96,11 @@ def is_current(mesh: bpy.types.Mesh, grid: Grid) -> bool:
     return bool(mesh.get(_KEY) == grid.tag)
 
 
+def shown_size(mesh: bpy.types.Mesh) -> float:
+    """Side of a patch of the grid that the mesh was made as, in Blender units; 0 where it is none."""
+    return float(str(mesh.get(_KEY, "0")).split()[0])
+
+
 def release(mesh: bpy.types.Mesh) -> None:
     """Let a mesh be no grid of ours: an ocean that shares it gets another one."""
     if _KEY in mesh:

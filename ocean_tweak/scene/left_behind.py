@@ -24,7 +24,7 @@ def clear() -> bool:
     if not deleted:
         return False
     for item in [item for item in bpy.data.objects if item.library is None and item.users_collection]:
-        if item.parent in deleted and _is_made_for_it(item):
+        if item.parent in deleted and is_made_for_oceans(item):
             _take_away(item)
             continue
         carrier = float_carrier.carrier_of(item)
@@ -45,8 +45,8 @@ def _take_away(item: bpy.types.Object) -> None:
         collection.objects.unlink(item)
 
 
-def _is_made_for_it(item: bpy.types.Object) -> bool:
-    """Whether the extension gave an ocean this child."""
+def is_made_for_oceans(item: bpy.types.Object) -> bool:
+    """Whether the extension gave an ocean this child: its horizon, a surface or a patch."""
     kinds = (HORIZON, CAMERA_SURFACE)
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
     return patch_objects.is_ours(item) or any(is_of_kind(group, kind) for group in groups for kind in kinds)

@@ -78,6 +78,9 @@ class UsdSettings(Protocol):
 class OceanSettings(Protocol):
     """The part of `object.ocean_tweak` that the scene layer reads and writes.
 
+    placed_size : the domain's size for which the object stands where it does, in Blender units; 0 in a file
+        made before there was this, and until it changes
+    stays_behind : whether the object's location kept the domain's middle from staying when its size changed
     preset : title of the preset whose sea this is, "" for one of the user's own making
     uid : what tells the ocean's bakes from those of others; "" while nothing was baked
     cache_folder : where they go; "" for the usual place
@@ -105,6 +108,9 @@ class OceanSettings(Protocol):
     """
 
     is_ocean: bool
+    domain_size: float
+    placed_size: float
+    stays_behind: bool
     preset: str
     uid: str
     cache_folder: str
@@ -145,7 +151,9 @@ class OceanSettings(Protocol):
     def to_parameters(self, scene: bpy.types.Scene) -> OceanParameters:
         """The sea; raises ParameterError for settings that are no sea."""
 
-    def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
+    def from_parameters(
+        self, parameters: OceanParameters, scene: bpy.types.Scene, keep_places: bool = False
+    ) -> None:
         """Take over a sea; the scene is not changed."""
 
     def source_images(self) -> set[ImageSource]:

@@ -5,9 +5,9 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..core import OceanParameters, Timing
-from ..scene import ocean_object
+from ..scene import middle, ocean_object
 from ..scene.settings import METHODS, VIEWPORT_RESOLUTION
-from ..scene.units import frame_rate, metres_per_unit
+from ..scene.units import frame_rate
 from .active_ocean import refuse
 
 
@@ -63,10 +63,7 @@ class MESH_OT_ocean_tweak_add(InObjectMode, bpy.types.Operator):
             )  # fmt: skip
         except ocean_object.EXPECTED_ERRORS as error:
             return refuse(self, error)
-        half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))
-        item.location = scene.cursor.location
-        item.location.x -= half
-        item.location.y -= half
+        middle.put(item, scene.cursor.location)
         make_active(item, context.view_layer)
         return {"FINISHED"}
 

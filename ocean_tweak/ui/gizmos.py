@@ -55,8 +55,12 @@ def _size(item: _Object) -> float:
     return float(_sized(item).domain_size)
 
 
-def _set_size(item: _Object, value: float) -> None:
-    _sized(item).domain_size = max(value, 1e-3)
+def _half_width(item: _Object) -> float:
+    return 0.5 * settings_of(item).repeats_x * _size(item)
+
+
+def _set_half_width(item: _Object, value: float) -> None:
+    _sized(item).domain_size = max(2.0 * value / settings_of(item).repeats_x, 1e-3)
 
 
 def _group(item: _Object, *kinds: str) -> Any:
@@ -122,9 +126,16 @@ def _set_wavelength(item: _Object, value: float) -> None:
 
 
 def _at(item: _Object) -> Matrix:
-    """Where the active layer's handles are: a hero wave's at its focus, else in the middle of the domain."""
-    half = 0.5 * _size(item)
-    return item.matrix_world @ Matrix.Translation(_focus(item) or (half, half, 0.0))
+    """Where the active layer's handles are: a hero wave's at its focus, else in the middle of the ocean."""
+    focus = _focus(item)
+    return _middle(item) if focus is None else item.matrix_world @ Matrix.Translation(focus)
+
+
+def _middle(item: _Object) -> Matrix:
+    """The middle of the ocean, which stays when the size of its domain changes."""
+    settings, half = settings_of(item), 0.5 * _size(item)
+    place = (half * settings.repeats_x, half * settings.repeats_y, 0.0)
+    return item.matrix_world @ Matrix.Translation(place)
 
 
 def _along(item: _Object) -> Matrix:
@@ -137,8 +148,8 @@ _DIAL = {"draw_options": {"ANGLE_START_Y", "ANGLE_VALUE"}}
 #: by name
 HANDLES = {
     "size": Handle(
-        "GIZMO_GT_arrow_3d", _SIZE_COLOUR, {"draw_style": "BOX"}, _size, _set_size,
-        lambda item: item.matrix_world @ _ALONG_X,
+        "GIZMO_GT_arrow_3d", _SIZE_COLOUR, {"draw_style": "BOX"}, _half_width, _set_half_width,
+        lambda item: _middle(item) @ _ALONG_X,
     ),
     "direction": Handle(
         "GIZMO_GT_dial_3d", _WIND_COLOUR, _DIAL, _direction, _set_direction, lambda item: _at(item) @ _FROM_X

@@ -11,6 +11,7 @@ from ..core.sea.patch_plan import planned
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfOwnList, nearest, refuse, shown_ocean
 from .patch_properties import wish_of
+from .resizing import tell_what_stays
 
 
 class _OfPatches(OfOwnList):
@@ -24,10 +25,11 @@ class _OfPatches(OfOwnList):
         try:
             before = settings.to_parameters(context.scene)
             after, active = self.changed(before, context)
-            settings.from_parameters(after, context.scene)
+            settings.from_parameters(after, context.scene, keep_places=True)
         except (ParameterError, OceanObjectError) as error:
             return refuse(self, error)
         settings.active_patch = active
+        tell_what_stays(self, settings)
         if before.trough_damping != after.trough_damping:
             self.report(
                 {"INFO"}, translated("Trough Damping is 0 now: patches do not know each other's troughs")

@@ -20,7 +20,7 @@ from ..core.data.plain_data import to_plain
 from ..core.sea.patch_plan import WISHES, Wish
 from ..scene.settings import OceanObjectError
 from ..scene.units import metres_per_unit, shortest_decimal
-from . import mask_properties, parameter_properties
+from . import mask_properties, parameter_properties, resizing
 from .active_ocean import nearest
 from .layer_properties import set_count
 from .parameter_properties import changed
@@ -79,9 +79,15 @@ def _give_to_ocean(patch: bpy.types.PropertyGroup, settings: bpy.types.PropertyG
         settings.domain_size = patch.domain_size
 
 
+def _resize_first(patch: bpy.types.PropertyGroup, settings: bpy.types.PropertyGroup) -> None:
+    _give_to_ocean(patch, settings)
+    resizing.keep_middle(settings)
+
+
 def _give_to_first(_group: bpy.types.PropertyGroup, settings: bpy.types.PropertyGroup) -> None:
     for patch in settings.patches[:1]:
         patch.domain_size = settings.domain_size
+    resizing.keep_middle(settings)
 
 
 def _neighbour(
@@ -114,7 +120,7 @@ class OCEAN_PG_patch(bpy.types.PropertyGroup):
             Patch,
             changed,
             updates={
-                "domain_size": _quietly(_give_to_ocean),
+                "domain_size": _quietly(_resize_first),
                 "shortest_wavelength": _quietly(_join_shorter),
                 "longest_wavelength": _quietly(_join_longer),
             },

@@ -15,6 +15,7 @@ from ..export.files import write_text
 from ..scene import user_presets
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
+from .resizing import tell_what_stays
 
 _ERRORS = (ParameterError, OceanObjectError, OSError)
 
@@ -48,6 +49,7 @@ class OCEAN_OT_apply_preset(OfActiveOcean, bpy.types.Operator):
             return refuse(self, error)
         settings.preset = presets[self.key].title
         self.report({"INFO"}, presets[self.key].title)
+        tell_what_stays(self, settings)
         return {"FINISHED"}
 
 

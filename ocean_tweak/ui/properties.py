@@ -21,7 +21,7 @@ from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.validation import Off
 from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
-from ..scene import cache_place, ocean_object
+from ..scene import cache_place, middle, ocean_object
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.image_sequence import ImageSequence
 from ..scene.settings import (
@@ -34,7 +34,7 @@ from ..scene.settings import (
 )
 from ..scene.source_images import ImageSource
 from ..scene.units import frame_rate, metres_per_unit, time_stretch
-from . import layer_properties, mask_properties, parameter_properties, patch_properties
+from . import layer_properties, mask_properties, parameter_properties, patch_properties, resizing
 from .layer_properties import OCEAN_PG_layer
 from .parameter_properties import changed, path_changed
 from .patch_properties import OCEAN_PG_patch
@@ -130,6 +130,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
+        "placed_size": FloatProperty(**_HIDDEN),
+        "stays_behind": BoolProperty(**_HIDDEN),
         "uid": StringProperty(**_HIDDEN),
         "cache_folder": StringProperty(
             name="Cache", default=DEFAULT_CACHE, subtype="DIR_PATH",
@@ -292,8 +294,14 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         unit = parameter_properties.unit_of(kind, path.rpartition(".")[2], metres_per_unit(scene))
         return [value / unit for value in values]
 
-    def from_parameters(self, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
+    def from_parameters(
+        self, parameters: OceanParameters, scene: bpy.types.Scene, keep_places: bool = False
+    ) -> None:
         """Take over a sea, and refresh the ocean once. The scene and its frame rate stay as they are.
+
+        The middle of the domain stays where it is in the world; while this is quiet, the origin.
+
+        keep_places : whether hero waves and places of masks were there before, and stay there too
 
         Raises OceanObjectError for other kinds of layers or another number of patches on a library override.
         """
@@ -304,7 +312,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
                 "make the ocean local first"
             )
         patch_properties.check_count(self, parameters)
-        metres, data = metres_per_unit(scene), to_plain(parameters, brief=True)
+        metres, data, was_quiet = metres_per_unit(scene), to_plain(parameters, brief=True), self.is_quiet
         with self.quiet():
             parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
             parameter_properties.write(self.water, Water, data["water"], metres)
@@ -316,6 +324,10 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             layer_properties.write(self.layers, parameters, metres)
             patch_properties.write(self, parameters, metres)
             mask_properties.write(self.mask, parameters.mask, metres, self.source_images())
+            if was_quiet:
+                middle.settle(self)
+            else:
+                resizing.keep_middle(self, keep_places)
         changed(self, bpy.context)
 
 

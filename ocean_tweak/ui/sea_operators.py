@@ -13,6 +13,7 @@ from ..core.parameters.presets import built_in
 from ..scene import conversion, ocean_object
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
+from .resizing import tell_what_stays
 
 #: wavelengths of the peak that a domain should hold
 _WAVELENGTHS = 4.5
@@ -71,10 +72,11 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
         try:
             before = settings.to_parameters(context.scene)
             matched, explanation = self._matched(before)
-            settings.from_parameters(matched, context.scene)
+            settings.from_parameters(matched, context.scene, keep_places=True)
         except (ParameterError, OceanObjectError) as error:
             return refuse(self, error)
         self.report({"INFO"}, explanation)  # what cannot be stays as a warning in the panel
+        tell_what_stays(self, settings)
         return {"FINISHED"}
 
     def _matched(self, before: OceanParameters) -> tuple[OceanParameters, str]:

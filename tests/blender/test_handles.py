@@ -33,7 +33,7 @@ def test_each_sets_what_it_reads(handles, item):
     settings = item.ocean_tweak
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
     hero = settings.active_layer
-    wanted = {"size": 90.0, "direction": 0.5, "speed": 20.0, "focus": (12.0, 34.0, 0.0), "wavelength": 25.0}
+    wanted = {"size": 45.0, "direction": 0.5, "speed": 20.0, "focus": (12.0, 34.0, 0.0), "wavelength": 25.0}
     settings.active_layer, settings.layers[0].definition = 0, "WIND"
     for name, value in wanted.items():
         settings.active_layer = hero if name in ("focus", "wavelength") else 0
@@ -51,13 +51,17 @@ def test_they_stand_in_the_world_where_the_sea_has_them(handles, item):
     settings = item.ocean_tweak
     settings.domain_size, layer = 80.0, settings.layers[0]
     layer.definition, layer.wind_speed, layer.wind_direction = "WIND", 15.0, 0.0
-    assert tuple(tip(handles, item, "size")) == pytest.approx((10.0, 100.0, 1.0), abs=1e-4)
+    bpy.context.view_layer.update()
+    # the middle is where it was at 150 m, and the corner 40 from it
+    assert tuple(item.matrix_world.translation) == pytest.approx((-25.0, 55.0, 1.0), abs=1e-4)
+    # from the middle to the edge, which a pull there moves
+    assert tuple(tip(handles, item, "size")) == pytest.approx((-65.0, 135.0, 1.0), abs=1e-4)
     # from the middle, (40, 40) in the ocean, and 20 along: 15 of 60 m/s of a side
-    assert tuple(tip(handles, item, "speed")) == pytest.approx((-30.0, 80.0, 1.0), abs=1e-4)
+    assert tuple(tip(handles, item, "speed")) == pytest.approx((-65.0, 115.0, 1.0), abs=1e-4)
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
     wave = settings.layers[settings.active_layer].hero_wave
     wave.x, wave.y, wave.wavelength, wave.direction = 5.0, 7.0, 30.0, math.radians(180.0)
-    assert tuple(tip(handles, item, "wavelength")) == pytest.approx((3.0, -5.0, 1.0), abs=1e-4)
+    assert tuple(tip(handles, item, "wavelength")) == pytest.approx((-32.0, 30.0, 1.0), abs=1e-4)
 
 
 def test_what_a_layer_has_not_is_not_read(handles, item):
@@ -75,7 +79,7 @@ def test_what_a_layer_has_not_is_not_read(handles, item):
 def test_the_size_of_several_patches_is_the_firsts(handles, item):
     bpy.ops.ocean.patch_add()
     bpy.ops.ocean.patch_add()
-    handles["size"].write(item, 300.0)
+    handles["size"].write(item, 150.0)
     assert item.ocean_tweak.patches[0].domain_size == pytest.approx(300.0)
 
 

@@ -12,6 +12,7 @@ from ...core.spectral.spectra import wind_at_10_m
 from ...core.statistics import sea_scales
 from ...scene import failures, refinement
 from ...scene.image_sequence import shown_frame, unbaked_frames
+from ...scene.middle import STAYS_BEHIND
 from ...scene.portability import sharp_under_blur
 from ...scene.refresh import sea_of_settings
 from ...scene.settings import OceanSettings
@@ -244,6 +245,8 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
         warnings.append(
             "The object is scaled, so its waves are too. Set its scale to 1 and change the domain size"
         )
+    if settings.stays_behind:
+        warnings.append(STAYS_BEHIND)
     if settings.out_of_range == "WARN" and unbaked_frames(settings, scene, (frame,)):
         warnings.append(f"Frame {frame} has no file: frame {shown_frame(settings, scene, frame)} is held")
     metres = metres_per_unit(scene)
