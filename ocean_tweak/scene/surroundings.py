@@ -19,9 +19,10 @@ from ..core import Ocean, OceanParameters, Timing
 from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
-from . import ocean_object, startup_file, water_material
+from . import middle, ocean_object, startup_file, water_material
 from .afloat import add_afloat
 from .camera_surface import add_camera_surface
+from .clear_water import clear_place
 from .moods import MOODS, VIEW, Mood
 from .settings import VIEWPORT_RESOLUTION
 from .sky import new_sun, new_world
@@ -72,7 +73,7 @@ class Made:
 def build(
     scene: bpy.types.Scene, mood: str, wishes: Wishes, collection: bpy.types.Collection | None = None
 ) -> Made:
-    """Make the sea of a mood around the scene's 3D cursor, with all that makes a picture of it.
+    """Make the sea of a mood, with all that makes a picture of it; the scene's 3D cursor is in the picture.
 
     Raises ValueError for an unknown mood, and what `ocean_object.add` raises; then nothing is made.
     """
@@ -83,7 +84,10 @@ def build(
     is_empty = len(left) == len(scene.objects)
     parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
     parameters = parameters.on_one_grid(parameters.resolution)  # as an ocean object shows patches
-    ocean = _add_ocean(scene, parameters, target)
+    ocean = ocean_object.add(scene, parameters, collection=target, viewport_resolution=VIEWPORT_RESOLUTION)
+    place, metres = camera_place(chosen, parameters), float(metres_per_unit(scene))
+    x, y = clear_place(chosen, place, parameters)
+    middle.put(ocean, scene.cursor.location, (x / metres, y / metres))
     replaced = tuple(item.name for item in left)
     startup_file.remove(left)
     material = water_material.water_material(chosen.water)
@@ -93,7 +97,6 @@ def build(
     if chosen.rings:
         rings = chosen.rings if wishes.engine == "CYCLES" else min(chosen.rings, _EEVEE_RINGS)
         add_horizon(ocean, parameters, scene, target, rings)
-    place = camera_place(chosen, parameters)
     camera = new_camera(chosen, place, ocean, scene)
     target.objects.link(camera)
     if chosen.eye < _BOAT:
@@ -104,19 +107,6 @@ def build(
     if wishes.afloat:
         add_afloat(chosen.floats, place, camera, parameters, ocean, scene, target)
     return Made(ocean, camera, kept, replaced)
-
-
-def _add_ocean(
-    scene: bpy.types.Scene, parameters: OceanParameters, collection: bpy.types.Collection
-) -> bpy.types.Object:
-    ocean = ocean_object.add(
-        scene, parameters, collection=collection, viewport_resolution=VIEWPORT_RESOLUTION
-    )
-    half = 0.5 * parameters.domain_size / float(metres_per_unit(scene))
-    ocean.location = scene.cursor.location
-    ocean.location.x -= half
-    ocean.location.y -= half
-    return ocean
 
 
 def add_horizon(

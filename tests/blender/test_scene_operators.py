@@ -7,6 +7,7 @@ import os
 import bpy
 import numpy as np
 import pytest
+from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 from .test_water_foam import ANISOTROPIC_FILTERS
@@ -89,6 +90,33 @@ def test_the_camera_is_above_the_water_and_sees_the_highest_wave(quick, empty_sc
     points = place + way * seen
     water = sea.height_at(points[:, 0], points[:, 1], 0.0)
     assert np.all(points[:, 2] > water)
+
+
+@pytest.mark.parametrize("cursor", [(0.0, 0.0, 0.0), (30.0, -70.0, 2.0)])
+@pytest.mark.parametrize("mood", ["CALM", "FRESH_BREEZE", "STORM", "HORIZON"])
+def test_what_is_added_next_is_in_the_picture(quick, empty_scene, extension, mood, cursor):
+    """At the 3D cursor, the world's origin by default: near the middle of a picture as low as films have,
+    on the water in the first frame, and with what lies on the water there not behind a wave."""
+    empty_scene.cursor.location = cursor
+    bpy.ops.ocean.add_scene(mood=mood, engine="CYCLES")
+    ocean, camera, render = ocean_of(empty_scene), empty_scene.camera, empty_scene.render
+    render.resolution_x, render.resolution_y = 1280, 540
+    bpy.context.view_layer.update()
+    x, y, depth = world_to_camera_view(empty_scene, camera, Vector(cursor))
+    assert 0.3 < x < 0.7
+    assert 0.02 < y < 0.98
+    assert depth > 0.0
+    parameters = ocean.ocean_tweak.to_parameters(empty_scene)
+    sea = extension("core").Ocean(parameters)
+    wave_height = sea.statistics().seed.significant_wave_height
+    eye, point = (np.array(place) - np.array(ocean.location) for place in (camera.location, cursor))
+    water = float(sea.height_at(*point[:2], 0.0))
+    assert abs(water) < 0.5 * wave_height
+    way = np.linspace(0.02, 0.98, 200)[:, np.newaxis]
+    line = eye + way * ((*point[:2], max(water, 0.0)) - eye)
+    assert np.all(line[:, 2] > sea.height_at(*line.T[:2], 0.0) - 0.05 * wave_height)
+    assert point[:2].min() >= 0.0
+    assert point[:2].max() <= parameters.domain_size
 
 
 @pytest.mark.skipif("OCEAN_TWEAK_LONG_TESTS" not in os.environ, reason="EEVEE on a processor takes a minute")
@@ -291,7 +319,9 @@ def test_in_centimetres_everything_is_a_hundred_times_as_large(quick, empty_scen
     empty_scene.unit_settings.scale_length = 0.01
     bpy.ops.ocean.add_scene(mood="FRESH_BREEZE")
     ocean, buoy = ocean_of(empty_scene), by_name(empty_scene, "Buoy")
-    assert ocean.location.x == pytest.approx(-20000.0)
+    ahead = world_to_camera_view(empty_scene, empty_scene.camera, Vector())
+    assert ahead.z > 500.0  # the world's origin is before the camera, metres away
+    assert 0.0 < ahead.y < 1.0
     assert ocean["ocean_tweak_metres_per_unit"] == pytest.approx(0.01)
     assert ocean["ocean_tweak_domain_size"] == pytest.approx(400.0)
     assert buoy.dimensions.x == pytest.approx(220.0, rel=1e-3)
