@@ -5,7 +5,7 @@ Rings lie in one another, ring n with cells 2ⁿ times as large as the first one
 of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. A fan's are its points,
 row after row, and the surface's own vertices too; their z is the size of the cells there. One point more,
 the last, has what is beyond all rings, and stands at x = the frame that the foam is of, y = the columns of a
-fan.
+fan, z = the places along each side of a ring.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 
 import bpy
 
-from ..core.sea.foam_rings import INNER, OUTER, SAMPLES
+from ..core.sea.foam_rings import INNER, OUTER
 from .building import Builder, Input, Plug, Socket, output
 from .fields import alone, combined, coordinates, mixed, named_attribute, sample_index, whole_number
 from .versioned import GroupKind, node_group
@@ -26,6 +26,7 @@ _GRID_CELLS = 2.5
 
 _POINTS = Plug("Foam", "NodeSocketGeometry", None, "The rings' places, and the point beyond them")
 _RINGS = Plug("Rings", "NodeSocketInt", 1, "How many there are")
+_SAMPLES = Plug("Samples", "NodeSocketInt", 2, "Places along each side of a ring")
 _PLACE = Plug("Place", "NodeSocketVector", None, "Of the grid's vertices at rest, in the ocean's space")
 
 _FACTS_OUTPUTS = (
@@ -33,6 +34,7 @@ _FACTS_OUTPUTS = (
     Plug("Is Of Another Frame", "NodeSocketBool", None, "Whether there is foam, but of another frame"),
     Plug("Frame", "NodeSocketInt", None, "That it is of"),
     _RINGS,
+    _SAMPLES,
     Plug("Columns", "NodeSocketInt", 0, "Of the fan that the points are; 0 for rings"),
 )
 
@@ -41,10 +43,10 @@ def _build_facts(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, (_POINTS,), _FACTS_OUTPUTS)
     points = build.given("Foam")
     count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": points}), "Point Count")
-    rings = build.integer("DIVIDE_FLOOR", count, SAMPLES**2)
     known = build.compare("GREATER_THAN", count, 0)
     last = _position(build, points, build.integer("SUBTRACT", count, 1))
-    frame, columns, _ = coordinates(build, last)
+    frame, columns, along = coordinates(build, last)
+    samples = build.integer("MAXIMUM", whole_number(build, along, "ROUND"), 2)
     now = output(build.add("GeometryNodeInputSceneTime"), "Frame")
     off = build.math("ABSOLUTE", build.math("SUBTRACT", now, frame), None)
     present = build.compare("LESS_THAN", off, 1.0, "FLOAT")
@@ -53,7 +55,8 @@ def _build_facts(tree: bpy.types.NodeTree) -> None:
             "Is There": build.logic("AND", known, present),
             "Is Of Another Frame": build.logic("NIMPLY", known, present),
             "Frame": whole_number(build, frame, "ROUND"),
-            "Rings": rings,
+            "Rings": build.integer("DIVIDE_FLOOR", count, build.integer("MULTIPLY", samples, samples)),
+            "Samples": samples,
             "Columns": whole_number(build, columns, "ROUND"),
         }
     )
@@ -63,60 +66,61 @@ def _build_ring(tree: bpy.types.NodeTree) -> None:
     inputs = (
         _POINTS,
         _RINGS,
+        _SAMPLES,
         _PLACE,
         Plug("Ring", "NodeSocketInt", 0, "That is read; there is one more than there are, beyond all"),
         Plug("Spacing", "NodeSocketFloat", 0.25, "Of the first ring's cells"),
     )
     outputs = (Plug("Value", "NodeSocketVector", None, "Foam, breaking and age at the vertex"),)
     build = Builder(tree, inputs, outputs)
-    points, rings = build.given("Foam"), build.given("Rings")
-    last = build.integer("SUBTRACT", rings, 1)
+    points, rings, samples = (build.given(name) for name in ("Foam", "Rings", "Samples"))
+    last, of_ring = build.integer("SUBTRACT", rings, 1), build.integer("MULTIPLY", samples, samples)
     ring = build.integer("MINIMUM", build.given("Ring"), last)
-    first = build.integer("MULTIPLY", ring, SAMPLES**2)
+    first = build.integer("MULTIPLY", ring, of_ring)
     size = build.math("MULTIPLY", build.given("Spacing"), build.math("POWER", 2.0, ring))
     away = build.vector("SUBTRACT", build.given("Place"), _position(build, points, first))
     cell = build.scaled(away, build.math("DIVIDE", 1.0, size))
-    column, row = (_held(build, along, SAMPLES - 2.0) for along in coordinates(build, cell)[:2])
+    most = build.integer("SUBTRACT", samples, 2)
+    column, row = (_held(build, along, most) for along in coordinates(build, cell)[:2])
     part = build.vector("SUBTRACT", cell, combined(build, column, row))
     part = build.vector("MAXIMUM", build.vector("MINIMUM", part, (1.0, 1.0, 1.0)), (0.0, 0.0, 0.0))
-    index = build.integer("ADD", build.integer("ADD", build.integer("MULTIPLY", row, SAMPLES), column), first)
+    index = build.integer("ADD", build.integer("ADD", build.integer("MULTIPLY", row, samples), column), first)
     value = output(named_attribute(build, RING_FOAM, "FLOAT_VECTOR"), "Attribute")
 
     def told(number: Input) -> Socket:
         return sample_index(build, points, value, number, "FLOAT_VECTOR")
 
-    corners = [told(index if not step else build.integer("ADD", index, step)) for step in _CORNERS]
+    north = build.integer("ADD", index, samples)
+    corners = [told(each) for first in (index, north) for each in (first, build.integer("ADD", first, 1))]
     part_x, part_y, _ = coordinates(build, part)
     south, north = (mixed(build, corners[pair], corners[pair + 1], part_x) for pair in (0, 2))
     within = mixed(build, south, north, part_y)
-    beyond = told(build.integer("MULTIPLY", rings, SAMPLES**2))
+    beyond = told(build.integer("MULTIPLY", rings, of_ring))
     is_beyond = build.compare("GREATER_THAN", build.given("Ring"), last)
     build.finish_with({"Value": build.switch("VECTOR", is_beyond, within, beyond)})
-
-
-#: of a cell, from its first place: the next along x, along y, and along both
-_CORNERS = (0, 1, SAMPLES, SAMPLES + 1)
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
     inputs = (
         _POINTS,
         _RINGS,
+        _SAMPLES,
         _PLACE,
         Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     )
     outputs = (Plug("Value", "NodeSocketVector", None, "Foam, breaking and age at the vertex"),)
     build = Builder(tree, inputs, outputs)
-    points, rings = build.given("Foam"), build.given("Rings")
-    first, last = (_position(build, points, index) for index in (0, SAMPLES - 1))
+    points, rings, samples = (build.given(name) for name in ("Foam", "Rings", "Samples"))
+    cells = build.integer("SUBTRACT", samples, 1)
+    first, last = (_position(build, points, index) for index in (0, cells))
     width = coordinates(build, build.vector("SUBTRACT", last, first))[0]
-    spacing = build.math("DIVIDE", width, SAMPLES - 1.0)
+    spacing = build.math("DIVIDE", width, cells)
     number = _ring_number(build, first, spacing, rings)
     low = alone(build, "FLOOR", number, "ShaderNodeMath")
     values = []
     for offset in (0, 1):
         ring = build.integer("ADD", whole_number(build, low, "ROUND"), offset)
-        given = {"Foam": points, "Rings": rings, "Ring": ring, "Spacing": spacing}
+        given = {"Foam": points, "Rings": rings, "Samples": samples, "Ring": ring, "Spacing": spacing}
         given["Place"] = build.given("Place")
         values.append(output(build.group(node_group(RING), given), "Value"))
     value = mixed(build, values[0], values[1], build.math("SUBTRACT", number, low))
@@ -160,14 +164,15 @@ def _build_fan(tree: bpy.types.NodeTree) -> None:
 def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) -> Socket:
     """Which ring counts at a vertex: a fraction is between two, the number of rings is beyond them all.
 
-    Ring n counts up to INNER of its cells from the middle, and the next one alone from OUTER on; of a grid
+    Ring n counts up to INNER of its side from the middle, and the next one alone from OUTER on; of a grid
     that is coarse for that, a later one.
     """
-    half = build.math("MULTIPLY", spacing, SAMPLES / 2)
+    side = build.math("MULTIPLY", spacing, build.given("Samples"))
+    half = build.math("MULTIPLY", side, 0.5)
     middle = build.vector("ADD", first, combined(build, half, half))
     off = build.vector("SUBTRACT", build.given("Place"), middle)
     x, y, _ = coordinates(build, alone(build, "ABSOLUTE", off))
-    inner = build.math("MULTIPLY", spacing, float(INNER))
+    inner = build.math("MULTIPLY", side, INNER)
     away = build.math("DIVIDE", build.math("MAXIMUM", x, y), inner)
     octave = build.math("LOGARITHM", build.math("MAXIMUM", away, 1e-3), 2.0)
     whole = alone(build, "FLOOR", octave, "ShaderNodeMath")
@@ -179,7 +184,7 @@ def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) 
     return build.math("MINIMUM", number, rings)
 
 
-def _held(build: Builder, along: Socket, most: float) -> Socket:
+def _held(build: Builder, along: Socket, most: Socket) -> Socket:
     """The whole number of a cell, within the ring."""
     low = build.math("MAXIMUM", alone(build, "FLOOR", along, "ShaderNodeMath"), 0.0)
     return whole_number(build, build.math("MINIMUM", low, most), "ROUND")
@@ -190,7 +195,7 @@ def _position(build: Builder, points: Socket, index: Input) -> Socket:
     return sample_index(build, points, position, index, "FLOAT_VECTOR")
 
 
-RING_FACTS = GroupKind("Ocean Tweak Foam Facts", 2, _build_facts)
-RING = GroupKind("Ocean Tweak Foam Ring", 2, _build_ring)
-CAMERA_FOAM = GroupKind("Ocean Tweak Camera Foam", 2, _build)
+RING_FACTS = GroupKind("Ocean Tweak Foam Facts", 3, _build_facts)
+RING = GroupKind("Ocean Tweak Foam Ring", 3, _build_ring)
+CAMERA_FOAM = GroupKind("Ocean Tweak Camera Foam", 3, _build)
 CAMERA_FAN = GroupKind("Ocean Tweak Camera Fan", 1, _build_fan)

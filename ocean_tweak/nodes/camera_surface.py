@@ -44,6 +44,10 @@ from .versioned import GroupKind, node_group
 SHORTEST_CELLS = 4.0
 #: of the smallest cells in a lump of fresh foam
 _LUMP_CELLS = 80.0
+#: breaking from which on foam lies on the water: less is the mean of crests too far away to be seen
+_LEAST_BREAKING = 0.02
+#: inputs of the pile of foam → attributes of the surface
+_OF_PILE = {"Displacement": DISPLACEMENT, "Velocity": VELOCITY, "Breaking": BREAKING}
 #: of the sea's patches, where it has several; under masks a patch may be several too
 PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
 #: of what does not repeat
@@ -271,7 +275,7 @@ def _of_rings(build: Builder, sea: _Sea, size: Socket) -> Socket:
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     inputs = {
         "Foam": sea.foam,
-        "Rings": output(sea.of_foam, "Rings"),
+        **{name: output(sea.of_foam, name) for name in ("Rings", "Samples")},
         "Place": build.vector("ADD", position, sea.corner),
         "Size": size,
     }
@@ -318,14 +322,9 @@ def _finished(
         *curved_normal(build, (values[SLOPES], values[OTHERS]), spaces, away),
     )
     lost = coordinates(build, values[SLOPES])[2]
-    place = build.vector("ADD", output(build.add("GeometryNodeInputPosition"), "Position"), sea.corner)
-    place = build.vector("ADD", build.vector("ADD", place, drop), values[DISPLACEMENT])
-    inputs = {
-        "Displacement": values[DISPLACEMENT], "Velocity": values[VELOCITY], "Breaking": values[BREAKING],
-        "Height": build.given(PILE_INPUT),
-        "Lump": build.math("MULTIPLY", build.given("Finest Spacing"), _LUMP_CELLS),
-    }  # fmt: skip
-    place = build.vector("ADD", place, output(build.group(node_group(FOAM_PILE), inputs), "Offset"))
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    place = build.vector("ADD", build.vector("ADD", position, sea.corner), drop)
+    place = build.vector("ADD", place, values[DISPLACEMENT])
     shown = {
         **{name: ("FLOAT", values[name]) for name in (FOAM, BREAKING, FOAM_AGE, CUSP)},
         SLOPE_VARIANCE: ("FLOAT", build.switch("FLOAT", fade, 0.0, lost)),
@@ -337,7 +336,10 @@ def _finished(
             for name in (DISPLACEMENT, VELOCITY)
         },
     }  # fmt: skip
-    moved = {"Normal": ("FLOAT_VECTOR", normal), "Place": ("FLOAT_VECTOR", spaces.point_of_asker(place))}
+    moved = {
+        name: ("FLOAT_VECTOR", value)
+        for name, value in (("Normal", normal), ("Place", spaces.point_of_asker(place)), ("Rest", position))
+    }
     # all at once: what several of them are made of is computed once
     for name, (data_type, value) in {**shown, **moved}.items():
         node.capture_items.new(data_type.removeprefix("FLOAT_"), name)
@@ -347,7 +349,28 @@ def _finished(
         grid = build.store(grid, name, node.outputs[name], data_type)
     inputs = {"Custom Normal": node.outputs["Normal"]}
     grid = build.change("GeometryNodeSetMeshNormal", grid, inputs, mode="FREE", domain="POINT")
-    return build.change("GeometryNodeSetPosition", grid, {"Position": node.outputs["Place"]})
+    piled = _piled(build, grid, node)
+    raised = build.vector("SUBTRACT", position, node.outputs["Rest"])
+    return build.change(
+        "GeometryNodeSetPosition", piled, {"Position": build.vector("ADD", node.outputs["Place"], raised)}
+    )
+
+
+def _piled(build: Builder, grid: Socket, captured: bpy.types.Node) -> Socket:
+    """The grid at rest with what fresh foam adds to it.
+
+    Only where there is some: its lumps would take as long at every vertex as a patch of the sea.
+    """
+    inputs = {name: captured.outputs[attribute] for name, attribute in _OF_PILE.items()}
+    inputs |= {
+        "Height": build.given(PILE_INPUT),
+        "Lump": build.math("MULTIPLY", build.given("Finest Spacing"), _LUMP_CELLS),
+    }
+    offset = output(build.group(node_group(FOAM_PILE), inputs), "Offset")
+    breaks = build.compare("GREATER_THAN", captured.outputs[BREAKING], _LEAST_BREAKING, "FLOAT")
+    is_high = build.compare("GREATER_THAN", build.given(PILE_INPUT), 0.0, "FLOAT")
+    inputs = {"Selection": build.logic("AND", breaks, is_high), "Offset": offset}
+    return build.change("GeometryNodeSetPosition", grid, inputs)
 
 
 def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Socket:
@@ -380,4 +403,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 8, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 9, _build)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam around the camera, or before one up in the air: points that the surface around the camera reads.
 
-On rings it is around a camera that is low, and in windows. A picture from the air waits for a fan, which is
-as dense as its pixels.
+On rings it is around a camera that is low, and in windows, where they have few places. A picture from the air
+waits for a fan, which is as dense as its pixels.
 
 It is made where somebody waits for it; in a window the history of another moment or of another place follows,
 and until then there is foam where crests break now.
@@ -14,6 +14,7 @@ import math
 import threading
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -24,7 +25,7 @@ from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
 from ..core.sea.foam_fan import Fan, FoamFan, View
 from ..core.sea.foam_levels import FINEST, FoamLevels
-from ..core.sea.foam_rings import SAMPLES, FoamRings, Place, Rings
+from ..core.sea.foam_rings import FoamRings, Place, Rings, samples_for
 from ..core.sea.placed_waves import repeating
 from ..nodes.camera_foam import RING_FOAM
 from ..nodes.modifier_inputs import get_input
@@ -36,25 +37,45 @@ from .units import time_stretch
 # s after the foam that was made last, within which the next one is quickly made
 _IS_NEAR = Fraction(1)
 # m that a camera may be away from where rings lie, before those of a window follow it
-_FOLLOWS = 32 * FINEST
+_FOLLOWS = 16 * FINEST
 _RINGS = "foam rings"
 
 
+class _Shown(NamedTuple):
+    """Rings of a window.
+
+    time : s, that they are of
+    place : around which they lie
+    samples : along each side
+    """
+
+    time: Fraction
+    place: Place
+    samples: int
+
+    def leads_to(self, other: _Shown) -> bool:
+        """Whether others, around the same place, are quickly made after these."""
+        return self.samples == other.samples and 0 <= other.time - self.time <= _IS_NEAR
+
+
 class _Maker:
-    """The foam of a sea: its fan, its rings, and around which place these lie: it drifts along."""
+    """The foam of a sea: its fan, its rings, those of a window, and around which place these lie: it drifts
+    along."""
 
     def __init__(self, parameters: OceanParameters) -> None:
         self._parameters = parameters
         self._levels = FoamLevels(parameters)
-        self._rings = FoamRings(self._levels)
+        self._whole = FoamRings(self._levels)
+        self._few: FoamRings | None = None
         self._fan: FoamFan | None = None
-        self._place: tuple[Fraction, Place] | None = None
+        self._shown: _Shown | None = None
         self._busy = threading.Lock()
 
     @property
     def nbytes(self) -> int:
         """Bytes of the rings and the fan."""
-        return self._rings.nbytes + (0 if self._fan is None else self._fan.nbytes)
+        made = (self._whole, self._few, self._fan)
+        return sum(each.nbytes for each in made if each is not None)
 
     def before(self, time: Fraction, view: View, places: int) -> Fan:
         """The fan before a camera, with its history."""
@@ -68,25 +89,28 @@ class _Maker:
     def at(self, time: Fraction, place: Place) -> Rings:
         """Rings around a place, with their history."""
         with self._busy:
-            made = self._rings.at(time, place)
-            self._place = time, place
+            made = self._whole.at(time, place)
         MEMO.put(_RINGS, self._parameters, self)  # it has grown
         return made
 
-    def follow(self, time: Fraction, place: Place) -> None:
-        """Make rings around another place or moment, and only then let go of those that are shown."""
-        rings = FoamRings(self._levels)
-        rings.at(time, place)
+    def follow(self, wanted: _Shown) -> None:
+        """Make a window's rings around another place or moment, and only then let go of those it shows."""
+        rings = FoamRings(self._levels, wanted.samples)
+        rings.at(wanted.time, wanted.place)
         with self._busy:
-            self._rings, self._place = rings, (time, place)
+            self._few, self._shown = rings, wanted
 
-    def at_once(self, time: Fraction, place: Place) -> tuple[Rings, bool]:
-        """Rings that are quickly made, and whether they are those of the time and around the place."""
-        last = self._place
-        if last is None or not 0 <= time - last[0] <= _IS_NEAR or self._busy.locked():
-            return self._rings.at(time, place, history=False), False
-        is_here = math.dist(last[1], place) <= _FOLLOWS
-        return self.at(time, last[1]), is_here
+    def at_once(self, wanted: _Shown) -> tuple[Rings, bool]:
+        """A window's rings, quickly made, and whether they are those of the time and around the place."""
+        few, last = self._few, self._shown
+        if few is None or last is None or not last.leads_to(wanted) or self._busy.locked():
+            alone = FoamRings(self._levels, wanted.samples)
+            return alone.at(wanted.time, wanted.place, history=False), False
+        with self._busy:
+            made = few.at(wanted.time, last.place)
+            self._shown = last._replace(time=wanted.time)
+        MEMO.put(_RINGS, self._parameters, self)  # it has grown
+        return made, math.dist(last.place, wanted.place) <= _FOLLOWS
 
 
 @dataclass(frozen=True)
@@ -98,6 +122,7 @@ class Around:
     place : of the camera
     view : of one up in the air
     vertices : of the surface, at the most
+    in_window : of the surface in a window
     frame : of the scene, in which it is shown
     scale : Blender units in a metre
     """
@@ -107,6 +132,7 @@ class Around:
     place: Place
     view: View | None
     vertices: int
+    in_window: int
     frame: float
     scale: float
 
@@ -124,13 +150,17 @@ class Around:
         if patient:
             rings, is_complete = maker.at(self.time, self.place), True
         else:
-            rings, is_complete = maker.at_once(self.time, self.place)
+            rings, is_complete = maker.at_once(self._in_window)
         _fill(mesh, rings, self)
         return is_complete
 
     def make(self) -> None:
         """Let it be quickly made from now on; touches no data of Blender and may run on any thread."""
-        _maker(self.sea).follow(self.time, self.place)
+        _maker(self.sea).follow(self._in_window)
+
+    @property
+    def _in_window(self) -> _Shown:
+        return _Shown(self.time, self.place, samples_for(min(self.in_window, self.vertices)))
 
 
 def around(
@@ -145,9 +175,11 @@ def around(
     if not sea.patches or "foam" not in plan.channels or foam_outlook(sea).coverage == 0.0:
         return None
     place = Place(*camera_place(surface, scene, plan.scale))
-    vertices = get_input(surface_modifier(surface), "Vertex Budget")
+    budgets = (
+        get_input(surface_modifier(surface), name) for name in ("Vertex Budget", "Viewport Vertex Budget")
+    )
     frame = float(plan.frame / time_stretch(scene))
-    return Around(sea, time, place, view_of(surface, scene, plan.scale), vertices, frame, plan.scale)
+    return Around(sea, time, place, view_of(surface, scene, plan.scale), *budgets, frame, plan.scale)
 
 
 def _maker(sea: OceanParameters) -> _Maker:
@@ -155,16 +187,18 @@ def _maker(sea: OceanParameters) -> _Maker:
 
 
 def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:
-    """Points ring after ring, x fastest, and the one beyond them, at x = the frame of the scene."""
-    places = np.zeros((len(rings.foam) * SAMPLES**2 + 1, 3), np.float32)
+    """Points ring after ring, x fastest, and the one beyond them, at x = the frame of the scene, z = the
+    places along each side of a ring."""
+    samples = len(rings.foam[0].foam)
+    places = np.zeros((len(rings.foam) * samples**2 + 1, 3), np.float32)
     values = np.empty_like(places)
-    along = np.arange(SAMPLES)
+    along = np.arange(samples)
     for number, (corner, foam) in enumerate(zip(rings.corners, rings.foam, strict=True)):
-        block = slice(number * SAMPLES**2, (number + 1) * SAMPLES**2)
+        block = slice(number * samples**2, (number + 1) * samples**2)
         x, y = (shown.scale * (first + FINEST * 2.0**number * along) for first in corner)
         places[block, 0], places[block, 1] = (part.ravel() for part in np.meshgrid(x, y))
         values[block] = np.stack(foam, axis=-1).reshape(-1, 3)
-    values[-1], places[-1, 0] = rings.beyond, shown.frame
+    values[-1], places[-1] = rings.beyond, (shown.frame, 0.0, samples)
     _write(mesh, places, values)
 
 

@@ -108,6 +108,7 @@ def refresh(
         is_needed = plan.is_whole or (foam is not None and not foam.data.vertices)
         if wanted is not None and foam.data.library is None and is_needed and not coarse:
             is_complete = wanted.write(foam.data, patient)
+            _shown[foam.data.session_uid] = patient
     _keep_out_of_files(ocean)
     return is_complete
 
@@ -123,15 +124,29 @@ def _keep_out_of_files(ocean: bpy.types.Object) -> None:
             held_sea.keep_out(child, is_live or _FOAM in child)
 
 
-def show_all_samples(ocean: bpy.types.Object, plan: Plan) -> None:
-    """Give live patches the samples that a render wants; nothing is done where they have them already."""
-    present = patches_of(ocean) if ocean.library is None else {}
-    live = {number: item for number, item in present.items() if patch_points.modifier_of(item) is None}
+def show_for_render(
+    ocean: bpy.types.Object, plan: Plan, points: Points | None, scene: bpy.types.Scene
+) -> None:
+    """Give live patches the samples that a render wants, and foam all of its places and its history; nothing
+    is done where they have them already.
+
+    points : baked ones that the patches read
+    """
+    if ocean.library is not None:
+        return
+    live = {
+        number: item for number, item in patches_of(ocean).items() if patch_points.modifier_of(item) is None
+    }
     wanted = list[_Filling]()
     for number, part in enumerate(parts(plan.parameters) if live else (), 1):
         if number in live and live[number].data.library is None:
             wanted.append(_Filling(live[number].data, part.parameters, part.parameters.resolution))
     _fill(wanted, plan)
+    foam = next((child for child in ocean.children if _FOAM in child), None)
+    if foam is not None and foam.data.library is None and not _shown.get(foam.data.session_uid):
+        around = foam_rings.around(camera_surface_of(ocean), plan, points, scene)
+        if around is not None:
+            _shown[foam.data.session_uid] = around.write(foam.data, True)
 
 
 def seas_in_window(plan: Plan) -> tuple[OceanParameters, ...]:

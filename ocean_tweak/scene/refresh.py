@@ -153,13 +153,15 @@ def _refresh_sea(
         missing = _refresh_live(item, settings, plan, scene, wanted)
         # a render from the window runs the frame handler on its own thread
         set_changed(scene.render, use_lock_interface=True)
-    if Wanted.PATCHES in wanted:
+    points = None
+    if wanted & (Wanted.PATCHES | Wanted.RENDER):
         points = patch_points.points_of(settings, plan, scene)
+    if Wanted.PATCHES in wanted:
         patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
         if not patch_objects.refresh(item, plan, points, scene, patient, coarse):
             missing |= Wanted.HISTORY
     if Wanted.RENDER in wanted:
-        patch_objects.show_all_samples(item, plan)
+        patch_objects.show_for_render(item, plan, points, scene)
         if plan.has_own_render and not is_baked:
             _write_render(settings, plan)
     if Wanted.SURFACE in wanted:

@@ -103,7 +103,7 @@ def test_it_is_the_same_from_elsewhere_and_whatever_came_before(sea, rings):
 def test_rings_lie_around_the_place(rings):
     for number in range(len(rings.foam)):
         x, y = places_of(rings, number)
-        reach = FINEST * 2.0**number * INNER
+        reach = FINEST * 2.0**number * INNER * SAMPLES
         assert x.min() < 300.0 - reach
         assert x.max() > 300.0 + reach
         assert y.min() < -200.0 - reach

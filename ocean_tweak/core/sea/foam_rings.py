@@ -8,6 +8,7 @@ elsewhere sees the same foam.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,12 +26,13 @@ from .ocean import Ocean
 
 Array = NDArray[np.float64]
 
-#: places along each side of a ring
-SAMPLES = 192
-#: cells from a ring's middle: up to the first it counts alone, from the second on the next one does
-INNER, OUTER = 80, 88
-#: cells by which rings follow their place: all in all no more than SAMPLES/2 - OUTER
-_STEP = 8
+#: places along each side of a ring, at most: as many as a surface with so many vertices shows
+SAMPLES, VERTICES = 192, 200_000
+#: of them, from a ring's middle: up to the first it counts alone, from the second on the next one does
+INNER, OUTER = 5 / 12, 11 / 24
+#: of them, by which rings follow their place: all in all no more than 1/2 - OUTER
+_STEP = 1 / 24
+_LEAST_STEP = 2
 
 
 class Place(NamedTuple):
@@ -45,7 +47,7 @@ class Rings:
     """Foam at a time.
 
     corners : x and y of each ring's first place at rest, m
-    foam : of each ring, (SAMPLES, SAMPLES) [y, x]
+    foam : of each ring, (samples, samples) [y, x]
     beyond : of places farther away: each of one number
     """
 
@@ -59,24 +61,33 @@ class _Ring(NamedTuple):
 
     sea : of its level
     spacing : of its cells, m
+    samples : along each side
     """
 
     sea: Ocean
     spacing: float
+    samples: int
 
     def around(self, place: Place, time: Fraction) -> tuple[int, int]:
         """The numbers of the first cell of a ring that lies around a place at a time."""
+        step = round(_STEP * self.samples)
         x, y = (
-            _STEP * round((along - float(time) * drift) / self.spacing / _STEP) - SAMPLES // 2
+            step * round((along - float(time) * drift) / self.spacing / step) - self.samples // 2
             for along, drift in zip(place, self.sea.foam_model.drift, strict=True)
         )
         return x, y
 
     def foam(self, first: tuple[int, int]) -> DriftingFoam:
         """Foam on the ring with this first cell, without births so far."""
-        along = self.spacing * np.arange(SAMPLES)
+        along = self.spacing * np.arange(self.samples)
         x, y = np.meshgrid(*(number * self.spacing + along for number in first))
         return self.sea.new_drifting_foam(x.ravel(), y.ravel())
+
+
+def samples_for(vertices: int) -> int:
+    """Places along each side of a ring that a surface with so many vertices, in levels of its own, shows."""
+    steps = math.ceil(_STEP * SAMPLES * math.sqrt(vertices / VERTICES))
+    return round(min(max(steps, _LEAST_STEP), _STEP * SAMPLES) / _STEP)
 
 
 class FoamRings:
@@ -84,10 +95,13 @@ class FoamRings:
 
     It serves ascending times and a place that stays near; any other is made from the sea alone, and is the
     same. One thread at a time goes on with it, and others wait.
+
+    samples : places along each side of a ring, of `samples_for`
     """
 
-    def __init__(self, levels: FoamLevels) -> None:
+    def __init__(self, levels: FoamLevels, samples: int = SAMPLES) -> None:
         self._levels = levels
+        self._samples = samples
         self._busy = threading.Lock()
         self._foam: dict[int, tuple[tuple[int, int], DriftingFoam]] = {}
 
@@ -122,12 +136,14 @@ class FoamRings:
 
     @cached_property
     def _rings(self) -> tuple[_Ring, ...]:
-        return tuple(_Ring(sea, FINEST * 2.0**level) for level, sea in enumerate(self._levels.seas))
+        return tuple(
+            _Ring(sea, FINEST * 2.0**level, self._samples) for level, sea in enumerate(self._levels.seas)
+        )
 
     def _shown(self, rings: Sequence[DriftingFoam], now: Fraction) -> Rings:
         corners = [tuple(float(along[0]) for along in foam.places(now)) for foam in rings]
         shown = []
         for level, foam in enumerate(rings):
-            own = (field.reshape(SAMPLES, SAMPLES) for field in foam.whitecaps(now))
+            own = (field.reshape(self._samples, self._samples) for field in foam.whitecaps(now))
             shown.append(self._levels.mixed(Whitecaps(*own), level))
         return Rings(tuple((x, y) for x, y in corners), tuple(shown), self._levels.beyond)
