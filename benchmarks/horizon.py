@@ -41,9 +41,10 @@ def rows(plain: Contender, rounds: int, group: str) -> Iterator[Row]:
         start = time.perf_counter()
         ocean = surroundings.build(scene, _MOOD, surroundings.Wishes()).ocean
         seconds = time.perf_counter() - start
+        surface = camera_surface_of(ocean)
+        _mesh(scene, surface)  # only now it is known where the camera is
         _finish(ocean)
     yield Row(group, "To the Horizon: from the click to a free window", seconds, "s", target="horizon click")
-    surface = camera_surface_of(ocean)
     sides = {_PLAIN: _player(*plain), _SHOWN: _player(scene, surface, ocean)}
     yield ratio_row(
         group, "To the Horizon: frame → mesh, consecutive frames, against a plain sea",
