@@ -107,7 +107,7 @@ def _render_row(
 def _player(
     scene: bpy.types.Scene, item: bpy.types.Object, ocean: bpy.types.Object | None = None
 ) -> Callable[[], None]:
-    """Goes to the next frame and asks for the mesh; raises RuntimeError where some of an ocean is to follow."""
+    """Goes to the next frame and asks for the mesh; raises RuntimeError where more of an ocean follows."""
     frames = itertools.count(2)
 
     def run() -> None:

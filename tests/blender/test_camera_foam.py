@@ -234,3 +234,24 @@ def test_in_a_window_old_foam_follows(shown, window, extension, parameters, came
     np.testing.assert_allclose(found[:, :2], expected[:, :2], atol=0.02)
     empty_scene.frame_set(201)  # which is quickly made
     assert not window.is_unfinished(ocean)
+
+
+def test_a_window_has_few_places_and_a_picture_from_it_all_of_them(
+    shown, window, extension, parameters, camera, empty_scene
+):
+    """Also where the picture is made on the window's own thread, which does not wait for foam by itself."""
+    ocean, item = shown
+    extension("nodes.modifier_inputs").set_inputs(item.modifiers[0], {"Viewport Vertex Budget": 37_500})
+    (points,) = [child for child in ocean.children if child.name.endswith("Foam")]
+    empty_scene.frame_set(10)
+    run_until(window, lambda: not window.is_unfinished(ocean))
+    empty_scene.frame_set(11)
+    few = len(points.data.vertices)
+    refresh = extension("scene.refresh")
+    refresh.refresh(ocean, empty_scene, refresh.Wanted.RENDER)
+    assert len(points.data.vertices) > 3.0 * few
+    _, rest, found = foam_of(item)
+    place = eye_of(ocean, camera)
+    close = np.abs(rest - place).max(axis=1) < 8.0
+    expected = expected_foam(extension, parameters, parameters.timing.time(11), place, *rest[close].T)
+    np.testing.assert_allclose(found[close, :2], expected[:, :2], atol=0.02)

@@ -10,7 +10,7 @@ import pytest
 from ocean_tweak.core import Foam, Ocean, OceanParameters, Patch, Places, WaveLayer
 from ocean_tweak.core.foam.threshold import foam_outlook
 from ocean_tweak.core.sea.foam_levels import FINEST, FoamLevels
-from ocean_tweak.core.sea.foam_rings import INNER, SAMPLES, FoamRings, Place
+from ocean_tweak.core.sea.foam_rings import INNER, SAMPLES, FoamRings, Place, samples_for
 from tests.core.patched_seas import summed
 
 # soon forgotten: each frame alone looks back over its memory
@@ -36,6 +36,22 @@ def places_of(rings, number):
     along = FINEST * 2.0**number * np.arange(SAMPLES)
     x, y = rings.corners[number]
     return np.meshgrid(x + along, y + along)
+
+
+def test_rings_of_fewer_places_are_a_part_of_them(sea, rings):
+    """A surface of a fourth of the vertices has half of them along each side, and the same foam there."""
+    count = samples_for(50_000)
+    assert (count, samples_for(200_000), samples_for(10**7)) == (SAMPLES // 2, SAMPLES, SAMPLES)
+    few = FoamRings(FoamLevels(sea), count).at(TIME, Place(300.0, -200.0))
+    for number, (own, whole) in enumerate(zip(few.foam, rings.foam, strict=True)):
+        cell = FINEST * 2.0**number
+        column, row = (
+            round((first - of_whole) / cell)
+            for first, of_whole in zip(few.corners[number], rings.corners[number], strict=True)
+        )
+        block = slice(row, row + count), slice(column, column + count)
+        np.testing.assert_allclose(own.foam, whole.foam[block], atol=1e-6)
+        np.testing.assert_allclose(own.breaking, whole.breaking[block], atol=1e-6)
 
 
 def compression(waves):
