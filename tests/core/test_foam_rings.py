@@ -11,6 +11,7 @@ from ocean_tweak.core import Foam, Ocean, OceanParameters, Patch, Places, WaveLa
 from ocean_tweak.core.foam.threshold import foam_outlook
 from ocean_tweak.core.sea.foam_levels import FINEST, FoamLevels
 from ocean_tweak.core.sea.foam_rings import INNER, SAMPLES, FoamRings, Place, samples_for
+from ocean_tweak.core.sea.sums import AnywhereSum
 from tests.core.patched_seas import summed
 
 # soon forgotten: each frame alone looks back over its memory
@@ -114,6 +115,57 @@ def test_it_is_the_same_from_elsewhere_and_whatever_came_before(sea, rings):
             there = other_foam[low[1] - rows : high[1] - rows, low[0] - columns : high[0] - columns]
             here = mine[low[1] : high[1], low[0] : high[0]]
             np.testing.assert_allclose(there, here, atol=2e-3)
+
+
+def test_who_moves_on_looks_back_only_where_nobody_did(sea, monkeypatch):
+    """Two steps of the finest ring: its strips of 8 of 192 columns each, and less of coarser ones."""
+    looked = []
+    original = AnywhereSum.compression_at
+
+    def counted(self, x, y, time):
+        looked.append(x.size)
+        return original(self, x, y, time)
+
+    monkeypatch.setattr(AnywhereSum, "compression_at", counted)
+    following = FoamRings(FoamLevels(sea))
+    shown = len(following.at(TIME, Place(0.0, 0.0)).foam) * SAMPLES**2
+    whole = sum(looked)
+    for x in (2.0, 4.0):
+        looked.clear()
+        following.at(TIME, Place(x, 0.0))
+        assert sum(looked) - shown < 0.1 * (whole - shown)
+    looked.clear()
+    following.at(TIME, Place(4.0, 0.0))
+    assert sum(looked) == shown
+
+
+@pytest.mark.parametrize("wind", [12.0, 18.0, 24.0])
+def test_places_can_be_replaced_by_others_at_any_time(wind):
+    """Below, in and above the winds in which windrows rise: what stays where it was born has its own past."""
+    layer = WaveLayer(wind_speed=wind, fetch=20e3, wind_direction=0.4)
+    patches = (Patch(120.0, 0.3, 12.0, 1e6, 40), Patch(31.0, -0.9, 3.0, 12.0, 32))
+    ocean = Ocean(OceanParameters(seed=3, layers=(layer,), patches=patches, foam=Foam(coverage=6.0)))
+    rows = ocean.foam_model.windrows
+    assert (rows is None, rows is not None and rows.strength == 1.0) == (wind == 12.0, wind == 24.0)
+
+    def remembering(foam, time):
+        for index in foam.missing(time):
+            foam.remember(index)
+        return foam.whitecaps(time)
+
+    x, y = np.random.default_rng(5).uniform(0.0, 300.0, (2, 3000))
+    following = ocean.new_drifting_foam(*np.random.default_rng(6).uniform(0.0, 300.0, (2, 3000)))
+    left = np.arange(3000)
+    for time in np.arange(20.0, 26.0, 0.4):
+        remembering(following, time)
+        some, left = left[:220], left[220:]
+        entering = ocean.new_drifting_foam(x[some], y[some])
+        remembering(entering, time)
+        following.put(some, entering)
+    alone = remembering(ocean.new_drifting_foam(x, y), 26.1)
+    assert np.mean(alone.foam > 0.1) > 0.005
+    for ours, theirs in zip(remembering(following, 26.1), alone, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
 
 
 def test_rings_lie_around_the_place(rings):

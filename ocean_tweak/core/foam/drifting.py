@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,52 @@ RealArray = NDArray[np.floating]
 CompressionAt = Callable[[Array, Array, Fraction], RealArray]
 
 
+class _Past:
+    """Births at some places, which drift along.
+
+    model : of the foam
+    x, y : (places,) where they are at time 0, at rest, m
+    """
+
+    def __init__(self, model: FoamModel, compression_at: CompressionAt, x: Array, y: Array) -> None:
+        self._model = model
+        self._compression_at = compression_at
+        self._x, self._y = x, y
+        self._births: Births | None = None
+        self._looks = Looks(self._look, model.stride, model.threshold)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the places, their births, and the looks that these are from."""
+        return total_bytes((self._x, self._y, self._births, self._looks))
+
+    def remember(self, index: int) -> None:
+        """Add what is born at a lattice time."""
+        if self._births is None:
+            self._births = Births(self._model, self._x.shape, index)
+        self._births.add(self._looks.at(index), index)
+
+    def left(self, now: Fraction) -> tuple[RealArray, RealArray]:
+        """What is left of the births by now, and its age in s."""
+        assert self._births is not None
+        self._births.settle()
+        return self._births.left(now)
+
+    def put(self, where: NDArray[np.intp], other: _Past) -> None:
+        """Have other places instead of some, whose births are known up to the same lattice time."""
+        assert self._births is not None
+        assert other._births is not None
+        self._x[where], self._y[where] = other._x, other._y
+        self._births.put(where, other._births)
+        self._looks.put(where, other._looks)
+
+    def _look(self, index: int) -> RealArray:
+        """The compression at a lattice time."""
+        then = index * self._model.step
+        places = moved(self._model, self._x, self._y, then)
+        return self._compression_at(*places, self._model.reduced(then))
+
+
 class DriftingFoam:
     """Births of foam at some places; where it lies in windrows, also at the places that it is drawn from.
 
@@ -34,17 +80,21 @@ class DriftingFoam:
         self._model = model
         self._compression_at = compression_at
         self._x, self._y = x, y
-        self._births: Births | None = None
-        self._looks: Looks | None = None
-        self._last = 0
-        # how far windrows have moved past the foam, and of the places that it is drawn from x, y and share
+        rows = model.windrows
+        # of the foam that stays where it was born
+        self._staying = model if rows is None else replace(model, half_life=rows.stays(model.half_life))
+        self._own: _Past | None = None
+        self._drawn: _Past | None = None
+        self._share = np.empty(0, np.float32)
+        # the lattice times up to which all is remembered, and from which on it counts what stays
+        self._last = self._counts_from = 0
+        # x and y in m by which windrows have moved past the foam
         self._past = (0.0, 0.0)
-        self._drawn: tuple[Array, Array, RealArray] | None = None
 
     @property
     def nbytes(self) -> int:
         """Bytes of the places, their births, and the looks that these are from."""
-        return total_bytes((self._x, self._y, self._births, self._looks, *(self._drawn or ())))
+        return total_bytes((self._own, self._drawn, self._share))
 
     def missing(self, time: float | Fraction) -> range:
         """Lattice times that are to be remembered, in this order, before the foam of a time is known."""
@@ -52,49 +102,50 @@ class DriftingFoam:
         now = model.reduced(time)
         index = math.floor(now / model.step)
         first = index - model.memory + 1
-        if self._births is None or self._last > index or self._past != self._past_at(now):
-            self._births = None
+        if self._own is None or self._last > index or self._past != self._past_at(now):
+            self._own = self._drawn = None
             self._past = self._past_at(now)
+            self._counts_from = index - self._staying.memory + 1
             return range(first, index + 1)
         # births of lattice times that are forgotten by now fade below the faintest: they may stay
         return range(max(first, self._last + 1), index + 1)
 
     def remember(self, index: int) -> None:
         """Add what is born at a lattice time."""
-        x, y, _ = self._sources
-        if self._births is None or self._looks is None:
-            self._births = Births(self._model, x.shape, index)
-            self._looks = Looks(partial(self._look, x, y), self._model.stride, self._model.threshold)
-        self._births.add(self._looks.at(index), index)
+        if self._own is None:
+            self._own = _Past(self._staying, self._compression_at, self._x, self._y)
+            if self._model.windrows is not None:
+                past_x, past_y = self._past
+                x, y, self._share = self._model.windrows.sources(self._x - past_x, self._y - past_y)
+                self._drawn = _Past(self._model, self._compression_at, x + past_x, y + past_y)
+        if index >= self._counts_from:
+            self._own.remember(index)
+        if self._drawn is not None:
+            self._drawn.remember(index)
         self._last = index
 
-    def _look(self, x: Array, y: Array, index: int) -> RealArray:
-        """The compression at a lattice time of places that are at x and y in m at time 0."""
-        then = index * self._model.step
-        return self._compression_at(*self._moved(x, y, then), self._model.reduced(then))
+    def put(self, where: NDArray[np.intp], other: DriftingFoam) -> None:
+        """Have other places instead of some, whose foam is remembered up to the same lattice time."""
+        self._x[where], self._y[where] = other._x, other._y
+        if self._own is not None and other._own is not None:
+            self._own.put(where, other._own)
+        if self._drawn is not None and other._drawn is not None:
+            self._drawn.put(where, other._drawn)
+            self._share[where] = other._share
 
     def whitecaps(self, time: float | Fraction) -> Whitecaps:
         """(places,) foam where they are at a time: what breaks, and what is left of what is remembered."""
         model = self._model
         now = model.reduced(time)
-        breaking = breaking_of(model, self._compression_at(*self.places(now), now))
-        if self._births is None:
+        places = moved(model, self._x, self._y, now)
+        breaking = breaking_of(model, self._compression_at(*places, now))
+        if self._own is None:
             return seen(breaking, breaking, np.zeros_like(breaking))
-        self._births.settle()
-        foam, age = self._births.left(now)
-        if model.windrows is not None:
-            count, (_, _, share) = self._x.size, self._sources
-            own, drawn = (foam[:count], age[:count]), (foam[count:], age[count:])
-            foam, age = model.windrows.drawn_out(*own, *drawn, share)
+        foam, age = self._own.left(now)
+        if model.windrows is not None and self._drawn is not None:
+            own = foam if self._staying.half_life < model.half_life else model.windrows.staying(foam, age)
+            foam, age = model.windrows.drawn_out(own, age, *self._drawn.left(now), self._share)
         return seen(breaking, foam, age)
-
-    def places(self, time: Fraction) -> tuple[Array, Array]:
-        """x and y of the places at a time, at rest, m."""
-        return self._moved(self._x, self._y, time)
-
-    def _moved(self, x: Array, y: Array, time: Fraction) -> tuple[Array, Array]:
-        drift_x, drift_y = self._model.drift
-        return x + float(time) * drift_x, y + float(time) * drift_y
 
     def _past_at(self, now: Fraction) -> tuple[float, float]:
         """x and y in m by which windrows have moved more than foam by now."""
@@ -102,17 +153,11 @@ class DriftingFoam:
         foam_x, foam_y = (float(now) * drift for drift in self._model.drift)
         return windrows_x - foam_x, windrows_y - foam_y
 
-    @property
-    def _sources(self) -> tuple[Array, Array, RealArray]:
-        """Where births are wanted, x and y in m at time 0, and the share of those that are not the places."""
-        windrows = self._model.windrows
-        if windrows is None:
-            return self._x, self._y, np.empty(0, np.float32)
-        if self._drawn is None or self._births is None:
-            past_x, past_y = self._past
-            x, y, share = windrows.sources(self._x - past_x, self._y - past_y)
-            self._drawn = np.concatenate((self._x, x + past_x)), np.concatenate((self._y, y + past_y)), share
-        return self._drawn
+
+def moved(model: FoamModel, x: Array, y: Array, time: Fraction) -> tuple[Array, Array]:
+    """Where places are at a time that are at x and y in m at time 0."""
+    drift_x, drift_y = model.drift
+    return x + float(time) * drift_x, y + float(time) * drift_y
 
 
 def whitecaps_at(

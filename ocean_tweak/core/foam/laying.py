@@ -53,7 +53,8 @@ class Drawing:
             for offset in (0, 1, below, below + 1)
         )
         drawn = between(between(here, beside, u), between(above, across, u), v)
-        return self._windrows.drawn_out(foam, age, *drawn, rows_of(self._share, first, count))
+        own = self._windrows.staying(foam, age)
+        return self._windrows.drawn_out(own, age, *drawn, rows_of(self._share, first, count))
 
 
 def laid(left: Foam, shift: Sequence[float], drawing: Drawing | None, first: int, count: int) -> Foam:

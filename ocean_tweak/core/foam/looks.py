@@ -88,6 +88,15 @@ class Looks:
             compression += np.multiply(values, weight, out=share)
         return Compressed(self._followed, compression)
 
+    def put(self, where: NDArray[np.intp], other: Looks) -> None:
+        """Have other places instead of some, which were looked at up to the same moment."""
+        for moment, values in self._looks.items():
+            values[where] = other._looks[moment]
+        stay = np.isin(self._followed, where, invert=True)
+        self._followed = np.concatenate((self._followed[stay], where[other._followed]))
+        pairs = zip(self._around, other._around, strict=True)
+        self._around = [np.concatenate((values[stay], others)) for values, others in pairs]
+
     def _follow(self, look: int) -> None:
         """Follow places from a look to the next that may be compressed by more than the threshold."""
         if self._stride == 1:

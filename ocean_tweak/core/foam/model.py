@@ -238,6 +238,13 @@ class Births:
         since = np.take(followed.since, np.take(born, newer))
         self._moments.put(places, since.astype(np.int32) + np.int32(followed.zero - self._first))
 
+    def put(self, where: NDArray[np.intp], other: Births) -> None:
+        """Have the births of other places instead of those of some, all settled."""
+        self.settle()
+        other.settle()
+        self._latest[where] = other._latest + np.float32(other._zero - self._zero)
+        self._moments[where] = other._moments + np.int32(other._first - self._first)
+
     def left(self, now: Fraction, part: slice = slice(None)) -> tuple[RealArray, RealArray]:
         """F of what is left by now, and its age in s; what is remembered beyond the faintest is none.
 

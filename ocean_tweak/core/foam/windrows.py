@@ -132,14 +132,21 @@ class Windrows:
         odds *= lines
         return np.asarray(odds / (odds + np.float32(1.0)))
 
-    def drawn_out(
-        self, foam: RealArray, age: RealArray, drawn: RealArray, drawn_age: RealArray, lines: RealArray
-    ) -> tuple[RealArray, RealArray]:
-        """Old foam and its age of what lies where it was born, and of what was drawn out.
+    def stays(self, half_life: float) -> float:
+        """The half-life in s of foam where it was born: less than its own where all of it is drawn out."""
+        return half_life if self.strength < 1.0 else 1.0 / (1.0 / half_life + 1.0 / _DRAWN_IN)
 
-        The first goes over into the second as it ages. The age is that of the larger part.
+    def staying(self, foam: RealArray, age: RealArray) -> RealArray:
+        """What is left where it was born of old foam, which goes over into what is drawn out as it ages."""
+        return foam * (1.0 - self.strength * _drawn(age))
+
+    def drawn_out(
+        self, own: RealArray, age: RealArray, drawn: RealArray, drawn_age: RealArray, lines: RealArray
+    ) -> tuple[RealArray, RealArray]:
+        """Old foam and its age of what stays where it was born, and of what was drawn out.
+
+        The age is that of the larger part.
         """
-        own = foam * (1.0 - self.strength * _drawn(age))
         other = self.gathered(drawn, lines) * (self.strength * _drawn(drawn_age))
         return np.minimum(own + other, np.float32(1.0)), chosen(other > own, drawn_age, age)
 

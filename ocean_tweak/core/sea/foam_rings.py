@@ -25,6 +25,7 @@ from .foam_levels import FINEST, FoamLevels
 from .ocean import Ocean
 
 Array = NDArray[np.float64]
+Cells = NDArray[np.int64]
 
 #: places along each side of a ring, at most: as many as a surface with so many vertices shows
 SAMPLES, VERTICES = 192, 200_000
@@ -77,11 +78,47 @@ class _Ring(NamedTuple):
         )
         return x, y
 
-    def foam(self, first: tuple[int, int]) -> DriftingFoam:
-        """Foam on the ring with this first cell, without births so far."""
-        along = self.spacing * np.arange(self.samples)
-        x, y = np.meshgrid(*(number * self.spacing + along for number in first))
-        return self.sea.new_drifting_foam(x.ravel(), y.ravel())
+    def cells(self, first: tuple[int, int]) -> tuple[Cells, Cells]:
+        """Columns and rows of the cells of a ring with this first one, (samples²,) each.
+
+        A cell is always at the same place of the array, whatever the ring: that of its remainder.
+        """
+        along = np.arange(self.samples)
+        x, y = (number + (along - number) % self.samples for number in first)
+        columns, rows = np.meshgrid(x, y)
+        return columns.ravel(), rows.ravel()
+
+    def foam(self, columns: Cells, rows: Cells) -> DriftingFoam:
+        """Foam on some cells, without births so far."""
+        x, y = (self.spacing * along.astype(np.float64) for along in (columns, rows))
+        return self.sea.new_drifting_foam(x, y)
+
+    def moved_on(self, lying: _Lying | None, first: tuple[int, int]) -> tuple[_Lying, _Entering | None]:
+        """The ring with this first cell, and what is to enter it; if nothing of it stays, all is new."""
+        if lying is None:
+            return _Lying(first, self.foam(*self.cells(first))), None
+        if lying.first == first:
+            return lying, None
+        columns, rows = self.cells(first)
+        before = self.cells(lying.first)
+        where = np.flatnonzero((columns != before[0]) | (rows != before[1]))
+        if len(where) == len(columns):
+            return self.moved_on(None, first)
+        return _Lying(first, lying.foam), _Entering(self.foam(columns[where], rows[where]), where)
+
+
+class _Lying(NamedTuple):
+    """A ring as it lies: its first cell, and its foam."""
+
+    first: tuple[int, int]
+    foam: DriftingFoam
+
+
+class _Entering(NamedTuple):
+    """Foam on the cells that a ring gets when it moves on, and where in its arrays they come."""
+
+    foam: DriftingFoam
+    where: NDArray[np.intp]
 
 
 def samples_for(vertices: int) -> int:
@@ -103,12 +140,12 @@ class FoamRings:
         self._levels = levels
         self._samples = samples
         self._busy = threading.Lock()
-        self._foam: dict[int, tuple[tuple[int, int], DriftingFoam]] = {}
+        self._lying: list[_Lying] = []
 
     @property
     def nbytes(self) -> int:
         """Bytes of the places and their births."""
-        return sum(foam.nbytes for _, foam in self._foam.values())
+        return sum(lying.foam.nbytes for lying in self._lying)
 
     def at(self, time: float | Fraction, place: Place, history: bool = True) -> Rings:
         """Foam around a place at a time in s. It may be called on any thread.
@@ -116,23 +153,29 @@ class FoamRings:
         history : whether what is left of earlier moments is wanted too, and not what breaks now alone
         """
         now = self._rings[0].sea.foam_model.reduced(time)
-        lying = [ring.around(place, now) for ring in self._rings]
+        firsts = [ring.around(place, now) for ring in self._rings]
         if not history:
-            return self._shown(
-                [ring.foam(first) for ring, first in zip(self._rings, lying, strict=True)], now
-            )
+            new = [ring.foam(*ring.cells(first)) for ring, first in zip(self._rings, firsts, strict=True)]
+            return self._shown(new, firsts, now)
         with self._busy:
-            for number, (ring, first) in enumerate(zip(self._rings, lying, strict=True)):
-                if number not in self._foam or self._foam[number][0] != first:
-                    self._foam[number] = first, ring.foam(first)
-            rings = [self._foam[number][1] for number in range(len(self._rings))]
-            missing = [foam.missing(now) for foam in rings]
+            # whoever fails on the way begins anew
+            before: list[_Lying | None] = [*self._lying] or [None] * len(firsts)
+            self._lying = []
+            both = zip(self._rings, before, firsts, strict=True)
+            moved = [ring.moved_on(lying, first) for ring, lying, first in both]
+            rings = [lying.foam for lying, _ in moved]
+            wanting = rings + [entering.foam for _, entering in moved if entering is not None]
+            missing = [foam.missing(now) for foam in wanting]
             # moment by moment, because rings share strains
             for index in sorted({index for each in missing for index in each}):
-                for foam, of_ring in zip(rings, missing, strict=True):
-                    if index in of_ring:
+                for foam, of_foam in zip(wanting, missing, strict=True):
+                    if index in of_foam:
                         foam.remember(index)
-            return self._shown(rings, now)
+            for lying, entering in moved:
+                if entering is not None:
+                    lying.foam.put(entering.where, entering.foam)
+            self._lying = [lying for lying, _ in moved]
+            return self._shown(rings, firsts, now)
 
     @cached_property
     def _rings(self) -> tuple[_Ring, ...]:
@@ -140,10 +183,18 @@ class FoamRings:
             _Ring(sea, FINEST * 2.0**level, self._samples) for level, sea in enumerate(self._levels.seas)
         )
 
-    def _shown(self, rings: Sequence[DriftingFoam], now: Fraction) -> Rings:
-        corners = [tuple(float(along[0]) for along in foam.places(now)) for foam in rings]
-        shown = []
-        for level, foam in enumerate(rings):
-            own = (field.reshape(self._samples, self._samples) for field in foam.whitecaps(now))
+    def _shown(
+        self, rings: Sequence[DriftingFoam], firsts: Sequence[tuple[int, int]], now: Fraction
+    ) -> Rings:
+        corners, shown = [], []
+        for level, (ring, foam, first) in enumerate(zip(self._rings, rings, firsts, strict=True)):
+            drift = ring.sea.foam_model.drift
+            x, y = (number * ring.spacing + float(now) * by for number, by in zip(first, drift, strict=True))
+            corners.append((x, y))
+            back = [-(number % self._samples) for number in reversed(first)]
+            own = (
+                np.roll(field.reshape(self._samples, self._samples), back, axis=(0, 1))
+                for field in foam.whitecaps(now)
+            )
             shown.append(self._levels.mixed(Whitecaps(*own), level))
-        return Rings(tuple((x, y) for x, y in corners), tuple(shown), self._levels.beyond)
+        return Rings(tuple(corners), tuple(shown), self._levels.beyond)
