@@ -36,8 +36,11 @@ def run_blocks(work: Callable[[slice], None], blocks: Iterable[slice], workers: 
                 return
             work(block)
 
-    with ThreadPoolExecutor(workers) as pool:
-        for done in [pool.submit(pull) for _ in range(workers)]:
+    # this thread is one of them: to start another takes as long as some blocks
+    with ThreadPoolExecutor(workers - 1) as pool:
+        others = [pool.submit(pull) for _ in range(workers - 1)]
+        pull()
+        for done in others:
             done.result()
 
 

@@ -91,8 +91,8 @@ class _Columns:
         return np.stack([self._sum(component, by, along_x, along_y) for component in (X, Y, Z)], axis=-1)
 
     def _sum(self, component: int, by: str, along_x: ComplexArray, along_y: ComplexArray) -> Array:
-        wanted = self._synthesis.term(component, by)
-        coefficients = self._coefficients(wanted.column) * self._synthesis.x_factor(wanted)
+        wanted = self._synthesis.terms[component, by, False]
+        coefficients = self._coefficients(wanted.column) * self._synthesis.x_factors.get(wanted, 1.0)
         return np.einsum("pk,pk->p", along_y @ coefficients, along_x).real
 
     def _coefficients(self, column: Column) -> ComplexArray:

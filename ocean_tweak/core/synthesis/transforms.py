@@ -16,10 +16,12 @@ first pass of its own, take the potential's place, and all three hold the sum of
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -102,27 +104,43 @@ class Synthesis:
     workers: int | None = 1
     sharing: tuple[Sharing, ...] = ()
 
-    def term(self, component: int, derivative: str = "", long: bool = False) -> Term:
-        """The field of this sea's P[component] or of its derivative by "x", "y" or "t"."""
-        return term(component, derivative, long, not self.sharing)
+    @cached_property
+    def terms(self) -> dict[tuple[int, str, bool], Term]:
+        """The field of each of this sea's P[component] or of its derivative by "x", "y" or "t", of all waves
+        or of the long ones.
+        """
+        keys = itertools.product((X, Y, Z), ("", "x", "y", "t"), (False, True))
+        return {key: term(*key, gradient=not self.sharing) for key in keys}
 
-    def x_factor(self, wanted: Term) -> ComplexArray:
-        """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none."""
-        factor = (1j * self.state.grid.kx[0]) ** wanted.x_order
-        if wanted.column.source == POTENTIAL and wanted.column.y_order == 0:
-            factor *= self.parameters.choppiness
-        return factor.astype(self.dtype)
+    @cached_property
+    def x_factors(self) -> dict[Term, ComplexArray]:
+        """(i kx)ᵐ of each field that has one, (N//2+1,), and the choppiness λ where its column has none."""
+        factors: dict[Term, ComplexArray] = {}
+        for term in set(self.terms.values()):
+            factor = (1j * self.state.grid.kx[0]) ** term.x_order
+            if term.column.source == POTENTIAL and term.column.y_order == 0:
+                factor *= self.parameters.choppiness
+            if term.x_order:
+                factors[term] = factor.astype(self.dtype)
+        return factors
 
-    def y_factor(self, column: Column) -> ComplexArray:
-        """(i ky)ⁿ of a column, (N,), and the choppiness λ if it is one of the potential's derivatives."""
-        factor = (1j * self.state.grid.ky[:, 0]) ** column.y_order
-        if column.source == POTENTIAL:
-            factor *= self.parameters.choppiness
-        return factor.astype(self.dtype)
+    @cached_property
+    def y_factors(self) -> dict[Column, ComplexArray]:
+        """(i ky)ⁿ of each column that has one, (N,), and the choppiness λ if it is one of the potential's
+        derivatives.
+        """
+        factors: dict[Column, ComplexArray] = {}
+        for column in {term.column for term in self.terms.values()}:
+            factor = (1j * self.state.grid.ky[:, 0]) ** column.y_order
+            if column.source == POTENTIAL:
+                factor *= self.parameters.choppiness
+            if column.y_order:
+                factors[column] = factor.astype(self.dtype)
+        return factors
 
     def columns(self, wanted: Iterable[tuple[int, str]]) -> list[Column]:
         """What the first pass must make for some components and derivatives."""
-        return sorted({self.term(*key).column for key in self._with_long_waves(wanted)})
+        return sorted({self.terms[key].column for key in self._with_long_waves(wanted)})
 
     def fill(
         self,
@@ -235,9 +253,7 @@ class _Sources:
     def coefficients(self, column: Column) -> ComplexArray:
         """h, Φ, λDx or λDy, or a rate, times (i ky)ⁿ."""
         base = self._base(column._replace(y_order=0))
-        if column.y_order == 0:
-            return base
-        return base * self._synthesis.y_factor(column)
+        return base * self._synthesis.y_factors[column] if column.y_order else base
 
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
@@ -296,16 +312,16 @@ class Rows:
 
     def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
         """(rows, N) P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
-        term, damping = self._synthesis.term, self._synthesis.damping
+        terms, damping = self._synthesis.terms, self._synthesis.damping
         if damping is None:
-            return self._transform(term(component, derivative), out)
-        everything = self._transform(term(component, derivative))
-        long_waves = self._transform(term(component, derivative, long=True))
-        weight, slope = damping.weight(self._transform(term(Z, "", long=True)))
+            return self._transform(terms[component, derivative, False], out)
+        everything = self._transform(terms[component, derivative, False])
+        long_waves = self._transform(terms[component, derivative, True])
+        weight, slope = damping.weight(self._transform(terms[Z, "", True]))
         result = long_waves + weight * (everything - long_waves)
         if derivative:
-            short = self._transform(term(component)) - self._transform(term(component, long=True))
-            result += slope * self._transform(term(Z, derivative, long=True)) * short
+            short = self._transform(terms[component, "", False]) - self._transform(terms[component, "", True])
+            result += slope * self._transform(terms[Z, derivative, True]) * short
         if out is not None:
             out[...] = result
         return result
@@ -318,7 +334,7 @@ class Rows:
             return out
         coefficients = self._first_pass[wanted.column][self._block]
         if wanted.x_order:
-            coefficients = coefficients * self._synthesis.x_factor(wanted)
+            coefficients = coefficients * self._synthesis.x_factors[wanted]
         self._made[wanted] = _inverse_real(coefficients, out)
         return self._made[wanted]
 
