@@ -292,8 +292,8 @@ def test_a_budget_below_one_sea_is_a_warning(
     assert main(["info", "--set", "resolution=512"]) == 0
     said = capsys.readouterr().out
     # 512 x 257 waves of 40 bytes, and the 16 of their random phases
-    assert "  warning: This sea keeps 7.37 MB and the memory for all seas is 1 MB: " in said
-    assert "OCEAN_TWEAK_MEMORY, to 11.1 MB" in said
+    assert "  warning: This sea needs 7.37 MB, and the memory for all seas is 1 MB: " in said
+    assert "OCEAN_TWEAK_MEMORY) to 11.1 MB" in said
 
 
 def test_a_budget_that_is_none_is_refused_in_a_line(

@@ -22,7 +22,7 @@ def test_info_says_when_and_where_and_how_fast(capsys: pytest.CaptureFixture[str
     assert main(["info", "--params", str(EXAMPLE), "--set", "layers.1.crest_height=9"]) == 0
     text = capsys.readouterr().out
     assert "9 m high at x = 200, y = 200 m at 12 s (frame 289)" in text
-    assert "warning: Hero wave 0: waves of 60 m break" in text
+    assert "warning: Hero wave 0: waves 60 m long break" in text
 
 
 def test_info_of_a_sea_without_them_is_what_it_was(capsys: pytest.CaptureFixture[str]) -> None:
@@ -32,7 +32,7 @@ def test_info_of_a_sea_without_them_is_what_it_was(capsys: pytest.CaptureFixture
 def test_what_does_not_fit_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     """Its shortest wave is the (1 + 4.5·2.355/(2π·1.5))·400/60 = 14.2th of the patch: 2·(15 + 1) samples."""
     assert main(["info", "--params", str(EXAMPLE), "--set", "resolution=16"]) == 2
-    assert "layers.1.wavelength = 60.0: needs 32 samples a side" in capsys.readouterr().err
+    assert "layers.1.wavelength = 60.0: needs 32 samples along each side" in capsys.readouterr().err
 
 
 def test_a_baked_frame_holds_the_crest(tmp_path: Path) -> None:

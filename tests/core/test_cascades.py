@@ -46,7 +46,7 @@ def test_json_round_trip_and_the_size_of_the_first_patch() -> None:
     halved = SEA.replace(resolution=64)
     assert [patch.resolution for patch in halved.patches] == [64, 64, 80]
     assert halved.resolution == 64
-    with pytest.raises(ParameterError, match=r"domain_size = 50\.0: is that of the first of the patches"):
+    with pytest.raises(ParameterError, match=r"domain_size = 50\.0: is set by the first patch"):
         SEA.replace(domain_size=50.0)
 
 
@@ -57,9 +57,9 @@ def patches_between(*bands: tuple[float, float]) -> tuple[Patch, ...]:
 def test_what_patches_tell_is_not_given_otherwise() -> None:
     """The tile is the first patch's, or has as many samples as they are joined on."""
     for given, wanted in (({"resolution": 64}, "128"), ({"domain_size": 50.0}, "600")):
-        with pytest.raises(ParameterError, match=rf"must be {wanted}, which the patches tell: leave it out"):
+        with pytest.raises(ParameterError, match=rf"must be {wanted}, as the patches have it: leave it out"):
             OceanParameters(patches=THREE, **given)
-    with pytest.raises(ParameterError, match=r"resolution = 128: must be 48, which"):
+    with pytest.raises(ParameterError, match=r"resolution = 128: must be 48, as the patches have it"):
         OceanParameters(patches=THREE, merged_resolution=48, resolution=128)
     same = OceanParameters(patches=THREE, resolution=128, domain_size=600.0)
     assert same == OceanParameters(patches=THREE) == OceanParameters().replace(patches=THREE)
@@ -86,7 +86,7 @@ def test_bands_that_do_not_join_are_refused(bands: tuple[tuple[float, float], ..
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"trough_damping": 0.5}, "trough_damping = 0.5: must be 0 in a sea of patches"),
+        ({"trough_damping": 0.5}, "trough_damping = 0.5: must be 0 in a sea of several patches"),
         ({"patches": THREE + THREE}, "patches = '6 entries': must have from 0 to 4 entries"),
         ({"patches": "many"}, "must be a sequence of Patch"),
     ],
@@ -198,10 +198,12 @@ def test_statistics_warn_of_patches_that_are_too_small_or_too_coarse() -> None:
     first, second, third = THREE
     coarse = Ocean(SEA.replace(patches=(first, second, dataclasses.replace(third, resolution=64))))
     (warning,) = coarse.statistics().warnings
-    assert "Patch 3: its shortest wave, 0.9 m, has only 1.7 samples. Give it 148 samples" in warning
+    assert (
+        "Patch 3: its shortest wave, 0.9 m, has only 1.7 samples. Give the patch 148 samples, or" in warning
+    )
     assert "or end its band at 2.06 m" in warning  # four samples of 33 m / 64
     near = Ocean(SEA.replace(patches=(first, dataclasses.replace(second, domain_size=80.0), third)))
-    assert any("Patch 2: its longest wave, 20 m, goes only 4 times" in w for w in near.statistics().warnings)
+    assert any("Patch 2: its longest wave, 20 m, fits only 4 times" in w for w in near.statistics().warnings)
     early = (
         dataclasses.replace(first, shortest_wavelength=60.0),
         dataclasses.replace(second, longest_wavelength=60.0),
@@ -260,7 +262,7 @@ def test_patches_that_miss_much_tell_down_to_which_wave_they_go() -> None:
     patches = (Patch(600.0, 0.0, 20.0, 1e6, 128), Patch(200.0, 0.0, 0.0, 20.0, 64))
     warnings = Ocean(SEA.replace(layers=(breeze,), patches=patches)).statistics().warnings
     assert any(
-        re.search(r"resolve \d\d % .* of waves down to 6\.25 m\. Plan them", each) for each in warnings
+        re.search(r"resolve \d\d % .* down to waves of 6\.25 m\. Plan them", each) for each in warnings
     )
 
 

@@ -249,7 +249,7 @@ def test_loop_ends_where_it_began_and_keeps_the_focus() -> None:
     assert focus[128, 128] == pytest.approx(2.0, rel=1e-5)
     assert not HeroWave.outlook(parameters).warnings
     (short,) = HeroWave.outlook(sea(HeroWave(), loop_duration=Fraction(40))).waves
-    assert "the loop is shorter" in short.warnings[0]
+    assert "longer than the loop" in short.warnings[0]
 
 
 def test_same_wave_at_any_resolution_that_holds_it() -> None:
@@ -295,9 +295,9 @@ def test_hero_waves_survive_json_and_make_frames_of_their_own() -> None:
 @pytest.mark.parametrize(
     ("wave", "where", "reason"),
     [
-        ({"wavelength": 401.0, "group_width": 300.0}, "wavelength", "make it shorter, or that larger"),
+        ({"wavelength": 401.0, "group_width": 300.0}, "wavelength", "make it shorter, or the domain larger"),
         ({"group_length": 7.0}, "group_length", "is 420 m in a domain of 400 m"),
-        ({"group_width": 401.0}, "group_width", "make it smaller, or that larger"),
+        ({"group_width": 401.0}, "group_width", "make it smaller, or the domain larger"),
         ({"group_width": 20.0}, "group_width", "at least 30 m"),
         ({"wavelength": 6.2, "group_length": 8.0}, "wavelength", "needs 260 samples"),
         ({"wavelength": 6.3, "group_length": 1.0}, "wavelength", "and the resolution is 256"),
@@ -323,7 +323,7 @@ def test_waves_that_would_break_are_told() -> None:
     (steep,) = HeroWave.outlook(sea(HeroWave(crest_height=4.27))).waves
     assert "break" in steep.warnings[0]
     shallow = sea(HeroWave(crest_height=2.0), water=Water(depth=3.0))
-    assert "at most 1.3 m high" in HeroWave.outlook(shallow).warnings[0]
+    assert "Lower the crest to 1.3 m" in HeroWave.outlook(shallow).warnings[0]
 
 
 # any of them

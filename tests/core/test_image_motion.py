@@ -115,7 +115,7 @@ def test_loops_of_a_translation_close_or_are_refused() -> None:
         ParameterError, match=r"layers\.1\.translation_speed = 21\.0: moves the image by 1\.05"
     ) as info:
         check_loop(other, Fraction(10))
-    assert "take 20 m/s towards 0 rad" in str(info.value)
+    assert "use 20 m/s towards 0 rad" in str(info.value)
 
 
 def test_waves_run_with_the_wind_and_once() -> None:

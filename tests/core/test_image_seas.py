@@ -77,7 +77,7 @@ def test_json_holds_the_image() -> None:
     assert parameters.to_dict(brief=True)["layers"][1]["image"]["name"] == "ring.png"
     with pytest.raises(ParameterError, match=r"layers\.1\.filter = 'FRACTAL2'"):
         OceanParameters.from_dict({"pictures": [{"filter": "FRACTAL2"}]})
-    with pytest.raises(ParameterError, match=r"layers\.2\.id = 3: is the id of another"):
+    with pytest.raises(ParameterError, match=r"layers\.2\.id = 3: is already the id of another"):
         sea(ImageLayer(id=3), ImageLayer(id=3))
     with pytest.raises(ParameterError, match=r"layers\.1\.translation_speed"):
         sea(ImageLayer(animation="TRANSLATION"), loop_duration=10)
@@ -177,7 +177,7 @@ def test_a_shot_keeps_its_images() -> None:
     moved = shot.at(2).parameters
     assert moved.layers[0].amplitude_scale == 1.0
     assert layers_of(moved, "IMAGE")[0].image is layers_of(parameters, "IMAGE")[0].image
-    with pytest.raises(ParameterError, match=r"pictures\.0\.gain.*each keeps its waves"):
+    with pytest.raises(ParameterError, match=r"pictures\.0\.gain.*an image keeps its waves"):
         Animation(1, (("pictures.0.gain", (0.0, 1.0)),))
 
 

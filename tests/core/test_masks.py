@@ -387,5 +387,5 @@ def test_troughs_are_not_damped_under_masks() -> None:
 
 
 def test_a_masked_sea_has_no_coefficients_of_one_sum() -> None:
-    with pytest.raises(ValueError, match="not one sum but several, or under masks"):
+    with pytest.raises(ValueError, match="is several sums of waves, or has masks"):
         Ocean(sea()).initial_state  # noqa: B018

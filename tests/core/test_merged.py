@@ -242,7 +242,7 @@ def test_what_cannot_be_merged_is_refused(samples: int, patches: tuple[Patch, ..
 def test_joined_patches_are_one_sea_of_several_sums() -> None:
     sea = Ocean(joined(64))
     assert sea.patches == (sea,)
-    with pytest.raises(ValueError, match="not one sum but several, or under masks"):
+    with pytest.raises(ValueError, match="is several sums of waves, or has masks"):
         sea.initial_state  # noqa: B018
 
 

@@ -160,9 +160,11 @@ def test_of_waves_that_nobody_tells_of_statistics_warn() -> None:
         muted: bool = muted()
 
     with registered(Silent):
-        assert "Silent: nothing tells how high" in Ocean(sea(Silent())).statistics().warnings[0]
+        assert (
+            "Silent: the height of these waves is not known" in Ocean(sea(Silent())).statistics().warnings[0]
+        )
         assert not any("Silent" in text for text in Ocean(sea(Silent(muted=True))).statistics().warnings)
-    assert not any("nothing tells" in text for text in Ocean(sea(Ripple())).statistics().warnings)
+    assert not any("is not known" in text for text in Ocean(sea(Ripple())).statistics().warnings)
 
 
 def test_images_and_layers_of_usd_hold_them(tmp_path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -215,7 +217,7 @@ def test_a_bake_of_what_does_not_repeat_is_refused_with_the_remedy(tmp_path, cap
         assert main(command) == 2
         (line,) = (line for line in capsys.readouterr().err.splitlines() if "HUMP" in line)
         assert "layers.1 = 'HUMP': its waves do not repeat" in line
-        assert "written with --area" in line
+        assert "--area on the command line" in line
         assert "or mute the layer" in line
     assert not [path for path in tmp_path.glob("**/*") if path.is_file() and path != params]
 

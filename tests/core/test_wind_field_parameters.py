@@ -64,9 +64,9 @@ def test_a_sea_without_wind_fields_is_written_as_before_there_were_any() -> None
         ({"keys": [{"vectors": {"values": [[1.0]]}}]}, "layers.1.keys.0.vectors", "must have 2"),
         ({"keys": [{"vectors": {"values": [[[1.0, float("nan")]]]}}]}, "layers.1.keys.0.vectors.raster",
          "row 0, column 0"),
-        ({"keys": [{"vectors": {"values": [[[1, 0]]]}}] * 2}, "layers.1.keys.1.time", "above that"),
+        ({"keys": [{"vectors": {"values": [[[1, 0]]]}}] * 2}, "layers.1.keys.1.time", "later than the key"),
         ({"keys": [{"vectors": {"values": [[[1e30, 0]]]}}]}, "layers.1", "at most 62.64 m/s"),
-        ({"wind_speed": 63.0}, "layers.1", "waves are 404"),
+        ({"wind_speed": 63.0}, "layers.1", "waves of this wind are 404"),
         ({"wind_speed": 50.0, "wind_scale": 2.0}, "layers.1", "100 m/s"),
         ({"particles": 0}, "layers.1.particles", "from 1 to 99"),
         ({"crest": "ROUND"}, "layers.1.crest", "ARC, PARALLEL"),
@@ -98,7 +98,7 @@ def test_an_animated_shot_keeps_the_wind_and_says_that_it_cannot_be_animated() -
     shot = Shot(parameters, Animation(1, (("choppiness", (0.5, 1.0)),)))
     assert shot.at(1).parameters == parameters.replace(choppiness=0.5)
     assert Shot.from_json(shot.to_json()) == shot
-    with pytest.raises(ParameterError, match="keeps the wind of its birth"):
+    with pytest.raises(ParameterError, match="keeps the wind it was born with"):
         Animation(1, (("wind_fields.0.strength", (1.0, 2.0)),))
 
 

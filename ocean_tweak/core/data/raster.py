@@ -135,7 +135,7 @@ class Raster:
             raise ParameterError(
                 "sha256",
                 data["sha256"],
-                f"tells which raster {shown(name)} is, but not its numbers",
+                f"names the raster {shown(name)} but holds none of its numbers",
             )
         if set(data) - {"name"} != {"shape", "encoding", "data"}:
             known = "name, values; or name, shape, encoding, data"
@@ -159,7 +159,7 @@ def check_numbers(count: int) -> None:
     if count > MOST_NUMBERS:
         raise ParameterError(
             "rasters", f"{count} numbers",
-            f"must hold at most {MOST_NUMBERS} together: make images or grids of wind smaller, or fewer",
+            f"must hold at most {MOST_NUMBERS} together: use fewer or smaller images and wind grids",
         )  # fmt: skip
 
 

@@ -80,25 +80,26 @@ class Foam(Validated):
     """
 
     coverage: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the share of the sea under foam; 1 is what the wind leaves at sea",
-        "from none to all of a light breeze's sea",
+        1.0, 0.0, 100.0, "", "Multiplies the whitecap coverage; 1 is the coverage measured at sea for "
+        "this wind",
+        "from no foam to a light breeze's sea all white",
     )  # fmt: skip
     law: str = choice(
-        FOAM_LAWS[0], FOAM_LAWS, "Whose measurements tell what the wind leaves at sea: Callaghan and others"
-        " (2008), from 3.7 to 23 m/s, or Monahan and O'Muircheartaigh (1980), below 20 m/s and twice as much"
-        " in a storm", left_out=True,
+        FOAM_LAWS[0], FOAM_LAWS, "Which measurements set the whitecap coverage: Callaghan and others "
+        "(2008), from 3.7 to 23 m/s, or Monahan and O'Muircheartaigh (1980), measured below 20 "
+        "m/s, with twice as much foam in a storm", left_out=True,
     )  # fmt: skip
     half_life: float = number(
-        2.5, 0.0, 60.0, "s", "Time in which foam fades to a half; 0 keeps it where it is born",
+        2.5, 0.0, 60.0, "s", "Time in which foam fades to half; 0 shows foam only where it forms",
         "whitecaps fade in seconds, patches in a minute",
     )  # fmt: skip
     drift: float = number(
-        0.02, 0.0, 0.2, "", "Speed of the foam along the wind, as a share of the wind's",
+        0.02, 0.0, 0.2, "", "Speed of the foam along the wind, as a fraction of the wind speed",
         "the surface drifts with 2 to 3 % of the wind",
     )  # fmt: skip
     resolution: int = integer(
         0, 0, 8192, "Samples along each side at which foam is made, an even number",
-        "as the resolution of the sea", off=Off(0, 512, "takes those of the sea"),
+        "as the resolution of the sea", off=Off(0, 512, "uses the sea's own"),
     )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -131,8 +132,8 @@ class Timing(Validated):
         "more than Blender's frame range",
     )
     stretch: Fraction = rational(
-        Fraction(1), 0.001, 1000.0, "", "Frames of the shot in a frame of its animation: 2 is half the speed."
-        " In Blender the scene's Time Stretching",
+        Fraction(1), 0.001, 1000.0, "", "Frames of the shot per frame of its animation: 2 is half speed. "
+        "In Blender, the scene's Time Stretching",
         "more than Blender's 1/900 to 900", left_out=True,
     )  # fmt: skip
 
@@ -176,34 +177,36 @@ class OceanParameters(Validated):
 
     resolution: int = integer(
         512, 16, 8192, "Samples along each side of the domain, an even number",
-        "below 16 there is no sea, above 8192 no memory", may_be_told=True,
+        "fewer than 16 hold no sea, more than 8192 need too much memory", may_be_told=True,
     )  # fmt: skip
     domain_size: float = number(
         400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
-        "a wave vector is told apart from its neighbours up to 100 km", may_be_told=True,
+        "beyond 100 km, neighbouring wave vectors cannot be told apart", may_be_told=True,
     )  # fmt: skip
     seed: int = integer(
         0,
         0,
         2**31 - 1,
-        "Number of this particular sea among all with these parameters",
+        "Random seed: another number gives another sea with the same statistics",
         "Blender's whole numbers",
     )
     choppiness: float = number(
-        1.0, 0.0, 4.0, "", "Horizontal displacement that sharpens crests; 1 is linear wave theory",
+        1.0, 0.0, 4.0, "", "Horizontal displacement, which sharpens crests; 1 is linear wave theory",
         "far beyond 1 the surface folds", useful=(0.0, 1.5), changes=True,
     )  # fmt: skip
     dispersion: str = choice("CAPILLARY", DISPERSIONS, "How fast a wave of a given length travels")
     loop_duration: Fraction | None = rational(
-        None, 0.01, 1e6, "s", "Time after which the sea repeats itself exactly; none if it never does",
+        None, 0.01, 1e6, "s", "Time after which the sea repeats exactly; none if it does not loop",
         "from a frame to days", optional=True,
     )  # fmt: skip
     amplitudes: str = choice(
-        "RANDOM", AMPLITUDES, "Random wave heights as at sea, or the spectrum's own with random phases"
+        "RANDOM",
+        AMPLITUDES,
+        "Random wave heights, as at sea, or the spectrum's own amplitudes with random phases",
     )
-    match_height: bool = switch(False, "Scale this seed to the wave height that the spectrum expects")
+    match_height: bool = switch(False, "Scale this seed to the wave height of the spectrum")
     trough_damping: float = number(
-        0.0, 0.0, 1.0, "", "Takes short waves out of the troughs of the long ones", "a share"
+        0.0, 0.0, 1.0, "", "Removes short waves from the troughs of long ones", "a share"
     )
     orbital_motion: str = choice(
         "DEEP", ORBITS, "Horizontal motion as in deep water, or wider as linear theory has it in finite depth"
@@ -212,7 +215,8 @@ class OceanParameters(Validated):
     layers: tuple[Contribution, ...] = nested(Contribution, many=True, kinds=KINDS)
     patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
     merged_resolution: int = integer(
-        0, 0, 8192, "Samples along each side of one grid that holds the patches' sum; 0 keeps them separate",
+        0, 0, 8192, "Samples along each side of one grid that holds the sum of the patches; 0 keeps them "
+        "separate",
         "as the resolution of a sea", left_out=True,
     )  # fmt: skip
     mask: Mask | None = nested(Mask, optional=True)
@@ -244,7 +248,8 @@ class OceanParameters(Validated):
         if self.is_masked and self.trough_damping > 0.0:
             raise ParameterError(
                 "trough_damping", self.trough_damping,
-                "must be 0 in a sea with masks, whose waves do not know the troughs of the others",
+                "must be 0 in a sea with masks: waves under a mask cannot be damped by the "
+                "troughs of the others",
             )  # fmt: skip
 
     def _settle_tile(self) -> None:
@@ -265,7 +270,10 @@ class OceanParameters(Validated):
             if given is OPEN:
                 object.__setattr__(self, field.name, told.get(field.name, default_of(field)))
             elif given != told.get(field.name, given):
-                reason = f"must be {told[field.name]:g}, which the patches tell: leave it out, or change them"
+                reason = (
+                    f"must be {told[field.name]:g}, as the patches have it: leave it out, or change "
+                    "the patches"
+                )
                 raise ParameterError(field.name, given, reason)
 
     @property
@@ -324,7 +332,7 @@ class OceanParameters(Validated):
             if self.loop_duration is not None and Gives.LOOPS not in layer.gives:
                 raise ParameterError(
                     "loop_duration", to_plain(self.loop_duration),
-                    f"layers.{index} raises waves that do not repeat: mute it, or take away the loop",
+                    f"layers.{index} raises waves that do not repeat: mute it, or remove the loop",
                 )  # fmt: skip
             layer.check(self, f"layers.{index}")
         for kind in dict.fromkeys(type(layer) for layer in self.active()):
@@ -350,7 +358,7 @@ class OceanParameters(Validated):
                 raise ParameterError(
                     "domain_size",
                     changes["domain_size"],
-                    "is that of the first of the patches: change it there",
+                    "is set by the first patch: change it there",
                 )
         if changes.get("patches", self.patches):  # they tell it anew
             changes = {**dict.fromkeys(_TILE, OPEN), **changes}
@@ -447,7 +455,7 @@ def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
     taken: dict[str, set[int]] = {kind.kind: set() for kind in KINDS}
     for index, layer in enumerate(layers):
         if layer.id >= 0 and layer.id in taken[layer.kind]:
-            raise ParameterError(f"layers.{index}.id", layer.id, "is the id of another layer too")
+            raise ParameterError(f"layers.{index}.id", layer.id, "is already the id of another layer")
         taken[layer.kind].add(layer.id)
     result = list(layers)
     for index, layer in enumerate(layers):

@@ -41,15 +41,15 @@ class Patch(Validated):
     )  # fmt: skip
     rotation: float = number(
         0.0, -1e6, 1e6, "rad",
-        "Turn of the patch's sides, counter-clockwise from +x, while its waves run on as before",
-        "any number of turns that a float tells apart",
+        "Rotation of the patch's sides, counter-clockwise from +x; its waves keep their directions",
+        "any number of turns, to the precision of a float",
     )  # fmt: skip
     shortest_wavelength: float = number(
-        NO_SHORTEST, 0.0, 1e6, "m", "The band's short end; the next patch's waves are shorter than that",
+        NO_SHORTEST, 0.0, 1e6, "m", "Shortest wavelength of the patch; the next patch holds shorter ones",
         "any domain", off=Off(NO_SHORTEST, 1.0, "keeps all short waves"),
     )  # fmt: skip
     longest_wavelength: float = number(
-        NO_LONGEST, 1e-3, 1e6, "m", "The band's long end; the waves of the patch before are longer than that",
+        NO_LONGEST, 1e-3, 1e6, "m", "Longest wavelength of the patch; the patch before holds longer ones",
         "any domain", off=Off(NO_LONGEST, 100.0, "keeps all long waves"),
     )  # fmt: skip
     resolution: int = integer(
@@ -97,7 +97,7 @@ def check_bands(patches: Sequence[Patch]) -> None:
         if shorter.shortest_wavelength >= longer.longest_wavelength:
             fault = "holds longer waves than the patch before it: order the patches from long waves to short"
         elif begin > end:
-            fault = "waves in between would be there twice"
+            fault = "the waves in between would be counted twice"
         else:
             fault = "waves in between would be lost"
         raise ParameterError(
@@ -129,7 +129,8 @@ def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first:
     if trough_damping > 0.0:
         raise ParameterError(
             "trough_damping", trough_damping,
-            "must be 0 in a sea of patches, none of which knows the troughs of the others: damp a sea of one",
+            "must be 0 in a sea of several patches: a patch cannot be damped by the troughs of "
+            "another. Use a single patch",
         )  # fmt: skip
     if on_the_first and patches[0].rotation:
         raise ParameterError(

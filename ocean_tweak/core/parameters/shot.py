@@ -33,11 +33,11 @@ ANIMATED = (
     OCEAN_TIME,
 )
 
-_ONE_SEA = "waves of one frame would not be those of the next, later"
+_ONE_SEA = "later frames would show other waves"
 #: why the rest cannot: first part of the path → reason
 _CONSTANT = {
     "water": "depth, gravity and the liquid set the speed of every wave: " + _ONE_SEA,
-    "dispersion": "it is the speed of every wave: " + _ONE_SEA,
+    "dispersion": "it sets the speed of every wave: " + _ONE_SEA,
     "loop_duration": "it sets the speed of every wave: " + _ONE_SEA,
     "domain_size": "it sets which waves there are: " + _ONE_SEA,
     "resolution": "a sequence of images has one size",
@@ -45,7 +45,7 @@ _CONSTANT = {
     "amplitudes": "other amplitudes are another sea",
     "patches": "they set which waves there are: " + _ONE_SEA,
     **{kind.former_list: kind.constant for kind in KINDS if kind.former_list},
-    "timing": "frames become seconds in one way; animate ocean_time instead",
+    "timing": "a shot has one frame rate; animate ocean_time instead",
 }
 _LAYER = re.compile(r"layers\.[0-9]{1,6}\.")
 _MOST_SAMPLES = 1_000_000
@@ -145,7 +145,9 @@ class Animation:
             raise ParameterError(f"{_KEY}.samples", samples, "must be an object of lists")
         for path, values in samples.items():
             if not isinstance(values, list):
-                raise ParameterError(f"{_KEY}.samples.{path}", values, "must be a list, a number a frame")
+                raise ParameterError(
+                    f"{_KEY}.samples.{path}", values, "must be a list with a number per frame"
+                )
         try:
             return cls(data["first_frame"], tuple((path, tuple(v)) for path, v in samples.items()))
         except ParameterError as error:

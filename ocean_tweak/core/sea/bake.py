@@ -162,7 +162,7 @@ def _foam(
 ) -> SurfaceFields:
     for patch in surfaces.sea(frame).patches:
         patch.foam_history.tell = lambda done, count: tell(
-            frame, f"looked back for foam at {done} of {count} moments"
+            frame, f"foam: looked back at {done} of {count} moments"
         )
     return surfaces.frame(frame, wanted)
 
@@ -171,10 +171,12 @@ def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile 
     """Raise for what cannot be baked, or not on this machine."""
     is_cascade = parameters.is_cascade and on == TILE
     if is_cascade and parameters.is_masked:
-        raise ValueError("masks: lie over the sea and not over its patches, which repeat; merge the patches")
+        raise ValueError(
+            "masks: they lie over the sea, not over its patches, which repeat: merge the patches"
+        )
     if is_cascade and not sink.outputs <= {*ADDING, PARTS}:
         others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS}))
-        raise ValueError(f"outputs = {others}: are no sums over patches; bake {', '.join(sorted(ADDING))}")
+        raise ValueError(f"outputs = {others}: do not add up over patches; bake {', '.join(sorted(ADDING))}")
     need = memory_need(parameters, sink.outputs, on=on).peak(workers)
     samples = on.resolution if isinstance(on, Area) else parameters.resolution
     check_memory(need, f"Baking {samples}² samples with {workers} workers")

@@ -145,7 +145,8 @@ def beyond_budget(parameters: OceanParameters) -> str | None:
     if need <= budget:
         return None
     return (
-        f"This sea keeps {readable_bytes(need)} and the memory for all seas is {readable_bytes(budget)}: "
-        "beside others it is made anew for each frame. Lower the resolution, or raise Memory in the "
-        f"extension's preferences, outside of Blender {VARIABLE}, to {readable_bytes(1.5 * need)}"
+        f"This sea needs {readable_bytes(need)}, and the memory for all seas is "
+        f"{readable_bytes(budget)}: beside other seas it is recomputed for every frame. Lower the "
+        "resolution, or raise Memory in the extension's preferences (outside Blender: "
+        f"{VARIABLE}) to {readable_bytes(1.5 * need)}"
     )

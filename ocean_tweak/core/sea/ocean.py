@@ -133,8 +133,8 @@ class Ocean:
         """The coefficients of a sea that is one sum of waves. Raises ValueError for another."""
         if self.parameters.needs_summation:
             raise ValueError(
-                "initial_state: this sea's waves are not one sum but several, or under masks: ask each of "
-                "`patches` where they are separate, or a sea without masks"
+                "initial_state: this sea is several sums of waves, or has masks: ask each of its "
+                "`patches`, or a sea without masks"
             )
         return self._parts[0].initial_state
 

@@ -135,7 +135,7 @@ class PartWaves:
         Raises ValueError with trough damping, which leaves no sum of waves.
         """
         if self.parameters.trough_damping > 0.0:
-            raise ValueError("surface = 'exact': there is none with trough damping; use mesh")
+            raise ValueError("surface = 'exact': not available with trough damping; use mesh")
         return self._in_sea(exact(replace(self._synthesis, dtype=np.complex128), time))
 
     def mesh_field(self, time: float | Fraction, with_velocity: bool) -> tuple[Field, float]:

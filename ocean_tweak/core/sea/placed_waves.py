@@ -103,8 +103,9 @@ def check_repeats(sea: OceanParameters) -> None:
         if Gives.FIELDS in layer.gives and not layer.muted:
             raise ParameterError(
                 f"layers.{index}", layer.kind,
-                "its waves do not repeat with the domain, as all on a Tile do: ask for an Area or Places, "
-                "where files are written with --area, in Blender with a Camera Surface, or mute the layer",
+                "its waves do not repeat with the domain, as a tile's do: ask for an Area or "
+                "Places (--area on the command line, a Camera Surface in Blender), or mute the "
+                "layer",
             )  # fmt: skip
 
 

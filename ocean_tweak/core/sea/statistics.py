@@ -84,9 +84,10 @@ def _warnings(
         last = patches[-1].patch
         if total.resolved_share < LEAST_RESOLVED_SHARE:
             yield (
-                f"The patches together resolve {100.0 * total.resolved_share:.0f} % of the energy, of waves "
-                f"down to {max(last.shortest_wavelength, 2.0 * last.spacing):.3g} m. "
-                "Plan them for a finer detail"
+                f"The patches together resolve {100.0 * total.resolved_share:.0f} % of the "
+                "energy, down to waves of "
+                f"{max(last.shortest_wavelength, 2.0 * last.spacing):.3g} m. Plan them with finer "
+                "detail"
             )
     yield from loop_warnings(parameters, total)
     yield from fetch_warnings(parameters, sea)
@@ -98,18 +99,20 @@ def _patch_warnings(found: PatchStatistics, parameters: OceanParameters, is_firs
     if patch.shortest_wavelength > 0.0 and patch.samples_a_wave < LEAST_SAMPLES:
         samples = 2 * math.ceil(0.5 * LEAST_SAMPLES * patch.domain_size / patch.shortest_wavelength)
         yield (
-            f"its shortest wave, {patch.shortest_wavelength:g} m, has only {patch.samples_a_wave:.2g} "
-            f"samples. Give it {samples} samples or end its band at {LEAST_SAMPLES * patch.spacing:.3g} m"
+            f"its shortest wave, {patch.shortest_wavelength:g} m, has only "
+            f"{patch.samples_a_wave:.2g} samples. Give the patch {samples} samples, or end its "
+            f"band at {LEAST_SAMPLES * patch.spacing:.3g} m"
         )
     if patch.longest_wavelength < NO_LONGEST and patch.longest_waves_a_side < LEAST_CELLS:
         yield (
-            f"its longest wave, {patch.longest_wavelength:g} m, goes only {patch.longest_waves_a_side:.2g} "
-            f"times into its side. Make it at least {LEAST_CELLS * patch.longest_wavelength:.3g} m"
+            f"its longest wave, {patch.longest_wavelength:g} m, fits only "
+            f"{patch.longest_waves_a_side:.2g} times into its side. Make the side at least "
+            f"{LEAST_CELLS * patch.longest_wavelength:.3g} m"
         )
     if is_first:
         yield from grid_warnings(parameters, SeaSpectrum(parameters), found.statistics)
     elif found.share > REPEATING_SHARE:
         yield (
-            f"it repeats every {patch.domain_size:g} m with {100.0 * found.share:.0f} % of the energy, and "
-            "that shows. Let the patch before it hold shorter waves too"
+            f"it repeats every {patch.domain_size:g} m with {100.0 * found.share:.0f} % of the "
+            "energy, which shows. Let the patch before it hold shorter waves too"
         )

@@ -20,7 +20,7 @@ class Water(Validated):
     """
 
     depth: float = number(
-        200.0, 0.1, 11e3, "m", "Depth of the water. Long waves lose height where it is shallow",
+        200.0, 0.1, 11e3, "m", "Depth of the water. Long waves lose height in shallow water",
         "from a puddle to the deepest trench",
     )  # fmt: skip
     gravity: float = number(

@@ -81,7 +81,11 @@ def layer_for_sea_state(
     )
     wanted = f"Hs {swell.significant_wave_height:g} m with Tp {swell.peak_period:g} s"
     if template.spectrum not in ("TMA", "JONSWAP"):
-        return Match(swell, False, f"{wanted} is set directly: {template.spectrum} has no fetch to solve for")
+        return Match(
+            swell,
+            False,
+            f"{wanted} is set directly: the spectrum {template.spectrum} has no fetch to solve for",
+        )
     if swell.significant_wave_height == 0.0:
         return Match(swell, False, f"{wanted} is a flat sea, set directly")
     scales = layer_scales(swell, water)

@@ -225,8 +225,8 @@ def layer_warnings(parameters: OceanParameters) -> Iterator[str]:
         is_told = layer.gives & (Gives.SPECTRUM | Gives.STATE) or type(layer).outlook(parameters) is not None
         if layer.gives & WAVES and not is_told:
             yield (
-                f"{layer.names.label}: nothing tells how high these waves are, so neither the numbers of "
-                "this sea nor its foam know of them"
+                f"{layer.names.label}: the height of these waves is not known, so the sea's "
+                "numbers and its foam leave them out"
             )
 
 
@@ -239,14 +239,15 @@ def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Sta
     if parameters.domain_size / wavelength < _LEAST_WAVELENGTHS:
         warnings.append(
             f"The domain of {parameters.domain_size:g} m holds only "
-            f"{parameters.domain_size / wavelength:.2g} of the longest waves ({wavelength:.3g} m): "
-            "wave height will differ much between seeds. "
-            f"Make the domain at least {_round_up(_LEAST_WAVELENGTHS * wavelength)} m"
+            f"{parameters.domain_size / wavelength:.2g} of the longest waves ({wavelength:.3g} "
+            "m), so wave height varies much between seeds. Make the domain at least "
+            f"{_round_up(_LEAST_WAVELENGTHS * wavelength)} m"
         )
     if statistics.resolved_share < LEAST_RESOLVED_SHARE:
         warnings.append(
-            f"The grid resolves {100.0 * statistics.resolved_share:.0f} % of the energy: samples are "
-            f"{statistics.sample_spacing:.3g} m apart. Raise the resolution or make the domain smaller"
+            f"The grid resolves only {100.0 * statistics.resolved_share:.0f} % of the energy: "
+            f"samples are {statistics.sample_spacing:.3g} m apart. Raise the resolution, or make "
+            "the domain smaller"
         )
     return warnings
 
@@ -292,9 +293,9 @@ def fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
     """Of fetches that the sea is done growing before."""
     numbers = {(layer.kind, layer.id): number for number, layer in enumerate(parameters.layers, 1)}
     return [
-        f"Layer {numbers[spectrum.layer.kind, spectrum.layer.id]}: the sea is fully developed after "
-        f"{spectrum.scales.fetch / 1e3:.4g} km; the fetch of {spectrum.layer.fetch / 1e3:.4g} km counts as "
-        "that"
+        f"Layer {numbers[spectrum.layer.kind, spectrum.layer.id]}: the sea is fully developed "
+        f"after {spectrum.scales.fetch / 1000.0:.4g} km; the rest of the fetch of "
+        f"{spectrum.layer.fetch / 1000.0:.4g} km has no effect"
         for spectrum in sea.layers
         if spectrum.fetch_is_limited
     ]

@@ -210,7 +210,7 @@ class Channel:
 
 _ROWS = (
     Channel(
-        "displacement", "from the place at rest to the present one", "m", 3, VECTOR, displacement, _PLACE,
+        "displacement", "from the rest position to the present one", "m", 3, VECTOR, displacement, _PLACE,
         adds=True, attribute="displacement", switch="",
     ),
     Channel(
@@ -227,11 +227,12 @@ _ROWS = (
         adds=True, attribute="strain",
     ),
     Channel(
-        "jacobian", "how much area is left of each piece of the surface; less than 0 in a fold",
+        "jacobian", "remaining area of each piece of the surface; below 0 in a fold",
         "1", 0, SCALAR, jacobian, _GRADIENT, rest=1.0,
     ),
     Channel(
-        "min_eigenvalue", "how much length is left where the surface is compressed most; below 0 in a fold",
+        "min_eigenvalue", "remaining length along the direction of strongest compression; below 0 in a "
+            "fold",
         "1", 0, SCALAR, min_eigenvalue, _GRADIENT, rest=1.0,
     ),
     Channel(
@@ -253,13 +254,13 @@ _ROWS = (
         attribute="foam", switch="use_foam", usd=UsdAttribute("primvars:foam", "FloatArray", halved=True),
     ),
     Channel(
-        "breaking", "how strongly the crest breaks now, 0 to 1: the new part of the foam", "1", 0, SCALAR,
-        None, frozenset(), source=MEMORY, attribute="breaking", switch="use_foam",
+        "breaking", "how strongly the crest is breaking now, 0 to 1: the fresh part of the foam", "1", 0,
+        SCALAR, None, frozenset(), source=MEMORY, attribute="breaking", switch="use_foam",
         usd=UsdAttribute("primvars:breaking", "FloatArray", halved=True),
     ),
     Channel(
-        "foam_age", "time since the foam that is seen was born, by the waves' own clock; 0 where a crest"
-        " breaks now and where there is no foam", "s", 0, SCALAR,
+        "foam_age", "age of the visible foam, by the waves' own clock; 0 where a crest is breaking and "
+            "where there is no foam", "s", 0, SCALAR,
         None, frozenset(), source=MEMORY, attribute="foam_age", switch="use_foam",
         usd=UsdAttribute("primvars:foam_age", "FloatArray", halved=True),
     ),

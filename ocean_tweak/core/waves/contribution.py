@@ -151,9 +151,7 @@ class Contribution(Validated):
     gives: ClassVar[Gives]
     names: ClassVar[Names]
     former_list: ClassVar[str] = ""
-    constant: ClassVar[str] = (
-        "it sets which waves there are: waves of one frame would not be those of the next"
-    )
+    constant: ClassVar[str] = "it sets which waves there are: the next frame would show other waves"
 
     muted: bool
     mask: Mask | None = None  # of a kind without such a field
@@ -256,7 +254,7 @@ def direction(
     changes: bool = False,
 ) -> Any:
     """A field: where a layer's waves or its wind go."""
-    why = "any number of turns that a float tells apart"
+    why = "any number of turns, to the precision of a float"
     return number(0.0, -1e6, 1e6, "rad", description, why, changes=changes)
 
 
@@ -267,11 +265,11 @@ def muted() -> Any:
 
 def identity() -> Any:
     """A field: what tells a layer from others of its kind."""
-    description = "Identity of the layer, from which its seed follows; -1 takes the first free one"
+    description = "Identity of the layer, from which its seed follows; -1 is the first free one"
     return integer(-1, -1, _LARGEST, description, _WHOLE)
 
 
 def own_seed(what: str = "Seed of this layer alone") -> Any:
     """A field: the seed of a layer's random numbers."""
-    derived = Off(-1, 0, "derives it from the ocean's seed and the id")
+    derived = Off(-1, 0, "follows from the ocean's seed and the layer's id")
     return integer(-1, -1, _LARGEST, what, _WHOLE, off=derived)

@@ -59,22 +59,25 @@ class WaveLayer(Contribution):
         150e3, 0.0, 20e6, "m", "Distance of open water over which the wind has blown; 0 raises no waves",
         "from the shore to half the Earth's circumference", changes=True,
     )  # fmt: skip
-    limit_fetch: bool = switch(True, "End the growth of the sea where it is fully developed for its wind")
+    limit_fetch: bool = switch(True, "Stop the sea's growth where it is fully developed for its wind")
     spreading: str = choice("DONELAN_BANNER", SPREADINGS, "How the energy is shared among directions")
     swell: float = number(
-        0.3, 0.0, 4.0, "", "Draws waves out into long parallel trains; 0 to 1 is the useful range",
-        "beyond 4 a wave train is a single direction", useful=(0.0, 1.0), changes=True,
+        0.3, 0.0, 4.0, "", "Stretches waves into long parallel trains; 0 to 1 is the useful range",
+        "beyond 4, all waves run in one direction", useful=(0.0, 1.0), changes=True,
     )  # fmt: skip
     amplitude_scale: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is the physical one", "an artist's scale",
-        useful=(0.0, 2.0), changes=True,
+        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is physically correct",
+        "an artist's scale", useful=(0.0, 2.0), changes=True,
     )  # fmt: skip
     peak_enhancement: float = number(
-        constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "γ of JONSWAP and TMA: how far long waves stand out",
-        "records lie between 1 and 7",
+        constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "Peak enhancement γ of JONSWAP and TMA: how strongly "
+        "the longest waves dominate",
+        "measured seas lie between 1 and 7",
     )  # fmt: skip
     depth_factor: str = choice(
-        "KITAIGORODSKII", DEPTH_FACTORS, "How TMA loses energy in shallow water: exact, or the approximation"
+        "KITAIGORODSKII",
+        DEPTH_FACTORS,
+        "How TMA loses energy in shallow water: exactly, or by the approximation",
     )
     generalized_a: float = number(
         0.7795,
@@ -89,23 +92,23 @@ class WaveLayer(Contribution):
         "peaks from a thousandth to a thousand rad/s",
     )  # fmt: skip
     short_wave_cutoff: float = number(
-        0.0, 0.0, 1e3, "m", "Length l of the factor exp(-k²l²) that takes away waves shorter than about 2πl",
-        "longer than any wave's cut-off", off=Off(0.0, 0.05, "takes none away"),
+        0.0, 0.0, 1e3, "m", "Length l of the factor exp(-k²l²), which removes waves shorter than about 2πl",
+        "longer than any wave's cut-off", off=Off(0.0, 0.05, "removes none"),
     )  # fmt: skip
     wind_height: float = number(
         10.0, 2.0, 100.0, "m", "Height above the water at which the wind was measured",
-        "lower, the log law has no wind for every speed",
+        "lower, the log law has no solution at every wind speed",
     )  # fmt: skip
     definition: str = choice(
-        "WIND", DEFINITIONS, "What gives the layer's energy: wind and fetch, or wave height and period"
+        "WIND", DEFINITIONS, "What sets the layer's energy: wind and fetch, or wave height and period"
     )
     significant_wave_height: float = number(
         2.0,
         0.0,
         100.0,
         "m",
-        "Wave height Hs of a layer defined by its sea state",
-        "thrice the largest measured",
+        "Significant wave height Hs of a layer defined by its sea state",
+        "three times the largest ever measured",
     )
     peak_period: float = number(
         10.0,
@@ -120,17 +123,17 @@ class WaveLayer(Contribution):
         0.0,
         1e4,
         "",
-        "s of the spreading cos²ˢ(θ/2) with a fixed exponent",
-        "beyond it the wave is a plane one",
+        "Exponent s of the spreading cos²ˢ(θ/2)",
+        "beyond it, all waves run in one direction",
     )
-    second_spreading: str = choice("FLAT", SPREADINGS, "The spreading that is mixed in")
+    second_spreading: str = choice("FLAT", SPREADINGS, "Second spreading, mixed into the first")
     spreading_mix: float = number(0.0, 0.0, 1.0, "", "Share of the second spreading", "a share")
     shortest_wavelength: float = number(
-        0.0, 0.0, 1e6, "m", "The band's short end: waves below it are left out", "any domain",
+        0.0, 0.0, 1e6, "m", "Shortest wavelength of the band: shorter waves are left out", "any domain",
         off=Off(0.0, 1.0, "keeps all short waves"),
     )  # fmt: skip
     longest_wavelength: float = number(
-        1e6, 1e-3, 1e6, "m", "The band's long end: waves above it are left out", "any domain",
+        1e6, 1e-3, 1e6, "m", "Longest wavelength of the band: longer waves are left out", "any domain",
         off=Off(1e6, 100.0, "keeps all long waves"),
     )  # fmt: skip
     band_softness: float = number(
@@ -139,9 +142,9 @@ class WaveLayer(Contribution):
         4.0,
         "octaves",
         "Width over which the band's ends fade; 0 cuts sharply",
-        "a band's own width",
+        "the width of a band",
     )
-    band_inverted: bool = switch(False, "Keep what lies outside the band instead")
+    band_inverted: bool = switch(False, "Keep the waves outside the band instead")
     muted: bool = muted()
     id: int = identity()
     seed: int = own_seed()

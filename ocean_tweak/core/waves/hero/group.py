@@ -82,14 +82,16 @@ def check_hero_wave(wave: HeroWave, domain_size: float, resolution: int, path: s
         if size > domain_size:
             raise ParameterError(
                 f"{path}.{name}", value,
-                f"is {size:.4g} m in a domain of {domain_size:g} m: make it {smaller}, or that larger",
+                f"is {size:.4g} m in a domain of {domain_size:g} m: make it {smaller}, or the "
+                "domain larger",
             )  # fmt: skip
     needed = needed_samples(wave, domain_size)
     if needed > resolution:
         raise ParameterError(
             f"{path}.wavelength", wave.wavelength,
-            f"needs {needed} samples a side with this length and width of its group, and the resolution "
-            f"is {resolution}: raise it, or make the wave longer, its group longer or the domain smaller",
+            f"needs {needed} samples along each side for a group of this length and width, and "
+            f"the resolution is {resolution}: raise it, make the wave or its group longer, or the "
+            "domain smaller",
         )  # fmt: skip
 
 

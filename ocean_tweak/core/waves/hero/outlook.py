@@ -74,7 +74,7 @@ class HeroWaveOutlooks(NamedTuple):
 
     def lines(self) -> list[str]:
         """What `info` says."""
-        alone = "hero waves are in the row of the seed alone: no spectrum expects them"
+        alone = "hero waves count in the row of the seed only: they belong to no spectrum"
         return [*(wave.line() for wave in self.waves), alone]
 
     def to_plain(self) -> list[dict[str, Any]]:
@@ -105,14 +105,16 @@ def _warnings(parameters: OceanParameters, index: int, wave: HeroWave, group_spe
     steepest *= 0.5 * math.tanh(wave_number(wave) * parameters.water.depth)
     if wave.crest_height > steepest:
         warnings.append(
-            f"Hero wave {index}: waves of {wave.wavelength:.4g} m break before their crests are "
-            f"{wave.crest_height:.4g} m high. Make it at most {steepest:.3g} m high, or longer"
+            f"Hero wave {index}: waves {wave.wavelength:.4g} m long break before their "
+            f"crests reach {wave.crest_height:.4g} m. Lower the crest to {steepest:.3g} m, or "
+            "make the wave longer"
         )
     if parameters.loop_duration is not None:
         around = parameters.domain_size / group_speed
         if float(parameters.loop_duration) < around:
             warnings.append(
-                f"Hero wave {index}: its group crosses the patch in {around:.4g} s and the loop is shorter: "
-                "between two focuses it comes apart. Make the loop longer or the domain smaller"
+                f"Hero wave {index}: its group takes {around:.4g} s to cross the patch, longer "
+                "than the loop, so it breaks up between two focuses. Make the loop longer, or "
+                "the domain smaller"
             )
     return warnings

@@ -48,7 +48,7 @@ class HeroWave(Contribution):
         3, "hero_wave", "hero wave", "Hero Wave", "A single group of waves, placed by hand", "SMOOTHCURVE"
     )
     former_list = "hero_waves"
-    constant = "a wave that runs freely keeps what it is; place a second one, or animate ocean_time"
+    constant = "a free wave keeps its properties; place a second one, or animate ocean_time"
 
     x: float = number(
         200.0, -1e6, 1e6, "m", "Place of the focus along x; the patch repeats, and the wave with it",
@@ -56,12 +56,12 @@ class HeroWave(Contribution):
     )  # fmt: skip
     y: float = number(200.0, -1e6, 1e6, "m", "Place of the focus along y", "far beyond any patch")
     time: float = number(
-        0.0, -1e6, 1e6, "s", "Ocean time at which the group is together at its focus",
+        0.0, -1e6, 1e6, "s", "Ocean time at which the group is at its focus",
         "more than a week either way",
     )  # fmt: skip
     direction: float = number(
         0.0, -1e6, 1e6, "rad", "Direction towards which the wave runs, counter-clockwise from +x",
-        "any number of turns that a float tells apart",
+        "any number of turns, to the precision of a float",
     )  # fmt: skip
     wavelength: float = number(
         60.0, 1e-3, 1e5, "m", "Distance from crest to crest; sets the speed, with depth and gravity",
@@ -69,13 +69,13 @@ class HeroWave(Contribution):
     )  # fmt: skip
     crest_height: float = number(
         3.0, 0.0, 100.0, "m", "Height of the crest above calm water at the focus; elsewhere it is lower",
-        "thrice the largest measured",
+        "three times the largest ever measured",
     )  # fmt: skip
     group_length: float = number(
         2.0, 1.0, 1000.0, "wavelengths",
         "Length of the group along its direction, between the places where its waves are half as high; "
         "1 is a single crest",
-        "shorter, it is no wave any more",
+        "a shorter one is no wave",
     )  # fmt: skip
     group_width: float = number(
         150.0, 1e-3, 1e5, "m",
@@ -83,8 +83,8 @@ class HeroWave(Contribution):
         "from ripples to the largest patch",
     )  # fmt: skip
     phase: float = number(
-        0.0, -1e6, 1e6, "rad", "Of the wave at the focus: 0 for a crest, π for a trough",
-        "any number of turns that a float tells apart",
+        0.0, -1e6, 1e6, "rad", "Phase of the wave at the focus: 0 for a crest, π for a trough",
+        "any number of turns, to the precision of a float",
     )  # fmt: skip
     muted: bool = switch(False, "Leave the wave out; nothing else changes")
 
@@ -93,8 +93,8 @@ class HeroWave(Contribution):
         if self.group_width < NARROWEST * self.wavelength:
             raise ParameterError(
                 "group_width", self.group_width,
-                f"must be at least {NARROWEST * self.wavelength:.4g} m, {NARROWEST:g} of its wavelength: "
-                "a narrower hump runs apart in all directions",
+                f"must be at least {NARROWEST * self.wavelength:.4g} m, {NARROWEST:g} of its "
+                "wavelength: a narrower hump spreads in all directions",
             )  # fmt: skip
 
     def check(self, sea: OceanParameters, path: str) -> None:

@@ -55,25 +55,25 @@ class ImageLayer(Contribution):
     kind = "IMAGE"
     gives = Gives.COEFFICIENTS | Gives.STATE | Gives.LOOPS
     names = Names(
-        2, "image_waves", "image", "Image", "Waves out of an image, or out of white noise", "IMAGE_DATA",
+        2, "image_waves", "image", "Image", "Waves from an image, or from white noise", "IMAGE_DATA",
         entry="Image or Noise",
     )  # fmt: skip
     former_list = "pictures"
-    constant = "each keeps its waves; what can change is how fast they move, by ocean_time"
+    constant = "an image keeps its waves; animate ocean_time to change how fast they move"
 
     image: Raster | None = raster(
-        "Image whose phases and magnitudes become the waves'; none for white noise",
+        "Image whose phases and magnitudes become waves; none for white noise",
         channels=1,
     )  # fmt: skip
     filter: str = choice(
         "MODIFIED_PIERSON_MOSKOWITZ",
         FILTERS,
-        "Which wavelengths and directions of the image stay: a wind's, a fractal's or a texture's",
+        "Which wavelengths and directions of the image are kept: those of a wind, a fractal or a texture",
     )
     filter_gain: str = choice(
         "PHYSICAL", FILTER_GAINS,
-        "Modified Pierson-Moskowitz: waves as high as the wind makes them, or the paper's filter with "
-        "significant_wave_height",
+        "Modified Pierson-Moskowitz: waves with the height of the wind, or the paper's filter "
+        "with significant_wave_height",
     )  # fmt: skip
     wind_speed: float = number(
         12.0, 0.0, 100.0, "m/s", "Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter",
@@ -81,24 +81,26 @@ class ImageLayer(Contribution):
     )  # fmt: skip
     wind_direction: float = direction()
     significant_wave_height: float = number(
-        1.0, 0.0, 100.0, "m", "Wave height Hs of every filter but the physical one: four standard deviations",
-        "thrice the largest measured",
+        1.0, 0.0, 100.0, "m", "Significant wave height Hs for every filter but the physical one: four "
+        "standard deviations",
+        "three times the largest ever measured",
     )  # fmt: skip
     amplitude_scale: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the layer's wave height", "an artist's scale", useful=(0.0, 2.0)
     )
     fractal_dimension: float = number(
-        2.1, 2.0, 4.0, "", "D of the filters 1/f^β with β = 8 - 2D: 2 is smooth, 3 rough, 4 no filter at all",
+        2.1, 2.0, 4.0, "", "Dimension D of the filters 1/f^β with β = 8 - 2D: 2 is smooth, 3 rough, 4 no "
+        "filter",
         "a surface's dimension, and beyond",
     )  # fmt: skip
     texture_wavelength: float = number(
-        2.0, 1e-3, 1e5, "m", "Wavelength at the water texture's peak: 1/f^β is below, a Gaussian above",
+        2.0, 1e-3, 1e5, "m", "Wavelength of the water texture's peak: 1/f^β below, a Gaussian above",
         "from ripples to the largest domain",
     )  # fmt: skip
     animation: str = choice(
         "DISPERSION",
         ANIMATIONS,
-        "How the waves move: each at its own speed, the highest apart from the others, or all as one",
+        "How the waves move: each at its own speed, the highest apart from the rest, or all as one",
     )
     dominant_rate: float = number(
         1.5, 0.0, 100.0, "rad/s", "Dominant band: how fast the phases of the highest waves turn",
@@ -113,7 +115,8 @@ class ImageLayer(Contribution):
         "beyond the fastest wave",
     )  # fmt: skip
     noise_resolution: int = integer(
-        1024, 16, 2048, "Samples along each side of the white noise, an even number; others are another sea",
+        1024, 16, 2048, "Samples along each side of the white noise, an even number; another number is "
+        "another sea",
         "from the coarsest sea to the largest image that is not made smaller",
     )  # fmt: skip
     muted: bool = muted()
@@ -151,8 +154,9 @@ class ImageLayer(Contribution):
             direction = math.atan2(nearest[1], nearest[0]) if any(nearest) else self.wind_direction
             raise ParameterError(
                 f"{path}.translation_speed", self.translation_speed,
-                f"moves the image by {moved[0]:.4g} and {moved[1]:.4g} patches in the loop, not by whole "
-                f"ones: take {speed:.9g} m/s towards {direction:.9g} rad, another animation, or no loop",
+                f"moves the image by {moved[0]:.4g} and {moved[1]:.4g} patches during the loop, "
+                f"not by whole ones: use {speed:.9g} m/s towards {direction:.9g} rad, another "
+                "animation, or no loop",
             )  # fmt: skip
 
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
@@ -206,7 +210,7 @@ class ImageLayer(Contribution):
     def warnings(self, sea: OceanParameters) -> Iterator[str]:
         """Of an image of which nothing is left."""
         if wanted_variance(self, sea.water) > 0.0 and not self.state(sea).m0 > 0.0:
-            yield f"Image {self.id}: its filter leaves nothing of it. Take another filter, wind or image"
+            yield f"Image {self.id}: its filter leaves nothing of it. Use another filter, wind or image"
 
 
 def _grey(image: Raster) -> Raster:
@@ -218,6 +222,6 @@ def _grey(image: Raster) -> Raster:
     if np.ptp(image.values) == 0.0:
         what = f"image ({image.name})" if image.name else "image"
         raise ParameterError(
-            what, float(image.values.flat[0]), "everywhere: it holds no waves; give one with contrast"
+            what, float(image.values.flat[0]), "everywhere, so it holds no waves: use an image with contrast"
         )
     return image

@@ -32,21 +32,21 @@ def check_bounds(layers: Sequence[WindFieldLayer], gravity: float) -> None:
     if particles > MOST_PARTICLES:
         raise ParameterError(
             "layers", f"up to {particles} particles",
-            f"must have at most {MOST_PARTICLES}: take fewer columns, rows, origins or particles, a smaller "
-            "split_angle or a shorter life",
+            f"must have at most {MOST_PARTICLES}: use fewer columns, rows, origins or particles, "
+            "a smaller split_angle or a shorter life",
         )  # fmt: skip
     births = sum(most_births(layer, gravity) for layer in layers)
     if births > MOST_BIRTHS:
         raise ParameterError(
             "layers", f"up to {births} waves looked at",
-            f"must be at most {MOST_BIRTHS}: take a higher minimum_wind_speed, fewer columns, rows or "
-            "origins, or a shorter life",
+            f"must be at most {MOST_BIRTHS}: use a higher minimum_wind_speed, fewer columns, rows "
+            "or origins, or a shorter life",
         )  # fmt: skip
     winds = sum(_origins(layer) * len(layer.keys) for layer in layers)
     if winds > MOST_WINDS:
         raise ParameterError(
             "layers", f"{winds} winds",
-            f"must have at most {MOST_WINDS}, keys times origins: take fewer keys, columns, rows or origins",
+            f"must have at most {MOST_WINDS}, keys times origins: use fewer keys, columns, rows or origins",
         )  # fmt: skip
 
 

@@ -31,7 +31,7 @@ class WindWaveOutlook(NamedTuple):
         """What `info` says."""
         return [
             f"wind fields: waves up to {self.longest_wavelength:.3g} m long, at most "
-            f"{self.most_particles} particles at once; the heights above are without them"
+            f"{self.most_particles} particles at once; not counted in the heights above"
         ]
 
     def to_plain(self) -> dict[str, Any]:
@@ -55,13 +55,14 @@ def wind_wave_outlook(
         longest = max(longest, length)
         if length == 0.0:
             warnings.append(
-                f"Wind field {index}: {speed:.3g} m/s is calm and raises no waves. "
-                f"Raise its wind_scale, or lower its minimum_wind_speed of {layer.minimum_wind_speed:g} m/s"
+                f"Wind field {index}: {speed:.3g} m/s raises no waves. Raise its wind_scale, or "
+                f"lower its minimum_wind_speed of {layer.minimum_wind_speed:g} m/s"
             )
         elif length < SHORTEST * spacing:
             warnings.append(
-                f"Wind field {index}: its waves of {length:.3g} m are shorter than {SHORTEST:g} samples of "
-                f"{spacing:.3g} m and are left out. Raise the resolution or make the domain smaller"
+                f"Wind field {index}: its waves of {length:.3g} m are shorter than {SHORTEST:g} "
+                f"samples of {spacing:.3g} m and are left out. Raise the resolution, or make the "
+                "domain smaller"
             )
     particles = sum(most_particles(layer) for layer in layers)
     return WindWaveOutlook(particles, longest, tuple(warnings))

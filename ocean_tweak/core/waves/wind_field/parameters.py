@@ -69,20 +69,21 @@ class WindFieldLayer(Contribution):
     gives = Gives.SHARES
     names = Names(
         1, "wind_field", "wind field", "Wind Field",
-        "Waves that follow a wind that differs from place to place", "FORCE_WIND",
+        "Waves from a wind that varies from place to place", "FORCE_WIND",
     )  # fmt: skip
     former_list = "wind_fields"
-    constant = "a wave keeps the wind of its birth; give the wind keys at several times instead"
+    constant = "a wave keeps the wind it was born with; give the wind keys at several times instead"
 
     wind_speed: float = number(
-        12.0, 0.0, 100.0, "m/s", "Speed of the wind where it is the same everywhere: without keys",
+        12.0, 0.0, 100.0, "m/s", "Wind speed, the same everywhere, where there are no keys",
         "from calm to beyond the strongest hurricane", useful=(0.0, 50.0),
     )  # fmt: skip
     wind_direction: float = direction("Direction towards which it blows, counter-clockwise from +x")
     keys: tuple[WindKey, ...] = nested(WindKey, many=True, empty=True, most=MOST_KEYS)
     wind_scale: float = number(1.0, 0.0, 100.0, "", "Multiplies the wind", "an artist's scale")
     start_time: float = number(
-        -120.0, -1e6, 1e6, "s", "Ocean time at which the wind begins to raise waves; earlier there are none",
+        -120.0, -1e6, 1e6, "s", "Ocean time at which the wind begins to raise waves; before it there are "
+        "none",
         "more than a week either way",
     )  # fmt: skip
     minimum_wind_speed: float = number(
@@ -90,12 +91,18 @@ class WindFieldLayer(Contribution):
     )
     columns: int = integer(16, 1, 512, "Cells along x, each with as many origins of waves", "a cell a metre")
     rows: int = integer(16, 1, 512, "Cells along y", "a cell a metre")
-    origins: int = integer(1, 1, 16, "Places in each cell from which waves come", "else take more cells")
+    origins: int = integer(1, 1, 16, "Places in each cell where waves are born", "for more, use more cells")
     jitter: float = number(
-        1.0, 0.0, 1.0, "", "How far origins lie from the middle of their cell: 1 is anywhere in it", "a share"
+        1.0,
+        0.0,
+        1.0,
+        "",
+        "How far origins stray from the middle of their cell: 1 is anywhere in it",
+        "a share",
     )
     phase_jitter: float = number(
-        1.0, 0.0, 1.0, "", "How far origins are out of step: 0 is all at once, 1 at any part of the period",
+        1.0, 0.0, 1.0, "", "How far origins are out of step: 0 is all at once, 1 at any time within the "
+        "period",
         "a share",
     )  # fmt: skip
     crest: str = choice("ARC", CRESTS, "How a wave begins: as an arc that widens, or straight and parallel")
@@ -106,24 +113,30 @@ class WindFieldLayer(Contribution):
         1.0,
         "rad",
         "Angle between neighbouring particles of an arc",
-        "as far as a wave holds together",
+        "beyond it, a wave does not hold together",
     )
     splitting: bool = switch(
-        True, "Divide particles in three where neighbours are half a radius apart; without, arcs break up"
+        True, "Split a particle in three where neighbours are half a radius apart; without it, arcs break up"
     )
     life: float = number(
-        8.0, 0.5, 100.0, "wavelengths", "How far a wave runs until it is gone", "a long swell"
+        8.0, 0.5, 100.0, "wavelengths", "How far a wave runs before it is gone", "a long swell"
     )
-    height: str = choice("STEEPNESS", HEIGHTS, "What gives a particle's height")
+    height: str = choice("STEEPNESS", HEIGHTS, "What sets a particle's height")
     steepness: float = number(
-        0.1, 0.0, 2.0, "", "s of the height s·λ/2π of a particle, to which its neighbours add theirs",
+        0.1, 0.0, 2.0, "", "Steepness s of the height s·λ/2π of a particle, to which its neighbours add "
+        "theirs",
         "waves break near 0.44",
     )  # fmt: skip
     height_per_speed: float = number(
-        0.05, 0.0, 10.0, "s", "k of the height k·V of a particle, V the wind's speed", "an artist's scale"
+        0.05,
+        0.0,
+        10.0,
+        "s",
+        "Factor k of the height k·V of a particle, V being the wind speed",
+        "an artist's scale",
     )
     amplitude_scale: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the waves' height", "an artist's scale", useful=(0.0, 2.0)
+        1.0, 0.0, 100.0, "", "Multiplies the wave height", "an artist's scale", useful=(0.0, 2.0)
     )
     muted: bool = muted()
     id: int = identity()
@@ -138,7 +151,7 @@ class WindFieldLayer(Contribution):
                 raise ParameterError(
                     f"keys.{index}.time",
                     times[index],
-                    f"must be above that before it, {times[index - 1]:g} s",
+                    f"must be later than the key before it, {times[index - 1]:g} s",
                 )
 
     @cached_property
@@ -160,8 +173,9 @@ class WindFieldLayer(Contribution):
             fitting = (size * sea.water.gravity) ** 0.5
             raise ParameterError(
                 path, f"{speed:g} m/s",
-                f"this wind's waves are {longest:.4g} m long and the domain {size:g} m: make the domain "
-                f"larger, or the wind at most {fitting:.4g} m/s, by its wind_scale for one",
+                f"the waves of this wind are {longest:.4g} m long and the domain is {size:g} m: "
+                f"make the domain larger, or the wind at most {fitting:.4g} m/s (wind_scale, for "
+                "one)",
             )  # fmt: skip
 
     @classmethod
