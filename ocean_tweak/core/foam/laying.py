@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from ..numerics.memo import total_bytes
 from .windrows import Windrows
 
 RealArray = NDArray[np.floating]
+_Number = TypeVar("_Number", bound=np.generic)
 #: foam in 0…1 and its age in s, float32 arrays of one shape
 Foam = tuple[RealArray, RealArray]
 
@@ -27,14 +29,20 @@ class Drawing:
 
     def __init__(self, windrows: Windrows, samples: int, spacing: float) -> None:
         self._windrows = windrows
-        along = spacing * np.arange(samples)
-        y, x = np.broadcast_arrays(along[:, np.newaxis], along)
-        source_x, source_y, self._share = windrows.sources(x, y)
-        column, row = np.floor(source_x / spacing), np.floor(source_y / spacing)
-        self._u = (source_x / spacing - column).astype(np.float32)
-        self._v = (source_y / spacing - row).astype(np.float32)
+        by_x, by_y, self._share = windrows.on_grid(spacing * np.arange(samples, dtype=np.float64))
+        # samples from each sample to its source
+        for by in (by_x, by_y):
+            by *= np.float32(-1.0 / spacing)
+        whole_x, whole_y = np.floor(by_x), np.floor(by_y)
+        self._u, self._v = by_x - whole_x, by_y - whole_y
+        column, row = whole_x.astype(np.int32), whole_y.astype(np.int32)
+        at = np.arange(samples, dtype=np.int32)
+        row += at[:, np.newaxis]
+        column += at
+        for along in (row, column):
+            along -= samples * (along // samples)
         # of the sample before each source, where rows have one more, the first again
-        self._first = (row % samples * (samples + 1) + column % samples).astype(np.int32)
+        self._first: NDArray[np.int32] = row * np.int32(samples + 1) + column
 
     @property
     def nbytes(self) -> int:
@@ -82,7 +90,7 @@ def _whole_and_share(shift: float) -> tuple[int, np.float32]:
     return whole, np.float32(shift - whole)
 
 
-def rows_of(field: RealArray, first: int, count: int) -> RealArray:
+def rows_of(field: NDArray[_Number], first: int, count: int) -> NDArray[_Number]:
     """So many rows of a field that repeats, from any row on."""
     n = len(field)
     first %= n

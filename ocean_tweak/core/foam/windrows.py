@@ -51,6 +51,10 @@ _HELD = (2.0, 4.0)
 
 #: of threads: what their waves are at their edge, in standard deviations; narrower ones would be dotted
 _THINNEST = 0.03
+#: standard deviations up to which a table of them goes, and its steps
+_FARTHEST, _AWAY = 5.0, 2**14
+
+_RADIANS = np.float32(2.0 * math.pi)
 
 #: places that are looked at together
 _CHUNK = 2**16
@@ -106,21 +110,33 @@ class Windrows:
         """Where the foam comes from that is drawn out to places in m, which drift with it, and the lines that
         gather it, exp(σg); of the places' shape.
         """
+        source_x, source_y, lines = np.empty(x.shape), np.empty(y.shape), np.empty(x.shape, np.float32)
+        for part in _parts(x.size, _CHUNK):
+            off_x, off_y, lines.flat[part] = self._drawn_by(x.flat[part], y.flat[part])
+            source_x.flat[part], source_y.flat[part] = x.flat[part] - off_x, y.flat[part] - off_y
+        return source_x, source_y, lines
+
+    def on_grid(self, along: Array) -> tuple[RealArray, RealArray, RealArray]:
+        """By how many m foam is drawn along x and y that comes to the crossings of lines at these places on
+        both axes, which drift with it, and the lines that gather it, exp(σg); (rows, columns) each.
+        """
+        count = len(along)
+        found = np.empty((3, count, count), np.float32)
+        for rows in _parts(count, max(1, _CHUNK // count)):
+            found[:, rows] = self._drawn_by(along, along[rows, np.newaxis])
+        return found[0], found[1], found[2]
+
+    def _drawn_by(self, x: Array, y: Array) -> tuple[RealArray, RealArray, RealArray]:
+        """As `on_grid`, of places in m whose x and y broadcast."""
         pattern = self._pattern
         along_x, along_y = pattern.cell
-        source_x, source_y = np.empty(x.shape), np.empty(y.shape)
-        lines = np.empty(x.shape, np.float32)
-        length = math.hypot(along_x, along_y)
-        for part in _parts(x.size):
-            px, py = x.flat[part], y.flat[part]
-            phase = along_x * px + along_y * py + _SHIFT * pattern.shift.at(px, py)
-            # from the middle of its cell, in radians of the cell
-            off = np.mod(phase + math.pi, 2.0 * math.pi) - math.pi
-            off *= (1.0 - 1.0 / _STRETCH) / length
-            source_x.flat[part] = px - off * (along_x / length)
-            source_y.flat[part] = py - off * (along_y / length)
-            lines.flat[part] = np.exp(pattern.contrast * pattern.lines_at(px, py))
-        return source_x, source_y, lines
+        # from the middle of the place's cell, in cells
+        off = _turn(along_x * x) + _turn(along_y * y)
+        off += np.float32(_SHIFT / (2.0 * math.pi)) * pattern.shift.at(x, y)
+        off -= np.rint(off)
+        off *= np.float32((1.0 - 1.0 / _STRETCH) * 2.0 * math.pi / (along_x**2 + along_y**2))
+        lines = np.exp(np.float32(pattern.contrast) * pattern.lines_at(x, y))
+        return off * np.float32(along_x), off * np.float32(along_y), lines
 
     def gathered(self, foam: RealArray, lines: RealArray) -> RealArray:
         """The share in 0…1 that foam covers when it lies in lines; none stays none.
@@ -176,14 +192,18 @@ class _Waves:
     phase: Array
 
     def at(self, x: Array, y: Array) -> RealArray:
-        """Its values at places in m, float32."""
-        total = np.zeros(x.shape, np.float32)
+        """Its values at places in m, float32; x and y broadcast."""
+        total = np.zeros(np.broadcast_shapes(x.shape, y.shape), np.float32)
+        product = np.empty_like(total)
         for kx, ky, amplitude, phase in zip(self.kx, self.ky, self.amplitude, self.phase, strict=True):
             if amplitude == 0.0:
                 continue
-            angle = (kx * x + ky * y + phase) / (2.0 * math.pi)
-            angle -= np.floor(angle)
-            total += np.float32(amplitude) * np.cos(angle.astype(np.float32) * np.float32(2.0 * math.pi))
+            if x.shape == y.shape:
+                total += np.float32(amplitude) * np.cos(_RADIANS * _turn(kx * x + ky * y + phase))
+            else:  # on a grid a cosine is one of columns and one of rows: cos(a + b)
+                a, b = _RADIANS * _turn(kx * x), _RADIANS * _turn(ky * y + phase)
+                total += np.multiply(np.float32(amplitude) * np.cos(a), np.cos(b), out=product)
+                total -= np.multiply(np.float32(amplitude) * np.sin(a), np.sin(b), out=product)
         return total
 
     @property
@@ -217,13 +237,15 @@ class _Pattern:
 
     def lines_at(self, x: Array, y: Array) -> RealArray:
         """g at places in m: of a normal distribution with the variance 1, or 0 where nothing is held."""
-        total = np.zeros(x.shape, np.float32)
+        total = np.zeros(np.broadcast_shapes(x.shape, y.shape), np.float32)
         for kind, waves in zip(_LINES, self.lines, strict=True):
             if waves.variance == 0.0:
                 continue
             value = waves.at(x, y) * np.float32(1.0 / math.sqrt(waves.variance))
             if kind.threads:
-                value = np.interp(np.abs(value), *_threads()).astype(np.float32)
+                np.abs(value, out=value)
+                value *= np.float32(_AWAY / _FARTHEST)
+                value = np.take(_threads(), value.astype(np.int32), mode="clip")
             total += np.float32(math.sqrt(kind.variance * waves.variance)) * value
         return total * np.float32(1.0 / math.sqrt(self.held)) if self.held else total
 
@@ -259,10 +281,12 @@ def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Patte
 
 
 @lru_cache(maxsize=1)
-def _threads() -> tuple[Array, Array]:
-    """Distances of a normal number from 0, and what is normally distributed and highest where that is 0."""
-    normal, away = NormalDist(), np.linspace(_THINNEST, 5.0, 500)
-    return away, np.array([-normal.inv_cdf(2.0 * normal.cdf(each) - 1.0) for each in away.tolist()])
+def _threads() -> RealArray:
+    """By how far a normal number is from 0, in steps: what is normally distributed too, and highest there."""
+    normal, away = NormalDist(), np.linspace(_THINNEST, _FARTHEST, 500)
+    known = [-normal.inv_cdf(2.0 * normal.cdf(each) - 1.0) for each in away.tolist()]
+    middle = (np.arange(_AWAY) + 0.5) * (_FARTHEST / _AWAY)
+    return np.asarray(np.interp(middle, away, known).astype(np.float32))
 
 
 @lru_cache(maxsize=16)
@@ -281,5 +305,11 @@ def _drawn(age: RealArray) -> RealArray:
     return np.asarray(1.0 - np.exp2(age * np.float32(-1.0 / _DRAWN_IN)))
 
 
-def _parts(count: int) -> Iterator[slice]:
-    return (slice(first, first + _CHUNK) for first in range(0, count, _CHUNK))
+def _turn(angle: Array) -> RealArray:
+    """Angles in rad as turns in [-½, ½], of which single precision loses nothing."""
+    turn = angle * (1.0 / (2.0 * math.pi))
+    return np.asarray((turn - np.rint(turn)).astype(np.float32))
+
+
+def _parts(count: int, size: int) -> Iterator[slice]:
+    return (slice(first, min(first + size, count)) for first in range(0, count, size))
