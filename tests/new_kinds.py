@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ocean_tweak.core.data.validation import integer, nested, number
-from ocean_tweak.core.masks import Mask
+from ocean_tweak.core.masks.parameters import Mask
 from ocean_tweak.core.spectral.sea_state import SeaState, mode_state
 from ocean_tweak.core.synthesis.coefficients import Coefficients
 from ocean_tweak.core.waves.contribution import Contribution, Gives, Names, Wind, identity, muted

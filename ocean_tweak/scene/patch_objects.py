@@ -21,7 +21,9 @@ import numpy as np
 
 from ..core import OceanParameters
 from ..core.data.plain_data import to_plain
-from ..core.masks import Mask, weights
+from ..core.masks.noise import ANY_TIME, SeaTime
+from ..core.masks.parameters import Mask
+from ..core.masks.weights import move, weights
 from ..core.numerics.machine import usable_cores
 from ..core.parameters.fingerprint import fingerprint
 from ..core.parameters.patch_seas import Part, parts
@@ -94,7 +96,8 @@ def refresh(
                 f"{len(PATCH_INPUTS)}: take masks or patches away, or the camera surface"
             )
         made = _refreshed(ocean, plan, points, of_sea, coarse)
-        weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea)
+        when = SeaTime(plan.time, parameters.loop_duration)
+        weighted = _weights(ocean, parameters.domain_size, plan.scale, of_sea, when)
     if surface is not None:
         inputs = {name: made.get(number) for number, name in enumerate(PATCH_INPUTS, 1)}
         inputs |= {"Weights": weighted, AREA_INPUT: _refreshed_area(ocean, plan)}
@@ -286,7 +289,7 @@ def _foam_object(ocean: bpy.types.Object, is_wanted: bool) -> bpy.types.Object |
 
 
 def _weights(
-    ocean: bpy.types.Object, size: float, scale: float, of_sea: Sequence[Part]
+    ocean: bpy.types.Object, size: float, scale: float, of_sea: Sequence[Part], when: SeaTime
 ) -> bpy.types.Object | None:
     """Points over the domain with the weights of the parts that have masks; None where none has."""
     present = next((child for child in ocean.children if _MASKS in child), None)
@@ -295,16 +298,18 @@ def _weights(
         _remove(iter((present,) if present is not None else ()))
         return None
     values = {name: [to_plain(mask, brief=True) for mask in masks] for name, masks in masked.items()}
-    content = fingerprint({"size": size, "scale": scale, **values})
+    if not any(map(move, masked.values())):
+        when = ANY_TIME
+    content = fingerprint({"size": size, "scale": scale, "time": str(when.time), **values})
     item = present or _new(ocean, "Weights", _MASKS, "")
     if item[_MASKS] != content and item.data.library is None:
-        _write_weights(item, masked, size, Grid(size * scale, _WEIGHTS, _WEIGHTS))
+        _write_weights(item, masked, size, Grid(size * scale, _WEIGHTS, _WEIGHTS), when)
         item[_MASKS] = content
     return item
 
 
 def _write_weights(
-    item: bpy.types.Object, masked: Mapping[str, Sequence[Mask]], size: float, grid: Grid
+    item: bpy.types.Object, masked: Mapping[str, Sequence[Mask]], size: float, grid: Grid, when: SeaTime
 ) -> None:
     if item.data.users > 1:  # of a duplicate
         item.data = item.data.copy()
@@ -315,7 +320,7 @@ def _write_weights(
     mesh.attributes.new(DISPLACEMENT, "FLOAT_VECTOR", "POINT")  # by which nodes know a sea's grid; they rest
     along = size / _WEIGHTS * np.arange(_WEIGHTS + 1)
     for name, masks in masked.items():
-        values = weights(masks, size, along, along[:, np.newaxis]).value
+        values = weights(masks, size, along, along[:, np.newaxis], when).value
         attribute = mesh.attributes.new(name, "FLOAT", "POINT")
         attribute.data.foreach_set("value", values.astype(np.float32).ravel())
     mesh.update_tag()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks as properties: an image, a vertex group that was read, or the distance to an object."""
+"""Masks as properties: an image, a vertex group that was read, the distance to an object, or a noise."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ..core import Mask, ParameterError, Raster
 from ..core.data.plain_data import to_plain
+from ..core.masks.parameters import MOST_GUSTS
 from ..scene import floating, mask_lines, source_images
 from ..scene.source_images import ImageSource
 from ..scene.vertex_weights import weights_seen
@@ -25,6 +26,7 @@ SOURCES = {
     "IMAGE": ("Image", "Waves as high as the image is bright; it covers the domain"),
     "VERTEX_GROUP": ("Vertex Group", "Waves as high as the weights of a mesh over or under the water"),
     "DISTANCE": ("Distance", "No waves near an object, all of them far from it"),
+    "NOISE": ("Noise", "Gusts: waves in patches that move along and change"),
 }
 MEASURED_FROM = {
     "ORIGIN": ("Origin", "The distance to the object's origin, or to a place"),
@@ -40,6 +42,24 @@ _IMAGES = ("IMAGE", "VERTEX_GROUP")
 def _placed(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     place(group)
     changed(group, context)
+
+
+def _source_chosen(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    settings = group.id_data.ocean_tweak
+    if group.source == "NOISE" and not settings.is_quiet:
+        with settings.quiet():
+            _fit_noise(group, settings)
+    changed(group, context)
+
+
+def _fit_noise(group: bpy.types.PropertyGroup, settings: bpy.types.PropertyGroup) -> None:
+    """Let a noise that was just chosen go with the strongest wind, and be of a size that the domain holds."""
+    winds = [layer.group for layer in settings.layers if hasattr(layer.group, "wind_speed")]
+    if winds:
+        wind = max(winds, key=lambda each: each.wind_speed)
+        group.noise_speed, group.noise_direction = wind.wind_speed, wind.wind_direction
+    side = settings.patches[0].domain_size if settings.patches else settings.domain_size
+    group.noise_size = min(max(group.noise_size, side / MOST_GUSTS), side)
 
 
 def _is_mesh(_group: bpy.types.PropertyGroup, item: bpy.types.Object) -> bool:
@@ -67,7 +87,8 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
     __annotations__ = {
         **parameter_properties.annotations(Mask, changed, ("source",)),
         "source": EnumProperty(
-            name="Mask", default="NONE", **_SHOWN, items=[(key, *texts) for key, texts in SOURCES.items()],
+            name="Mask", default="NONE", options=set(), update=_source_chosen, **_OVERRIDE,
+            items=[(key, *texts) for key, texts in SOURCES.items()],
             description="Where these waves are",
         ),
         "image": PointerProperty(
@@ -148,6 +169,13 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
         return None
     values = parameter_properties.read(group, Mask, metres, ("source",))
     try:
+        if group.source == "NOISE":
+            return Mask(**{**values, "source": "NOISE"})
+        # a default is in Blender units: it is no number of a mask that has nothing to do with it
+        values = {
+            name: value for name, value in values.items()
+            if not name.startswith("noise_") or group.is_property_set(name)
+        }  # fmt: skip
         if group.source not in _IMAGES:
             return Mask(**{**values, "source": "DISTANCE", "lines": _lines(group, metres)})
         source = source_images.source_of(group)
@@ -186,9 +214,10 @@ def write(
         group.source = "NONE"
         return
     parameter_properties.write(group, Mask, to_plain(mask, brief=True), metres, ("source",))
-    if mask.source == "DISTANCE":
-        _write_distance(group, mask, metres)
-        group.source = "DISTANCE"
+    if mask.source != "IMAGE":
+        if mask.source == "DISTANCE":
+            _write_distance(group, mask, metres)
+        group.source = mask.source
         return
     source = source_images.source_with(mask.image, known_images)
     known_images.add(source)

@@ -40,6 +40,13 @@ LABELS = {
     "life": "Life (waves)",
     "mesh_resolution": "Mesh Quads",
     "law": "Foam Law",
+    "noise_size": "Size",
+    "noise_coverage": "Coverage",
+    "noise_contrast": "Contrast",
+    "noise_speed": "Speed",
+    "noise_direction": "Direction",
+    "noise_evolution": "Evolution",
+    "noise_seed": "Seed",
 }
 
 #: what stands in the place of a field's number while it is switched off
@@ -51,6 +58,7 @@ OFF = {
     "longest_wavelength": "All Waves",
     "short_wave_cutoff": "None",
     "proxy": "None",
+    "noise_evolution": "None",
 }
 
 

@@ -192,6 +192,32 @@ def test_what_floats_is_no_mask(ocean, mask, empty_scene, extension):
     assert not ocean.ocean_tweak.error
 
 
+@pytest.mark.parametrize("metres", [1.0, 0.5])
+def test_a_noise_goes_with_the_wind_and_lets_its_share_through(ocean, mask, core, empty_scene, metres):
+    empty_scene.unit_settings.scale_length = metres
+    layer = ocean.ocean_tweak.layers[0]
+    layer.wind_speed, layer.wind_direction = 9.0, 0.5
+    mask.noise_coverage, mask.noise_contrast = 0.25, 0.75
+    mask.source = "NOISE"
+    found = ocean.ocean_tweak.to_parameters(empty_scene).layers[0].mask
+    assert (found.source, found.noise_coverage, found.noise_contrast) == ("NOISE", 0.25, 0.75)
+    assert found.noise_speed == pytest.approx(9.0 * metres)
+    assert found.noise_direction == pytest.approx(0.5)
+    empty_scene.frame_set(30)
+    parameters = ocean.ocean_tweak.to_parameters(empty_scene)
+    if metres == 1.0:
+        assert_alike(read(evaluated_mesh(ocean), SIDE, SIDE), wanted(core, parameters, 30))
+    ocean.ocean_tweak.from_parameters(parameters, empty_scene)
+    assert ocean.ocean_tweak.to_parameters(empty_scene) == parameters
+
+
+def test_gusts_too_small_for_the_domain_are_told(ocean, mask):
+    mask.source = "NOISE"
+    assert not ocean.ocean_tweak.error
+    mask.noise_size = 0.02 * DOMAIN
+    assert "mask.noise_size" in ocean.ocean_tweak.error
+
+
 def test_strength_leaves_a_share(ocean, mask, empty_scene):
     mask.inner_radius, mask.outer_radius = 500.0, 600.0
     whole = heights(ocean)

@@ -31,6 +31,7 @@ PAPERS = {
     "Li and Wang (2016)": 25,
     "Hero waves": 0,
     "Foam": 0,
+    "Masks": 0,
 }
 
 

@@ -22,7 +22,7 @@ from ocean_tweak.core import (
     Timing,
     WaveLayer,
 )
-from ocean_tweak.core.masks import weights
+from ocean_tweak.core.masks.weights import weights
 from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.sea.placed_waves import placed_fields, repeating

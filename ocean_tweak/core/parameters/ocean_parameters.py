@@ -30,7 +30,7 @@ from ..data.validation import (
     rational,
     switch,
 )
-from ..masks import Mask, check_lines
+from ..masks.parameters import Mask, check_mask
 from ..spectral.water import Water
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave
@@ -244,7 +244,7 @@ class OceanParameters(Validated):
             *(patch.mask for patch in self.patches),
         ):
             if mask is not None:
-                check_lines(mask, self.domain_size)
+                check_mask(mask, self.domain_size)
         if self.is_masked and self.trough_damping > 0.0:
             raise ParameterError(
                 "trough_damping", self.trough_damping,

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from ..data.errors import ParameterError
 from ..data.validation import Off, Validated, integer, nested, number
-from ..masks import Mask
+from ..masks.parameters import Mask
 
 #: of a sea
 MOST_PATCHES = 4

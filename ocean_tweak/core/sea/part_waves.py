@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..foam import threshold as foam_threshold
-from ..masks import weights
+from ..masks.noise import SeaTime
+from ..masks.weights import weights
 from ..numerics.interpolation import close
 from ..numerics.memo import MEMO, remembered
 from ..parameters.ocean_parameters import Foam, OceanParameters, Timing
@@ -136,7 +137,7 @@ class PartWaves:
         """
         if self.parameters.trough_damping > 0.0:
             raise ValueError("surface = 'exact': not available with trough damping; use mesh")
-        return self._in_sea(exact(replace(self._synthesis, dtype=np.complex128), time))
+        return self._in_sea(exact(replace(self._synthesis, dtype=np.complex128), time), time)
 
     def mesh_field(self, time: float | Fraction, with_velocity: bool) -> tuple[Field, float]:
         """The surface that is bilinear between the samples, and how far in m it moves a point sideways."""
@@ -146,11 +147,12 @@ class PartWaves:
         self.fill(time, outputs, made)
         displacement = made["displacement"]
         reach = float(np.max(np.hypot(displacement[..., 0], displacement[..., 1])))
-        return self._in_sea(bilinear(displacement, made.get("velocity"), self.part.spacing)), reach
+        return self._in_sea(bilinear(displacement, made.get("velocity"), self.part.spacing), time), reach
 
-    def _in_sea(self, field: Field) -> Field:
+    def _in_sea(self, field: Field, time: float | Fraction) -> Field:
         """Their own surface in the sea's axes, under their masks."""
-        weights_at = partial(weights, self.part.masks, self._side) if self.part.masks else None
+        masks, when = self.part.masks, SeaTime(time, self.parameters.loop_duration)
+        weights_at = partial(weights, masks, self._side, when=when) if masks else None
         return weighted_field(turned_field(field, self.part.rotation), weights_at)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
-from ..masks import Weights, weights
+from ..masks.noise import SeaTime
+from ..masks.weights import Weights, move, weights
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
@@ -38,8 +39,9 @@ class PlacedWaves:
         masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
         if not masks:
             return dict(self._layer.fields(self._sea, x, y, time, frozenset(keys)))
-        under = weights(masks, self._sea.domain_size, x, y)
-        return weighted(self._layer.fields(self._sea, x, y, time, unweighted(keys)), under)
+        under = weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration))
+        wanted = unweighted(keys, moves=move(masks))
+        return weighted(self._layer.fields(self._sea, x, y, time, wanted), under)
 
     def field(self, time: float | Fraction) -> Field:
         """Their own surface at a time."""

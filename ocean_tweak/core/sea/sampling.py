@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks import Weights
+from ..masks.weights import Weights
 from ..numerics.interpolation import Reader
 from ..numerics.memo import total_bytes
 from ..synthesis.transforms import X, Y, Z
@@ -35,10 +35,13 @@ def closed(wanted: Iterable[Key]) -> frozenset[Key]:
     return frozenset(keys)
 
 
-def unweighted(wanted: Iterable[Key]) -> frozenset[Key]:
-    """The components wanted and those of which a weight's own change makes a part: ∂(w d) = w ∂d + d ∂w."""
-    keys = frozenset(wanted)
-    return keys | {(component, "") for component, derivative in keys if derivative in ("x", "y")}
+def unweighted(wanted: Iterable[Key], moves: bool = False) -> frozenset[Key]:
+    """The components wanted and those of which a weight's own change makes a part: ∂(w d) = w ∂d + d ∂w.
+
+    moves : whether the weight changes with time too
+    """
+    keys, changing = frozenset(wanted), ("x", "y", "t") if moves else ("x", "y")
+    return keys | {(component, "") for component, derivative in keys if derivative in changing}
 
 
 def weighted(values: Mapping[Key, RealArray], weights: Weights | None) -> dict[Key, RealArray]:
@@ -49,8 +52,8 @@ def weighted(values: Mapping[Key, RealArray], weights: Weights | None) -> dict[K
         key: weights.value.astype(field.dtype) * field for key, field in values.items()
     }
     for (component, derivative), field in result.items():
-        if derivative in ("x", "y"):
-            change = weights.by_x if derivative == "x" else weights.by_y
+        change = {"x": weights.by_x, "y": weights.by_y, "t": weights.by_t}.get(derivative)
+        if change is not None:
             field += change.astype(field.dtype) * values[component, ""]
     return result
 

@@ -19,7 +19,9 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..masks import Mask, Weights, weights, weights_on_grid
+from ..masks.noise import SeaTime
+from ..masks.parameters import Mask
+from ..masks.weights import Weights, move, weights, weights_on_grid
 from ..numerics.memo import MEMO
 from ..numerics.threads import default_workers
 from ..parameters.ocean_parameters import OceanParameters
@@ -60,6 +62,7 @@ class TileSum:
         self._parts = parts
         self._samples = parameters.resolution
         self._side = parameters.domain_size
+        self._loop_duration = parameters.loop_duration
         self._dtype = dtype
         self._workers = workers
 
@@ -76,12 +79,15 @@ class TileSum:
     ) -> dict[Key, RealArray]:
         """The (N, N) components of a part."""
         wanted = needs if waves.is_on_tile else unweighted(closed(needs))
-        if waves.part.masks:
-            wanted = unweighted(wanted)
+        masks = waves.part.masks
+        if masks:
+            wanted = unweighted(wanted, moves=move(masks))
         components = waves.components(time, wanted, closed=not waves.is_on_tile)
         on_tile = components if waves.is_on_tile else self._read(components, waves.part)
-        masks = waves.part.masks
-        found = weights_on_grid(masks, self._side, self._samples, self._dtype) if masks else None
+        if not masks:
+            return weighted(on_tile, None)
+        when = SeaTime(time, self._loop_duration)
+        found = weights_on_grid(masks, self._side, self._samples, self._dtype, when)
         return weighted(on_tile, found)
 
     def _read(self, components: Components, part: Part) -> dict[Key, RealArray]:
@@ -118,7 +124,7 @@ def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> di
         for share_y, slope_y, back_y in along_y:
             there = (share_x > 0.0) & (share_y > 0.0)
             shares = Weights(share_x * share_y, slope_x * share_y, share_x * slope_y)
-            inside = Weights(*(part[there] for part in shares))
+            inside = Weights(shares.value[there], shares.by_x[there], shares.by_y[there])
             for key, value in grid.read(x[there] - back_x, y[there] - back_y, inside).items():
                 if key not in total:
                     total[key] = np.zeros(x.shape, value.dtype)
@@ -215,7 +221,7 @@ class AnywhereSum:
         """What is read of a part: its components on its own samples."""
         wanted = closed(needs)
         if wanted and waves.part.masks:
-            wanted = unweighted(wanted)
+            wanted = unweighted(wanted, moves=move(waves.part.masks))
         components = waves.components(time, wanted, closed=True) if wanted else {}
         return Grid(components, waves.part.parameters.domain_size, waves.part.rotation)
 
@@ -228,10 +234,11 @@ class AnywhereSum:
         grids: Sequence[Grid],
     ) -> Summed:
         known: dict[tuple[Mask, ...], Weights] = {}
+        when = SeaTime(time, self._parameters.loop_duration)
         found = []
         for waves, grid in zip(self._parts, grids, strict=True):
             part = waves.part
             if part.masks and part.masks not in known:
-                known[part.masks] = weights(part.masks, self._parameters.domain_size, x, y)
+                known[part.masks] = weights(part.masks, self._parameters.domain_size, x, y, when)
             found.append(grid.read(x, y, known.get(part.masks)))
         return Summed([*found, *(waves.at(x, y, time, needs) for waves in self._placed)])

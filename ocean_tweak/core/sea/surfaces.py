@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks import Weights
+from ..masks.weights import Weights
 from ..numerics.interpolation import between
 from ..synthesis.transforms import Column, Synthesis, X, Y, Z
 from .sampling import into_patch
@@ -125,13 +125,17 @@ def weighted_field(field: Field, weights_at: Callable[[Array, Array], Weights] |
     if weights_at is None:
         return field
 
-    def under(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
+    def masked(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
         (value, by_x, by_y), velocity = field(x, y, with_velocity)
-        weight, along_x, along_y = (part[:, np.newaxis] for part in weights_at(x, y))
+        under = weights_at(x, y)
+        weight, along_x, along_y = (part[:, np.newaxis] for part in (under.value, under.by_x, under.by_y))
         values = Values(weight * value, weight * by_x + along_x * value, weight * by_y + along_y * value)
-        return values, None if velocity is None else weight * velocity
+        if velocity is None:
+            return values, None
+        change = 0.0 if under.by_t is None else under.by_t[:, np.newaxis] * value
+        return values, weight * velocity + change
 
-    return under
+    return masked
 
 
 def summed_field(fields: Sequence[Field]) -> Field:

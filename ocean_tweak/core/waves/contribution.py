@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..data.validation import Off, Validated, integer, number, switch
 
 if TYPE_CHECKING:
-    from ..masks import Mask
+    from ..masks.parameters import Mask
     from ..numerics.grid import WaveVectorGrid
     from ..parameters.ocean_parameters import OceanParameters
     from ..spectral.directional_spectrum import DirectionalSpectrum

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 from ..data.errors import ParameterError
 from ..data.validation import Off, choice, nested, number, switch
-from ..masks import Mask
+from ..masks.parameters import Mask
 from ..numerics import random
 from ..spectral import constants
 from ..spectral.directional_spectrum import DirectionalSpectrum

@@ -4,6 +4,7 @@
 import bpy
 
 from ...scene import source_images
+from ..field_drawing import draw_fields
 from ..mask_operators import ACTIVE_LAYER, WHOLE_SEA, OCEAN_OT_read_weights
 from .drawing import SubPanel, active_settings, message, split
 
@@ -25,6 +26,8 @@ def draw_mask(
         draw_image(layout, group)
     elif group.source == "VERTEX_GROUP":
         _draw_weights(layout, group, patch)
+    elif group.source == "NOISE":
+        _draw_noise(layout, group)
     else:
         _draw_distance(layout, group)
     for text in (_lacking(group), _standing_still(group)):
@@ -66,9 +69,15 @@ def _draw_distance(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -
     column.prop(group, "outer_radius")
 
 
+def _draw_noise(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -> None:
+    draw_fields(layout, group, "noise_size", "noise_coverage", "noise_contrast")
+    draw_fields(layout.column(align=True), group, "noise_speed", "noise_direction")
+    draw_fields(layout, group, "noise_evolution", "noise_seed")
+
+
 def _lacking(group: bpy.types.PropertyGroup) -> str:
     """What is to be done before the sea can be shown; empty where nothing is."""
-    if group.source == "DISTANCE" or group.image is not None:
+    if group.source in ("DISTANCE", "NOISE") or group.image is not None:
         return ""
     if group.source == "IMAGE":
         return "The sea waits for an image: choose one, or no mask"

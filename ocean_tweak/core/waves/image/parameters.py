@@ -12,7 +12,7 @@ import numpy as np
 from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import choice, integer, nested, number, raster
-from ...masks import Mask
+from ...masks.parameters import Mask
 from ..contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
 from .animation import angular_frequency
 from .source import side

@@ -12,7 +12,7 @@ import numpy as np
 from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import Validated, choice, integer, nested, number, raster, switch
-from ...masks import Mask
+from ...masks.parameters import Mask
 from ..contribution import Contribution, Gives, MemoryNeed, Names, direction, identity, muted, own_seed
 from .bounds import bytes_of, check_bounds
 from .outlook import WindWaveOutlook, wind_wave_outlook

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Weights of masks: from 0 to 1 over the sea, by which displacement and velocity are multiplied.
+
+A weight belongs to the water at rest, lies over the domain and repeats with it. It is continuous and has
+continuous derivatives, which the slopes, strains and velocities of a masked sea need: ∂(w d) = w ∂d + d ∂w.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..numerics.memo import MEMO, remembered, total_bytes
+from .distance import by_distance
+from .image import by_image
+from .noise import ANY_TIME, SeaTime, by_noise
+from .parameters import Mask
+
+Array = NDArray[np.float64]
+
+#: rows of a square of weights that are made at once
+_ROWS = 128
+# those of a noise are others at each time
+MEMO.limit("weights of masks", 16)
+
+
+class Weights(NamedTuple):
+    """Of places: w, its derivatives by x and y in 1/m, and by time in 1/s where it moves; one shape."""
+
+    value: Array
+    by_x: Array
+    by_y: Array
+    by_t: Array | None = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all of them."""
+        return total_bytes(self)
+
+    def less(self, strength: float) -> Weights:
+        """As a mask gives them that takes only a share of the waves."""
+        left = 1.0 - strength
+        by_t = None if self.by_t is None else strength * self.by_t
+        return Weights(left + strength * self.value, strength * self.by_x, strength * self.by_y, by_t)
+
+    def times(self, other: Weights) -> Weights:
+        """The product of both, with its derivatives."""
+        return Weights(
+            self.value * other.value,
+            self.by_x * other.value + self.value * other.by_x,
+            self.by_y * other.value + self.value * other.by_y,
+            self._rate_of_product(other),
+        )
+
+    def _rate_of_product(self, other: Weights) -> Array | None:
+        rates = [
+            one.by_t * another.value
+            for one, another in ((self, other), (other, self))
+            if one.by_t is not None
+        ]
+        return np.sum(rates, axis=0) if rates else None
+
+    @property
+    def inverted(self) -> Weights:
+        """1 where they are 0."""
+        by_t = None if self.by_t is None else -self.by_t
+        return Weights(1.0 - self.value, -self.by_x, -self.by_y, by_t)
+
+
+def move(masks: Sequence[Mask]) -> bool:
+    """Whether the weights of some masks are others at another time."""
+    return any(mask.source == "NOISE" for mask in masks)
+
+
+def weights(
+    masks: Sequence[Mask], domain_size: float, x: Array, y: Array, when: SeaTime = ANY_TIME
+) -> Weights:
+    """The product of some masks at rest positions x and y in m, of shapes that broadcast."""
+    shape = np.broadcast_shapes(x.shape, y.shape)
+    total = Weights(np.ones(shape), np.zeros(shape), np.zeros(shape))
+    for mask in masks:
+        own = _of(mask, domain_size, x, y, when)
+        if mask.inverted:
+            own = own.inverted
+        if mask.strength < 1.0:
+            own = own.less(mask.strength)
+        total = total.times(own)
+    return total
+
+
+def _of(mask: Mask, domain_size: float, x: Array, y: Array, when: SeaTime) -> Weights:
+    if mask.source == "NOISE":
+        return Weights(*by_noise(mask, domain_size, x, y, when))
+    by = by_image if mask.source == "IMAGE" else by_distance
+    return Weights(*by(mask, domain_size, x, y))
+
+
+def weights_on_grid(
+    masks: tuple[Mask, ...],
+    domain_size: float,
+    resolution: int,
+    dtype: type = np.float64,
+    when: SeaTime = ANY_TIME,
+) -> Weights:
+    """The same on the (N, N) samples [y, x] of the domain, in float32 or float64."""
+    return _on_grid(masks, domain_size, resolution, dtype, when if move(masks) else ANY_TIME)
+
+
+@remembered("weights of masks")
+def _on_grid(
+    masks: tuple[Mask, ...], domain_size: float, resolution: int, dtype: type, when: SeaTime
+) -> Weights:
+    along: Array = domain_size / resolution * np.arange(resolution, dtype=np.float64)
+    parts = [
+        weights(masks, domain_size, along, along[first : first + _ROWS, np.newaxis], when)
+        for first in range(0, resolution, _ROWS)
+    ]
+
+    def joined(columns: Sequence[Array]) -> Array:
+        return np.concatenate(columns).astype(dtype)
+
+    rates = [part.by_t for part in parts if part.by_t is not None]
+    return Weights(
+        joined([part.value for part in parts]),
+        joined([part.by_x for part in parts]),
+        joined([part.by_y for part in parts]),
+        joined(rates) if rates else None,
+    )
