@@ -16,6 +16,7 @@ from ocean_tweak.core.parameters.ocean_parameters import (
     Mask,
     OceanParameters,
     Patch,
+    Spray,
     Timing,
     Water,
     WindKey,
@@ -37,6 +38,7 @@ CLASSES = {
     Patch: "in each entry of the list `patches`",
     Mask: "in the `mask` of a layer of any kind but hero waves, or of a patch",
     Foam: "in `foam`",
+    Spray: "in `spray`, which a sea may lack: it changes none of its waves",
     Timing: "in `timing`",
 }
 

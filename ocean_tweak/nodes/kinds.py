@@ -22,6 +22,8 @@ from . import (
     patch_points,
     sample,
     shown_frame,
+    spray,
+    spray_look,
     surface,
     water,
 )
@@ -54,6 +56,8 @@ ALL_KINDS = (
     camera_foam.CAMERA_FAN,
     foam_pile.FOAM_PILE,
     camera_surface.CAMERA_SURFACE,
+    spray.SPRAY,
+    spray_look.SPRAY_LOOK,
     water.WATER,
     contact.CONTACT,
     contact.WET_BAND,

@@ -35,6 +35,7 @@ from . import (
     refinement,
     refresh,
     source_images,
+    spray,
     stored_paths,
     stored_values,
 )
@@ -229,6 +230,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     baked = Wanted.NOTES | Wanted.SURFACE | AROUND_CAMERA if upgrade_groups(ALL_KINDS) else Wanted.NOTES
     _end_those_without_modifier(bpy.data.objects)
     patch_objects.remove_left()
+    spray.remove_left()
     float_carrier.take_over()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
@@ -283,6 +285,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     show_that_it_runs()
     live_image.forget_all()
     patch_objects.forget_all()
+    spray.forget_all()
     source_images.forget_all()
     float_carrier.follow()
     contact.refresh()
@@ -390,6 +393,7 @@ def _forget_all() -> None:
     MEMO.drop()
     live_image.forget_all()
     patch_objects.forget_all()
+    spray.forget_all()
     source_images.forget_all()
 
 

@@ -11,12 +11,12 @@ import bpy
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.horizon import HORIZON
 from ..nodes.versioned import is_of_kind
-from . import contact, float_carrier, floating, patch_objects
+from . import contact, float_carrier, floating, patch_objects, spray
 from .settings import was_ocean
 
 
 def clear() -> bool:
-    """Remove horizons, surfaces and patches of deleted oceans, and let nothing float on or touch them.
+    """Remove horizons, surfaces, patches and spray of deleted oceans, and let nothing float on or touch them.
 
     Returns whether there are any.
     """
@@ -49,4 +49,5 @@ def is_made_for_oceans(item: bpy.types.Object) -> bool:
     """Whether the extension gave an ocean this child: its horizon, a surface or a patch."""
     kinds = (HORIZON, CAMERA_SURFACE)
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
-    return patch_objects.is_ours(item) or any(is_of_kind(group, kind) for group in groups for kind in kinds)
+    is_part = patch_objects.is_ours(item) or spray.is_ours(item)
+    return is_part or any(is_of_kind(group, kind) for group in groups for kind in kinds)

@@ -10,7 +10,7 @@ import bpy
 from ..core import OceanParameters
 from ..core.data.frames import format_frames
 from ..nodes.names import MAP_INPUTS
-from . import grid_mesh, modifiers, patch_objects, vertex_attributes
+from . import grid_mesh, modifiers, patch_objects, spray, vertex_attributes
 from .cache_place import new_uid
 from .camera_surface import camera_surface_of, remove_camera_surface
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
@@ -103,6 +103,7 @@ def end(item: bpy.types.Object) -> None:
     if has_surface:
         remove_camera_surface(item)
     patch_objects.remove(item)
+    spray.remove(item)
     if item.data.library is None:
         vertex_attributes.make_still(item.data)
         grid_mesh.release(item.data)

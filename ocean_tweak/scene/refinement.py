@@ -17,7 +17,7 @@ from typing import Any
 import bpy
 
 from ..core import OceanParameters
-from . import bake_state, evaluation, foam_rings, patch_objects, patch_points
+from . import bake_state, evaluation, foam_rings, patch_objects, patch_points, spray
 from .modifiers import set_changed
 from .plan import camera_surface_of, plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, is_live, refresh, tell
@@ -58,6 +58,9 @@ def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], ob
         points = patch_points.points_of(settings, plan, scene)
         around = foam_rings.around(surface, plan, points, scene)
         jobs += [around.make] if around is not None else []
+    asked = spray.wanted(item, plan, scene)
+    if asked is not None:
+        jobs.append(asked.make)
     return lambda: [job() for job in jobs]
 
 

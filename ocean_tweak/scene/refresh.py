@@ -25,6 +25,7 @@ from . import (
     patch_objects,
     patch_points,
     portability,
+    spray,
     vertex_attributes,
 )
 from .grid_mesh import Grid
@@ -94,7 +95,7 @@ def of_a_frame(item: bpy.types.Object) -> Wanted:
     wanted = Wanted.FILES
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
-    if patch_objects.are_live(item):
+    if patch_objects.are_live(item) or spray.spray_of(item) is not None:
         wanted |= AROUND_CAMERA
     return wanted
 
@@ -160,8 +161,11 @@ def _refresh_sea(
         patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
         if not patch_objects.refresh(item, plan, points, scene, patient, coarse):
             missing |= Wanted.HISTORY
+        if Wanted.SAMPLES in wanted and not spray.refresh(item, plan, scene, patient):
+            missing |= Wanted.HISTORY
     if Wanted.RENDER in wanted:
         patch_objects.show_for_render(item, plan, points, scene)
+        spray.refresh(item, plan, scene, share=1.0)
         if plan.has_own_render and not is_baked:
             _write_render(settings, plan)
     if Wanted.SURFACE in wanted:

@@ -16,7 +16,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from ..core import Foam, OceanParameters, Spray, Timing, Water, WaveLayer
 from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.validation import Off
 from ..core.waves.kinds import shown
@@ -76,6 +76,12 @@ class OCEAN_PG_foam(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Foam, changed)
 
 
+class OCEAN_PG_spray(bpy.types.PropertyGroup):
+    """What breaking crests throw into the air."""
+
+    __annotations__ = parameter_properties.annotations(Spray, changed)
+
+
 class OCEAN_PG_timing(bpy.types.PropertyGroup):
     """How frames become seconds."""
 
@@ -94,6 +100,11 @@ _SWITCHES = {
         description="Write the attributes foam, how much of the water is white, breaking, how much crests "
         "break now, foam_age in seconds, and cusp, how far the water is compressed. A frame alone looks back "
         "over six half-lives, playback goes on from the last",
+    ),
+    "use_spray": BoolProperty(
+        name="Spray", default=False, **_SHOWN,
+        description="Throw spume, drops and mist up from breaking crests, as points, in winds of 9 m/s and "
+        "more. A window shows an eighth of them",
     ),
     "use_normals": BoolProperty(
         name="Normals", default=True, **_SHOWN,
@@ -127,6 +138,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
         "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
         "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
+        "spray": PointerProperty(type=OCEAN_PG_spray, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
@@ -235,6 +247,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data = parameter_properties.read(self, OceanParameters, metres, _FROM_RESOLUTION)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
+        if self.use_spray:
+            data["spray"] = parameter_properties.read(self.spray, Spray, metres)
         data["layers"] = layer_properties.read(self.layers, metres)
         data["patches"] = patch_properties.read(self.patches, metres)
         if self.patches:  # the first of them tells the tile
@@ -317,6 +331,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
+            self.use_spray = parameters.spray is not None
+            if parameters.spray is not None:
+                parameter_properties.write(self.spray, Spray, data["spray"], metres)
             parameter_properties.write(self.timing, Timing, data["timing"], metres, _FROM_SCENE)
             self.use_loop = parameters.loop_duration is not None
             if parameters.loop_duration is not None:
@@ -335,6 +352,7 @@ CLASSES = (
     OCEAN_PG_water,
     *layer_properties.CLASSES,
     OCEAN_PG_foam,
+    OCEAN_PG_spray,
     OCEAN_PG_timing,
     OCEAN_PG_patch,
     OCEAN_PG_maps,

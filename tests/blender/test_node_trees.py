@@ -46,6 +46,8 @@ KINDS = {
     "float": ("nodes.floating", lambda module: module.FLOAT),
     "carrier": ("nodes.floating", lambda module: module.CARRIER),
     "horizon": ("nodes.horizon", lambda module: module.HORIZON),
+    "spray": ("nodes.spray", lambda module: module.SPRAY),
+    "spray-look": ("nodes.spray_look", lambda module: module.SPRAY_LOOK),
     "water": ("nodes.water", lambda module: module.WATER),
     "contact": ("nodes.contact", lambda module: module.CONTACT),
     "wet-band": ("nodes.contact", lambda module: module.WET_BAND),

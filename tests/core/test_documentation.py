@@ -32,6 +32,7 @@ PAPERS = {
     "Hero waves": 0,
     "Foam": 0,
     "Masks": 0,
+    "Spray": 0,
 }
 
 

@@ -245,6 +245,7 @@ def nested(
     most: int = 64,
     optional: bool = False,
     kinds: Sequence[type] = (),
+    compared: bool = True,
 ) -> Any:
     """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them.
 
@@ -253,11 +254,13 @@ def nested(
     optional : there may be none of it, which is the default
     kinds : of which the entries may be, each of which says in JSON by its `kind` what it is. The first need
         not say it; of that there is one by default, and at least
+    compared : whether what differs in it alone differs
     """
     one = kinds[0] if kinds else kind
     default: object = None if optional else one() if not many else () if empty else (one(),)
     return dataclasses.field(
         default=default,
+        compare=compared,
         metadata={
             "nested": kind, "many": many, "empty": empty, "most": most,
             "optional": optional, "left_out": empty or optional, "kinds": kinds,

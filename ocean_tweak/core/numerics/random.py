@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random numbers that belong to a wave vector, not to an array index.
+"""Random numbers that belong to a wave vector, or to a cell, not to an array index.
 
 A number depends on (kx, ky, seed) alone, so more resolution or a larger domain refines or extends the
 same sea (Horvath 2015, § 7.1.1). The integers are the same on every platform and NumPy version.
@@ -34,10 +34,20 @@ def combine(*integers: int) -> int:
 
 def hash_wave_vectors(kx: ArrayLike, ky: ArrayLike, seed: int) -> NDArray[np.uint64]:
     """(…) uint64: a hash of (round(kx·10⁵), round(ky·10⁵), seed), broadcast over kx and ky in rad/m."""
-    x = np.rint(np.asarray(kx, np.float64) / QUANTUM).astype(np.int64).view(np.uint64)
-    y = np.rint(np.asarray(ky, np.float64) / QUANTUM).astype(np.int64).view(np.uint64)
-    start = np.uint64(combine(seed))
+    x, y = (np.rint(np.asarray(k, np.float64) / QUANTUM).astype(np.int64) for k in (kx, ky))
+    return hash_cells(x, y, seed)
+
+
+def hash_cells(column: NDArray[np.int64], row: NDArray[np.int64], *seeds: int) -> NDArray[np.uint64]:
+    """(…) uint64: a hash of two whole numbers, broadcast, and of some more that are the same for all."""
+    x, y = column.view(np.uint64), row.view(np.uint64)
+    start = np.uint64(combine(*seeds))
     return mix(mix((x ^ start) + np.uint64(_GOLDEN)) ^ mix(y + np.uint64(2 * _GOLDEN & _MASK)))
+
+
+def members(key: NDArray[np.uint64], number: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """(…) uint64: keys of the members of something with a key, of which each has a number."""
+    return mix(key + (number.view(np.uint64) + np.uint64(1)) * np.uint64(_GOLDEN))
 
 
 def uniform(key: NDArray[np.uint64], stream: int) -> NDArray[np.float64]:

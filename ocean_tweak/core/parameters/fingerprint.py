@@ -26,8 +26,11 @@ def fingerprint(data: object) -> str:
 
 
 def hashed(sea: Shot | OceanParameters) -> dict[str, Any]:
-    """The plain data of which fingerprints are made: as they stood in JSON from the first on."""
-    return former(sea.to_dict())
+    """The plain data of which fingerprints are made: as they stood in JSON from the first on.
+
+    Spray is not among them: it changes no field.
+    """
+    return {name: value for name, value in former(sea.to_dict()).items() if name != "spray"}
 
 
 def shot_fingerprint(shot: Shot) -> str:

@@ -40,6 +40,7 @@ from ..waves.spectral import WaveLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
 from .former_json import modern
 from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, resampled
+from .spray import Spray
 
 __all__ = [
     "Foam",
@@ -49,6 +50,7 @@ __all__ = [
     "OceanParameters",
     "ParameterError",
     "Patch",
+    "Spray",
     "Timing",
     "Water",
     "WaveLayer",
@@ -221,6 +223,7 @@ class OceanParameters(Validated):
     )  # fmt: skip
     mask: Mask | None = nested(Mask, optional=True)
     foam: Foam = nested(Foam)
+    spray: Spray | None = nested(Spray, optional=True, compared=False)
     timing: Timing = nested(Timing)
 
     def __post_init__(self) -> None:
@@ -238,11 +241,8 @@ class OceanParameters(Validated):
             if Gives.SPECTRUM not in kind.gives and self.of(kind)
         ]
         check_patches(self.patches, self.trough_damping, on_the_first)
-        for mask in (
-            self.mask,
-            *(layer.mask for layer in self.layers),
-            *(patch.mask for patch in self.patches),
-        ):
+        own = (*(layer.mask for layer in self.layers), *(patch.mask for patch in self.patches))
+        for mask in (self.mask, *own):
             if mask is not None:
                 check_mask(mask, self.domain_size)
         if self.is_masked and self.trough_damping > 0.0:

@@ -43,11 +43,11 @@ _MOST_LEVELS = 10
 class FoamLevels:
     """Those of a sea of patches. Making it is cheap.
 
-    `seas` are those of the levels, as many as tell anything of the strains.
+    `parameters` are those of the sea, `seas` those of the levels, as many as tell anything of the strains.
     """
 
     def __init__(self, parameters: OceanParameters) -> None:
-        self._parameters = parameters
+        self.parameters = parameters
 
     @cached_property
     def seas(self) -> tuple[Ocean, ...]:
@@ -64,10 +64,10 @@ class FoamLevels:
     @cached_property
     def beyond(self) -> Whitecaps:
         """What the mean of the sea is."""
-        foam = foam_outlook(self._parameters).coverage
+        foam = foam_outlook(self.parameters).coverage
         breaking = min(self.seas[0].mean_breaking, foam)
         # births are as frequent at any time before, so what is left of them is exponential in its age
-        age = self._parameters.foam.half_life / math.log(2.0)
+        age = self.parameters.foam.half_life / math.log(2.0)
         return Whitecaps(*(np.array(value, np.float32) for value in (foam, breaking, age)))
 
     def mixed(self, own: Whitecaps, level: int, seen: float = FINEST) -> Whitecaps:
@@ -91,7 +91,7 @@ class FoamLevels:
 
     def _sea(self, level: int) -> Ocean:
         # foam that is made coarser elsewhere is coarse by the levels alone here
-        parameters = self._parameters
+        parameters = self.parameters
         sea = parameters.replace(foam=replace(parameters.foam, resolution=0), patches=parameters.patches)
         shortest = _CELLS_A_WAVE * FINEST * 2.0**level
         ends = (patch.shortest_wavelength for patch in sea.patches)

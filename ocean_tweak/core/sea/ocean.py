@@ -290,7 +290,7 @@ class Ocean:
     def new_foam_history(self) -> FoamHistory:
         """One more history of the same foam, for times between which others are asked for."""
         # what it keeps does not hold this ocean, which holds it: both go as soon as nobody has them
-        sea, dtype = self._of_foam, real_type(self.precision)
+        sea, dtype = self.of_foam, real_type(self.precision)
         tile, n = sea._tile, sea.parameters.resolution
 
         def compression_at(time: Fraction) -> RealArray:
@@ -305,15 +305,19 @@ class Ocean:
         """Foam at flat places in m: that of the tile, or of what has none from the places' own past."""
         if not (self.parameters.is_cascade or self._placed):
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
-        sea = self._of_foam
+        sea = self.of_foam
         return whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
+
+    def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
+        """(places,) float32 compression at flat rest positions in m, below 0 where the sea is stretched."""
+        return self._anywhere.compression_at(x, y, time)
 
     def new_drifting_foam(self, x: Array, y: Array) -> DriftingFoam:
         """Foam at places on no tile, which drift along with it.
 
         x, y : (places,) where they are at time 0, at rest, m
         """
-        sea = self._of_foam
+        sea = self.of_foam
         return DriftingFoam(sea.foam_model, sea._anywhere.compression_at, x, y)
 
     @cached_property
@@ -334,7 +338,7 @@ class Ocean:
         return self.parameters.foam.resolution in (0, self.parameters.resolution)
 
     @property
-    def _of_foam(self) -> Ocean:
+    def of_foam(self) -> Ocean:
         """The sea at the resolution at which foam is made."""
         return self if self.foam_is_of_its_samples else self._coarser
 

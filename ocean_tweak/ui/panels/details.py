@@ -3,10 +3,12 @@
 
 import bpy
 
+from ...core.sea.spray import why_none
+from ...scene.refresh import sea_of_settings
 from .. import camera_operators, material_operators, parameter_operators
 from ..active_ocean import shown_ocean
 from ..field_drawing import draw_fields, draw_switched
-from .drawing import SubPanel, active_settings, split
+from .drawing import SubPanel, active_settings, message, split
 
 
 class OCEAN_PT_water(SubPanel, bpy.types.Panel):
@@ -80,6 +82,27 @@ class OCEAN_PT_foam(SubPanel, bpy.types.Panel):
         draw_fields(column, settings.foam, "law", "coverage", "half_life", "drift", "resolution")
 
 
+class OCEAN_PT_spray(SubPanel, bpy.types.Panel):
+    """What breaking crests throw into the air."""
+
+    bl_idname = "OCEAN_PT_spray"
+    bl_label = "Spray"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw its switch."""
+        self.layout.prop(active_settings(context), "use_spray", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw how it is seen and carried, and why there is none."""
+        layout, settings = split(self.layout), active_settings(context)
+        column = layout.column()
+        column.active = settings.use_spray
+        draw_fields(column, settings.spray, "amount", "size", "wind", "life")
+        sea = sea_of_settings(shown_ocean(context), context.scene)
+        if settings.use_spray and sea is not None and (why := why_none(sea)) is not None:
+            message(layout, context, f"No spray: {why}")
+
+
 class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
     """The mesh that is moved, and what it carries besides."""
 
@@ -118,4 +141,12 @@ class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
         self.layout.operator(material_operators.OCEAN_OT_install_assets.bl_idname, icon="ASSET_MANAGER")
 
 
-CLASSES = (OCEAN_PT_water, OCEAN_PT_shape, OCEAN_PT_time, OCEAN_PT_foam, OCEAN_PT_mesh, OCEAN_PT_parameters)
+CLASSES = (
+    OCEAN_PT_water,
+    OCEAN_PT_shape,
+    OCEAN_PT_time,
+    OCEAN_PT_foam,
+    OCEAN_PT_spray,
+    OCEAN_PT_mesh,
+    OCEAN_PT_parameters,
+)

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spray at a time, of the crests that broke at moments before it: no particle knows of another.
+
+Whether a cell throws up a particle at a moment, and how it flies, follow from a hash of cell, moment and
+seed. So any frame can be made alone, in any order, with the same bytes, and anew with another amount, size,
+wind or life.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..numerics import random
+from ..parameters.spray import Spray
+from ..waves.contribution import Wind
+from . import drops
+from .flight import Flight
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+#: of the wind at 10 m, what carries spray a metre or two above the water
+_CARRYING = 0.75
+#: velocities of the air's turbulence along the wind, across it and up, in friction velocities (Panofsky &
+#: Dutton 1984); over some seconds they stay (Taylor 1921)
+_TURBULENCE = (2.4, 1.9, 1.25)
+#: of the carrying wind, what a kind of particle has of it at once, at least and at most
+_AT_ONCE = {drops.SPUME: (0.15, 0.5), drops.DROPLET: (0.0, 0.2), drops.MIST: (0.3, 0.8)}
+#: speed in m/s with which crests throw drops up at most: without wind, and more with the wind at 10 m
+_UPWARD, _UPWARD_BY_WIND = 3.5, 0.04
+#: by how much particles of a gust differ from each other in what they have of both
+_DIFFERENCE = 0.35
+#: s; drops have fallen back by then
+_DROPS_FLY = 2.0
+#: drawn radii: the drop that has that of the settings, m; mist over it; and the friction velocities by which
+#: mist spreads
+_DRAWN_AS, _MIST, _SPREADING = 0.5e-3, 40.0, 0.3
+
+#: s; mean time that a particle is in the air, and bytes of one while frames are made and shown
+MEAN_LIFE, BYTES = 0.5, 300
+
+# what is drawn of a cell, of a gust and of a particle
+_COUNT, _GUST, _UP, _ALONG = range(4)
+_TIME, _COLUMN, _ROW, _KIND, _RADIUS, _OWN_UP, _OWN_ALONG, _AIR = range(8)
+
+
+class Crests(NamedTuple):
+    """What breaks at a moment; (cells,) of each cell in which a crest does.
+
+    key, gust : hashes of the cell, and of the gust at its place
+    area : that tears, horizontal, m²
+    stands_for : how many particles one of the cell's stands for: it is as much larger
+    place : (cells, 3) of its middle, m
+    along : (cells, 2, 3) from its middle half way along the columns, and along the rows, m
+    velocity : (cells, 3) of the water, m/s
+    """
+
+    key: NDArray[np.uint64]
+    gust: NDArray[np.uint64]
+    area: RealArray
+    stands_for: RealArray
+    place: RealArray
+    along: RealArray
+    velocity: RealArray
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        return sum(part.nbytes for part in self)
+
+
+class Particles(NamedTuple):
+    """Spray at a time; (particles,) each.
+
+    position, velocity : (particles, 3) float32, m and m/s
+    radius : with which it is drawn, float32, m
+    age : float32, s
+    id : the same as long as it lives, int64, above 0
+    kind : `drops.SPUME`, DROPLET or MIST, int8
+    """
+
+    position: RealArray
+    velocity: RealArray
+    radius: RealArray
+    age: RealArray
+    id: NDArray[np.int64]
+    kind: NDArray[np.int8]
+
+
+def longest_life(spray: Spray) -> float:
+    """Seconds that any particle lives."""
+    return max(spray.life, _DROPS_FLY)
+
+
+def expected(crests: Crests, spray: Spray, wind: Wind, step: float) -> RealArray:
+    """(cells,) particles that cells throw up in a moment of `step` seconds, in the mean over gusts."""
+    return crests.area / crests.stands_for * np.float32(drops.torn_rate(wind.speed) * spray.amount * step)
+
+
+def in_the_air(crests: Crests, spray: Spray, wind: Wind, step: float, since: float) -> Particles:
+    """What crests of a moment have thrown up and is still in the air.
+
+    step : of a moment, s; particles start at any time in it
+    since : s from its middle to now
+    """
+    count = _counts(crests, spray, wind, step)
+    cell = np.repeat(np.arange(len(count)), count)
+    number = np.arange(len(cell)) - np.repeat(np.cumsum(count) - count, count)
+    key = random.members(crests.key[cell], number)
+    offset = ((random.uniform(key, _TIME) - 0.5) * step).astype(np.float32)
+    age = np.float32(since) - offset
+    kind = drops.kinds(random.uniform(key, _KIND))
+    lives = (age >= 0.0) & (age <= np.where(kind == drops.MIST, spray.life, min(spray.life, _DROPS_FLY)))
+    cell, key, offset, age, kind = cell[lives], key[lives], offset[lives], age[lives], kind[lives]
+    radius = drops.radii(kind, random.uniform(key, _RADIUS))
+    flight = _launched(crests, cell, key, kind, radius, offset, spray, wind)
+    position, velocity = flight.at(age)
+    above = flight.is_above(position)
+    drawn = _drawn(kind, radius, age, spray, wind) * np.sqrt(crests.stands_for[cell])
+    made = position, velocity, drawn, age, _ids(key), kind
+    return Particles._make(each[above] for each in made)
+
+
+def joined(parts: list[Particles]) -> Particles:
+    """The particles of several moments, in their order."""
+    if not parts:
+        none = np.empty(0, np.float32)
+        at = np.empty((0, 3), np.float32)
+        return Particles(at, at, none, none, np.empty(0, np.int64), np.empty(0, np.int8))
+    return Particles._make(np.concatenate(each) for each in zip(*parts, strict=True))
+
+
+def _counts(crests: Crests, spray: Spray, wind: Wind, step: float) -> NDArray[np.int64]:
+    """(cells,) particles: gusts tear off more and less, exponentially distributed."""
+    torn = expected(crests, spray, wind, step) * -np.log(random.uniform(crests.gust, _GUST))
+    return np.asarray(np.floor(torn + random.uniform(crests.key, _COUNT)).astype(np.int64))
+
+
+def _launched(
+    crests: Crests,
+    cell: NDArray[np.int64],
+    key: NDArray[np.uint64],
+    kind: NDArray[np.int8],
+    radius: RealArray,
+    offset: RealArray,
+    spray: Spray,
+    wind: Wind,
+) -> Flight:
+    """From where on the water, how fast, and through which air."""
+    water = crests.velocity[cell]
+    start = crests.place[cell] + water * offset[:, np.newaxis]
+    for axis, stream in enumerate((_COLUMN, _ROW)):
+        share = (2.0 * random.uniform(key, stream) - 1.0).astype(np.float32)
+        start += crests.along[cell, axis] * share[:, np.newaxis]
+    carrying = _CARRYING * spray.wind * wind.speed
+    direction = np.array([math.cos(wind.direction), math.sin(wind.direction)], np.float32)
+    gust = crests.gust[cell]
+    ends = np.array([_AT_ONCE[each] for each in (drops.SPUME, drops.DROPLET, drops.MIST)], np.float32)[kind]
+    along = _between(ends[:, 0], ends[:, 1], gust, _ALONG, key, _OWN_ALONG) * np.float32(carrying)
+    most = np.float32(_UPWARD + _UPWARD_BY_WIND * wind.speed)
+    up = _between(np.float32(0.0), most, gust, _UP, key, _OWN_UP)
+    velocity = water.copy()
+    velocity[:, :2] += along[:, np.newaxis] * direction
+    velocity[:, 2] += up
+    return Flight(start, velocity, _air(key, carrying, direction, spray, wind), drops.response_time(radius))
+
+
+def _between(
+    least: RealArray | np.float32,
+    most: RealArray | np.float32,
+    gust: NDArray[np.uint64],
+    of_gust: int,
+    key: NDArray[np.uint64],
+    own: int,
+) -> RealArray:
+    """Numbers between two, float32, that are alike within a gust."""
+    share = (1.0 - _DIFFERENCE) * random.uniform(gust, of_gust) + _DIFFERENCE * random.uniform(key, own)
+    return np.asarray(least + (most - least) * share.astype(np.float32))
+
+
+def _air(
+    key: NDArray[np.uint64], carrying: float, direction: RealArray, spray: Spray, wind: Wind
+) -> RealArray:
+    """(particles, 3) wind around each, m/s: nowhere more than at 10 m."""
+    along, across, up = (
+        np.float32(times * spray.wind * friction_velocity(wind.speed))
+        * _bounded_normal(key, _AIR + 2 * index)
+        for index, times in enumerate(_TURBULENCE)
+    )
+    along += np.float32(carrying)
+    x, y = direction
+    air = np.stack((x * along - y * across, y * along + x * across, up), axis=-1)
+    speed = np.sqrt((air * air).sum(axis=-1, keepdims=True))
+    most = np.float32(spray.wind * wind.speed)
+    return np.asarray(air * np.minimum(most / np.maximum(speed, np.float32(1e-6)), np.float32(1.0)))
+
+
+def friction_velocity(wind_speed: float) -> float:
+    """Of the air, m/s, for a wind in m/s at 10 m: the drag coefficient is (0.61 + 0.063 U)·10⁻³ (Smith
+    1980)."""
+    return wind_speed * math.sqrt((0.61 + 0.063 * wind_speed) * 1e-3)
+
+
+def _bounded_normal(key: NDArray[np.uint64], stream: int) -> RealArray:
+    """Numbers of mean 0 and variance 1, of two streams, none beyond 2.45: a triangle in place of a bell."""
+    total = random.uniform(key, stream) + random.uniform(key, stream + 1) - 1.0
+    return np.asarray((math.sqrt(6.0) * total).astype(np.float32))
+
+
+def _drawn(kind: NDArray[np.int8], radius: RealArray, age: RealArray, spray: Spray, wind: Wind) -> RealArray:
+    """Radii in m with which particles are drawn: mist is many drops, which turbulence spreads."""
+    drawn = radius * np.float32(spray.size / _DRAWN_AS)
+    spread = _MIST * spray.size + _SPREADING * friction_velocity(wind.speed) * age
+    return np.where(kind == drops.MIST, spread, drawn).astype(np.float32)
+
+
+def _ids(key: NDArray[np.uint64]) -> NDArray[np.int64]:
+    return np.asarray(np.maximum(key >> np.uint64(1), np.uint64(1)).astype(np.int64))

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The shader group "Ocean Tweak Spray": spume and drops that scatter light, and mist with soft rims.
+
+Each particle stands for many drops. Light comes off them as off foam, and through them where the sun stands
+behind. The farther they are in haze, the more of what lies behind them is seen: that is in the same haze.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ..core.spray.drops import MIST
+from .building import Panel, Plug
+from .shading import Shading
+from .spray import KIND, LEFT
+from .versioned import GroupKind
+
+#: of the light that comes off a particle, what has come through it
+_THROUGH = 0.45
+#: how much softer mist is towards its rim than a ball of even density
+_RIM = 2.0
+
+_PANELS = (
+    Panel(
+        "Spray",
+        (
+            ("Color", "NodeSocketColor", (0.92, 0.93, 0.94, 1.0), "Of spume and mist"),
+            ("Spume", "NodeSocketFloat", 0.8, "Opacity of spume and drops in their middle"),
+            ("Mist", "NodeSocketFloat", 0.04, "Opacity of mist in its middle, when it is new"),
+            ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
+        ),
+    ),
+)
+
+
+def _build(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    given = shade.interface((Plug("Surface", "NodeSocketShader", None, ""),), _PANELS).outputs
+    geometry = shade.node("ShaderNodeNewGeometry").outputs
+    facing = shade.number("DOT_PRODUCT", geometry["Normal"], geometry["Incoming"])
+    facing = shade.math("ABSOLUTE", facing)
+    is_mist = shade.math("COMPARE", shade.value(KIND), float(MIST), 0.5)
+    left = shade.math("MAXIMUM", shade.value(LEFT), 0.0)
+    mist = shade.math(
+        "MULTIPLY", given["Mist"], shade.math("MULTIPLY", left, shade.math("POWER", facing, _RIM))
+    )
+    spume = shade.math("MULTIPLY", given["Spume"], facing)
+    path = shade.math(
+        "DIVIDE",
+        shade.math("MULTIPLY", shade.node("ShaderNodeCameraData").outputs["View Distance"], -3.912),
+        shade.math("MAXIMUM", given["Visibility"], 1e-3),
+    )
+    is_hazy = shade.math("GREATER_THAN", given["Visibility"], 0.0)
+    seen = shade.mix(is_hazy, 1.0, shade.math("EXPONENT", path))
+    opacity = shade.math("MULTIPLY", shade.mix(is_mist, spume, mist), seen, clamp=True)
+    off = shade.node("ShaderNodeBsdfDiffuse", {0: given["Color"]}).outputs[0]
+    through = shade.node("ShaderNodeBsdfTranslucent", {0: given["Color"]}).outputs[0]
+    clear = shade.node("ShaderNodeBsdfTransparent").outputs[0]
+    shade.finish({"Surface": shade.mix_shaders(opacity, clear, shade.mix_shaders(_THROUGH, off, through))})
+
+
+SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 1, _build, "ShaderNodeTree")

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spray of an ocean in Blender: a child of it whose vertices are the particles, which nodes make points of.
+
+It is made anew with every whole frame and not saved. Of a sea of patches it is around the camera; of one that
+repeats, each particle is shown in the repeat that is nearest to the camera.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Hashable
+from dataclasses import dataclass
+from fractions import Fraction
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import Ocean, OceanParameters
+from ..core.numerics.memo import MEMO
+from ..core.parameters.spray import Spray
+from ..core.sea.foam_levels import FoamLevels
+from ..core.sea.placed_waves import repeating
+from ..core.sea.spray import CameraSpray, TileSpray, why_none
+from ..core.spray.columns import COLUMNS, columns
+from ..core.spray.particles import Particles
+from ..nodes.modifier_inputs import set_inputs
+from ..nodes.shading import Shading
+from ..nodes.shown_frame import frame_values
+from ..nodes.spray import SPRAY
+from ..nodes.spray_look import SPRAY_LOOK
+from ..nodes.versioned import is_of_kind, node_group
+from . import failures, held_sea, water_material
+from .plan import Plan, camera_place, camera_surface_of
+from .settings import is_ocean, link_beside
+from .units import frame_rate, time_stretch
+
+_MARK = "ocean_tweak_spray"
+#: custom property of the ocean that keeps its spray's material: the object itself is not saved
+_MATERIAL = "ocean_tweak_spray_material"
+_NAME = "Ocean Tweak Spray"
+_KIND = "spray"
+#: of all particles, those that a window shows, as much larger
+_IN_WINDOW = 0.125
+#: frames that there are: those of live spray have no files
+_MOST = 1_048_574
+#: s after the spray that was made last, within which the next one is quickly made
+_IS_NEAR = Fraction(1)
+
+Place = tuple[float, float]
+
+# what the meshes hold, by their session uid
+_shown: dict[int, Hashable] = {}
+
+
+class _Maker:
+    """Spray of a sea, and of which time it was made last."""
+
+    def __init__(self, sea: OceanParameters, is_around: bool) -> None:
+        self._around = CameraSpray(FoamLevels(sea)) if is_around else None
+        self._tile = None if is_around else TileSpray(Ocean(sea))
+        self._last: Fraction | None = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the crests that are remembered."""
+        return sum(each.nbytes for each in (self._around, self._tile) if each is not None)
+
+    def at(self, time: Fraction, spray: Spray, place: Place) -> Particles:
+        """All that is in the air at a time. It may be called on any thread."""
+        self._last = time
+        return self._tile.at(time, spray) if self._around is None else self._around.at(time, spray, place)
+
+    def is_near(self, time: Fraction) -> bool:
+        """Whether the spray of a time is quickly made."""
+        return self._last is not None and 0 <= time - self._last <= _IS_NEAR
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Spray that is wanted of an ocean at a time in s.
+
+    sea : whose crests break
+    place : x and y of the camera, in the ocean's space, m
+    is_around : whether it is made around the camera, and not on the sea's own tile
+    repeats : of the tile along x and y; 0 where it goes on to the horizon
+    """
+
+    sea: OceanParameters
+    time: Fraction
+    spray: Spray
+    place: Place
+    is_around: bool
+    repeats: tuple[int, int]
+
+    @property
+    def maker(self) -> _Maker:
+        """What makes it."""
+        return MEMO.get(_KIND, (self.sea, self.is_around), lambda: _Maker(self.sea, self.is_around))
+
+    def make(self) -> Particles:
+        """Make it; touches no data of Blender and may run on any thread."""
+        made = self.maker.at(self.time, self.spray, self.place)
+        MEMO.put(_KIND, (self.sea, self.is_around), self.maker)  # it has grown
+        return made
+
+
+def wanted(
+    ocean: bpy.types.Object, plan: Plan, scene: bpy.types.Scene, share: float = _IN_WINDOW
+) -> Wanted | None:
+    """The spray that an ocean wants; None where there is none.
+
+    share : of all particles, those that are made, as much larger
+    """
+    spray = plan.whole.spray
+    if spray is None or why_none(plan.whole) is not None or spray.amount == 0.0:
+        return None
+    shown = dataclasses.replace(spray, amount=spray.amount * share, size=min(spray.size / share**0.5, 1.0))
+    sea, surface = repeating(plan.parameters), camera_surface_of(ocean)
+    goes_on = surface is not None or any(water_material.is_far(child) for child in ocean.children)
+    repeats = (0, 0) if goes_on else plan.render.repeats
+    is_around = surface is not None and bool(sea.patches)
+    return Wanted(sea, plan.time, shown, _place(ocean, surface, plan, scene), is_around, repeats)
+
+
+def refresh(
+    ocean: bpy.types.Object,
+    plan: Plan,
+    scene: bpy.types.Scene,
+    patient: bool = True,
+    share: float = _IN_WINDOW,
+) -> bool:
+    """Make, renew or remove an ocean's spray. Returns whether it shows all that it will.
+
+    patient : otherwise what takes long is left out
+    share : of all particles, those that are made, as much larger
+
+    Raises SprayError for more particles than the memory holds.
+    """
+    if ocean.library is not None:
+        return True
+    asked = wanted(ocean, plan, scene, share)
+    if asked is None:
+        remove(ocean)
+        if plan.whole.spray is not None and (why := why_none(plan.whole)) is not None:
+            failures.warned(ocean, "spray", why)
+        return True
+    item = spray_of(ocean) or _new(ocean)
+    if item.data.users > 1:  # of a duplicate
+        item.data = item.data.copy()
+    _tell_nodes(ocean, item, asked.spray, scene)
+    content = (asked, plan.rate, plan.scale)
+    # between whole frames the nodes move it
+    if not plan.is_whole or _shown.get(item.data.session_uid) == content:
+        return True
+    if not patient and not asked.maker.is_near(plan.time):
+        return False
+    values = columns(asked.make())
+    if not asked.is_around:
+        _put_near(values, asked)
+    _write(item.data, values, plan)
+    _shown[item.data.session_uid] = content
+    return True
+
+
+def spray_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
+    """The object that shows an ocean's spray; None where there is none."""
+    return next((child for child in ocean.children if is_ours(child)), None)
+
+
+def is_ours(item: bpy.types.Object) -> bool:
+    """Whether an object was made to show an ocean's spray."""
+    return _MARK in item
+
+
+def remove(ocean: bpy.types.Object) -> None:
+    """Take an ocean's spray away."""
+    for item in [child for child in ocean.children if is_ours(child)]:
+        _remove(item)
+
+
+def remove_left() -> None:
+    """Take away that of deleted oceans: nobody can choose it."""
+    for item in [item for item in bpy.data.objects if is_ours(item) and not is_ocean(item.parent)]:
+        _remove(item)
+
+
+def forget_all() -> None:
+    """Take no mesh for filled: a file was opened, or a step undone."""
+    _shown.clear()
+
+
+def _remove(item: bpy.types.Object) -> None:
+    if item.library is None:
+        mesh = item.data
+        bpy.data.objects.remove(item)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
+
+
+def _place(
+    ocean: bpy.types.Object, surface: bpy.types.Object | None, plan: Plan, scene: bpy.types.Scene
+) -> Place:
+    if surface is not None:
+        return camera_place(surface, scene, plan.scale)
+    if scene.camera is None:
+        return 0.0, 0.0
+    x, y, _ = ocean.matrix_world.inverted_safe() @ scene.camera.matrix_world.translation
+    return x / plan.scale, y / plan.scale
+
+
+def _put_near(values: NDArray[np.float32], asked: Wanted) -> None:
+    """Put each particle where it is nearest to the camera, of all places where the tile is shown."""
+    side = asked.sea.domain_size
+    for axis, (camera, repeats) in enumerate(zip(asked.place, asked.repeats, strict=True)):
+        number = np.rint((camera - values[:, axis]) / side)
+        if repeats:
+            number = np.clip(number, 0, repeats - 1)
+        values[:, axis] += side * number
+
+
+def _new(ocean: bpy.types.Object) -> bpy.types.Object:
+    name = f"{ocean.name} Spray"
+    item = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    item[_MARK] = ""
+    item.parent = ocean
+    item.hide_select = True
+    link_beside(item, ocean)
+    item.modifiers.new(_NAME, "NODES").node_group = node_group(SPRAY)
+    held_sea.keep_out(item, True)
+    return item
+
+
+def _tell_nodes(
+    ocean: bpy.types.Object, item: bpy.types.Object, spray: Spray, scene: bpy.types.Scene
+) -> None:
+    modifier = next(each for each in item.modifiers if is_of_kind(each.node_group, SPRAY))
+    seconds = float(time_stretch(scene) / frame_rate(scene))
+    inputs = {**frame_values((-_MOST, _MOST), 1.0, seconds), "Baked Frames": ""}
+    set_inputs(modifier, {**inputs, "Life": spray.life, "Material": _material(ocean)})
+
+
+def _material(ocean: bpy.types.Object) -> bpy.types.Material:
+    """That of an ocean's spray; made where it has none, in the air of its water."""
+    material = ocean.get(_MATERIAL)
+    if isinstance(material, bpy.types.Material):
+        return material
+    material = bpy.data.materials.new(_NAME)
+    if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
+        material.use_nodes = True
+    shade = Shading(material.node_tree)
+    look = shade.node("ShaderNodeGroup", node_tree=node_group(SPRAY_LOOK))
+    shade.tree.links.new(look.outputs["Surface"], shade.node("ShaderNodeOutputMaterial").inputs["Surface"])
+    water = water_material.water_node(ocean.active_material)
+    if water is not None and "Visibility" in water.inputs:
+        look.inputs["Visibility"].default_value = water.inputs["Visibility"].default_value
+    ocean[_MATERIAL] = material
+    return material
+
+
+def _write(mesh: bpy.types.Mesh, values: NDArray[np.float32], plan: Plan) -> None:
+    """Put (particles, columns) on the vertices of a mesh, in Blender units, per second of the scene."""
+    values[:, :7] *= np.float32(plan.scale)
+    values[:, 3:6] *= np.float32(plan.rate)
+    if len(mesh.vertices) != len(values):
+        mesh.clear_geometry()
+        mesh.vertices.add(len(values))
+    places = np.ascontiguousarray(values[:, :3])
+    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
+    for number, name in enumerate(COLUMNS[3:], 3):
+        attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "FLOAT", "POINT")
+        attribute.data.foreach_set("value", np.ascontiguousarray(values[:, number]))
+    mesh.update_tag()

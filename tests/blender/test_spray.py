@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spray of an ocean: points at the particles of the core, made anew with each frame, gone with the ocean."""
+
+import bpy
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
+from ocean_tweak.core.sea.spray import TileSpray
+
+SEA = OceanParameters(
+    resolution=64, domain_size=100.0, seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=300e3),), spray=Spray()
+)
+
+
+@pytest.fixture
+def ocean(extension, empty_scene):
+    return extension("scene.ocean_object").add(empty_scene, SEA)
+
+
+def points(item):
+    """What nodes make of the spray of an ocean: its attributes by name, (points, …)."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    geometry = item.evaluated_get(graph).evaluated_geometry()
+    cloud, found = geometry.pointcloud, {}
+    for name, size in (("position", 3), ("velocity", 3), ("radius", 1), ("kind", 1), ("left", 1)):
+        values = np.empty(len(cloud.points) * size, np.float32)
+        cloud.attributes[name].data.foreach_get("vector" if size == 3 else "value", values)
+        found[name] = values.reshape(-1, size) if size == 3 else values
+    return found
+
+
+def spray_of(ocean):
+    return next((child for child in ocean.children if child.name.endswith("Spray")), None)
+
+
+def made(time, share=0.125):
+    """The core's particles, as few and as large as a window shows."""
+    shown = Spray(amount=share, size=0.008 / share**0.5)
+    return TileSpray(Ocean(SEA)).at(time, shown)
+
+
+def test_points_are_the_particles_of_the_frame(ocean, empty_scene):
+    empty_scene.frame_set(13)
+    found, expected = points(spray_of(ocean)), made(0.5)
+    assert len(expected.age) > 100
+    np.testing.assert_allclose(found["position"], expected.position, atol=1e-4)
+    np.testing.assert_allclose(found["velocity"], expected.velocity, atol=1e-4)
+    np.testing.assert_allclose(found["radius"], expected.radius, rtol=1e-5)
+    np.testing.assert_allclose(found["left"], 1.0 - expected.age / 4.0, atol=1e-5)
+
+
+def test_between_frames_points_go_on_by_their_velocity(ocean, empty_scene):
+    empty_scene.frame_set(13)
+    before = points(spray_of(ocean))
+    empty_scene.frame_set(13, subframe=0.25)
+    after = points(spray_of(ocean))
+    np.testing.assert_allclose(
+        after["position"], before["position"] + before["velocity"] * 0.25 / 24.0, atol=1e-4
+    )
+    empty_scene.frame_set(12, subframe=0.75)  # nearer to 13 than to 12
+    assert len(points(spray_of(ocean))["radius"]) == len(before["radius"])
+
+
+def test_a_switch_and_numbers_that_change_no_wave(ocean, empty_scene):
+    empty_scene.frame_set(13)
+    few = len(points(spray_of(ocean))["radius"])
+    ocean.ocean_tweak.spray.amount = 2.0
+    assert 1.7 * few < len(points(spray_of(ocean))["radius"]) < 2.3 * few
+    ocean.ocean_tweak.use_spray = False
+    assert spray_of(ocean) is None
+    assert ocean.ocean_tweak.to_parameters(empty_scene).spray is None
+
+
+def test_a_sea_without_spray_says_why(ocean, empty_scene, caplog):
+    ocean.ocean_tweak.layers[0].wind_speed = 6.0
+    assert spray_of(ocean) is None
+    assert "its wind of 6 m/s tears nothing off" in caplog.text
+    assert not ocean.ocean_tweak.error
+
+
+def test_two_oceans_have_a_spray_each_and_one_goes_with_its_ocean(extension, ocean, empty_scene):
+    other = extension("scene.ocean_object").add(empty_scene, SEA)
+    assert spray_of(ocean) is not spray_of(other)
+    name = spray_of(ocean).name
+    bpy.data.objects.remove(ocean)
+    bpy.context.view_layer.update()
+    extension("scene.spray").remove_left()
+    assert name not in bpy.data.objects
+    assert spray_of(other) is not None
+
+
+def test_a_file_is_without_points_but_with_their_material(extension, ocean, empty_scene, tmp_path):
+    look = spray_of(ocean).modifiers[0]
+    assert look.node_group.name.startswith("Ocean Tweak Spray")
+    bpy.data.materials["Ocean Tweak Spray"].name = "Own Look"
+    path = tmp_path / "spray.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    with bpy.data.libraries.load(str(path)) as (stored, _):
+        assert not [name for name in stored.objects if "Spray" in name]
+        assert "Own Look" in stored.materials
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    again = next(item for item in bpy.data.objects if item.ocean_tweak.is_ocean)
+    assert spray_of(again) is not None
+    assert "Ocean Tweak Spray" not in bpy.data.materials
+
+
+def test_more_than_the_memory_holds_is_told(extension, ocean, monkeypatch):
+    monkeypatch.setattr(extension("core.sea.spray"), "usable_memory", lambda: 200_000)
+    ocean.ocean_tweak.spray.amount = 50.0
+    assert "would do" in ocean.ocean_tweak.error
