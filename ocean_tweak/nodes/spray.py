@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Geometry nodes that make points of spray: of a live mesh's vertices, or of baked files.
 
-Both hold the columns of `core.spray.columns`: velocity, radius, age, kind and number, each by itself, as a PLY
-file has them. Between whole frames, as motion blur looks at them, points are moved by their velocity: their
-number is that of the whole frame, so EEVEE can tell which is which, and Cycles blurs by the attribute.
+Both hold the columns of `core.spray.columns`: velocity, radius, age, kind and number, each by itself, as a
+PLY file has them. Between whole frames, as motion blur looks at them, points are moved by their velocity:
+they stay those of the whole frame, so EEVEE can tell which is which, and Cycles blurs by the attribute.
 """
 
 from __future__ import annotations
