@@ -56,12 +56,19 @@ class Reader:
         self._row = resolution + 1
         i *= self._row
         i += j
-        self._first = i
+        self._first = i.astype(np.int32)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of what is kept of the places."""
+        return self._first.nbytes + self._u.nbytes + self._v.nbytes
 
     def read(self, field: RealArray) -> RealArray:
         """One number a place, of the field's precision, from (N+1)² numbers."""
+        first = self._first.astype(np.intp)
+        # all places are there; to let them wrap is quicker than to have them checked
         p00, p01, p10, p11 = (
-            np.take(field[offset:], self._first) for offset in (0, 1, self._row, self._row + 1)
+            np.take(field[offset:], first, mode="wrap") for offset in (0, 1, self._row, self._row + 1)
         )
         p01 -= p00
         p01 *= self._u

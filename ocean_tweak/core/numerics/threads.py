@@ -7,6 +7,9 @@ import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+_Block = TypeVar("_Block")
 
 #: numbers to be transformed from which on threads save more than they cost: six fields of 512²
 _WORTH_SHARING = 6 * 512**2
@@ -20,7 +23,7 @@ def default_workers(numbers: int) -> int:
     return (os.cpu_count() or 1) if numbers >= _WORTH_SHARING else 1
 
 
-def run_blocks(work: Callable[[slice], None], blocks: Iterable[slice], workers: int) -> None:
+def run_blocks(work: Callable[[_Block], None], blocks: Iterable[_Block], workers: int) -> None:
     """Do the work for each block, on as many threads as asked for; an error in any stops all."""
     if workers == 1:
         for block in blocks:

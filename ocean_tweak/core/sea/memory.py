@@ -24,6 +24,9 @@ _TEMPORARY_ARRAYS = 5
 #: bytes a sample of an area: where it lies, between which samples of a part, and what is read there
 _READING = 80
 
+#: bytes a sample of a tile that are kept for each part which is read between its samples: where it lies there
+_PLACED = 12
+
 #: bytes a sample of an area where foam is made: births there and where old foam is drawn from
 _LOOKING_BACK = 96
 
@@ -78,9 +81,11 @@ def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], preci
 def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
     """That of all parts, and on one grid of the components that are added up there."""
     separate = merged_bands(parameters) if parameters.merged_resolution else parameters
-    needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in parts(separate)]
-    surface = sum(need.surface for need in needs)
+    of_parts = parts(separate)
+    needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in of_parts]
+    state, surface = sum(need.state for need in needs), sum(need.surface for need in needs)
     if not parameters.is_cascade:
+        state += _PLACED * parameters.resolution**2 * sum(part.patch > 0 for part in of_parts)
         keys = max(
             (
                 len({key for name in group for key in CHANNELS[name].needs})
@@ -90,7 +95,7 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
         )
         surface += 3 * keys * parameters.resolution**2 * (4 if precision == "single" else 8)
         surface += _foam_bytes(parameters) if outputs & OF_MEMORY else 0
-    return MemoryNeed(sum(need.state for need in needs), max(need.building for need in needs), surface)
+    return MemoryNeed(state, max(need.building for need in needs), surface)
 
 
 def _need_in_area(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,6 +86,18 @@ def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray
     return result
 
 
+class Geometry(NamedTuple):
+    """Where the samples of a grid lie: so many along a square's side in m, turned by an angle in rad."""
+
+    size: float
+    resolution: int
+    rotation: float
+
+    def reader(self, x: Array, y: Array) -> Reader:
+        """Reads the grid's fields at places in m."""
+        return Reader(*into_patch(x, y, self.rotation), self.size, self.resolution)
+
+
 class Grid:
     """Periodic components of some waves, read in the sea's axes.
 
@@ -104,11 +117,17 @@ class Grid:
         """Bytes of the components."""
         return total_bytes(self._fields.values())
 
+    @property
+    def geometry(self) -> Geometry:
+        """Where its samples lie."""
+        return Geometry(self._size, self._resolution, self._rotation)
+
     def read(self, x: Array, y: Array, weights: Weights | None = None) -> dict[Key, RealArray]:
         """At places in m, of one flat shape, times weights of theirs."""
-        if not self._fields:
-            return {}
-        reader = Reader(*into_patch(x, y, self._rotation), self._size, self._resolution)
+        return self.read_by(self.geometry.reader(x, y), weights) if self._fields else {}
+
+    def read_by(self, reader: Reader, weights: Weights | None = None) -> dict[Key, RealArray]:
+        """At the places of a reader of this geometry."""
         found = {key: reader.read(field) for key, field in self._fields.items()}
         return weighted(turned(found, self._rotation), weights)
 

@@ -12,8 +12,9 @@ keep the variance.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -22,22 +23,20 @@ from numpy.typing import ArrayLike, NDArray
 from ..masks.noise import SeaTime
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, move, weights, weights_on_grid
-from ..numerics.memo import MEMO
-from ..numerics.threads import default_workers
+from ..numerics.interpolation import Reader
+from ..numerics.memo import MEMO, total_bytes
+from ..numerics.threads import default_workers, row_blocks, run_blocks
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import Part
 from ..synthesis.channels import CHANNELS, memory_groups
 from .part_waves import PartWaves
 from .placed_waves import PlacedWaves
 from .query import SurfacePoints, find_summed_points
-from .sampling import Components, Grid, Key, Summed, closed, unweighted, weighted
+from .sampling import Components, Geometry, Grid, Key, Summed, closed, unweighted, weighted
 from .surfaces import Field, summed_field
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
-
-#: rows of the grid that are read at once between the samples of another
-_ROWS = 64
 
 #: width in which a patch goes over at the far sides: in its longest waves, and in sides of the square at most
 _BORDER_WAVES, _WIDEST_BORDER = 2.0, 0.1
@@ -45,6 +44,10 @@ _BORDER_WAVES, _WIDEST_BORDER = 2.0, 0.1
 #: what the foam of places looks back at: with more than a quarter of the memory it would push out all else
 _STRAINS = "strains"
 MEMO.limit(_STRAINS, 4)
+
+#: where a tile's samples lie in other grids
+_PLACES = "places of tiles"
+MEMO.limit(_PLACES, 4)
 
 
 class TileSum:
@@ -70,66 +73,111 @@ class TileSum:
         """Fill the arrays of all outputs but foam."""
         for group in memory_groups(wanted):
             needs = frozenset().union(*(CHANNELS[name].needs for name in group))
-            sums = Summed(self._of_part(waves, time, needs) for waves in self._parts)
+            sums: dict[Key, RealArray] = {}
+            for waves in self._parts:
+                self._add(waves, time, needs, sums)
             for name in group:
-                CHANNELS[name].write(sums, fields[name])
+                CHANNELS[name].write(Summed([sums]), fields[name])
 
-    def _of_part(
-        self, waves: PartWaves, time: float | Fraction, needs: frozenset[Key]
-    ) -> dict[Key, RealArray]:
-        """The (N, N) components of a part."""
+    def _add(
+        self, waves: PartWaves, time: float | Fraction, needs: frozenset[Key], sums: dict[Key, RealArray]
+    ) -> None:
+        """Add the (N, N) components of a part to those of the parts before."""
         wanted = needs if waves.is_on_tile else unweighted(closed(needs))
         masks = waves.part.masks
         if masks:
             wanted = unweighted(wanted, moves=move(masks))
-        components = waves.components(time, wanted, closed=not waves.is_on_tile)
-        on_tile = components if waves.is_on_tile else self._read(components, waves.part)
-        if not masks:
-            return weighted(on_tile, None)
-        when = SeaTime(time, self._loop_duration)
-        found = weights_on_grid(masks, self._side, self._samples, self._dtype, when)
-        return weighted(on_tile, found)
+        own = waves.components(time, wanted, closed=not waves.is_on_tile)
+        if not waves.is_on_tile:
+            own = self._read(own, waves.part, {} if masks else sums)
+        if masks:
+            when = SeaTime(time, self._loop_duration)
+            own = weighted(own, weights_on_grid(masks, self._side, self._samples, self._dtype, when))
+        for key, value in own.items():
+            if key not in sums:
+                sums[key] = value
+            elif sums[key] is not value:
+                sums[key] += value
 
-    def _read(self, components: Components, part: Part) -> dict[Key, RealArray]:
-        """A part between its samples, in the sea's axes, made to repeat with the square."""
+    def _read(self, components: Components, part: Part, sums: dict[Key, RealArray]) -> dict[Key, RealArray]:
+        """A part between its samples, in the sea's axes, made to repeat with the square.
+
+        It is added to the sums where there are some, block by block: they are what is returned then.
+        """
         n, side = self._samples, self._side
-        longest = part.parameters.patches[0].longest_wavelength
-        border = min(_BORDER_WAVES * longest, _WIDEST_BORDER * side)
         grid = Grid(components, part.parameters.domain_size, part.rotation)
-        result: dict[Key, RealArray] = {key: np.empty((n, n), self._dtype) for key in components}
-        along = side / n * np.arange(n)
-        inner = int(np.searchsorted(along, side - border))
+        border = min(_BORDER_WAVES * part.parameters.patches[0].longest_wavelength, _WIDEST_BORDER * side)
+        where = (grid.geometry, side, n, border)
+        places = MEMO.get(_PLACES, where, lambda: TilePlaces(*where))
+        result = sums or {key: np.zeros((n, n), self._dtype) for key in components}
 
-        def fill(rows: slice, columns: slice, within: bool) -> None:
-            x, y = (place.ravel() for place in np.meshgrid(along[columns], along[rows]))
-            found = grid.read(x, y) if within else _repeating(grid, x, y, side, border)
-            for key, value in found.items():
-                result[key][rows, columns] = value.reshape(result[key][rows, columns].shape)
+        def add(piece: Piece) -> None:
+            for key, value in piece.read(grid).items():
+                if key in result:
+                    result[key][piece.rows, piece.columns] += value
 
-        blocks = [slice(first, min(first + _ROWS, inner)) for first in range(0, inner, _ROWS)]
-        beyond = slice(inner, n)
-        areas = [(rows, slice(0, inner), True) for rows in blocks]
-        areas += [(slice(0, inner), beyond, False), (beyond, slice(0, n), False)]
-        workers = self._workers or default_workers(len(result) * n * n)
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(lambda area: fill(*area), areas))
+        run_blocks(add, places.pieces, self._workers or default_workers(len(components) * n * n))
         return result
 
 
-def _repeating(grid: Grid, x: Array, y: Array, side: float, border: float) -> dict[Key, RealArray]:
-    """A grid at places in a square, near whose far sides it goes over into what lies before the near ones."""
-    along_x, along_y = border_shares(x, side, border), border_shares(y, side, border)
-    total: dict[Key, RealArray] = {}
-    for share_x, slope_x, back_x in along_x:
-        for share_y, slope_y, back_y in along_y:
+@dataclass(frozen=True)
+class Piece:
+    """A part of a tile, and how a grid is read there: once, or with shares where it goes over into itself."""
+
+    rows: slice
+    columns: slice
+    shape: tuple[int, int]
+    readings: tuple[tuple[NDArray[np.bool_], Reader, Weights] | Reader, ...]
+
+    def read(self, grid: Grid) -> dict[Key, RealArray]:
+        """Components on the samples of this piece, in its shape."""
+        total: dict[Key, RealArray] = {}
+        for reading in self.readings:
+            if isinstance(reading, Reader):
+                return {key: value.reshape(self.shape) for key, value in grid.read_by(reading).items()}
+            there, reader, shares = reading
+            for key, value in grid.read_by(reader, shares).items():
+                total.setdefault(key, np.zeros(self.shape, value.dtype))[there] += value
+        return total
+
+
+class TilePlaces:
+    """Where the samples of a tile lie in a grid of its own, which is the same at all times.
+
+    geometry : of the grid
+    side, samples : of the tile, in m and along each side
+    border : width in m in which the grid goes over at the far sides
+    """
+
+    def __init__(self, geometry: Geometry, side: float, samples: int, border: float) -> None:
+        self._along = side / samples * np.arange(samples)
+        self._geometry, self._side, self._border = geometry, side, border
+        inner = int(np.searchsorted(self._along, side - border))
+        within, beyond = slice(0, inner), slice(inner, samples)
+        pieces = [self._piece(rows, within, False) for rows in row_blocks(inner, samples)]
+        pieces += [self._piece(within, beyond, True), self._piece(beyond, slice(0, samples), True)]
+        self.pieces = tuple(pieces)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all readers, and of the shares at the far sides."""
+        readings = [each for piece in self.pieces for each in piece.readings]
+        parts = [(each,) if isinstance(each, Reader) else (each[0], each[1], *each[2]) for each in readings]
+        return total_bytes(itertools.chain(*parts))
+
+    def _piece(self, rows: slice, columns: slice, is_shared: bool) -> Piece:
+        x, y = np.meshgrid(self._along[columns], self._along[rows])
+        if not is_shared:
+            reader = self._geometry.reader(x.ravel(), y.ravel())
+            return Piece(rows, columns, x.shape, (reader,))
+        readings = []
+        along_x, along_y = (border_shares(place, self._side, self._border) for place in (x, y))
+        for (share_x, slope_x, back_x), (share_y, slope_y, back_y) in itertools.product(along_x, along_y):
             there = (share_x > 0.0) & (share_y > 0.0)
-            shares = Weights(share_x * share_y, slope_x * share_y, share_x * slope_y)
-            inside = Weights(shares.value[there], shares.by_x[there], shares.by_y[there])
-            for key, value in grid.read(x[there] - back_x, y[there] - back_y, inside).items():
-                if key not in total:
-                    total[key] = np.zeros(x.shape, value.dtype)
-                total[key][there] += value
-    return total
+            shares = (share_x * share_y, slope_x * share_y, share_x * slope_y)
+            reader = self._geometry.reader(x[there] - back_x, y[there] - back_y)
+            readings.append((there, reader, Weights(*(part[there] for part in shares))))
+        return Piece(rows, columns, x.shape, tuple(readings))
 
 
 def border_shares(place: Array, side: float, border: float) -> tuple[tuple[Array, Array, float], ...]:
