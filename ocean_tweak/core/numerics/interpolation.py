@@ -20,6 +20,10 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
 
+#: places whose cells are found together
+_PLACES = 2**14
+
+
 class Between(NamedTuple):
     """Where places lie in a field that repeats.
 
@@ -52,11 +56,17 @@ class Reader:
     """
 
     def __init__(self, x: Array, y: Array, size: float, resolution: int) -> None:
-        (j, self._u), (i, self._v) = (_cells(place, size, resolution) for place in (x, y))
         self._row = resolution + 1
-        i *= self._row
-        i += j
-        self._first = i.astype(np.int32)
+        self._first = np.empty(x.size, np.int32)
+        self._u, self._v = np.empty(x.size, np.float32), np.empty(x.size, np.float32)
+        for start in range(0, x.size, _PLACES):  # what is in between stays in a cache
+            part = slice(start, start + _PLACES)
+            (j, self._u[part]), (i, self._v[part]) = (
+                _cells(place[part], size, resolution) for place in (x, y)
+            )
+            i *= self._row
+            i += j
+            self._first[part] = i
 
     @property
     def nbytes(self) -> int:

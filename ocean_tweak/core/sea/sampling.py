@@ -22,9 +22,10 @@ RealArray = NDArray[np.floating]
 Key = tuple[int, str]
 Components = Mapping[Key, RealArray]
 
-_GRADIENT = ((X, "x"), (X, "y"), (Y, "x"), (Y, "y"))
+#: of the horizontal displacement
+GRADIENT = ((X, "x"), (X, "y"), (Y, "x"), (Y, "y"))
 #: components that turn together
-_TOGETHER = (((X, ""), (Y, "")), ((X, "t"), (Y, "t")), ((Z, "x"), (Z, "y")), _GRADIENT)
+_TOGETHER = (((X, ""), (Y, "")), ((X, "t"), (Y, "t")), ((Z, "x"), (Z, "y")), GRADIENT)
 
 
 def closed(wanted: Iterable[Key]) -> frozenset[Key]:
@@ -77,12 +78,12 @@ def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray
         if first in values:
             a, b = values[first], values[second]
             result[first], result[second] = c * a - s * b, s * a + c * b
-    if _GRADIENT[0] in values:
-        xx, xy, yx, yy = (values[key] for key in _GRADIENT)
+    if GRADIENT[0] in values:
+        xx, xy, yx, yy = (values[key] for key in GRADIENT)
         # R G, then its product with Rᵀ
         ax, ay, bx, by = c * xx - s * yx, c * xy - s * yy, s * xx + c * yx, s * xy + c * yy
         turned_gradient = c * ax - s * ay, s * ax + c * ay, c * bx - s * by, s * bx + c * by
-        result |= dict(zip(_GRADIENT, turned_gradient, strict=True))
+        result |= dict(zip(GRADIENT, turned_gradient, strict=True))
     return result
 
 
@@ -130,6 +131,65 @@ class Grid:
         """At the places of a reader of this geometry."""
         found = {key: reader.read(field) for key, field in self._fields.items()}
         return weighted(turned(found, self._rotation), weights)
+
+
+class Strains:
+    """Of the gradient at places or on samples half the sum and half the difference of the diagonal, and the
+    mean of the others: those of waves add, and from the sum of all follows the compression.
+    """
+
+    def __init__(self, half_sum: RealArray, half_difference: RealArray, shear: RealArray) -> None:
+        self.fields = half_sum, half_difference, shear
+
+    @classmethod
+    def of(cls, gradient: Components) -> Strains:
+        """Those of a gradient."""
+        xx, xy, yx, yy = (gradient[key] for key in GRADIENT)
+        fields = xx + yy, xx - yy, xy + yx
+        for field in fields:
+            field *= np.float32(0.5)
+        return cls(*fields)
+
+    def add(self, other: Strains) -> None:
+        """Add those of other waves at the same places."""
+        for field, added in zip(self.fields, other.fields, strict=True):
+            field += added
+
+    def turned(self, rotation: float) -> Strains:
+        """In axes against which theirs are turned by `rotation` rad: the last two turn twice as far."""
+        if not rotation:
+            return self
+        half_sum, along, across = self.fields
+        c, s = (np.float32(part(2.0 * rotation)) for part in (math.cos, math.sin))
+        return Strains(half_sum, c * along - s * across, s * along + c * across)
+
+    def compression(self) -> RealArray:
+        """1 - `channels.min_eigenvalue`, below 0 where the surface is stretched."""
+        half_sum, half_difference, shear = self.fields
+        root = half_difference * half_difference
+        root += shear * shear
+        np.sqrt(root, out=root)
+        root -= half_sum
+        return root
+
+
+class StrainGrid:
+    """Periodic strains of some waves without masks, read in the sea's axes; the arguments are a `Grid`'s."""
+
+    def __init__(self, components: Components, size: float, rotation: float) -> None:
+        fields = Strains.of(components).fields
+        self._geometry = Geometry(size, len(fields[0]) - 1, rotation)
+        self._fields = [field.reshape(-1) for field in fields]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the strains."""
+        return total_bytes(self._fields)
+
+    def read(self, x: Array, y: Array) -> Strains:
+        """At places in m, of one flat shape."""
+        reader = self._geometry.reader(x, y)
+        return Strains(*(reader.read(field) for field in self._fields)).turned(self._geometry.rotation)
 
 
 class Summed:

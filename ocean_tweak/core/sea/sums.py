@@ -13,7 +13,7 @@ keep the variance.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -32,7 +32,19 @@ from ..synthesis.channels import CHANNELS, memory_groups
 from .part_waves import PartWaves
 from .placed_waves import PlacedWaves
 from .query import SurfacePoints, find_summed_points
-from .sampling import Components, Geometry, Grid, Key, Summed, closed, unweighted, weighted
+from .sampling import (
+    GRADIENT,
+    Components,
+    Geometry,
+    Grid,
+    Key,
+    StrainGrid,
+    Strains,
+    Summed,
+    closed,
+    unweighted,
+    weighted,
+)
 from .surfaces import Field, summed_field
 
 Array = NDArray[np.float64]
@@ -234,15 +246,32 @@ class AnywhereSum:
         The strains it is made of are remembered, for the next frame's foam looks back at them too, and so
         may other seas of the same patches.
         """
-        channel = CHANNELS["min_eigenvalue"]
-        left = np.empty(x.shape, np.float32)
-        grids = [self._strains(waves, time, channel.needs) for waves in self._parts]
-        channel.write(self._sums(x, y, time, channel.needs, grids), left)
-        return np.subtract(1.0, left, out=left)
+        total, *others = self._strains_at(x, y, time)
+        for strains in others:
+            total.add(strains)
+        return total.compression().astype(np.float32, copy=False)
 
-    def _strains(self, waves: PartWaves, time: Fraction, needs: Iterable[Key]) -> Grid:
+    def _strains_at(self, x: Array, y: Array, time: Fraction) -> Iterator[Strains]:
+        """Those of each part, and of waves on no grid."""
+        known: dict[tuple[Mask, ...], Weights] = {}
+        for waves in self._parts:
+            grid = self._strains(waves, time)
+            if isinstance(grid, StrainGrid):
+                yield grid.read(x, y)
+            else:
+                yield Strains.of(grid.read(x, y, self._weights(waves.part.masks, x, y, time, known)))
+        for placed in self._placed:
+            yield Strains.of(placed.at(x, y, time, GRADIENT))
+
+    def _strains(self, waves: PartWaves, time: Fraction) -> Grid | StrainGrid:
+        def make() -> Grid | StrainGrid:
+            if waves.part.masks:
+                return self._grid(waves, time, GRADIENT)
+            components = waves.components(time, GRADIENT, closed=True)
+            return StrainGrid(components, waves.part.parameters.domain_size, waves.part.rotation)
+
         key = (waves.parameters, waves.part.rotation, bool(waves.part.masks), self._precision, time)
-        return MEMO.get(_STRAINS, key, lambda: self._grid(waves, time, needs))
+        return MEMO.get(_STRAINS, key, make)
 
     def exact_field(self, time: float | Fraction) -> Field:
         """The band-limited surface. Raises ValueError with trough damping, which leaves no sum of waves."""
@@ -282,11 +311,22 @@ class AnywhereSum:
         grids: Sequence[Grid],
     ) -> Summed:
         known: dict[tuple[Mask, ...], Weights] = {}
-        when = SeaTime(time, self._parameters.loop_duration)
-        found = []
-        for waves, grid in zip(self._parts, grids, strict=True):
-            part = waves.part
-            if part.masks and part.masks not in known:
-                known[part.masks] = weights(part.masks, self._parameters.domain_size, x, y, when)
-            found.append(grid.read(x, y, known.get(part.masks)))
+        found = [
+            grid.read(x, y, self._weights(waves.part.masks, x, y, time, known))
+            for waves, grid in zip(self._parts, grids, strict=True)
+        ]
         return Summed([*found, *(waves.at(x, y, time, needs) for waves in self._placed)])
+
+    def _weights(
+        self,
+        masks: tuple[Mask, ...],
+        x: Array,
+        y: Array,
+        time: float | Fraction,
+        known: dict[tuple[Mask, ...], Weights],
+    ) -> Weights | None:
+        """What parts under some masks weigh at places, made once; None without masks."""
+        if masks and masks not in known:
+            when = SeaTime(time, self._parameters.loop_duration)
+            known[masks] = weights(masks, self._parameters.domain_size, x, y, when)
+        return known.get(masks)
