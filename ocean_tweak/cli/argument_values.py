@@ -37,7 +37,7 @@ def wish(text: str) -> Wish:
             raise argparse.ArgumentTypeError(f"{text!r} must look like finest=0.1,area=4000,memory=2GB")
         values[match[1].lower()] = float(match[2]) * units[match[3].lower()]
     if not {"finest", "area"} <= values.keys():
-        raise argparse.ArgumentTypeError(f"{text!r} must tell finest and area, in metres")
+        raise argparse.ArgumentTypeError(f"{text!r} must give finest and area, in metres")
     try:
         return Wish(**values)
     except ParameterError as error:
@@ -57,7 +57,7 @@ def maps(text: str) -> tuple[str, ...]:
     names = tuple(dict.fromkeys(name.strip() for name in text.split(",")))
     unknown = [name for name in names if name not in BAKED]
     if unknown:
-        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no map; known are {', '.join(BAKED)}")
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is not a map; maps are {', '.join(BAKED)}")
     return names
 
 

@@ -50,10 +50,10 @@ def _command(commands: _Commands, name: str, purpose: str) -> argparse.ArgumentP
     parser: argparse.ArgumentParser = commands.add_parser(
         name, help=purpose, description=f"{purpose[0].upper()}{purpose[1:]}."
     )
-    parser.add_argument("--json", action="store_true", help="print JSON for machines, an object a line")
+    parser.add_argument("--json", action="store_true", help="print JSON, one object per line")
     parser.add_argument(
         "-v", "--verbose", action="count", default=0,
-        help="also tell what is done; twice (-vv) what is looked at",
+        help="print what is done; twice (-vv), what is read too",
     )  # fmt: skip
     return parser
 
@@ -71,12 +71,12 @@ def _add_info(commands: _Commands, in_blender: bool) -> None:
 
 
 def _add_bake(commands: _Commands, in_blender: bool) -> None:
-    parser = _command(commands, "bake", "write frames as EXR images; frames that are there already stay")
+    parser = _command(commands, "bake", "write frames as EXR images; existing frames are kept")
     _add_sea_arguments(parser, in_blender)
     _add_frames(parser, in_blender)
     parser.add_argument(
         "--only", type=argument_values.frames, metavar="RANGE",
-        help="bake these of the frames now; the others are baked elsewhere or later",
+        help="bake only these of the frames now; the others are baked elsewhere or later",
     )  # fmt: skip
     _add_cache(parser, in_blender, "--out")
     _add_files_arguments(parser)
@@ -94,7 +94,7 @@ def _add_frames(parser: argparse.ArgumentParser, in_blender: bool) -> None:
 def _add_cache(parser: _Arguments, in_blender: bool, option: str) -> None:
     parser.add_argument(
         option, type=argument_values.path, metavar="DIR",
-        help="cache folder, in which the sea gets one of its own; by default "
+        help="cache folder, in which the sea gets its own folder; by default "
         + ("the file's, or " if in_blender else "")
         + f"${CACHE_VARIABLE}",
     )  # fmt: skip
@@ -111,20 +111,20 @@ def _add_files_arguments(parser: _Arguments) -> None:
     parser.add_argument(
         "--uid",
         type=argument_values.uid,
-        help="tells seas of one name apart, in the folder's; made from the name by default",
+        help="tells seas with the same name apart, in the folder's name; made from the name by default",
     )
     parser.add_argument(
         "--compression", choices=tuple(COMPRESSION_ERROR), default="PXR24",
-        help="PXR24 (default) keeps 2⁻¹⁶ of a displacement and 2⁻¹¹ of the largest foam, normal and "
-        "velocity, the others are exact; HTJ2K needs Blender 5.2 to read",
+        help="PXR24 (default) keeps displacement to 2⁻¹⁶ and foam, normals and velocity to 2⁻¹¹ of the "
+        "largest; the others are exact; HTJ2K needs Blender 5.2 to read",
     )  # fmt: skip
 
 
 def _add_area(parser: _Arguments) -> None:
     parser.add_argument(
         "--area", action=argument_values.AreaAction, nargs="+", metavar=("SIZE", "SAMPLES X Y"),
-        help="SIZE SAMPLES [X Y]: instead of the tile, which repeats, SAMPLES² samples of a square of SIZE m "
-        "from the corner X Y, 0 0 by default",
+        help="SIZE SAMPLES [X Y]: instead of the repeating tile, a square of SIZE m with SAMPLES² "
+        "samples and its corner at X Y (0 0 by default)",
     )  # fmt: skip
 
 
@@ -139,7 +139,7 @@ def _add_verify(commands: _Commands, in_blender: bool) -> None:
     parser = _command(commands, "verify", "read a bake back: hashes, headers, pixels and wave heights")
     parser.add_argument(
         "folder", type=argument_values.path, metavar="FOLDER", nargs="?",
-        help=f"{_PLACE_HELP}; or leave it out and give what the bake was given",
+        help=f"{_PLACE_HELP}; or leave it out and give the arguments of the bake",
     )  # fmt: skip
     _add_wanted_frames(parser)
     sea = parser.add_argument_group("the sea, instead of a folder")
@@ -172,18 +172,18 @@ def _add_job(commands: _Commands, in_blender: bool) -> None:
     )
     parser.add_argument(
         "--form", choices=tuple(job.FORMS), default="openjd",
-        help="openjd (default): Open Job Description, as AWS Deadline Cloud takes it; flamenco: a job type",
+        help="openjd (default): Open Job Description, for AWS Deadline Cloud; flamenco: a job type",
     )  # fmt: skip
     parser.add_argument(
         "--chunk",
         type=argument_values.count,
         metavar="N",
         default=25,
-        help="frames in a task of baking; 25 by default",
+        help="frames per baking task; 25 by default",
     )
     parser.add_argument(
         "--plain-ranges", action="store_true",
-        help="write the tasks' frames out, for a farm that does not know the extension TASK_CHUNKING",
+        help="write out the frames of each task, for farms without the extension TASK_CHUNKING",
     )  # fmt: skip
     _add_program_arguments(parser)
     _add_render_arguments(parser)
@@ -194,7 +194,7 @@ def _add_program_arguments(parser: argparse.ArgumentParser) -> None:
     programs = parser.add_argument_group("programs on the farm")
     programs.add_argument(
         "--bake-with", choices=tuple(job.BAKERS), default="python",
-        help="what bakes: a Python that has Ocean Tweak (default), or Blender with the extension",
+        help="what bakes: a Python with Ocean Tweak (default), or Blender with the extension",
     )  # fmt: skip
     programs.add_argument("--python", metavar="COMMAND", default=job.PYTHON, help=f"{job.PYTHON} by default")
     programs.add_argument("--blender", metavar="COMMAND", default="blender", help="blender by default")
@@ -202,7 +202,7 @@ def _add_program_arguments(parser: argparse.ArgumentParser) -> None:
         "--workers",
         type=argument_values.workers,
         metavar="N",
-        help="processes of a task that bakes; by default one a core",
+        help="processes per baking task; by default one per core",
     )
 
 
@@ -212,7 +212,7 @@ def _add_render_arguments(parser: argparse.ArgumentParser) -> None:
         "--blend",
         type=argument_values.path,
         metavar="FILE.blend",
-        help="render this file from the bake; not without it",
+        help="the file to render from the bake; without it nothing is rendered",
     )
     rendering.add_argument(
         "--pictures", type=argument_values.path, metavar="DIR", help="by default a folder in the job's own"
@@ -222,7 +222,7 @@ def _add_render_arguments(parser: argparse.ArgumentParser) -> None:
         type=argument_values.count,
         metavar="N",
         default=5,
-        help="frames in a task of rendering; 5 by default",
+        help="frames per rendering task; 5 by default",
     )
 
 
@@ -244,7 +244,7 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
         type=argument_values.path,
         required=True,
         metavar="FILE.usd",
-        help="the asset; its other layers go beside it",
+        help="the asset; its other layers are written beside it",
     )
     parser.add_argument("--name", help="of the asset, by default that of the file")
     parser.add_argument("--force", action="store_true", help=OPTIONS["force"].text)
@@ -252,7 +252,7 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
         "--workers",
         type=argument_values.workers,
         metavar="N",
-        help="threads that make frames; by default two",
+        help="threads that make frames; 2 by default",
     )
     _add_openjd(parser)
     _add_usd_content(parser.add_argument_group("what the layers hold"))
@@ -261,14 +261,16 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
         "--only",
         type=argument_values.frames,
         metavar="RANGE",
-        help="clips: write these of the frames now, and not the top",
+        help="clips: write only these frames now, without the top layer",
     )
-    forms.add_argument("--stitch", action="store_true", help="clips: write the top of clips that are there")
+    forms.add_argument(
+        "--stitch", action="store_true", help=("clips: write the top layer over existing clips")
+    )
     forms.add_argument(
         "--bake",
         type=argument_values.path,
         metavar="FOLDER",
-        help="displacement: by this bake instead of one of its own",
+        help="displacement: use this bake instead of making one",
     )
     parser.set_defaults(run=usd.run)
 
@@ -328,16 +330,18 @@ def _add_wanted_frames(parser: argparse.ArgumentParser) -> None:
 def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--workers", type=argument_values.workers, metavar="N",
-        help="processes that share the frames, by default one a core as far as memory allows; "
-        "one that is killed is started again",
+        help="processes that share the frames; by default one per core as far as memory allows; a "
+        "process that is killed is restarted",
     )  # fmt: skip
     parser.add_argument(
-        "--wait", action="store_true", help="wait for others that bake the same frames, instead of refusing"
+        "--wait",
+        action="store_true",
+        help=("wait for other processes that bake the same frames, instead of refusing"),
     )
     _add_take_over(parser)
     parser.add_argument(
         "--log", action="store_true",
-        help="also write what happens, with times, into a file beside the bake's folder, vNNN-hash8.log",
+        help="also write a log with times beside the bake's folder, vNNN-hash8.log",
     )  # fmt: skip
     parser.add_argument(
         "--estimate", action="store_true", help="only say how many frames, bytes and seconds it will take"
@@ -348,8 +352,8 @@ def _add_work_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_take_over(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--take-over", action="store_true",
-        help="also remove the locks of processes on other machines that died baking the same frames; "
-        "those of this machine are removed anyway",
+        help="also remove locks of dead processes on other machines; those of this machine are removed "
+        "anyway",
     )  # fmt: skip
 
 
@@ -379,8 +383,8 @@ def _add_sea_arguments(parser: _Arguments, in_blender: bool) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--plan", type=argument_values.wish, metavar="finest=0.1,area=4000,memory=2GB",
-        help="make the sea of patches: waves down to so many metres, no repetition in a square of so many "
-        "metres, in so many bytes (2GB where they are left out)",
+        help="plan patches: shortest waves in metres, side of the square without repetition in metres, "
+        "memory (2GB if left out)",
     )  # fmt: skip
     parser.add_argument("--fps", metavar="N", help="frames per second, also as a fraction: 24000/1001")
     parser.add_argument("--start-frame", metavar="N", help="frame at which ocean time is 0")

@@ -75,8 +75,8 @@ def _check_whole(job: Job) -> None:
         f", or {parts} for each with --set timing.stretch={stretch}" if job.shot.animation is None else ""
     )
     raise UsageError(
-        f"--frames: {format_frames(between[:1])} lies between two frames, and #### in the name of a file is "
-        f"a whole number: bake whole frames{remedy}"
+        f"--frames: {format_frames(between[:1])} lies between two frames, and file names hold "
+        f"whole numbers: bake whole frames{remedy}"
     )
 
 
@@ -92,7 +92,7 @@ def resume(arguments: argparse.Namespace) -> int:
         job = replace(job, frames=known_frames(folder, job))
         write_job(folder, job)
         problem = error.args[0].partition(": run")[0]
-        _LOG.warning("%s; the job is written again from what the images tell", problem)
+        _LOG.warning("%s; the job is written again from the images", problem)
     frames = wanted_frames(folder, job, arguments.frames)
     job = replace(job, frames=known_frames(folder, job) or frames)
     job.shot.check(frames)
@@ -127,7 +127,9 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
         with _telling_how_to_go_on(folder):
             _make_frames(progress, folder, job, todo, workers, lambda: stop.is_set() or hold.is_lost())
             if hold.is_lost():
-                raise Held(f"{folder}: the lock is gone: somebody took it over, or the folder was removed")
+                raise Held(
+                    f"{folder}: the lock is gone: another process took it over, or the folder was removed"
+                )
     if progress.is_complete:
         return DONE
     progress.fail("stopped")
@@ -208,7 +210,7 @@ def _telling_how_to_go_on(folder: Path) -> Iterator[None]:
 def _go_on(folder: Path) -> str:
     if not (folder / JOB_FILE).exists():
         return "the folder is gone: bake it again"
-    return f"whole frames stay; go on with: resume {shell_word(folder)}"
+    return f"complete frames are kept; continue with: resume {shell_word(folder)}"
 
 
 def _announce(

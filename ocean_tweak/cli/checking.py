@@ -34,7 +34,7 @@ def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> t
         return frames
     known = known_frames(folder, job)
     if not known:
-        raise UsageError(f"{folder}: holds no frames; say with --frames which ones are meant")
+        raise UsageError(f"{folder}: holds no frames; say which with --frames")
     return known
 
 
@@ -101,9 +101,9 @@ def clean(arguments: argparse.Namespace) -> int:
     """Delete frames, as far as nobody is baking them."""
     folder, frames = arguments.folder, arguments.frames
     if not folder.is_dir():
-        raise UsageError(f"{folder}: is no folder")
+        raise UsageError(f"{folder}: is not a folder")
     if not is_bake(folder.resolve()):
-        raise CacheError(f"{folder}: is no folder of a bake, so nothing in it is deleted")
+        raise CacheError(f"{folder}: is not a bake's folder, so nothing in it is deleted")
     chosen = recorded_frames(folder) if frames is None else frames
     with claimed(folder, chosen, take_over=arguments.take_over):
         cleaned = clean_frames(folder, chosen)
@@ -111,7 +111,7 @@ def clean(arguments: argparse.Namespace) -> int:
     lines = [f"{cleaned.files} files deleted, {readable_bytes(cleaned.bytes)}"]
     lines += [f"left {reason}" for reason in cleaned.left]
     if foreign:
-        lines.append(f"left what no record lists: {_first(foreign)}")
+        lines.append(f"kept what no record lists: {_first(foreign)}")
     progress = Progress(folder.resolve().parent.name, arguments.json)
     progress.say(
         "\n  ".join(lines), files=cleaned.files, bytes=cleaned.bytes,

@@ -87,8 +87,8 @@ def _foretell(name: str, parameters: OceanParameters) -> None:
         return
     seconds = seconds_of_statistics(parameters)
     _LOG.warning(
-        "%s take about %s and %s of memory; with fewer samples, such as --set resolution=1024, the numbers "
-        "are there sooner and nearly the same", what, duration(seconds), readable_bytes(need),
+        "%s take about %s and %s of memory; with fewer samples, such as --set resolution=1024, "
+        "the numbers come sooner and are nearly the same", what, duration(seconds), readable_bytes(need),
     )  # fmt: skip
 
 
@@ -138,11 +138,11 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
             f"waves from {2.0 * apart:.3g} m"
         )
     if parameters.is_masked:
-        lines.append("  masks lie over some of these waves; all numbers are without them")
+        lines.append("  masks cover some of these waves; all numbers are without masks")
     coverage, earlier = foam_outlook(parameters)
     if coverage > 0.0:
         share = f"{100.0 * coverage:.2g} % of the sea by {parameters.foam.law}"
-        lines.append(f"  foam on {share}; a frame by itself looks back over {earlier} moments")
+        lines.append(f"  foam on {share}; a single frame looks back over {earlier} moments")
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.loop_duration or 0)

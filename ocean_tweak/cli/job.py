@@ -46,9 +46,7 @@ def job(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     needs = [need for sea in seas.values() for need in sea.needs] if render is not None else []
     lines = [f"  {path}" for path in files]
     if needs:
-        lines.append(
-            "Blender on the machines that render needs the Ocean Tweak extension, or nothing of this:"
-        )
+        lines.append("Blender on the render machines needs the Ocean Tweak extension, or nothing of this:")
         lines += [f"  {need}" for need in needs]
     Progress(name, arguments.json).say(
         "\n".join((f"frames {format_frames(frames)}", *lines)),
@@ -62,15 +60,15 @@ def _frames(bakes: tuple[Job, ...]) -> tuple[Frame, ...]:
     if not frames:
         raise UsageError("--frames: say which frames the shot has")
     if any(bake.frames != frames for bake in bakes):
-        raise UsageError("--frames: the oceans are in scenes of other frames; say which are meant")
+        raise UsageError("--frames: the oceans are in scenes with different frames; say which to use")
     return frames
 
 
 def _render(arguments: argparse.Namespace) -> Render | None:
     if arguments.blend is None:
         if arguments.pictures is not None:
-            raise UsageError("--pictures: there are none without --blend, the file to render")
+            raise UsageError("--pictures: nothing is rendered without --blend, the file to render")
         return None
     if not arguments.blend.is_file():
-        raise UsageError(f"--blend {arguments.blend}: is no file")
+        raise UsageError(f"--blend {arguments.blend}: is not a file")
     return Render(arguments.blend, arguments.pictures, arguments.render_chunk)

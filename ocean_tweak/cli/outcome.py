@@ -11,12 +11,12 @@ from ..core.data.printable import LONGEST, printable
 
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
 
-_NOT_ALLOWED = "give yourself the right to write there, or choose another folder with --out"
+_NOT_ALLOWED = "get permission to write there, or choose another folder with --out"
 #: what to do about what a system refuses
 _REMEDIES = {
     errno.ENOSPC: "make room on the disk",
-    errno.EDQUOT: "make room, or have the quota raised",
-    errno.EFBIG: "the disk or the shell's limits allow no larger file",
+    errno.EDQUOT: "make room, or ask for a larger quota",
+    errno.EFBIG: "the disk or the shell's limits do not allow a larger file",
     errno.EACCES: _NOT_ALLOWED,
     errno.EPERM: _NOT_ALLOWED,
     errno.EROFS: _NOT_ALLOWED,
@@ -32,7 +32,7 @@ class UsageError(ValueError):
 def message_of(error: BaseException) -> str:
     """What is wrong, in a line."""
     if isinstance(error, KeyboardInterrupt):
-        return "interrupted; the frames written so far are whole"
+        return "interrupted; the frames written so far are complete"
     if isinstance(error, OSError) and error.filename:
         return printable(f"{error.filename}: {error.strerror}", LONGEST)
     if isinstance(error, MemoryError) and not str(error):

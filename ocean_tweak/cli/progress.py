@@ -91,7 +91,7 @@ class Progress:
         self.tell.was_heard()
         self._total, self._done, self._started = total, 0, time.monotonic()
         if total == 0:
-            self.share("nothing is left to do")
+            self.share("nothing left to do")
 
     def frame(self, baked: BakedFrame) -> None:
         """A frame has been made."""

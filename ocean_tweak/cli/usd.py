@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
         area=area,
     )
     if arguments.stitch and arguments.only:
-        raise UsageError("--stitch: makes no frames; leave --only out")
+        raise UsageError("--stitch makes no frames: leave out --only")
     if arguments.form != "clips" and arguments.stitch:
         raise UsageError(f"--stitch: is for --form clips, not {arguments.form}")
     export = Export(package, arguments.out, arguments.bake, arguments.force)
@@ -65,7 +65,8 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
         return FAILED
     if arguments.only:
         progress.say(
-            "these clips are written; when all are, stitch them with --stitch", frames=format_frames(chosen)
+            "these clips are written; when all are there, stitch them with --stitch",
+            frames=format_frames(chosen),
         )
         return DONE
     export.finish()
@@ -103,7 +104,7 @@ def _make(
 def _stopped(package: Package) -> str:
     if package.form == "points":
         return "stopped; nothing was changed"
-    return "stopped after a whole frame; the same command goes on"
+    return "stopped after a complete frame; the same command continues"
 
 
 def _what(
@@ -127,7 +128,7 @@ def _what(
 def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...], Area | None]:
     folder: Path = arguments.bake
     if arguments.form != "displacement":
-        raise UsageError(f"--bake: is for --form displacement, not {arguments.form}")
+        raise UsageError(f"--bake is for --form displacement, not {arguments.form}")
     given = {
         "--params": arguments.params, "--preset": arguments.preset, "--set": arguments.assignments,
         "--fps": arguments.fps, "--start-frame": arguments.start_frame,
@@ -135,7 +136,7 @@ def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...], Ar
     }  # fmt: skip
     for option, value in given.items():
         if value:
-            raise UsageError(f"{option}: the bake in {folder} tells its sea; leave {option} or --bake out")
+            raise UsageError(f"{option}: the bake in {folder} has its own sea; leave out {option} or --bake")
     job = read_job(folder)
     frames = arguments.frames or job.frames or recorded_frames(folder)
     if not frames:

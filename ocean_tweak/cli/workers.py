@@ -129,7 +129,7 @@ class _Stretch:
                 deaths = deaths + 1 if len(self.left) == before else 1
                 if not self._is_over():
                     self._refuse(code, deaths)
-                    _LOG.info("a process of the bake ended with code %s; another goes on", code)
+                    _LOG.info("a bake process ended with code %s; another one continues", code)
         finally:
             self.heard.put(None)
 
@@ -152,11 +152,12 @@ class _Stretch:
         if self.problem is not None:
             raise self.problem
         if code == FAILED:  # Python's own end by an error, which would come again
-            raise CacheError(f"a process of the bake failed: {said or 'without a word'}")
+            raise CacheError(f"a bake process failed: {said or 'without a word'}")
         if deaths >= _MOST_DEATHS:
             raise CacheError(
-                f"a process of the bake ended {_MOST_DEATHS} times with code {code} before it had made "
-                f"frame {self.left[0]}: {said or 'perhaps there is not enough memory; use fewer workers'}"
+                f"a bake process ended {_MOST_DEATHS} times with code {code} before finishing "
+                f"frame {self.left[0]}: "
+                f"{said or 'perhaps there is not enough memory; use fewer workers'}"
             )
 
     def _run(self) -> int:

@@ -257,7 +257,7 @@ def _halved(path: Path, channel: NDArray[np.float32]) -> NDArray[np.float16]:
     """A channel in 16 bits, within HALF_ERROR. Raises ExrError for numbers that are too large."""
     largest = max(float(np.max(channel)), -float(np.min(channel)))
     if largest > _LARGEST_HALF:
-        raise ExrError(f"{path}: the image holds {largest:g}, and 16 bits hold {_LARGEST_HALF:g} at most")
+        raise ExrError(f"{path}: the image holds {largest:g}, and 16 bits hold at most {_LARGEST_HALF:g}")
     result = np.zeros(channel.shape, np.float16)
     if largest < _SMALLEST_HALF / 2.0:
         return result

@@ -53,7 +53,7 @@ class _File(logging.StreamHandler[Any]):
         descriptor = os.open(path, flags, 0o666)
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             os.close(descriptor)
-            raise OSError(None, "is no file, so no log is written to it", str(path))
+            raise OSError(None, "is not a file, so no log is written to it", str(path))
         super().__init__(open(descriptor, "a", encoding="utf-8", errors="backslashreplace"))  # noqa: PTH123, SIM115
 
     def format(self, record: logging.LogRecord) -> str:

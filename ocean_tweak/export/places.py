@@ -21,15 +21,15 @@ def path_of(text: str) -> Path:
     """The path, `~` being the user's home. Raises ValueError, in a line, for one of another system."""
     if is_foreign(text):
         raise ValueError(
-            f"{text!r} is a path of Windows, with a drive or a server that this system has not: choose it "
-            "anew on this system"
+            f"{text!r} is a Windows path, with a drive or server that this system does not have: "
+            "choose it again on this system"
         )
     try:
         return Path(text).expanduser()
     except RuntimeError:
         raise ValueError(
-            f"{text!r} lies in the home of a user whom this system does not know: write ./{text} for a name "
-            "that begins with ~"
+            f"{text!r} lies in the home of a user that this system does not know: write ./{text} "
+            "for a name that begins with ~"
         ) from None
 
 

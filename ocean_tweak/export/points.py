@@ -125,7 +125,7 @@ def read_points(path: Path) -> dict[str, NDArray[np.float32]]:
         raise PointsError(f"{path}: not readable points of Ocean Tweak ({error})") from None
     start = content.index(b"end_header\n") + len(b"end_header\n")
     if len(content) - start != 4 * count * len(names):
-        raise PointsError(f"{path}: is not as long as its header says")
+        raise PointsError(f"{path}: its length does not match its header")
     values = np.frombuffer(content, "<f4", offset=start).reshape(count, len(names))
     return {name: values[:, column] for column, name in enumerate(names)}
 

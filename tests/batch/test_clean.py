@@ -57,7 +57,7 @@ def test_foreign_files_stay(copy: Path, capsys: pytest.CaptureFixture[str]) -> N
     (copy / "sea_disp.0099.exr").write_text("of nobody")
     (copy / "folder").mkdir()
     assert main(["clean", str(copy)]) == 0
-    assert "left what no record lists: folder, notes.txt, sea_disp.0099.exr" in capsys.readouterr().out
+    assert "kept what no record lists: folder, notes.txt, sea_disp.0099.exr" in capsys.readouterr().out
     assert sorted(path.name for path in copy.iterdir()) == [
         "bake.json", "folder", "notes.txt", "sea_disp.0099.exr",
     ]  # fmt: skip
@@ -66,14 +66,14 @@ def test_foreign_files_stay(copy: Path, capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("../precious_disp.0003.exr", "no name of a file in the folder"),
-        ("{outside}", "no name of a file in the folder"),
-        ("..", "no name of a file in the folder"),
-        ("..\\precious_disp.0003.exr", "no name of a file in the folder"),
-        ("x\nopenjd_env: A=B", "no name of a file in the folder"),
-        ("notes.txt", "is not named as a frame's image is"),
-        ("bake.json", "is not named as a frame's image is"),
-        ("sea_disp.0004.exr", "is not named as a frame's image is"),
+        ("../precious_disp.0003.exr", "is not the name of a file in the folder"),
+        ("{outside}", "is not the name of a file in the folder"),
+        ("..", "is not the name of a file in the folder"),
+        ("..\\precious_disp.0003.exr", "is not the name of a file in the folder"),
+        ("x\nopenjd_env: A=B", "is not the name of a file in the folder"),
+        ("notes.txt", "is not named like a frame's image"),
+        ("bake.json", "is not named like a frame's image"),
+        ("sea_disp.0004.exr", "is not named like a frame's image"),
         ("link_disp.0003.exr", "is a link"),
         ("dir_disp.0003.exr", "is a folder"),
     ],
@@ -129,14 +129,14 @@ def test_folders_that_are_no_bake(tmp_path: Path, capsys: pytest.CaptureFixture[
         (folder / "records").mkdir()
     before = sorted(tmp_path.rglob("*"))
     assert main(["clean", str(folder)]) == 1
-    assert "is no folder of a bake" in capsys.readouterr().err
+    assert "is not a bake's folder" in capsys.readouterr().err
     assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_a_damaged_record_is_left_and_said(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (copy / "records" / "0003.json").write_text("{")
     assert main(["clean", str(copy)]) == 1
-    assert "so what it lists is not known" in capsys.readouterr().out
+    assert "so its files are not known" in capsys.readouterr().out
     assert sorted(path.name for path in copy.glob("*.exr")) == ["sea_disp.0003.exr", "sea_vel.0003.exr"]
     # mended, it can go
     assert main(["resume", str(copy), "--frames", "3", "--workers", "1"]) == 0

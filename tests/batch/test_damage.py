@@ -170,14 +170,14 @@ def rewrite(folder: Path, frame: int, change: Callable[[np.ndarray], np.ndarray]
 
 DAMAGES = {
     truncated: ([3], "bytes, not"),
-    flipped: ([3], "sea_vel.0003.exr has other contents"),
+    flipped: ([3], "sea_vel.0003.exr has contents other"),
     emptied: ([3], "has 0 bytes"),
     deleted: ([3], "sea_vel.0003.exr is gone"),
     swapped_frames: ([3, 5], "sea_disp.0003.exr has"),
     swapped_maps: ([3], "sea_disp.0003.exr has"),
     swapped_maps_with_their_record: ([3], "'map': 'vel'"),
     swapped_frames_with_their_records: ([3, 5], "'frame': 5"),
-    record_of_another_frame: ([3], "that of frame 0004"),
+    record_of_another_frame: ([3], "belongs to frame 0004"),
     record_flipped: ([3], "was changed"),
     record_truncated: ([3], "its record cannot be used"),
     record_deleted: ([3], "frame 3 is missing"),
@@ -273,7 +273,7 @@ def test_the_job_of_an_animated_sea_that_is_lost(tmp_path: Path, capsys: pytest.
     (folder / "bake.json").unlink()
     capsys.readouterr()
     assert main(["resume", str(folder)]) == 1
-    assert "bake it with the same arguments" in capsys.readouterr().err
+    assert "bake with the same arguments" in capsys.readouterr().err
     assert main(bake) == 0
     del before["bake.json"]
     assert before.items() <= times_of_change(folder).items()

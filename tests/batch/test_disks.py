@@ -86,7 +86,10 @@ def test_full_in_the_middle(sea: Path, undisturbed: dict[str, str], small_disk: 
     folder = only_folder(small_disk)
     assert code == 1
     assert err.count("\n") == 1, err
-    assert "No space left on device: make room on the disk; whole frames stay; go on with: resume" in err
+    assert (
+        "No space left on device: make room on the disk; complete frames are kept; continue with: resume"
+        in err
+    )
     assert 2 <= len(records(folder)) < 60
     good = contents(folder)
     (small_disk / "filler").unlink()
@@ -186,7 +189,7 @@ def test_a_disk_that_is_read_only(
         ):
             assert main([str(part) for part in refused]) == 1
             err = capsys.readouterr().err
-            assert "Read-only file system: give yourself the right to write there" in err
+            assert "Read-only file system: get permission to write there" in err
             assert err.count("\n") == 1
         assert main(["verify", str(folder)]) == 1  # it reads, and names the frame without its record
         assert "frame 2 is missing" in capsys.readouterr().out
@@ -212,7 +215,7 @@ def test_permission_that_is_lost(sea: Path, tmp_path: Path) -> None:
     code, _, err = end(process)
     folder.chmod(0o700)
     assert code == 1
-    assert "Permission denied: give yourself the right" in err
+    assert "Permission denied: get permission" in err
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -269,7 +272,7 @@ def test_the_go_on_line_can_be_pasted(sea: Path, tmp_path: Path) -> None:
     baking(process, cache, 1)
     process.terminate()
     _, _, err = end(process)
-    line = err.rpartition("go on with: ")[2].strip()
+    line = err.rpartition("continue with: ")[2].strip()
     answer = subprocess.run(["sh", "-c", f"printf '%s|' {line}"], capture_output=True, text=True, check=True)
     assert answer.stdout == f"resume|{only_folder(cache)}|"
 

@@ -141,7 +141,7 @@ def test_asked_to_stop(
         code, _, err = end(process)
     folder = only_folder(tmp_path)
     assert code == 1
-    assert err == f"ocean_tweak: stopped; whole frames stay; go on with: resume {folder}\n"
+    assert err == f"ocean_tweak: stopped; complete frames are kept; continue with: resume {folder}\n"
     assert 3 <= len(records(folder)) < FRAMES
     assert leftovers(folder) == []  # nor a lock
     assert contents(folder).items() <= undisturbed.items()
@@ -184,7 +184,7 @@ def test_a_frame_that_does_not_end_is_given_up(
     assert time.monotonic() - asked < 60.0  # it would sleep for ten minutes
     folder = only_folder(tmp_path)
     assert (code, err) == (
-        1, f"ocean_tweak: stopped; whole frames stay; go on with: resume {folder}\n",
+        1, f"ocean_tweak: stopped; complete frames are kept; continue with: resume {folder}\n",
     )  # fmt: skip
     assert leftovers(folder) == []
     assert len(records(folder)) == 2
@@ -203,7 +203,7 @@ def test_workers_give_long_frames_up(tmp_path: Path) -> None:
     code, _, err = end(process)
     assert time.monotonic() - asked < 60.0
     assert code == 1
-    assert "ocean_tweak: stopped; whole frames stay" in err
+    assert "ocean_tweak: stopped; complete frames are kept" in err
     folder = only_folder(tmp_path / "c")
     assert leftovers(folder) == []
     assert len(records(folder)) == 0
@@ -223,5 +223,5 @@ def test_stopped_while_it_looks_at_what_is_there(
 
     monkeypatch.setattr(cache_records, "file_hash", interrupted)
     assert main(["resume", str(copy), "--workers", "1"]) == 1
-    assert "ocean_tweak: stopped; whole frames stay" in capsys.readouterr().err
+    assert "ocean_tweak: stopped; complete frames are kept" in capsys.readouterr().err
     assert times_of_change(copy) == before

@@ -167,7 +167,7 @@ def test_other_frames_are_free(folder: Path) -> None:
 def test_of_a_dead_process_elsewhere(copy: Path, quick: None, capsys: pytest.CaptureFixture[str]) -> None:
     lock = foreign_lock(copy)
     assert main(["resume", str(copy)]) == 1
-    assert "process 4711 on render7: wait for it with --wait, or, if it died" in capsys.readouterr().err
+    assert "process 4711 on render7: wait for it with --wait or, if it has died" in capsys.readouterr().err
     assert lock.exists()
     assert main(["resume", str(copy), "--take-over"]) == 0
     assert "watching process 4711 on render7" in capsys.readouterr().out
@@ -178,7 +178,7 @@ def test_of_a_living_process_elsewhere(
     copy: Path, beating: Path, quick: None, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["resume", str(copy), "--take-over"]) == 1
-    assert "is alive: only a dead one's lock is taken over" in capsys.readouterr().err
+    assert "is alive: only the lock of a dead process can be taken over" in capsys.readouterr().err
     assert beating.exists()
 
 
@@ -187,7 +187,8 @@ def test_another_machine_of_the_same_name(copy: Path, capsys: pytest.CaptureFixt
     foreign_lock(copy, host=HOST, process=2**22 + 1)
     assert main(["resume", str(copy)]) == 1
     assert (
-        f"process {2**22 + 1} on {HOST}: wait for it with --wait, or, if it died" in capsys.readouterr().err
+        f"process {2**22 + 1} on {HOST}: wait for it with --wait or, if it has died"
+        in capsys.readouterr().err
     )
 
 
@@ -195,7 +196,7 @@ def test_a_process_number_that_is_used_again(copy: Path, capsys: pytest.CaptureF
     """This process has the number, but was not started when the holder was."""
     foreign_lock(copy, host=HOST, machine=processes.this_machine(), process=os.getpid(), started="1")
     assert main(["resume", str(copy)]) == 0
-    assert f"process {os.getpid()} on {HOST} has died: its lock is removed" in capsys.readouterr().out
+    assert f"process {os.getpid()} on {HOST} has died; its lock is removed" in capsys.readouterr().out
     assert claims(copy / "locks") == []
 
 
@@ -263,7 +264,7 @@ def test_whoever_loses_its_lock_stops(sea: Path, tmp_path: Path, monkeypatch: py
     thief.start()
     assert main(bake(sea, tmp_path, "1-2000", "--workers", 1)) == 1
     thief.join()
-    assert "the lock is gone: somebody took it over" in capsys.readouterr().err
+    assert "the lock is gone: another process took it over" in capsys.readouterr().err
     folder = only_folder(tmp_path)
     assert 0 < len(records(folder)) < 2000
     assert claims(folder / "locks") == []  # it was not written again
@@ -276,7 +277,7 @@ def test_a_lock_that_cannot_be_read_holds_all(
     lock = copy / "locks" / "00.lock"
     lock.write_bytes(content)
     assert main(["resume", str(copy)]) == 1
-    assert f"somebody whose lock {lock} cannot be read" in capsys.readouterr().err
+    assert f"a process whose lock {lock} cannot be read" in capsys.readouterr().err
     assert main(["resume", str(copy), "--take-over"]) == 0
 
 
@@ -288,7 +289,7 @@ def test_a_lock_that_is_no_file_holds_all_and_nobody_up(
     make = {"fifo": os.mkfifo, "folder": os.mkdir, "device": lambda path: path.symlink_to("/dev/zero")}
     make[kind](lock)
     assert main(["resume", str(copy)]) == 1
-    assert f"somebody whose lock {lock} cannot be read" in capsys.readouterr().err
+    assert f"a process whose lock {lock} cannot be read" in capsys.readouterr().err
     assert main(["resume", str(copy), "--take-over"]) == (1 if kind == "folder" else 0)
 
 

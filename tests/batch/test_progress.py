@@ -84,7 +84,7 @@ def test_what_takes_long_is_told_meanwhile(
     said = [line for line in each_json_line(capsys.readouterr().out) if "frame" in line]
     first = [line["doing"] for line in said if line["frame"] == 1 and "doing" in line]
     count = math.floor(6 * 0.1 * 8) + 1  # moments of an eighth of a second until 2⁻⁶ is left
-    assert first[:count] == [f"looked back for foam at {n + 1} of {count} moments" for n in range(count)]
+    assert first[:count] == [f"foam: looked back at {n + 1} of {count} moments" for n in range(count)]
     assert first[count:] == ["wrote 1 of 2 files", "wrote 2 of 2 files"]
     (seconds,) = (line["seconds"] for line in said if line["frame"] == 1 and "seconds" in line)
     assert seconds > 0.05 * count

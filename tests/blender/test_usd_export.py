@@ -147,7 +147,7 @@ def test_a_folder_that_may_not_be_written_is_named(ocean, tmp_path):
     if os.access(folder, os.W_OK):  # everything is allowed to root, but this
         folder = Path("/sys/usd")
     ocean.ocean_tweak.usd.file = str(folder / "Ocean" / "Ocean.usd")
-    with pytest.raises(RuntimeError, match=f"{folder}.*: give yourself the right to write there"):
+    with pytest.raises(RuntimeError, match=f"{folder}.*: get permission to write there"):
         bpy.ops.ocean.export_usd()
     ocean.ocean_tweak.usd.file = ""
 

@@ -152,7 +152,7 @@ def test_a_plan_is_told_and_saved(tmp_path: Path, capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize(
     ("plan", "said"),
     [
-        ("finest=0.1", "must tell finest and area"),
+        ("finest=0.1", "must give finest and area"),
         ("finest=0.1,area=4km", "must look like finest=0.1,area=4000"),
         ("finest=0.1,finest=0.2,area=10", "must look like"),
         ("finest=0.1,area=1e9", "must look like"),

@@ -143,5 +143,5 @@ def test_info_tells_of_masks_and_merged_patches(
     assert "masks" not in said
     assert main(["info", "--params", str(masked)]) == 0
     said = capsys.readouterr().out
-    assert "masks lie over some of these waves" in said
+    assert "masks cover some of these waves" in said
     assert "merged_resolution" not in said

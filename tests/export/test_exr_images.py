@@ -39,7 +39,7 @@ def test_what_an_exr_stores_lies_where_it_was_painted(
 
 def test_an_exr_that_stores_nothing_of_its_image_is_refused(tmp_path: Path) -> None:
     path = exr_by_hand(tmp_path / "a.exr", {"Y": PAINTED}, (10, 0), (4, 4))
-    with pytest.raises(ParameterError, match="nothing inside its image"):
+    with pytest.raises(ParameterError, match="its data window lies outside its display window"):
         read_raster(path)
 
 
@@ -85,8 +85,8 @@ def test_channels_of_an_exr_are_chosen_by_name(
     [
         ("A", 1, "no channel or layer A; it has G, R, Z, gust.u, gust.v, mask.R"),
         ("Z", 2, "must have 2 channels, but has 1"),
-        ("", 1, "has 2 channels of which one is wanted"),
-        ("gust", 1, "has 2 channels of which one is wanted"),
+        ("", 1, "has 2 channels where one is needed"),
+        ("gust", 1, "has 2 channels where one is needed"),
     ],
 )
 def test_channels_that_an_exr_lacks_are_told_with_those_that_it_has(
@@ -118,7 +118,7 @@ def test_of_luminance_and_chroma_the_luminance_is_an_image(tmp_path: Path) -> No
     np.testing.assert_array_equal(read_raster(path, 1).values[::-1, :, 0], PAINTED)
     with pytest.raises(ParameterError, match="must have 2 channels"):
         read_raster(path, 2)
-    with pytest.raises(ParameterError, match="at a part of its resolution"):
+    with pytest.raises(ParameterError, match="at reduced resolution"):
         read_raster(path, 1, "RY")
 
 

@@ -90,7 +90,7 @@ def test_what_cannot_be_read_names_the_file_and_the_reason(tmp_path: Path) -> No
     short = png(tmp_path / "short.png", 8, 0, [bytes(99)] * 99, 99)
     short.write_bytes(short.read_bytes()[:-30])
     reasons = {
-        "text.png": "not an image", "text.exr": "not a readable EXR", "text.npy": "not an array",
+        "text.png": "not an image", "text.exr": "not a readable EXR", "text.npy": "not a NumPy array",
         "objects.npy": "not an array", "words.npy": "must hold numbers", "line.npy": "must be an array",
         "wide.npy": "5000 x 1 samples", "wide.png": "5000 x 1 samples",
         "nan.npy": "must be finite", "nan.exr": "must be finite", "depth.exr": "it has depth",
@@ -127,7 +127,7 @@ def test_axes_of_an_array_are_told_by_its_shape_or_asked_for(
 @pytest.mark.parametrize(
     ("shape", "count", "told"),
     [
-        ((2, 30, 2), 2, 'may be yxc or cyx: say which, by "axes": "yxc"'),
+        ((2, 30, 2), 2, 'may be yxc or cyx: say which with "axes": "yxc"'),
         ((3, 30, 1), 1, "may be yxc or cyx"),
         ((18, 30, 3), 2, "in which no axis is 2 channels"),
         ((3, 18, 30), 2, "in which no axis is 2 channels"),
@@ -234,7 +234,7 @@ def test_no_program_is_started_for_an_image(tmp_path: Path) -> None:
             b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 4 4\n%%EndComments\n"
             + f"({victim}) deletefile\n%%EOF\n".encode()
         )
-        with pytest.raises(ParameterError, match="not an image of a kind that is read"):
+        with pytest.raises(ParameterError, match="not an image of a supported kind"):
             read_raster(tmp_path / name)
     assert victim.exists()
 
@@ -264,8 +264,8 @@ def test_headers_that_promise_too_much_are_refused_before_it_is_made(
     exr_by_hand(tmp_path / "many.exr", {f"layer{index}.Y": small for index in range(20)} | {"Y": small})
     monkeypatch.setattr("ocean_tweak.export.images.exr_images.MOST_NUMBERS", 20)
     reasons = {
-        "zip.npy": "not an array", "deep.npy": "not an array", "huge.npy": "cut off", "less.npy": "samples",
-        "wide.exr": "samples", "many.exr": "must have at most",
+        "zip.npy": "not a NumPy array", "deep.npy": "not a NumPy array", "huge.npy": "cut off",
+        "less.npy": "samples", "wide.exr": "samples", "many.exr": "must have at most",
     }  # fmt: skip
     for name, reason in reasons.items():
         with pytest.raises(ParameterError) as caught:
@@ -345,7 +345,7 @@ def test_files_are_counted_before_they_are_read(tmp_path: Path, monkeypatch: pyt
         ({"file": 3}, "frames.0.vectors.file", "path of a file"),
         ({"file": "a.npy", "strength": 2}, "frames.0.vectors.strength", "unknown key"),
         ({"file": "a.npy", "channels": 2}, "frames.0.vectors.channels", "names of channels"),
-        ({"file": "a.npy", "channels": "Z"}, "frames.0.vectors.file", "is no EXR image"),
+        ({"file": "a.npy", "channels": "Z"}, "frames.0.vectors.file", "is not an EXR image"),
         ({"file": "a.npy", "axes": "tyx"}, "frames.0.vectors.axes", "must be one of yx, xy"),
         ({"file": "a.npy", "axes": "xy"}, "frames.0.vectors.file", "has 3 axes, not xy"),
         ({"file": "a.npy", "scale": "2"}, "frames.0.vectors.scale", "must be a number"),

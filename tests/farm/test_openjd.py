@@ -180,7 +180,7 @@ def test_a_damaged_frame_stops_the_job_until_its_task_ran_again(
     frame.write_bytes(before[:-100] + bytes(100))
     said = run_step(openjd, shot, bundle, "Verify", "--no-run-dependencies")
     assert said.startswith("FAILED"), said
-    assert "frame 2 is damaged: storm_disp.0002.exr has other contents than were written" in said
+    assert "frame 2 is damaged: storm_disp.0002.exr has contents other than those written" in said
     # a machine that was lost in the middle leaves its lock behind
     lost = (
         "import os, sys; from pathlib import Path; from ocean_tweak.export.cache.locks import claimed\n"
@@ -259,19 +259,19 @@ def test_a_live_ocean_is_rendered_from_its_bake(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--frames", "1-2x0.5"], "frame 1.5: the tasks of a farm are whole frames"),
+        (["--frames", "1-2x0.5"], "frame 1.5: farm tasks are whole frames"),
         (["--frames", "1-2000", "--chunk", "1", "--plain-ranges"], "2000 tasks in a step: at most 1024"),
-        (["--frames", "1", "--blend", "absent.blend"], "--blend absent.blend: is no file"),
-        (["--frames", "1", "--pictures", "x"], "--pictures: there are none without --blend"),
+        (["--frames", "1", "--blend", "absent.blend"], "--blend absent.blend: is not a file"),
+        (["--frames", "1", "--pictures", "x"], "--pictures: nothing is rendered without --blend"),
         (
             ["--frames", ",".join(str(number**2) for number in range(300))],
             "write them out with --plain-ranges",
         ),
-        (["--frames", "1", "--cache", "/" + 1030 * "x"], "1031 characters; a farm's job holds 1024"),
-        (["--frames", "1", "--cache", "\udce4"], "is no Unicode text"),
+        (["--frames", "1", "--cache", "/" + 1030 * "x"], "1031 characters; a farm job holds at most 1024"),
+        (["--frames", "1", "--cache", "\udce4"], "is not Unicode text"),
         (["--frames", "1", "--python", ""], "--python and --blender: say how"),
         (["--frames", "1", "--chunk", "0"], "'0' must be a whole number from 1"),
-        (["--frames=-1", "--form", "flamenco"], "frame -1: Flamenco knows no negative frames"),
+        (["--frames=-1", "--form", "flamenco"], "frame -1: Flamenco has no negative frames"),
         (["--frames", "1", "--form", "flamenco", "--plain-ranges"], "divides frames itself"),
     ],
 )

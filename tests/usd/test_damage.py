@@ -140,5 +140,5 @@ def test_openusd_that_breaks_off_ends_nobody_else(
     for command in (["usd-verify"], ["info", "--params"]):
         assert main([*command, str(copy / "sea.usd")]) == 1
         said = capsys.readouterr().err
-        assert said.startswith(f"ocean_tweak: {copy / 'sea.usd'}: OpenUSD breaks off over it")
+        assert said.startswith(f"ocean_tweak: {copy / 'sea.usd'}: OpenUSD crashes on it")
         assert said.count("\n") == 1

@@ -91,7 +91,7 @@ def test_what_others_made_is_refused(tmp_path, form):
         foreign = tmp_path / name
         Usd.Stage.CreateNew(str(foreign)).Save()
         before = contents(tmp_path)
-        with pytest.raises(UsdError, match=f"{name} is there already and was not written by Ocean Tweak"):
+        with pytest.raises(UsdError, match=f"{name} exists already and was not written by Ocean Tweak"):
             write(tmp_path / "sea.usd", form=form)
         assert contents(tmp_path) == before
         foreign.unlink()
@@ -111,7 +111,7 @@ def test_a_foreign_clip_is_refused(tmp_path):
 
 def test_another_asset_in_the_folder_is_refused(tmp_path):
     write(tmp_path / "bay.usd")
-    with pytest.raises(UsdError, match="belongs to the asset 'bay': give each asset a folder"):
+    with pytest.raises(UsdError, match="belongs to the asset 'bay': give each asset its own folder"):
         write(tmp_path / "sea.usd")
 
 

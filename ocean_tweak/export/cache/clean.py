@@ -35,14 +35,14 @@ def clean(folder: Path, frames: Iterable[Frame]) -> Cleaned:
     """
     home = folder.resolve()
     if not is_bake(home):
-        raise CacheError(f"{folder}: is no folder of a bake, so nothing in it is deleted")
+        raise CacheError(f"{folder}: is not a bake's folder, so nothing in it is deleted")
     refuse_links(home)
     count, size, left = 0, 0, []
     for frame in frames:
         try:
             record = read_record(home, frame)
         except ValueError as error:
-            left.append(f"{record_path(folder, frame)}: {error}, so what it lists is not known")
+            left.append(f"{record_path(folder, frame)}: {error}, so its files are not known")
             continue
         if record is None:
             continue
@@ -78,7 +78,7 @@ def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
     """Why a file that a record lists is not deleted."""
     what = "points are" if entry.map == POINTS else "image is"
     if entry.map not in BAKED or not entry.name.endswith(frame_file("", entry.map, frame)):
-        return f"is not named as a frame's {what}"
+        return f"is not named like a frame's {what}"
     path = home / entry.name
     if is_link(path) or path.resolve().parent != home:
         return "is a link, or lies outside the folder"

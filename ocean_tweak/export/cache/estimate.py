@@ -81,9 +81,9 @@ class Estimate:
         """Raise CacheError where the disk cannot hold the frames."""
         if self.bytes > self.free:
             raise CacheError(
-                f"{folder}: {self.frames} frames need about {readable_bytes(self.bytes)} and the disk has "
-                f"{readable_bytes(self.free)} free: make room, bake fewer frames or maps, "
-                "or lower the resolution"
+                f"{folder}: {self.frames} frames need about {readable_bytes(self.bytes)}, and the "
+                f"disk has {readable_bytes(self.free)} free: make room, bake fewer frames or "
+                "maps, or lower the resolution"
             )
 
 

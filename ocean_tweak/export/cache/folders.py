@@ -72,7 +72,9 @@ def write_job(folder: Path, job: Job) -> None:
         write_text(path, text)
         return
     if present.fingerprint != job.fingerprint:
-        raise CacheError(f"{path} is another job, though its folder has this one's name: move it away")
+        raise CacheError(
+            f"{path} belongs to another job, though its folder has this one's name: move it away"
+        )
 
 
 def is_bake(folder: Path) -> bool:
@@ -105,11 +107,11 @@ def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:
     except OSError as error:
         raise CacheError(f"{path}: {error.strerror}; a bake's folder is named vNNN-hash8") from None
     except json.JSONDecodeError as error:
-        raise CacheError(f"{path} is no JSON ({error}): run resume to have it written again") from None
+        raise CacheError(f"{path} is not JSON ({error}): run resume to write it again") from None
     except formats.NewerFormatError as error:
         raise NewerBakeError(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
-        raise CacheError(f"{path} {error}: run resume to have it written again") from None
+        raise CacheError(f"{path} {error}: run resume to write it again") from None
     return replace(job, frames=asked) if asked else job
 
 
@@ -121,8 +123,8 @@ def recovered_job(folder: Path) -> Job:
     match = _VERSION.fullmatch(folder.name)
     name, _, uid = folder.parent.name.rpartition("-")
     problem = (
-        f"{folder / JOB_FILE} cannot be read, and the images do not tell the job: bake it with the same "
-        "arguments as before; frames that are whole stay"
+        f"{folder / JOB_FILE} cannot be read, and the job cannot be restored from the images: "
+        "bake with the same arguments as before; complete frames are kept"
     )
     if match is None or name != safe_name(name) or not UID.fullmatch(uid):
         raise CacheError(problem)
@@ -164,9 +166,7 @@ def refuse_links(folder: Path) -> None:
     """Raise CacheError where what is written and removed in a bake's folder would be elsewhere."""
     for part in (folder / RECORDS, folder / LOCKS):
         if is_link(part):
-            raise CacheError(
-                f"{part} is a link, and what it leads to is not known to be of this bake: remove it"
-            )
+            raise CacheError(f"{part} is a link to something that may not belong to this bake: remove it")
 
 
 def record_path(folder: Path, frame: Frame) -> Path:

@@ -71,7 +71,7 @@ class Job:
     def __post_init__(self) -> None:
         object.__setattr__(self, "maps", tuple(name for name in BAKED if name in self.maps))
         if self.name != safe_name(self.name):
-            raise ParameterError("name", self.name, "holds what file names cannot hold")
+            raise ParameterError("name", self.name, "holds characters that file names cannot hold")
         if not UID.fullmatch(self.uid):
             raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
         _check_maps(self.maps, self.shot.parameters, self.area)
@@ -104,8 +104,9 @@ class Job:
         """Raise CacheError where its frames hold foam of an earlier version, which is made no longer."""
         if self.foam != formats.FOAM:
             raise CacheError(
-                f"{self.home} was baked with foam of version {self.foam}, which this program shows but no "
-                f"longer makes (its own is {formats.FOAM}): bake the sea anew, beside what is there"
+                f"{self.home} was baked with foam of version {self.foam}, which this program "
+                f"shows but no longer makes (it makes version {formats.FOAM}): bake the sea "
+                "again; the old bake is kept"
             )
 
     def _told_foam(self) -> dict[str, int]:
@@ -245,7 +246,7 @@ class Job:
             encoding=data.get("encoding", 1),
         )  # fmt: skip
         if job.fingerprint != data.get("fingerprint"):
-            raise ValueError("was changed: its fingerprint is not that of its contents")
+            raise ValueError("was changed: its fingerprint does not match its contents")
         return job
 
 
@@ -260,24 +261,24 @@ def maps_for(parameters: OceanParameters, area: Area | None = None) -> tuple[str
 def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area | None) -> None:
     if area is not None:
         if POINTS in maps:
-            raise ParameterError("maps", POINTS, "are those of patches, which repeat: an area has none")
+            raise ParameterError("maps", POINTS, "belong to patches, which repeat: an area has none")
         return
     check_repeats(parameters)
     if parameters.is_cascade and parameters.is_masked:
         raise ParameterError(
             "merged_resolution", parameters.merged_resolution,
-            "masks lie over the sea and not over its patches, which repeat: say of how many samples the one "
-            "grid shall be on which the patches are merged, such as 1024",
+            "masks lie over the sea, not over its patches, which repeat: give the samples of one "
+            "grid to merge the patches on, such as 1024",
         )  # fmt: skip
     if POINTS in maps and not parameters.patches:
-        raise ParameterError("maps", POINTS, "are of a sea of several patches, and this one has none")
+        raise ParameterError("maps", POINTS, "need a sea of several patches, and this one has none")
     for name in maps:
         if name not in maps_for(parameters):
             raise ParameterError(
                 "maps", name,
                 "of several patches do not add up, and their sum does not repeat: bake "
-                f"{', '.join(maps_for(parameters))}, of whose sums normals and cusps are made, or join the "
-                "patches on one grid, by merged_resolution=1024",
+                f"{', '.join(maps_for(parameters))}, from whose sums normals and cusps are made, "
+                "or merge the patches on one grid with merged_resolution=1024",
             )  # fmt: skip
 
 
@@ -295,7 +296,7 @@ def check_seal(data: dict[str, Any]) -> None:
     """Raise ValueError for data that were changed since they were sealed."""
     contents = {key: value for key, value in data.items() if key != _SEAL}
     if data.get(_SEAL) != fingerprint(contents):
-        raise ValueError("was changed: its SHA-256 is not that of its contents")
+        raise ValueError("was changed: its SHA-256 does not match its contents")
 
 
 def safe_name(name: str) -> str:

@@ -73,7 +73,7 @@ class Claim:
     def holder(self) -> str:
         """Who it is, for a message."""
         if self.frames is None:
-            return f"somebody whose lock {self.path} cannot be read"
+            return f"a process whose lock {self.path} cannot be read"
         return f"process {printable(self.process, 20)} on {printable(self.host, 60)}"
 
     def shared(self, frames: frozenset[Frame]) -> frozenset[Frame]:
@@ -123,7 +123,7 @@ def claimed(
         alive = is_alive_here(other)
         if alive is False or (alive is None and take_over and _stands_still(other, stopped, say)):
             other.path.unlink(missing_ok=True)
-            say(f"{other.holder} has died: its lock is removed")
+            say(f"{other.holder} has died; its lock is removed")
             continue
         problem = _refusal(own, other, wait, take_over, stopped)
         if problem:
@@ -151,10 +151,10 @@ def _refusal(own: Claim, other: Claim, wait: bool, take_over: bool, stopped: Cal
     if wait:
         return ""
     if take_over:
-        return " and is alive: only a dead one's lock is taken over; wait for it with --wait"
+        return " and is alive: only the lock of a dead process can be taken over; wait for it with --wait"
     if is_alive_here(other):
         return ": wait for it with --wait"
-    return ": wait for it with --wait, or, if it died, take its lock over with --take-over"
+    return ": wait for it with --wait or, if it has died, take over its lock with --take-over"
 
 
 def _enter(own: Claim) -> Claim | None:

@@ -69,10 +69,10 @@ class FrameRecord:
     def from_dict(cls, data: Any) -> FrameRecord:
         """A record from plain data. Raises ValueError for what is none."""
         if not isinstance(data, dict):
-            raise ValueError("it is of another format")
+            raise ValueError("it has another format")
         formats.check_format(data, formats.RECORD)
         if data.get("format") != formats.RECORD:
-            raise ValueError("it is of another format")
+            raise ValueError("it has another format")
         check_seal(data)
         files = data.get("files")
         if not isinstance(files, list) or not files:
@@ -159,7 +159,7 @@ def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
     if record.frame != frame:
-        raise ValueError(f"it is that of frame {frame_label(record.frame)}")
+        raise ValueError(f"it belongs to frame {frame_label(record.frame)}")
     return record
 
 
@@ -231,7 +231,7 @@ def _problem(path: Path, entry: FileEntry) -> str:
     if size != entry.bytes:
         return f"has {size} bytes, not {entry.bytes}"
     if file_hash(path) != entry.sha256:
-        return "has other contents than were written"
+        return "has contents other than those written"
     return ""
 
 
@@ -289,23 +289,23 @@ def _frame(value: object) -> Frame:
     try:
         (frame,) = parse_frames(_text(value))
     except ParameterError:
-        raise ValueError(f"{shown(value)} is no frame") from None
+        raise ValueError(f"{shown(value)} is not a frame") from None
     return frame
 
 
 def _text(value: object) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{shown(value)} is no text")
+        raise ValueError(f"{shown(value)} is not text")
     return value
 
 
 def _entry(data: Any) -> FileEntry:
     if not isinstance(data, dict) or set(data) != set(FileEntry._fields):
-        raise ValueError("it lists a file in another way")
+        raise ValueError("it lists a file in an unknown way")
     size = data["bytes"]
     if isinstance(size, bool) or not isinstance(size, int) or size < 0:
-        raise ValueError(f"{shown(size)} is no number of bytes")
+        raise ValueError(f"{shown(size)} is not a number of bytes")
     name = _text(data["name"])
     if name in ("", ".", "..") or Path(name).name != name or "\\" in name or not name.isprintable():
-        raise ValueError(f"{shown(name)} is no name of a file in the folder")
+        raise ValueError(f"{shown(name)} is not the name of a file in the folder")
     return FileEntry(_text(data["map"]), name, size, _text(data["sha256"]))

@@ -60,7 +60,7 @@ def _parts(arguments: list[str]) -> list[list[str]]:
 def _shot(folder: Path, job: ShotJob) -> dict[str, Any]:
     """What the script knows of the shot. Raises ValueError."""
     if any(frame < 0 for frame in job.frames):
-        raise ValueError(f"frame {job.frames[0]}: Flamenco knows no negative frames")
+        raise ValueError(f"frame {job.frames[0]}: Flamenco has no negative frames")
     if job.plain_ranges:
         raise ValueError("--plain-ranges: a Flamenco job type divides frames itself")
     folder = folder.absolute()

@@ -81,8 +81,8 @@ def parameter_values(job: ShotJob) -> _Data:
 
 def _sea_parameters(job: ShotJob) -> list[_Data]:
     parameters = [
-        _path("Seas", "The seas' parameters, a JSON file each", "DIRECTORY", "IN", SEAS),
-        _path("Cache", "Folder of the baked frames; each sea gets one of its own in it", "DIRECTORY", "OUT",
+        _path("Seas", "The seas' parameters, one JSON file each", "DIRECTORY", "IN", SEAS),
+        _path("Cache", "Folder for the baked frames; each sea gets its own folder in it", "DIRECTORY", "OUT",
               "cache"),
     ]  # fmt: skip
     if job.render is not None:
@@ -98,7 +98,7 @@ def _frame_parameters(job: ShotJob) -> list[_Data]:
     text = _farm_frames(job)
     if len(text) > LONGEST_VALUE:
         raise ValueError(
-            f"scattered frames in {len(text)} characters: at most {LONGEST_VALUE}; "
+            f"scattered frames take {len(text)} characters, at most {LONGEST_VALUE} are allowed: "
             "write them out with --plain-ranges"
         )
     frames = {
@@ -109,16 +109,16 @@ def _frame_parameters(job: ShotJob) -> list[_Data]:
         "description": "Frames of the shot: 1-250, or 1-99:2, or 1,5,7-9",
         "userInterface": {"control": "LINE_EDIT", "label": "Frames", "groupLabel": "Shot"},
     }
-    parameters = [frames, _count("ChunkSize", job.chunk, "Frames in a task of baking or verifying")]
+    parameters = [frames, _count("ChunkSize", job.chunk, "Frames per baking or verifying task")]
     if job.render is not None:
-        parameters.append(_count("RenderChunkSize", job.render.chunk, "Frames in a task of rendering"))
+        parameters.append(_count("RenderChunkSize", job.render.chunk, "Frames per rendering task"))
     return parameters
 
 
 def _programs(job: ShotJob) -> list[_Data]:
     commands = {
-        "Python": (job.python, "A Python that has Ocean Tweak: pip install ocean-tweak"),
-        "Blender": (job.blender, "Blender, as the machines of the farm call it"),
+        "Python": (job.python, "A Python with Ocean Tweak: pip install ocean-tweak"),
+        "Blender": (job.blender, "Blender, as it is called on the farm's machines"),
     }
     used = {job.bake_with.capitalize()} | ({"Blender"} if job.render is not None else set())
     return [
@@ -232,7 +232,10 @@ def _tasks(job: ShotJob, size: int, size_parameter: str) -> _Data:
         raise ValueError(f"{len(ranges)} tasks in a step: at most {_MOST_RANGES} can be written out")
     longest = max(map(len, ranges))
     if longest > LONGEST_VALUE:
-        raise ValueError(f"frames of a task in {longest} characters: at most {LONGEST_VALUE}; lower --chunk")
+        raise ValueError(
+            f"the frames of a task take {longest} characters, at most {LONGEST_VALUE} are "
+            "allowed: lower --chunk"
+        )
     return {"taskParameterDefinitions": [{"name": "Frames", "type": "STRING", "range": ranges}]}
 
 

@@ -75,10 +75,10 @@ class ShotJob:
             _check_text(str(text))
         between = [frame for frame in self.frames if not isinstance(frame, int)]
         if between:
-            raise ValueError(f"frame {float(between[0])}: the tasks of a farm are whole frames")
+            raise ValueError(f"frame {float(between[0])}: farm tasks are whole frames")
         names = [bake.name for bake in self.bakes]
         if len({name.casefold() for name in names}) < len(names):  # some disks tell no capitals apart
-            raise ValueError(f"{', '.join(names)}: two seas of a job cannot have the same file names")
+            raise ValueError(f"{', '.join(names)}: two seas of one job cannot have the same file names")
 
 
 def _shown(name: str) -> str:
@@ -92,15 +92,15 @@ def _shown(name: str) -> str:
 def _check_text(text: str) -> None:
     """Raise ValueError for a path or a command that no job can hold."""
     if not text:
-        raise ValueError("--python and --blender: say how the machines of the farm call these programs")
+        raise ValueError("--python and --blender: say how these programs are called on the farm's machines")
     if len(text) > LONGEST_VALUE:
         raise ValueError(
-            f"{text[:40]}…: has {len(text)} characters; a farm's job holds {LONGEST_VALUE} at most"
+            f"{text[:40]}…: has {len(text)} characters; a farm job holds at most {LONGEST_VALUE}"
         )
     try:
         text.encode()
     except UnicodeEncodeError:
-        raise ValueError(f"{text!r}: is no Unicode text, which a farm's job is made of: rename it") from None
+        raise ValueError(f"{text!r}: is not Unicode text, which a farm job needs: rename it") from None
 
 
 def chunks(frames: Sequence[Frame], size: int) -> list[str]:

@@ -62,8 +62,8 @@ def read_array(stream: BinaryIO, channels: int | None, axes: str) -> NDArray[Any
     readings = [_ordered(values, name) for name in fitting]
     if any(not np.array_equal(readings[0], reading, equal_nan=True) for reading in readings[1:]):
         raise UnusableError(
-            f"has the shape {shape}, which may be {' or '.join(fitting)}: say which, "
-            f'by "axes": "{fitting[0]}" beside "file"'
+            f'has the shape {shape}, which may be {" or ".join(fitting)}: say which with "axes": '
+            f'"{fitting[0]}" beside "file"'
         )
     _check_count(readings[0].shape[2], channels)
     return _numbers(readings[0])
@@ -84,7 +84,7 @@ def _header(stream: BinaryIO) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
         ValueError, KeyError, TypeError, EOFError, SyntaxError, AttributeError, OverflowError, MemoryError,
         RecursionError, tokenize.TokenError,
     ):  # fmt: skip
-        raise UnusableError("is not an array of NumPy: its header cannot be read") from None
+        raise UnusableError("is not a NumPy array: its header cannot be read") from None
 
 
 def _fitting(shape: tuple[int, ...], channels: int | None) -> list[str]:
@@ -112,7 +112,7 @@ def _values(stream: BinaryIO, shape: tuple[int, ...], in_columns: bool, dtype: n
     wanted = math.prod(shape) * dtype.itemsize
     content = stream.read(wanted)
     if len(content) != wanted:
-        raise UnusableError(f"is cut off: it has {len(content)} of {wanted} bytes of numbers")
+        raise UnusableError(f"is cut off: it holds {len(content)} of {wanted} bytes of numbers")
     return np.frombuffer(content, dtype).reshape(shape, order="F" if in_columns else "C")
 
 

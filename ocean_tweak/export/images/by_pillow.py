@@ -40,7 +40,7 @@ def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
         from PIL import Image, UnidentifiedImageError
     except ImportError:
         raise UnusableError(
-            "is read by the Pillow package: install it with 'pip install Pillow', or save it as .exr"
+            "needs the Pillow package: install it with 'pip install Pillow', or save the image as .exr"
         ) from None
     stream.seek(0)
     # of a file Pillow would ask for as many bytes as a chunk claims to have
@@ -59,9 +59,9 @@ def read_by_pillow(stream: BinaryIO) -> NDArray[Any]:
         raise UnusableError("has too many samples: make it smaller") from None
     except UnidentifiedImageError:
         raise UnusableError(
-            "is a TIFF whose kind of numbers Pillow does not read: save it as .exr"
+            "is a TIFF with a number format that Pillow does not read: save it as .exr"
             if is_tiff
-            else f"is not an image of a kind that is read: {', '.join(FORMATS)}, EXR"
+            else f"is not an image of a supported kind: {', '.join(FORMATS)}, EXR"
         ) from None
     except (
         OSError, ValueError, SyntaxError, EOFError, IndexError, KeyError, TypeError, AttributeError,
@@ -92,7 +92,7 @@ def _numbers(stream: BinaryIO, kind: int, bits: int) -> NDArray[Any]:
             return np.asarray(image)[..., 0] / 255.0
         if mode in ("RGB", "RGBA", "RGBX", *_COLOUR):
             return np.asarray(image.convert("RGB") if mode in _COLOUR else image)[..., :3] / 255.0
-        raise UnusableError(f"holds the colours {mode}: save it as grey or as red, green and blue")
+        raise UnusableError(f"has the colour channels {mode}: save it as grey or as RGB")
 
 
 def _opened(stream: BinaryIO) -> Any:
@@ -127,7 +127,7 @@ def _of_16_bits(stream: BinaryIO, raw: str) -> NDArray[Any]:
             pairs = np.asarray(image).astype(np.uint16)
         return (pairs[..., 0] * 256 + pairs[..., 1]) / 65535.0
     if layout.upper() not in ("RGB", "RGBA", "RGBX") or order not in _ORDERS:
-        raise UnusableError(f"holds numbers as {raw}, of which 8 bits are read: save it as .exr")
+        raise UnusableError(f"holds numbers as {raw}, of which only 8 bits would be read: save it as .exr")
     halves = []
     for half in (order, _ORDERS[order]):
         with _opened(stream) as image:

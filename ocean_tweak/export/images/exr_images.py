@@ -64,12 +64,12 @@ def read_exr(stream: BinaryIO, channels: int | None, names: str) -> NDArray[np.f
     with _file(stream, separate_channels=True) as file:
         parts = {labels[name][0] for name in wanted}
         if len(parts) > 1:
-            raise UnusableError(f"holds {listed(wanted)} in several parts: choose channels of one")
+            raise UnusableError(f"holds {listed(wanted)} in several parts: choose channels of one part")
         part = file.parts[parts.pop()]
         planes = [part.channels[labels[name][1]].pixels for name in wanted]
         window = _Window.of(part.header["dataWindow"])
         if any(plane.shape != window.shape for plane in planes):
-            raise UnusableError(f"stores {listed(wanted)} at a part of its resolution: save it as R, G, B")
+            raise UnusableError(f"stores {listed(wanted)} at reduced resolution: save it as R, G, B")
         return _placed(np.stack(planes, axis=-1).astype(np.float32), window, display)[::-1]
 
 
@@ -82,7 +82,7 @@ def in_image(stream: BinaryIO, texels: NDArray[np.float32]) -> NDArray[np.float3
     with _file(stream, header_only=True) as file:
         data = _Window.of(file.parts[0].header["dataWindow"])
     if texels.shape[:2] != data.shape:
-        raise UnusableError("was changed on disk while it is painted: save it or reload it")
+        raise UnusableError("was changed on disk while it was being painted: save it or reload it")
     return _placed(texels[::-1], data, display)[::-1]
 
 
@@ -127,7 +127,7 @@ def _measured(stream: BinaryIO) -> tuple[dict[str, tuple[int, str]], _Window]:
     if numbers > MOST_NUMBERS:
         raise UnusableError(
             f"has {numbers} numbers in {len(labels)} channels; must have at most {MOST_NUMBERS}: "
-            "save the channels that are wanted alone"
+            "save only the channels you need"
         )
     return labels, display
 
@@ -154,7 +154,7 @@ def _chosen(labels: Sequence[str] | dict[str, Any], names: str, channels: int | 
         if layer and channels == len(inside) == 1:
             return [layer + inside[0]]
     what = f"no channel or layer {listed([names])}" if names else "no channels R, G, B or Y"
-    raise UnusableError(f'has {what}; it has {listed(labels)}: name those that are meant, by "channels"')
+    raise UnusableError(f'has {what}; it has {listed(labels)}: name the channels to use with "channels"')
 
 
 def _placed(pixels: NDArray[np.float32], data: _Window, display: _Window) -> NDArray[np.float32]:
@@ -164,7 +164,7 @@ def _placed(pixels: NDArray[np.float32], data: _Window, display: _Window) -> NDA
     low = [max(data.low[axis], display.low[axis]) for axis in (0, 1)]
     high = [min(data.high[axis], display.high[axis]) for axis in (0, 1)]
     if low[0] >= high[0] or low[1] >= high[1]:
-        raise UnusableError("holds nothing inside its image: its data and display windows lie apart")
+        raise UnusableError("shows nothing: its data window lies outside its display window")
     image = np.zeros((*display.shape, pixels.shape[2]), np.float32)
 
     def inside(window: _Window) -> tuple[slice, slice]:

@@ -45,9 +45,9 @@ def raster_in(stream: BinaryIO, name: str, channels: int | None, names: str = ""
     if not is_array and not is_exr:  # then its name tells what was expected
         is_array, is_exr = suffix == ".npy", suffix == ".exr"
     if names and not is_exr:
-        raise UnusableError(f"is no EXR image: only of these channels have names, such as {names[:40]!r}")
+        raise UnusableError(f"is not an EXR image: only those have named channels, such as {names[:40]!r}")
     if axes and not is_array:
-        raise UnusableError("is no .npy array: only of these the order of axes can be told")
+        raise UnusableError("is not a .npy array: only for those can the order of axes be given")
     if is_array:
         values = arrays.read_array(stream, channels, axes)
     elif is_exr:
@@ -63,7 +63,7 @@ def _with_channels(values: NDArray[Any], channels: int | None) -> NDArray[Any]:
     if channels is not None and found < channels:
         raise UnusableError(f"must have {channels} channels, but has {found}")
     if channels == 1 and found == 2:
-        raise UnusableError('has 2 channels of which one is wanted: say which, by "channels"')
+        raise UnusableError('has 2 channels where one is needed: say which with "channels"')
     if channels == 1 and found >= 3:
         return (values[..., :3].astype(np.float64) @ LUMINANCE)[..., np.newaxis]
     return values[..., :channels]

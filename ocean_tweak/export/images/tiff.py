@@ -38,12 +38,12 @@ def number_kind(stream: BinaryIO) -> tuple[int, int]:
     except (struct.error, OSError, OverflowError, ValueError) as error:
         raise UnusableError(f"is not a readable TIFF: {error}") from None
     if tags.get(_ORIENTATION, 1) != 1:  # Pillow turns it, Blender does not
-        raise UnusableError("is to be turned or mirrored, by its tag Orientation: save it upright")
+        raise UnusableError("has an Orientation tag that turns or mirrors it: save it upright")
     kind, bits = tags.get(_FORMAT, UNSIGNED), tags.get(_BITS, 1)
     kind = UNSIGNED if kind == 4 else kind  # nobody has said what they are
     if bits not in _KNOWN.get(kind, ()):
         what = f"{_NAMES.get(kind, 'numbers of another kind')} of {bits} bits"
-        raise UnusableError(f"holds {what}, which are not read: save it with decimals of 32 bits, or as .exr")
+        raise UnusableError(f"holds {what}, which are not supported: save it with 32-bit floats, or as .exr")
     return kind, bits
 
 

@@ -70,8 +70,8 @@ class ClipSink:
         missing = [frame for frame in self.edition.package.frames if not self.is_current(frame)]
         if missing:
             raise UsdError(
-                f"{self.path(missing[0]).parent}: frames {format_frames(missing)} have no clip of this sea: "
-                f"make them with --only {format_frames(missing)} before they are stitched"
+                f"{self.path(missing[0]).parent}: frames {format_frames(missing)} have no clip of "
+                f"this sea: make them with --only {format_frames(missing)} before stitching"
             )
 
 

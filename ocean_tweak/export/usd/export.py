@@ -58,7 +58,9 @@ class Export:
         if self.top.suffix not in (".usd", ".usda", ".usdc"):
             raise ParameterError("out", str(self.top), "must end in .usd, .usda or .usdc")
         if self.top.stem in LAYER_NAMES:
-            raise ParameterError("out", str(self.top), "has the name of a layer beside it: choose another")
+            raise ParameterError(
+                "out", str(self.top), "has the name of a layer beside it: choose another name"
+            )
 
     @property
     def editions(self) -> tuple[tuple[Path, Edition], ...]:
@@ -88,7 +90,7 @@ class Export:
             )
         if package.form == "points" and len(frames) < len(package.frames):
             raise ParameterError(
-                "only", format_frames(frames), "is for clips: one layer of points is made at once"
+                "only", format_frames(frames), "is for clips: a layer of points is made in one go"
             )
         writable_folder(self.top.parent)
         if not self.force:
@@ -239,5 +241,5 @@ def extents(path: Path, frames: Sequence[Frame]) -> Iterator[Box]:
     for frame in frames:
         extent = layer.QueryTimeSample(sdf.Path(f"/{ROOT}/{SURFACE}.extent"), float(frame))
         if extent is None:
-            raise UsdError(f"{path}: holds no frame {frame}: make it again with --force")
+            raise UsdError(f"{path}: does not hold frame {frame}: make it again with --force")
         yield Box(*np.array(extent, np.float64))

@@ -75,7 +75,7 @@ def lines(path: Path, asked: dict[str, Any]) -> Iterable[dict[str, Any]]:
     for line in done.stderr.splitlines():
         logs.relay(line, _LOG)
     if done.returncode not in (0, 1):
-        raise UsdError(f"{path}: OpenUSD breaks off over it: a layer is damaged, so export the sea again")
+        raise UsdError(f"{path}: OpenUSD crashes on it: a layer is damaged, so export the sea again")
     if done.returncode == 1:  # Python's own end by an error
         raise UsdError(f"{path}: reading it failed: {' '.join(done.stderr.splitlines()[-1:])}")
     return map(json.loads, done.stdout.splitlines())

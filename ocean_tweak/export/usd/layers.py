@@ -91,9 +91,9 @@ def reason(error: Exception) -> str:
     try:
         lines = str(error).splitlines()
     except UnicodeDecodeError:
-        return "it holds bytes that are no text"
+        return "it holds bytes that are not text"
     said = [line.rpartition(" : ")[2].strip().strip("'") for line in lines if line.strip()]
-    return printable("; ".join(dict.fromkeys(said)), _LONGEST) or "OpenUSD failed without a word"
+    return printable("; ".join(dict.fromkeys(said)), _LONGEST) or "OpenUSD failed without a message"
 
 
 def save(layer: Any, path: Path) -> None:
@@ -141,11 +141,10 @@ def refuse_foreign(paths: Iterable[Path], package: Package) -> None:
         owner = (mark_of(path) or {}).get("asset")
         if owner is None:
             raise UsdError(
-                f"{path} is there already and was not written by Ocean Tweak, or is damaged: "
-                f"choose another folder, or {_REPLACE}"
+                f"{path} exists already and was not written by Ocean Tweak, or is damaged: choose "
+                f"another folder, or {_REPLACE}"
             )
         if owner != package.name:
             raise UsdError(
-                f"{path} belongs to the asset {shown(owner)}: give each asset a folder of its own, "
-                f"or {_REPLACE}"
+                f"{path} belongs to the asset {shown(owner)}: give each asset its own folder, or {_REPLACE}"
             )

@@ -18,8 +18,9 @@ _ROUGHNESS = 0.05
 _REFRACTION = 1.333
 
 HEIGHT_ONLY = (
-    "Displaced by height alone, along the normal: UsdPreviewSurface knows no vectors, so crests are less "
-    "sharp than the sea's. The MaterialX terminal displaces by the whole vector."
+    "Displaced by height alone, along the normal: UsdPreviewSurface has no vector displacement, "
+    "so crests are less sharp than the sea's. The MaterialX terminal displaces by the whole "
+    "vector."
 )
 VECTOR_SPACE = (
     "Vector displacement in tangent space (dPdu, dPdv, N), all of length 1. On this flat grid u runs east "

@@ -31,17 +31,17 @@ class Option(NamedTuple):
 
 #: by the name of a Package's field, or of the command's argument
 OPTIONS = {
-    "up_axis": Option("Up Axis", "Z as in Blender, or Y: then points, velocities and normals are turned"),
-    "metres_per_unit": Option("Metres per Unit", "metres in a unit of the layers; 0.01 for centimetres"),
-    "subframes": Option("Time Samples", "time samples a frame, for motion blur"),
+    "up_axis": Option("Up Axis", "Z as in Blender, or Y, which rotates points, velocities and normals"),
+    "metres_per_unit": Option("Metres per Unit", "metres per unit of the layers; 0.01 for centimetres"),
+    "subframes": Option("Time Samples", "time samples per frame, for motion blur"),
     "attributes": Option("Attributes", "what the mesh carries beside points and extent"),
     "half": Option("Half Precision", "foam, cusp, breaking and foam_age in 16 bits"),
     "tiles": Option("Tiles", "patches side by side, as instances"),
-    "proxy": Option("Proxy", "quads along a side of the coarse mesh for viewports; 0 for none"),
+    "proxy": Option("Proxy", "quads along each side of the coarse viewport mesh; 0 for none"),
     "variants": Option(
         "Variants", "resolutions to choose from, such as 512,256; the first one is shown by default"
     ),
-    "force": Option("Overwrite", "replace files that are there, also of others"),
+    "force": Option("Overwrite", "replace existing files, also those of other programs"),
 }
 
 #: form → label and what moves the mesh
@@ -50,7 +50,7 @@ FORM_OPTIONS: dict[str, Option] = dict(
         FORMS,
         (
             Option("Points", "the points of every frame in one layer: for short shots"),
-            Option("Clips", "value clips, a layer a frame: for long shots and farms"),
+            Option("Clips", "value clips, one layer per frame: for long shots and farms"),
             Option("Displacement", "a flat grid, moved by its material from baked EXR images"),
         ),
         strict=True,

@@ -222,7 +222,7 @@ class Package:
             foam=data.get("foam", 1),
         )
         if package.fingerprint != data["fingerprint"]:
-            raise ValueError("was changed: its fingerprint is not that of its parameters")
+            raise ValueError("was changed: its fingerprint does not match its parameters")
         return package
 
 
@@ -236,7 +236,9 @@ def with_samples_between(frames: Iterable[Frame], samples: int) -> tuple[Frame, 
         raise ParameterError("subframes", samples, "must be 1 or more")
     step = Fraction(1, samples)
     if (step * 10**6).denominator != 1:
-        raise ParameterError("subframes", samples, "must divide a frame into decimals: 2, 4, 5, 8, 10 or so")
+        raise ParameterError(
+            "subframes", samples, "must divide a frame into finite decimals, such as 2, 4, 5, 8 or 10"
+        )
     between = {frame + part * step for frame in frames for part in range(samples) if frame + 1 in frames}
     return tuple(sorted(as_frame(frame) for frame in {*frames, *between}))
 

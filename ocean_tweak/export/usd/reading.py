@@ -22,7 +22,7 @@ def read_package(path: Path) -> tuple[str, Package]:
     """
     modules = pxr()
     if not path.is_file():
-        raise UsdError(f"{path}: there is no such file")
+        raise UsdError(f"{path}: no such file")
     with named_errors(path):
         stage = modules.Usd.Stage.Open(str(path), modules.Usd.Stage.LoadNone)
         found = {str(prim.GetPath()): data for prim in stage.TraverseAll() if (data := _record(prim))}
@@ -37,7 +37,7 @@ def read_package(path: Path) -> tuple[str, Package]:
         raise UsdError(f"{path}: {prim_path} {error}") from error
     except UNREADABLE as error:
         raise UsdError(
-            f"{path}: what {prim_path} says of its sea cannot be used: {printable(error, 200)}"
+            f"{path}: what {prim_path} says about its sea cannot be used: {printable(error, 200)}"
         ) from error
 
 

@@ -46,8 +46,8 @@ def image_paths(folder: Path, job: Job, frames: Sequence[Frame]) -> dict[Frame, 
     """The displacement image of each frame. Raises UsdError naming frames that the bake does not hold."""
     if MOVING_MAP not in job.maps:
         raise UsdError(
-            f"{folder}: this bake holds {', '.join(job.maps)} and no {MOVING_MAP}: "
-            f"bake it with --maps {MOVING_MAP}"
+            f"{folder}: this bake holds {', '.join(job.maps)} but no {MOVING_MAP}: bake it with "
+            f"--maps {MOVING_MAP}"
         )
     findings = [inspect(folder, job, frame) for frame in frames]
     broken = [finding for finding in findings if finding.state is not State.WHOLE]
@@ -64,7 +64,7 @@ def relative_path(image: Path, layer: Path) -> str:
     try:
         way = os.path.relpath(image, layer.parent)
     except ValueError:
-        raise UsdError(f"{image}: lies on another drive than {layer}: bake beside the layers") from None
+        raise UsdError(f"{image}: lies on a different drive from {layer}: bake beside the layers") from None
     way = Path(way).as_posix()
     return way if way.startswith("../") else f"./{way}"
 

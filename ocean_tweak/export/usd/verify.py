@@ -129,7 +129,7 @@ def _stage_problems(opened: _Opened) -> Iterator[Problem]:
         if found != wanted:
             yield Problem(None, f"{name} is {found}, and the sea was exported with {wanted}")
     if not stage.GetPrimAtPath(opened.material):
-        yield Problem(None, f"{opened.material} is not there: a layer is missing, damaged or was moved")
+        yield Problem(None, f"{opened.material} is missing: a layer is missing, damaged or was moved")
 
 
 def _gaps(opened: _Opened, _frames: Sequence[Frame]) -> Iterator[Problem]:
@@ -146,9 +146,7 @@ def _missing_samples(opened: _Opened) -> Iterator[Problem]:
     found = {_nearest_frame(opened.package, time) for time in attribute.GetTimeSamples()}
     missing = [frame for frame in opened.package.frames if frame not in found]
     if missing:
-        yield Problem(
-            None, f"frames {format_frames(missing)} have no sample: others are shown in their place"
-        )
+        yield Problem(None, f"frames {format_frames(missing)} have no sample: other frames are shown instead")
 
 
 def _moving_attribute(opened: _Opened) -> Any:
@@ -174,7 +172,7 @@ def _missing_clips(opened: _Opened) -> Iterator[Problem]:
         elif (mark := mark_of(clip)) is None:
             yield Problem(frame, f"{clip} is damaged: make it again with --force --only {frame}")
         elif mark.get("fingerprint") != fingerprint:
-            yield Problem(frame, f"{clip} is of another sea: make it again with --only {frame}")
+            yield Problem(frame, f"{clip} belongs to another sea: make it again with --only {frame}")
 
 
 def _listed_clips(opened: _Opened) -> dict[Frame, Path]:
