@@ -333,7 +333,8 @@ class FoamHistory:
                 for whole, part in zip(made, seen(new, *foam), strict=True):
                     whole[rows] = part
 
-            run_blocks(lay, row_blocks(n, n), workers)
+            # as many rows of the foam's own samples in a block, however many are made of them
+            run_blocks(lay, row_blocks(n, max(1, len(breaking) ** 2 // n)), workers)
         return made
 
     def _old_foam(self, now: Fraction, n: int, workers: int) -> Callable[[int, int], laying.Foam]:
