@@ -18,6 +18,7 @@ from .scene.patch_objects import shot_maps
 from .scene.portability import needs_of
 from .scene.settings import OceanObjectError, all_oceans, shown_oceans
 from .scene.shots import scene_frames, shot_of
+from .scene.spray import bake_place
 from .scene.view_layers import is_in_view_layer
 from .ui import (
     adding,
@@ -105,7 +106,9 @@ class _SceneOceans(Mapping[str, cli.FileSea]):
             _log.warning("%s: %s", name, error)
             cache = None
         needs = tuple(need.text for need in needs_of(item))
-        return cli.FileSea(shot, own_uid(item), frames, cache, shot_maps(item), needs)
+        return cli.FileSea(
+            shot, own_uid(item), frames, cache, shot_maps(item), needs, bake_place(item, scene)
+        )
 
     def __iter__(self) -> Iterator[str]:
         """The names."""

@@ -80,6 +80,7 @@ def _add_bake(commands: _Commands, in_blender: bool) -> None:
     )  # fmt: skip
     _add_cache(parser, in_blender, "--out")
     _add_files_arguments(parser)
+    _add_spray(parser)
     _add_work_arguments(parser)
     parser.set_defaults(run=lambda arguments, oceans: baking.bake(arguments, chosen_seas(arguments, oceans)))
 
@@ -125,6 +126,17 @@ def _add_area(parser: _Arguments) -> None:
         "--area", action=argument_values.AreaAction, nargs="+", metavar=("SIZE", "SAMPLES X Y"),
         help="SIZE SAMPLES [X Y]: instead of the repeating tile, a square of SIZE m with SAMPLES² "
         "samples and its corner at X Y (0 0 by default)",
+    )  # fmt: skip
+
+
+def _add_spray(parser: _Arguments) -> None:
+    parser.add_argument(
+        "--spray", action="store_true",
+        help="write the sea's spray too, as points; --set spray.amount=2 and the like change it",
+    )  # fmt: skip
+    parser.add_argument(
+        "--spray-place", type=float, nargs=2, metavar=("X", "Y"),
+        help="make it around this place, in metres, and not on the sea's tile: where the camera is",
     )  # fmt: skip
 
 

@@ -35,8 +35,9 @@ from .checking import known_frames, wanted_frames
 from .outcome import DONE, FAILED, UsageError, message_of, remedy_of, shell_word
 from .progress import Progress, duration
 from .seas import FileSea
+from .spraying import bake_spray, spray_of
 from .stopping import end_now, stop_requested
-from .wanted_bake import cache_of, jobs_of, only_bake
+from .wanted_bake import cache_of, existing_folder, jobs_of, only_bake
 from .workers import make_in_processes
 
 _LOG = logging.getLogger(__name__)
@@ -45,7 +46,10 @@ _LOG = logging.getLogger(__name__)
 def bake(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     """Bake each sea into its own folder of the cache; after one that fails or is stopped, no more."""
     for name, job in jobs_of(arguments, seas).items():
+        spray = spray_of(arguments, seas[name])
         code = _bake_sea(arguments, cache_of(arguments, seas[name]), job)
+        if code == DONE and spray is not None and not arguments.estimate:
+            code = bake_spray(arguments, existing_folder(cache_of(arguments, seas[name]), job), job, spray)
         if code != DONE:
             return code
     return DONE

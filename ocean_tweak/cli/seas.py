@@ -10,8 +10,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..core import OceanParameters, ParameterError
+from ..core import OceanParameters, ParameterError, Spray
 from ..core.data.frames import Frame
+from ..core.data.plain_data import to_plain
 from ..core.data.printable import printable
 from ..core.parameters.ocean_parameters import parse_json
 from ..core.parameters.presets import built_in
@@ -30,6 +31,7 @@ class FileSea(NamedTuple):
     cache : where the file keeps its baked frames
     maps : what the file needs of a bake, whatever else is asked for
     needs : what of it stands still in a Blender without the extension, a line each
+    place : x and y in m of the camera around which spray is made; None for spray of the sea's tile
     """
 
     shot: Shot
@@ -38,6 +40,7 @@ class FileSea(NamedTuple):
     cache: Path | None = None
     maps: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
+    place: tuple[float, float] | None = None
 
     def first_parameters(self) -> OceanParameters:
         """Those of the first frame that is animated, or of all."""
@@ -97,6 +100,8 @@ def _chosen(oceans: Mapping[str, FileSea], name: str | None) -> dict[str, FileSe
 def _changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
     """The shot with the command line's changes."""
     data = shot.to_dict()
+    if getattr(arguments, "spray", False):
+        data.setdefault("spray", to_plain(Spray()))
     for assignment in arguments.assignments:
         path, equals, value = assignment.partition("=")
         if not equals:

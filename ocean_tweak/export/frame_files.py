@@ -11,6 +11,8 @@ from ..core.synthesis.channels import MAPS
 
 #: what stands in the place of a map's name in files of points: all samples, and means for windows
 POINTS, SMALL_POINTS = "points", "small_points"
+#: the same of spray, whose files are in a folder of this name
+SPRAY = "spray"
 #: what can be baked, as jobs list it: images, and points
 BAKED = (*MAPS, POINTS)
 
@@ -31,10 +33,10 @@ class ImageFile(NamedTuple):
 def frame_file(name: str, map_name: str, frame: Frame, patch: int | None = None) -> str:
     """The name of a frame's file.
 
-    map_name : one of MAPS, POINTS or SMALL_POINTS
+    map_name : one of MAPS, POINTS, SMALL_POINTS or SPRAY
     patch : its number, from 1, in a sea of several
     """
-    ending = "ply" if map_name in (POINTS, SMALL_POINTS) else "exr"
+    ending = "ply" if map_name in (POINTS, SMALL_POINTS, SPRAY) else "exr"
     return f"{files_start(name, map_name, patch)}{frame_label(frame)}.{ending}"
 
 

@@ -9,8 +9,7 @@ what the means lack of the squares of the slopes. Binary, little-endian, float.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,9 +19,8 @@ from numpy.typing import NDArray
 from ..core.data.frames import Frame
 from ..core.parameters.patch_seas import Part
 from ..core.synthesis.channels import CHANNELS, SurfaceFields
-from .exr import ExrError
-from .files import open_file, whole_file
 from .frame_files import POINTS, SMALL_POINTS, frame_file
+from .ply import LONGEST_HEADER, PlyError, read_ply, write_ply
 
 #: samples along each side that a window reads, at most
 MOST_IN_WINDOW = 256
@@ -33,14 +31,7 @@ COLUMNS = ("x", "y", "z", *(column for name in CHANNELS_OF_POINTS[1:] for column
 #: of means
 VARIANCE = "slope_variance"
 
-_FORMAT = "binary_little_endian 1.0"
-_LONGEST_HEADER = 4096
-
 Array = NDArray[np.floating]
-
-
-class PointsError(ExrError):
-    """As of an image: points that cannot be written or read, with their path and the reason."""
 
 
 @dataclass(frozen=True)
@@ -78,19 +69,20 @@ class PointSequence:
     def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
         """Write a frame, of fields that hold ADDING. Returns the files' paths.
 
-        Raises PointsError for a value that is not finite and OSError for what the disk refuses.
+        Raises PlyError for a value that is not finite and OSError for what the disk refuses.
         """
         about = {"part": self.number, "domain_size": self.part.parameters.domain_size,
                  "samples": self.samples, "rotation": self.part.rotation, "time": fields.time}  # fmt: skip
         for small, values in self.values(fields):
-            _write(self.path(frame, small), values, small, about)
+            columns = _columns(small)
+            write_ply(self.path(frame, small), columns, values.reshape(-1, len(columns)), about)
         return self.paths(frame)
 
     @property
     def bytes(self) -> int:
         """Of all files of a frame, at most."""
         kinds = self.samples_by_kind.items()
-        return sum(4 * samples**2 * len(_columns(small)) + _LONGEST_HEADER for small, samples in kinds)
+        return sum(4 * samples**2 * len(_columns(small)) + LONGEST_HEADER for small, samples in kinds)
 
     def values(self, fields: SurfaceFields) -> Iterator[tuple[bool, NDArray[np.float32]]]:
         """What each file holds, (samples, samples, columns), and whether it is the one of means."""
@@ -101,63 +93,26 @@ class PointSequence:
             yield small, placed.astype("<f4")
 
     def check(self, frame: Frame) -> None:
-        """Read a frame back. Raises PointsError for what is not as it was written."""
+        """Read a frame back. Raises PlyError for what is not as it was written."""
         for small, samples in self.samples_by_kind.items():
             path = self.path(frame, small)
             values = read_points(path)
             if len(next(iter(values.values()))) != samples**2:
-                raise PointsError(f"{path}: has not {samples}² points")
+                raise PlyError(f"{path}: has not {samples}² points")
             if not all(np.all(np.isfinite(column)) for column in values.values()):
-                raise PointsError(f"{path}: holds values that are not finite")
+                raise PlyError(f"{path}: holds values that are not finite")
 
 
 def read_points(path: Path) -> dict[str, NDArray[np.float32]]:
     """The columns of a file written here, by name, each (samples²,).
 
-    Raises PointsError for a file that is damaged or not one of ours.
+    Raises PlyError for a file that is damaged or not one of ours.
     """
-    try:
-        with open_file(path) as file:
-            names, count = _header(file.read(_LONGEST_HEADER))
-            file.seek(0)
-            content = file.read()
-    except (OSError, ValueError) as error:
-        raise PointsError(f"{path}: not readable points of Ocean Tweak ({error})") from None
-    start = content.index(b"end_header\n") + len(b"end_header\n")
-    if len(content) - start != 4 * count * len(names):
-        raise PointsError(f"{path}: its length does not match its header")
-    values = np.frombuffer(content, "<f4", offset=start).reshape(count, len(names))
-    return {name: values[:, column] for column, name in enumerate(names)}
-
-
-def _header(text: bytes) -> tuple[list[str], int]:
-    """Names of the columns and number of points. Raises ValueError."""
-    head, end, _ = text.partition(b"end_header\n")
-    lines = head.decode("ascii").splitlines()
-    if not end or lines[:2] != ["ply", f"format {_FORMAT}"]:
-        raise ValueError("its header is another one")
-    (count,) = [line.rpartition(" ")[2] for line in lines if line.startswith("element vertex ")]
-    names = [line.rpartition(" ")[2] for line in lines if line.startswith("property float ")]
-    if names not in (list(_columns(False)), list(_columns(True))):
-        raise ValueError("its columns are others")
-    return names, int(count)
+    return read_ply(path, (_columns(False), _columns(True)))
 
 
 def _columns(small: bool) -> tuple[str, ...]:
     return (*COLUMNS, VARIANCE) if small else COLUMNS
-
-
-def _write(path: Path, values: NDArray[np.float32], small: bool, about: Mapping[str, object]) -> None:
-    if not np.all(np.isfinite(values)):
-        raise PointsError(f"{path}: the points hold values that are not finite")
-    head = [
-        "ply", f"format {_FORMAT}", f"comment Ocean Tweak {json.dumps(about)}",
-        f"element vertex {values.shape[0] * values.shape[1]}",
-        *(f"property float {name}" for name in _columns(small)), "end_header",
-    ]  # fmt: skip
-    with whole_file(path) as beside, beside.open("wb") as file:
-        file.write(("\n".join(head) + "\n").encode("ascii"))
-        file.write(np.ascontiguousarray(values).data)
 
 
 def _placed(values: Array, size: float, samples: int) -> Array:

@@ -17,6 +17,9 @@ from .names import VELOCITY
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
+#: the input that holds a path
+FILES = "Files"
+
 INPUTS = (
     Plug(
         "Files", "NodeSocketString", "", "Baked spray, up to the number of the frame; empty where it is live"
@@ -40,7 +43,7 @@ KIND, LEFT = "kind", "left"
 def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, INPUTS)
     frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
-    files, live = build.given("Files"), build.given("Geometry")
+    files, live = build.given(FILES), build.given("Geometry")
     length = output(build.add("FunctionNodeStringLength", {"String": files}), "Length")
     is_baked = build.compare("GREATER_THAN", length, 0)
     particles = build.switch("GEOMETRY", is_baked, live, _read(build, files, output(frame, "Frame")))

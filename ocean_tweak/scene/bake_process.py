@@ -19,7 +19,8 @@ from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
 from .patch_objects import shot_maps
 from .preferences import preferences
-from .settings import maps_of, settings_of, wanted_channels
+from .settings import maps_of, scene_of, settings_of, wanted_channels
+from .spray import spray_arguments
 
 
 class BakeProcess(CommandProcess):
@@ -39,6 +40,7 @@ class BakeProcess(CommandProcess):
             f"--name={bake_name(item)}", f"--uid={own_uid(item)}",
             f"--maps={','.join(maps)}",
         ]  # fmt: skip
+        arguments += spray_arguments(item, scene_of(item))
         chosen = preferences()
         if chosen is not None and chosen.write_log:
             arguments.append("--log")

@@ -171,7 +171,7 @@ def warn(item: bpy.types.Object) -> None:
 def differences(shot: Shot, frame: int, settings: OceanSettings, scene: bpy.types.Scene) -> list[Difference]:
     """Where settings are another sea than a frame of a bake. Raises ParameterError for what is no sea."""
     moment, parameters = _moment(shot, frame), settings.to_parameters(scene)
-    baked, own = (sea.to_dict(brief=True) for sea in (moment.parameters, parameters))
+    baked, own = (sea.replace(spray=None).to_dict(brief=True) for sea in (moment.parameters, parameters))
     found = sorted(_different("", baked, own))
     has_clock = shot.animation is not None and OCEAN_TIME in dict(shot.animation.samples)
     if has_clock or has_own_time(settings):

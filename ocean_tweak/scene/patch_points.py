@@ -58,7 +58,7 @@ class Points:
 
 def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Points | None:
     """The baked points that an ocean with these settings reads; None where it is live or they are missing."""
-    found = _place(settings)
+    found = files_of(settings)
     if found is None:
         return None
     folder, name, here = found
@@ -120,8 +120,9 @@ def modifier_of(item: bpy.types.Object) -> bpy.types.NodesModifier | None:
     return next(iter(own or [modifier for modifier in found if modifier.show_render]), None)
 
 
-def _place(settings: OceanSettings) -> tuple[str, str, Path] | None:
-    """The folder as it is stored, the files' name, and the folder where it is now."""
+def files_of(settings: OceanSettings) -> tuple[str, str, Path] | None:
+    """Of the bake that an ocean reads: the folder as it is stored, the files' name, and the folder where it
+    is now. None for a live ocean."""
     image = settings.sequence_maps.disp or settings.early_maps.disp
     if settings.source != "SEQUENCE" or image is None:
         return None

@@ -95,7 +95,7 @@ def of_a_frame(item: bpy.types.Object) -> Wanted:
     wanted = Wanted.FILES
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
-    if patch_objects.are_live(item) or spray.spray_of(item) is not None:
+    if patch_objects.are_live(item) or spray.is_live(item):
         wanted |= AROUND_CAMERA
     return wanted
 
@@ -221,6 +221,7 @@ def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
                 f"this frame was not baked, {frame} is held; {folder} has {format_frames(frames)}",
             )  # fmt: skip
     set_changed(settings, missing_file="" if file is None else str(file))
+    spray.note_files(item, scene)
 
 
 def sea_of_settings(item: bpy.types.Object, scene: bpy.types.Scene) -> OceanParameters | None:

@@ -1,22 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Spray of an ocean in Blender: a child of it whose vertices are the particles, which nodes make points of.
 
-It is made anew with every whole frame and not saved. Of a sea of patches it is around the camera; of one that
-repeats, each particle is shown in the repeat that is nearest to the camera.
+It is made anew with every whole frame and not saved, unless nodes read it from the files of a bake. Of a sea
+of patches it is around the camera; of one that repeats, each particle is in the repeat that is nearest to it.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import glob
+import re
 from collections.abc import Hashable
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
+from ..core.data.frames import held_frame
 from ..core.numerics.memo import MEMO
 from ..core.parameters.spray import Spray
 from ..core.sea.foam_levels import FoamLevels
@@ -24,16 +28,21 @@ from ..core.sea.placed_waves import repeating
 from ..core.sea.spray import CameraSpray, TileSpray, why_none
 from ..core.spray.columns import COLUMNS, columns
 from ..core.spray.particles import Particles
+from ..export.frame_files import SPRAY as SPRAY_FILES
+from ..export.frame_files import files_start
+from ..export.ply import told_by_ply
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.shading import Shading
 from ..nodes.shown_frame import frame_values
-from ..nodes.spray import SPRAY
+from ..nodes.spray import FILES, SPRAY
 from ..nodes.spray_look import SPRAY_LOOK
 from ..nodes.versioned import is_of_kind, node_group
 from . import failures, held_sea, water_material
-from .plan import Plan, camera_place, camera_surface_of
-from .settings import is_ocean, link_beside
-from .units import frame_rate, time_stretch
+from .image_sequence import baked_stretch, shown_frame
+from .patch_points import files_of
+from .plan import Plan, camera_place, camera_surface_of, seconds_per_file, velocity_scale
+from .settings import OceanSettings, is_ocean, link_beside, settings_of
+from .units import frame_rate, metres_per_unit, time_stretch
 
 _MARK = "ocean_tweak_spray"
 #: custom property of the ocean that keeps its spray's material: the object itself is not saved
@@ -148,7 +157,14 @@ def refresh(
     item = spray_of(ocean) or _new(ocean)
     if item.data.users > 1:  # of a duplicate
         item.data = item.data.copy()
-    _tell_nodes(ocean, item, asked.spray, scene)
+    baked = _baked(settings_of(ocean))
+    held_sea.keep_out(item, baked is None)
+    _tell_nodes(ocean, item, asked.spray, plan, scene)
+    if baked is not None:
+        if len(item.data.vertices):
+            item.data.clear_geometry()
+            _shown.pop(item.data.session_uid, None)
+        return True
     content = (asked, plan.rate, plan.scale)
     # between whole frames the nodes move it
     if not plan.is_whole or _shown.get(item.data.session_uid) == content:
@@ -171,6 +187,23 @@ def spray_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
 def is_ours(item: bpy.types.Object) -> bool:
     """Whether an object was made to show an ocean's spray."""
     return _MARK in item
+
+
+def spray_arguments(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
+    """What the command `bake` is told of an ocean's spray."""
+    parameters = settings_of(ocean).to_parameters(scene)
+    if parameters.spray is None or why_none(parameters) is not None:
+        return []
+    place = bake_place(ocean, scene)
+    return ["--spray", *(() if place is None else ("--spray-place", *map(str, place)))]
+
+
+def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Place | None:
+    """Where the camera is now around which an ocean of patches is shown, m; None for another ocean."""
+    surface = camera_surface_of(ocean)
+    if surface is None or not len(settings_of(ocean).patches):
+        return None
+    return camera_place(surface, scene, float(1 / metres_per_unit(scene)))
 
 
 def remove(ocean: bpy.types.Object) -> None:
@@ -232,12 +265,79 @@ def _new(ocean: bpy.types.Object) -> bpy.types.Object:
 
 
 def _tell_nodes(
-    ocean: bpy.types.Object, item: bpy.types.Object, spray: Spray, scene: bpy.types.Scene
+    ocean: bpy.types.Object, item: bpy.types.Object, spray: Spray, plan: Plan, scene: bpy.types.Scene
 ) -> None:
     modifier = next(each for each in item.modifiers if is_of_kind(each.node_group, SPRAY))
-    seconds = float(time_stretch(scene) / frame_rate(scene))
-    inputs = {**frame_values((-_MOST, _MOST), 1.0, seconds), "Baked Frames": ""}
-    set_inputs(modifier, {**inputs, "Life": spray.life, "Material": _material(ocean)})
+    settings = settings_of(ocean)
+    baked = _baked(settings)
+    inputs: dict[str, object] = {"Material": _material(ocean), "Life": spray.life}
+    if baked is None:
+        seconds = float(time_stretch(scene) / frame_rate(scene))
+        inputs |= {FILES: "", "Scale": 1.0, "Velocity Scale": 1.0, "Viewport Share": 1.0}
+        inputs |= frame_values((-_MOST, _MOST), 1.0, seconds) | {"Baked Frames": ""}
+    else:
+        inputs |= {
+            FILES: baked.start, "Scale": plan.scale, "Velocity Scale": velocity_scale(settings, plan, scene),
+            "Life": baked.life, "Viewport Share": _IN_WINDOW,
+            **frame_values(
+                baked.frames, float(baked_stretch(settings)), seconds_per_file(settings, scene)
+            ),
+        }  # fmt: skip
+    set_inputs(modifier, inputs)
+
+
+@dataclass(frozen=True)
+class _Baked:
+    """Spray that files have.
+
+    start : of the files' paths, up to the frame
+    frames : that have one, ascending
+    life : of mist, s
+    """
+
+    start: str
+    frames: tuple[int, ...]
+    life: float
+
+
+def _baked(settings: OceanSettings) -> _Baked | None:
+    """The spray of the bake that an ocean reads; None where it is live, or the bake has none."""
+    found = files_of(settings)
+    if found is None:
+        return None
+    stored, name, here = found
+    start = files_start(name, SPRAY_FILES)
+    files = {}
+    for path in (here / SPRAY_FILES).glob(f"{glob.escape(start)}*.ply"):
+        number = path.name.removeprefix(start).removesuffix(".ply")
+        if re.fullmatch(r"-?\d+", number):
+            files[int(number)] = path
+    if not files:
+        return None
+    told = told_by_ply(files[min(files)], (COLUMNS,)) or {}
+    life = told.get("spray", {}).get("life", Spray().life)
+    return _Baked(f"{stored}{SPRAY_FILES}/{start}", tuple(sorted(files)), life)
+
+
+def is_live(ocean: bpy.types.Object) -> bool:
+    """Whether an ocean has spray that no files show."""
+    return spray_of(ocean) is not None and _baked(settings_of(ocean)) is None
+
+
+def note_files(ocean: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Let the console hear that the present frame has no file of spray: then that of another is shown."""
+    settings = settings_of(ocean)
+    baked = None if spray_of(ocean) is None else _baked(settings)
+    if baked is None:
+        return
+    frame = shown_frame(settings, scene, scene.frame_current)
+    if frame not in baked.frames:
+        held = held_frame(baked.frames, frame)
+        failures.warned(
+            ocean, "spray files",
+            f"{Path(baked.start).name}{frame:04}.ply is missing, and the spray of frame {held} is shown: "
+            "bake it again with spray",
+        )  # fmt: skip
 
 
 def _material(ocean: bpy.types.Object) -> bpy.types.Material:

@@ -19,6 +19,8 @@ from ..export.places import is_foreign, path_of
 from ..nodes.modifier_inputs import get_input, set_input
 from ..nodes.names import MAP_INPUTS
 from ..nodes.patch_points import FILES, PATCH_POINTS
+from ..nodes.spray import FILES as SPRAY_FILES
+from ..nodes.spray import SPRAY
 from ..nodes.versioned import is_of_kind
 from .settings import OceanObjectError, all_oceans, settings_of
 
@@ -72,8 +74,11 @@ class _Input:
 def _of_points() -> Iterator[Kept]:
     for item in (item for item in bpy.data.objects if item.library is None):
         for modifier in item.modifiers:
-            if modifier.type == "NODES" and is_of_kind(modifier.node_group, PATCH_POINTS):
-                yield from (Kept(_Input(modifier, name), "value", follows=False) for name in FILES)
+            group = modifier.node_group if modifier.type == "NODES" else None
+            names = FILES if is_of_kind(group, PATCH_POINTS) else ()
+            if is_of_kind(group, SPRAY) and get_input(modifier, SPRAY_FILES):
+                names = (SPRAY_FILES,)
+            yield from (Kept(_Input(modifier, name), "value", follows=False) for name in names)
 
 
 #: all that keeps paths

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Spray of an ocean: points at the particles of the core, made anew with each frame, gone with the ocean."""
 
+import importlib
+
 import bpy
 import numpy as np
 import pytest
@@ -110,3 +112,52 @@ def test_more_than_the_memory_holds_is_told(extension, ocean, monkeypatch):
     monkeypatch.setattr(extension("core.sea.spray"), "usable_memory", lambda: 200_000)
     ocean.ocean_tweak.spray.amount = 50.0
     assert "would do" in ocean.ocean_tweak.error
+
+
+@pytest.fixture
+def baked(extension, ocean, empty_scene, tmp_path):
+    """The ocean with frames 12 to 14 baked, of which 13 has no spray."""
+    bake = importlib.import_module("ocean_tweak.cli").main
+    sea = tmp_path / "sea.json"
+    sea.write_text(ocean.ocean_tweak.to_parameters(empty_scene).to_json(), encoding="utf-8")
+    assert bake(["bake", "--params", str(sea), "--frames", "12-14", "--out", str(tmp_path), "--spray"]) == 0
+    (displacement,) = tmp_path.glob("*/*/*_disp.0012.exr")
+    (displacement.parent / "spray" / "sea_spray.0013.ply").unlink()
+    object_module = extension("scene.ocean_object")
+    sequence = extension("scene.image_sequence").find_sequence(displacement)
+    object_module.use_sequence(ocean, empty_scene, sequence)
+    return ocean
+
+
+def test_baked_points_are_those_of_the_files(baked, empty_scene, caplog):
+    item = spray_of(baked)
+    assert not item.is_runtime_data
+    assert len(item.data.vertices) == 0
+    for frame in (12, 14):
+        empty_scene.frame_set(frame)
+        expected = TileSpray(Ocean(SEA)).at((frame - 1) / 24.0, Spray())
+        shown = expected.id % 2**24 <= 2**24 / 8  # in a window
+        found = points(item)
+        np.testing.assert_allclose(found["position"], expected.position[shown], atol=1e-4)
+        np.testing.assert_allclose(found["velocity"], expected.velocity[shown], atol=1e-4)
+        np.testing.assert_allclose(found["radius"], expected.radius[shown] * 8**0.5, rtol=1e-5)
+    assert "spray" not in caplog.text
+
+
+def test_a_frame_without_a_file_is_told_and_shows_the_one_before(baked, empty_scene, caplog):
+    empty_scene.frame_set(12)
+    before = points(spray_of(baked))["position"]
+    empty_scene.frame_set(13)
+    assert "spray.0013.ply is missing, and the spray of frame 12 is shown" in caplog.text
+    np.testing.assert_array_equal(points(spray_of(baked))["position"], before)
+    assert not baked.ocean_tweak.error
+
+
+def test_baked_spray_is_kept_in_the_file_and_needs_no_extension(extension, baked, empty_scene, tmp_path):
+    path = tmp_path / "shot.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    with extension("scene.handlers").asleep():
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+        item = next(item for item in bpy.data.objects if item.name.endswith("Spray"))
+        bpy.context.scene.frame_set(14)
+        assert len(points(item)["radius"]) > 100

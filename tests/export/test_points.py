@@ -12,7 +12,8 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters, Patch, Places, WaveLayer
 from ocean_tweak.core.parameters.patch_seas import parts
-from ocean_tweak.export.points import PointSequence, PointsError, read_points
+from ocean_tweak.export.ply import PlyError
+from ocean_tweak.export.points import PointSequence, read_points
 
 LARGE, SMALL = 384, 48
 
@@ -153,7 +154,7 @@ def test_a_sea_of_one_patch_has_none(tmp_path, capsys):
 def test_damaged_points_are_told(sea, baked, change):
     path = baked / "sea_p2_points.0001.ply"
     path.write_bytes(change(path.read_bytes()))
-    with pytest.raises(PointsError, match=re.escape(path.name)):
+    with pytest.raises(PlyError, match=re.escape(path.name)):
         read_points(path)
-    with pytest.raises(PointsError, match=re.escape(path.name)):
+    with pytest.raises(PlyError, match=re.escape(path.name)):
         PointSequence(baked, "sea", 2, parts(sea)[1]).check(1)

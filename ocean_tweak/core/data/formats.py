@@ -26,7 +26,8 @@ LAYER = 1
 SYNTHESIS = 1
 #: the foam: raised whenever the same waves get other foam. Only what holds foam is known by it
 FOAM = 4
-
+#: the spray: raised whenever the same sea and settings give other particles
+SPRAY = 1
 
 #: how a bake's maps are encoded: raised whenever the same fields give another file. In 1 all were 32 bits
 ENCODING = 2

@@ -219,6 +219,13 @@ class Shot:
         for frame in (frames[0], frames[-1]):
             self.at(frame)
 
+    @property
+    def without_spray(self) -> Shot:
+        """The shot of the sea alone."""
+        if self.parameters.spray is None:
+            return self
+        return Shot(self.parameters.replace(spray=None), self.animation)
+
     def to_dict(self) -> dict[str, Any]:
         """The parameters' plain data, with the animation where there is one."""
         animated = {_KEY: self.animation.to_dict()} if self.animation is not None else {}

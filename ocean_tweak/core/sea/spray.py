@@ -25,7 +25,7 @@ from ..numerics import random
 from ..numerics.machine import usable_memory
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.spray import Spray
-from ..spray.drops import LEAST_WIND
+from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, MEAN_LIFE, Crests, Particles, expected, in_the_air, joined, longest_life
 from .foam_levels import FINEST, FoamLevels
 from .ocean import Ocean
@@ -42,8 +42,8 @@ _CELLS, _STEP = 176, 16
 _STANDS_FOR = (1, 1, 2, 4, 8)
 #: m; a cell in which crests break is looked at in parts no larger than this
 _PART = 1.0
-#: strength of a breaking crest from which on all of it tears
-_ALL_TEARS = 0.25
+#: strength of a breaking crest from which on all of it tears, and the area that tears over the mean strength
+_ALL_TEARS, _TEARS = 0.25, 1.7
 #: m and moments in which wind tears alike
 _GUST, _GUST_MOMENTS = 2.0, 2
 
@@ -72,6 +72,25 @@ def why_none(parameters: OceanParameters) -> str | None:
             f"spume begins at {LEAST_WIND:g} m/s"
         )
     return None
+
+
+def check_spray(parameters: OceanParameters, spray: Spray) -> None:
+    """Raise SprayError where a sea's spray needs more memory than there is, before any is made.
+
+    Raises ParameterError for a sea that has none.
+    """
+    if (why := why_none(parameters)) is not None:
+        raise ParameterError("spray", "", why)
+    wind, tears = foam_wind(parameters), _TEARS * Ocean(parameters).mean_breaking
+    assert wind is not None
+    if parameters.is_cascade:
+        sides = [_CELLS * FINEST * 2.0**level for level in range(len(_STANDS_FOR))]
+        inner = [0.0, *sides]
+        rings = zip(sides, inner[:-1], _STANDS_FOR, strict=True)
+        area = sum((side**2 - less**2) / stands for side, less, stands in rings)
+    else:
+        area = parameters.domain_size**2
+    _check_memory(area * tears * torn_rate(wind.speed) * spray.amount * MEAN_LIFE, spray)
 
 
 class TileSpray:

@@ -74,6 +74,8 @@ class Job:
             raise ParameterError("name", self.name, "holds characters that file names cannot hold")
         if not UID.fullmatch(self.uid):
             raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
+        # it is no matter of the images: see `export.spray`
+        object.__setattr__(self, "shot", self.shot.without_spray)
         _check_maps(self.maps, self.shot.parameters, self.area)
         if not self.outputs & OF_MEMORY:
             object.__setattr__(self, "foam", formats.FOAM)

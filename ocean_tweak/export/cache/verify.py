@@ -19,7 +19,7 @@ from ...core.sea.regions import TILE, Area, Tile
 from ...core.synthesis.channels import MOVING_MAP, unit_of
 from ...core.synthesis.coefficients import propagate
 from ..exr import ExrError, ExrSequence, read_image
-from ..points import PointsError
+from ..ply import PlyError
 from .job import Job
 from .records import Finding, State, inspect_all
 
@@ -97,7 +97,7 @@ def _points_problem(job: Job, folder: Path, frame: Frame) -> str:
     try:
         for sequence in job.points(folder, frame):
             sequence.check(frame)
-    except PointsError as error:
+    except PlyError as error:
         return str(error)
     return ""
 
