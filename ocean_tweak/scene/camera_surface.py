@@ -12,7 +12,7 @@ from ..nodes.camera_surface import CAMERA_SURFACE, PILE_INPUT
 from ..nodes.globe import EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
-from . import patch_objects, portability, water_material
+from . import patch_objects, portability, solid_foam, water_material
 from .plan import camera_surface_of
 from .refinement import show_new
 from .refresh import AROUND_CAMERA, Wanted
@@ -67,6 +67,8 @@ def add_camera_surface(
         "Material": ocean.material_slots[0].material if ocean.material_slots else None,
     }
     set_inputs(modifier, {**inputs, "Camera": camera} if camera is not None else inputs)
+    if inputs["Material"] is not None:
+        solid_foam.show(surface, inputs["Material"])
     _make_room(ocean)
     # its own mesh is without what does not repeat from now on
     own = Wanted.SURFACE if repeating(parameters) is not parameters else Wanted(0)

@@ -19,6 +19,7 @@ from ..nodes.contact import COLLAR, CONTACT, RIPPLE_NORMAL
 from ..nodes.modifier_inputs import all_inputs, set_inputs
 from ..nodes.versioned import is_of_kind, node_group
 from ..nodes.water import WATER
+from . import solid_foam
 from .hull import Hull, Waterline, hull_of, meshes_of
 from .settings import is_ocean, scene_of, settings_of
 from .units import metres_per_unit
@@ -98,7 +99,8 @@ def modifier_of(item: bpy.types.Object) -> bpy.types.NodesModifier | None:
 
 def collars_of(item: bpy.types.Object) -> list[bpy.types.Node]:
     """The nodes of an object's collar, one in each of the water's materials."""
-    found = (_collars(material).get(item) for material in bpy.data.materials)
+    waters = (material for material in bpy.data.materials if not solid_foam.is_copy(material))
+    found = (_collars(material).get(item) for material in waters)
     return [collar for collar in found if collar is not None]
 
 
@@ -153,7 +155,7 @@ def _materials(ocean: bpy.types.Object) -> Iterator[bpy.types.Material]:
 
 def _water(material: bpy.types.Material) -> bpy.types.Node | None:
     """The water's node of a material that can be changed; None where there is none."""
-    if material.library is not None or material.node_tree is None:
+    if material.library is not None or material.node_tree is None or solid_foam.is_copy(material):
         return None
     return next((node for node in material.node_tree.nodes if _is_group(node, WATER)), None)
 

@@ -34,6 +34,7 @@ from . import (
     portability,
     refinement,
     refresh,
+    solid_foam,
     source_images,
     spray,
     stored_paths,
@@ -155,6 +156,13 @@ def follow_by_hand(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | Non
 
 
 @persistent
+def follow_materials(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let what the Solid view shows of foam follow the water's material."""
+    if depsgraph is not None:
+        solid_foam.follow(depsgraph)
+
+
+@persistent
 def clear_after_deletion(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Let what was made for a deleted ocean go with it."""
     if depsgraph is not None and depsgraph.id_type_updated("COLLECTION") and left_behind.clear():
@@ -232,6 +240,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     patch_objects.remove_left()
     spray.remove_left()
     float_carrier.take_over()
+    solid_foam.mend()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
 
@@ -318,6 +327,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("depsgraph_update_post", clear_after_deletion),
     ("depsgraph_update_post", look_around),
     ("depsgraph_update_post", follow_by_hand),
+    ("depsgraph_update_post", follow_materials),
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),

@@ -19,6 +19,7 @@ from ..nodes.shading import Shading
 from ..nodes.versioned import is_of_kind, is_stale, node_group
 from ..nodes.water import WATER
 from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND, WIND_SPEED
+from . import solid_foam
 from .material_drivers import follow_lamp, follow_pixel_angle, follow_seconds
 from .units import metres_per_unit
 from .water_colour import coefficients_of, water_colour
@@ -160,11 +161,15 @@ def renew(material: bpy.types.Material) -> None:
 
 
 def assign(item: bpy.types.Object, material: bpy.types.Material) -> None:
-    """Put a material on the first slot of an object, on its mesh where that is its own."""
+    """Put a material on the first slot of an object, on its mesh where that is its own.
+
+    Its foam is white in the Solid view.
+    """
     if item.material_slots:
         item.material_slots[0].material = material
     else:
         item.data.materials.append(material)
+    solid_foam.show(item, material)
 
 
 def set_air(material: bpy.types.Material, visibility: float, haze: tuple[float, float, float]) -> None:

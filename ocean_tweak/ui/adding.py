@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..core import OceanParameters, Timing
-from ..scene import middle, ocean_object
+from ..scene import middle, ocean_object, water_material
 from ..scene.settings import METHODS, VIEWPORT_RESOLUTION
 from ..scene.units import frame_rate
 from .active_ocean import refuse
@@ -63,6 +63,8 @@ class MESH_OT_ocean_tweak_add(InObjectMode, bpy.types.Operator):
             )  # fmt: skip
         except ocean_object.EXPECTED_ERRORS as error:
             return refuse(self, error)
+        water_material.assign(item, water_material.water_material())
+        water_material.describe(item, parameters, scene)
         middle.put(item, scene.cursor.location)
         make_active(item, context.view_layer)
         return {"FINISHED"}

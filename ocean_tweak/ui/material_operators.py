@@ -8,7 +8,8 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import EnumProperty
 
 from ..core import ParameterError
-from ..scene import asset_library, contact, water_material
+from ..scene import asset_library, contact, solid_foam, water_material
+from ..scene.camera_surface import camera_surface_of
 from ..scene.settings import settings_of
 from ..scene.water_colour import BRIGHTEST
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
@@ -36,8 +37,12 @@ class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
             parameters = settings_of(item).to_parameters(scene)
         except ParameterError as error:
             return refuse(self, error)
-        water_material.assign(item, water_material.water_material(self.water))
+        material = water_material.water_material(self.water)
+        water_material.assign(item, material)
         water_material.describe(item, parameters, scene)
+        surface = camera_surface_of(item)
+        if surface is not None:
+            solid_foam.show(surface, material)
         contact.refresh()
         return {"FINISHED"}
 

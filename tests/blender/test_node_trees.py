@@ -48,6 +48,7 @@ KINDS = {
     "horizon": ("nodes.horizon", lambda module: module.HORIZON),
     "spray": ("nodes.spray", lambda module: module.SPRAY),
     "spray-look": ("nodes.spray_look", lambda module: module.SPRAY_LOOK),
+    "solid-foam": ("nodes.solid_foam", lambda module: module.SOLID_FOAM),
     "water": ("nodes.water", lambda module: module.WATER),
     "contact": ("nodes.contact", lambda module: module.CONTACT),
     "wet-band": ("nodes.contact", lambda module: module.WET_BAND),

@@ -47,7 +47,7 @@ def test_add_in_centimetres_is_as_large(empty_scene):
     item = bpy.context.active_object
     assert tuple(item.location) == (-20000.0, -20000.0, 0.0)
     assert item.ocean_tweak.to_parameters(empty_scene).domain_size == 400.0
-    kinds = ["NODES", "DISPLACE", "DISPLACE", "NODES", "NODES"]
+    kinds = ["NODES", "DISPLACE", "DISPLACE", "NODES", "NODES", "NODES"]
     assert [modifier.type for modifier in item.modifiers] == kinds
 
 
