@@ -24,7 +24,7 @@ from .afloat import add_afloat
 from .camera_surface import add_camera_surface
 from .clear_water import clear_place
 from .moods import MOODS, VIEW, Mood
-from .settings import VIEWPORT_RESOLUTION
+from .settings import VIEWPORT_RESOLUTION, settings_of
 from .sky import new_sun, new_world
 from .units import frame_rate, metres_per_unit
 
@@ -116,7 +116,7 @@ def add_horizon(
     collection: bpy.types.Collection,
     rings: int,
 ) -> bpy.types.Object:
-    """Carry an ocean on to the horizon; its copies are for renders, a window shows one ring of them.
+    """Carry an ocean on to the horizon; a window shows one ring of the copies where they are cheap.
 
     rings : of copies around the ocean
     """
@@ -131,7 +131,7 @@ def add_horizon(
     for key, value in (
         ("Ocean", ocean),
         ("Rings", rings),
-        ("Viewport Rings", 0),
+        ("Viewport Rings", int(settings_of(ocean).viewport_resolution <= VIEWPORT_RESOLUTION)),
         ("Far Distance", _FAR / float(metres_per_unit(scene))),
         ("Material", ocean.material_slots[0].material if ocean.material_slots else None),
     ):
