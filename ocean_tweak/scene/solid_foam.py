@@ -19,7 +19,7 @@ from ..nodes.versioned import is_of_kind, node_group
 
 #: the water's material that a copy follows
 _OF = "ocean_tweak_foam_of"
-_WHITE, _ROUGHNESS = (0.86, 0.89, 0.90, 1.0), 0.6
+_WHITE = (1.0, 1.0, 1.0, 1.0)
 _NAME = "Foam in Solid View"
 #: of a material, what the copy has of its own
 _OWN = {"name", "use_nodes", "diffuse_color", "roughness", "use_fake_user", "tag", "preview_render_type"}
@@ -88,7 +88,7 @@ def _new_copy(water: bpy.types.Material) -> bpy.types.Material:
     for key in [name for name in dict(copy) if name.startswith("ocean_tweak")]:  # it is no water to choose
         del copy[key]
     copy.name, copy[_OF] = f"{water.name} {_NAME}", water
-    copy.diffuse_color, copy.roughness = _WHITE, _ROUGHNESS
+    copy.diffuse_color = _WHITE
     return copy
 
 
