@@ -7,7 +7,7 @@ which only the attributes count.
 
 The next averages are those of two by two: sample j of nₖ stands for the place (j + ½)/nₖ of the period, and
 lies between two samples of the averages before. Numbers that cannot be halved are rounded up, and what
-lies between two samples is interpolated.
+lies between two samples is interpolated. Live patches come with averages made so, `core.numerics.halving`.
 """
 
 from __future__ import annotations
@@ -15,15 +15,24 @@ from __future__ import annotations
 import bpy
 
 from .building import Builder, Input, Plug, Socket, output
-from .fields import alone, combined, connect, coordinates, named_attribute, whole_number
+from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
 from .loops import joined, repeated
-from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, SLOPE, SLOPE_VARIANCE, STRAIN, VELOCITY
+from .names import (
+    AVERAGES_TABLE,
+    BREAKING,
+    CUSP,
+    DISPLACEMENT,
+    FOAM,
+    OTHERS,
+    SLOPE,
+    SLOPE_VARIANCE,
+    SLOPES,
+    STRAIN,
+    VELOCITY,
+)
 from .surface import CELL
 from .versioned import GroupKind, node_group
 
-#: slopes along x and y and the sum of their squares; foam, cusp and breaking of an ocean, strain of a patch:
-#: three numbers are read at once
-SLOPES, OTHERS = "ocean_tweak_slopes", "ocean_tweak_others"
 #: what is averaged
 MOVING = (DISPLACEMENT, VELOCITY, SLOPES)
 CARRIED = (*MOVING, OTHERS)
@@ -74,6 +83,31 @@ def patch_carried(build: Builder, patch: Socket) -> Socket:
     squares = build.math("ADD", held, lost)
     sloped = build.store(patch, SLOPES, combined(build, x, y, squares), "FLOAT_VECTOR")
     return build.store(sloped, OTHERS, told(build, STRAIN), "FLOAT_VECTOR")
+
+
+def patch_averages(
+    build: Builder, patch: Socket, counts: dict[str, Socket], fade: dict[str, Socket]
+) -> tuple[Socket, Socket]:
+    """Points of a patch and of its averages, and those that tell where each begins: its own if it has them.
+
+    patch : its mesh
+    counts : its columns and rows
+    """
+    made = build.group(node_group(AVERAGES), {"Geometry": patch_carried(build, patch), **counts, **fade})
+    table = named_attribute(build, AVERAGES_TABLE, "FLOAT_VECTOR")
+    has_own = sample_index(build, patch, output(table, "Exists"), 0, "BOOLEAN")
+    _, _, less = coordinates(build, sample_index(build, patch, output(table, "Attribute"), 0, "FLOAT_VECTOR"))
+    count = whole_number(build, build.math("MULTIPLY", less, -1.0), "ROUND")
+    index = output(build.add("GeometryNodeInputIndex"), "Index")
+    told_there = sample_index(build, patch, output(table, "Attribute"), index, "FLOAT_VECTOR")
+    x, y, first = coordinates(build, told_there)
+    place = combined(build, x, y, build.math("MAXIMUM", first, 0.0))
+    levels = output(build.add("GeometryNodePoints", {"Count": count, "Position": place}), "Points")
+    own = {"Geometry": patch, "Levels": levels}
+    geometry, levels = (
+        build.switch("GEOMETRY", has_own, output(made, name), own[name]) for name in ("Geometry", "Levels")
+    )
+    return geometry, levels
 
 
 def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:

@@ -14,10 +14,10 @@ from collections.abc import Callable
 import bpy
 
 from .averaged import AVERAGED, READ, SOCKETS
-from .averages import AVERAGES, CARRIED, OTHERS, SLOPES, cells, patch_carried
+from .averages import CARRIED, cells, patch_averages
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, coordinates, sample_index
-from .names import DISPLACEMENT, VELOCITY
+from .names import DISPLACEMENT, OTHERS, SLOPES, VELOCITY
 from .sample import OCEAN_INPUT, Spaces
 from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
@@ -54,9 +54,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     place = build.vector("SUBTRACT", in_patch, output(facts, "Corner"))
     counts = {name: output(facts, name) for name in ("Columns", "Rows")}
     fade = {"Fade": build.given("Fade")}
-    surface = {"Geometry": patch_carried(build, output(facts, "Geometry"))}
-    averages = build.group(node_group(AVERAGES), {**surface, **counts, **fade})
-    inputs = {"Averages": output(averages, "Geometry"), "Levels": output(averages, "Levels")}
+    averages, levels = patch_averages(build, output(facts, "Geometry"), counts, fade)
+    inputs = {"Averages": averages, "Levels": levels}
     lies = {**counts, "Spacing": output(facts, "Spacing")}
     at = {"Place": place, "Size": build.given("Size")}
     read = build.group(node_group(AVERAGED), {**inputs, **lies, **at, **fade})
@@ -169,4 +168,4 @@ def _turned_strain(build: Builder, strain: Socket, axis: Socket) -> Socket:
     )
 
 
-CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 4, _build)
+CAMERA_PATCH = GroupKind("Ocean Tweak Camera Patch", 5, _build)

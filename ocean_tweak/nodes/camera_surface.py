@@ -15,7 +15,7 @@ import bpy
 
 from ..core.parameters.patch import MOST_PATCHES
 from .averaged import AVERAGED, SOCKETS
-from .averages import AVERAGES, OTHERS, SLOPES, ocean_carried
+from .averages import AVERAGES, ocean_carried
 from .building import Builder, Plug, Socket, output
 from .camera_foam import CAMERA_FAN, CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
@@ -30,8 +30,10 @@ from .names import (
     DISPLACEMENT,
     FOAM,
     FOAM_AGE,
+    OTHERS,
     SHORTEST_WAVE,
     SLOPE_VARIANCE,
+    SLOPES,
     TEXTURE_COORDINATES,
     VELOCITY,
     WEIGHT,
@@ -42,6 +44,11 @@ from .versioned import GroupKind, node_group
 
 #: cells of the lattice in the shortest wave that is left
 SHORTEST_CELLS = 4.0
+#: power of how much larger cells are in a viewport that averages follow: what it shows differs least from
+#: what a render does
+_FOLLOWED = 0.25
+#: smallest cells in a viewport, in the height of the camera
+_CELLS_OF_HEIGHT = 24.0
 #: of the smallest cells in a lump of fresh foam
 _LUMP_CELLS = 80.0
 #: breaking from which on foam lies on the water: less is the mean of crests too far away to be seen
@@ -63,8 +70,9 @@ INPUTS = (
     Plug("Finest Spacing", "NodeSocketFloat", 0.25, "Size of the cells near the camera, in Blender units"),
     Plug("Vertex Budget", "NodeSocketInt", 200_000, "Vertices of the grid, at most"),
     Plug(
-        "Viewport Vertex Budget", "NodeSocketInt", 50_000,
-        "Vertices of the grid in the viewport, at most; its cells are larger in proportion",
+        "Viewport Vertex Budget", "NodeSocketInt", 32_000,
+        "Vertices of the grid in the viewport, at most; its cells are larger in proportion, and none is "
+        "smaller than a 24th of the camera's height",
     ),
     Plug("To Horizon", "NodeSocketBool", True, "Reach as far as the camera sees from its height"),
     Plug("Reach", "NodeSocketFloat", 5000.0, "How far the grid goes instead, in Blender units"),
@@ -122,7 +130,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     sea = _sea(build, spaces)
     reach = reach_of(build, sea.eye)
     budget, coarser = _density(build)
-    finest = build.math("MULTIPLY", build.given("Finest Spacing"), coarser)
+    finest = _finest(build, coarser, sea.eye)
     inputs = {"Center": sea.eye, "Reach": reach, "Vertex Budget": budget, "Finest Spacing": finest}
     grid = build.group(node_group(CAMERA_GRID), inputs)
     inputs = {"Foam": sea.foam, "Columns": output(sea.of_foam, "Columns"), "Corner": sea.corner}
@@ -133,7 +141,9 @@ def _build(tree: bpy.types.NodeTree) -> None:
     laid = build.store(flat, TEXTURE_COORDINATES, _texture_coordinates(build, sea), "FLOAT2", "CORNER")
     # averages do not follow all of what cells are larger: the viewport rather shows waves of few cells than
     # none
-    size = build.math("DIVIDE", _size(build, grid, away, finest), build.math("SQRT", coarser, None))
+    size = build.math(
+        "DIVIDE", _size(build, grid, away, finest), build.math("POWER", coarser, 1.0 - _FOLLOWED)
+    )
     size = build.switch("FLOAT", sea.is_fan, size, output(fan, "Size"))
     foam = build.switch("VECTOR", sea.is_fan, _of_rings(build, sea, size), output(fan, "Value"))
     shown = _finished(build, laid, _summed(build, sea, size, foam), spaces, sea, away, size)
@@ -194,6 +204,15 @@ def _density(build: Builder) -> tuple[Socket, Socket]:
     budget = build.switch("INT", is_viewport, whole, few)
     ratio = build.math("DIVIDE", whole, build.integer("MAXIMUM", budget, 1))
     return budget, build.math("MAXIMUM", build.math("SQRT", ratio, None), 1.0)
+
+
+def _finest(build: Builder, coarser: Socket, eye: Socket) -> Socket:
+    """Size of the cells near the camera. In a viewport of fewer vertices, none is finer than a share of the
+    camera's height: no water is nearer, and cells ahead look larger."""
+    wanted = build.math("MULTIPLY", build.given("Finest Spacing"), coarser)
+    seen = build.math("DIVIDE", coordinates(build, eye)[2], _CELLS_OF_HEIGHT)
+    is_coarser = build.compare("GREATER_THAN", coarser, 1.0, "FLOAT")
+    return build.math("MAXIMUM", wanted, build.switch("FLOAT", is_coarser, 0.0, seen))
 
 
 def _size(build: Builder, grid: bpy.types.Node, away: Socket, finest: Socket) -> Socket:

@@ -23,6 +23,15 @@ SHORTEST_WAVE = "shortest_wave"
 #: velocity: slope along x and y, and Dx by x, Dy by y and their shear
 SLOPE, STRAIN = CHANNELS["slope"].attribute, CHANNELS["strain"].attribute
 
+#: point attribute of such a mesh whose averages come after its own points: of point n, of average n the
+#: points along x and y and the number of the first one. The first tells the same of the mesh itself, but that
+#: its last number is how many there are with it, less than 0
+AVERAGES_TABLE = "ocean_tweak_averages"
+
+#: point attributes of what is averaged: slopes along x and y and the sum of their squares; foam, cusp and
+#: breaking of an ocean, strain of a patch: three numbers are read at once
+SLOPES, OTHERS = "ocean_tweak_slopes", "ocean_tweak_others"
+
 #: point attributes of an ocean's mesh by which patches 1, 2, … are multiplied; 1 where there is none
 WEIGHT = "ocean_tweak_weight_{}"
 

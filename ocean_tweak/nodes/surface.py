@@ -14,7 +14,7 @@ import bpy
 
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, connect, coordinates, named_attribute, sample_index, whole_number
-from .names import DISPLACEMENT, FOAM, VELOCITY
+from .names import AVERAGES_TABLE, DISPLACEMENT, FOAM, VELOCITY
 from .versioned import GroupKind, node_group
 
 #: Newton's steps. A storm with choppiness 1 takes 6, a sea that all but folds (minimum eigenvalue 0.1) 8
@@ -43,7 +43,7 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
     geometry = build.given("Geometry")
     displacement = named_attribute(build, DISPLACEMENT, "FLOAT_VECTOR")
     position = output(build.add("GeometryNodeInputPosition"), "Position")
-    count = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}), "Point Count")
+    count = _count(build, geometry)
 
     def at_rest(index: object) -> Socket:
         moved = sample_index(build, geometry, position, index, "FLOAT_VECTOR")
@@ -84,6 +84,17 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
             "Rows": rows,
         }
     )
+
+
+def _count(build: Builder, geometry: Socket) -> Socket:
+    """Of the grid's vertices: all there are, but for averages behind them."""
+    whole = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}), "Point Count")
+    table = named_attribute(build, AVERAGES_TABLE, "FLOAT_VECTOR")
+    has_averages = sample_index(build, geometry, output(table, "Exists"), 0, "BOOLEAN")
+    own = sample_index(build, geometry, output(table, "Attribute"), 0, "FLOAT_VECTOR")
+    columns, rows, _ = coordinates(build, own)
+    of_grid = whole_number(build, build.math("MULTIPLY", columns, rows), "ROUND")
+    return build.switch("INT", has_averages, whole, of_grid)
 
 
 def _is_short(build: Builder, off: Socket, step: Socket) -> Socket:
@@ -254,6 +265,6 @@ def _bounded(build: Builder, step: Socket, off: Socket) -> Socket:
     return build.scaled(step, build.math("MINIMUM", share, 1.0))
 
 
-GRID_FACTS = GroupKind("Ocean Tweak Grid Facts", 1, _build_grid_facts)
+GRID_FACTS = GroupKind("Ocean Tweak Grid Facts", 2, _build_grid_facts)
 CELL = GroupKind("Ocean Tweak Cell", 1, _build_cell)
 SURFACE = GroupKind("Ocean Tweak Surface", 1, _build_surface)

@@ -36,8 +36,8 @@ from .units import time_stretch
 
 # s after the foam that was made last, within which the next one is quickly made
 _IS_NEAR = Fraction(1)
-# m that a camera may be away from where rings lie, before those of a window follow it
-_FOLLOWS = 16 * FINEST
+# of a window's first ring, that a camera may be away from its middle before rings follow it
+_FOLLOWS = 1 / 6
 _RINGS = "foam rings"
 
 
@@ -110,7 +110,7 @@ class _Maker:
             made = few.at(wanted.time, last.place)
             self._shown = last._replace(time=wanted.time)
         MEMO.put(_RINGS, self._parameters, self)  # it has grown
-        return made, math.dist(last.place, wanted.place) <= _FOLLOWS
+        return made, math.dist(last.place, wanted.place) <= _FOLLOWS * last.samples * FINEST
 
 
 @dataclass(frozen=True)

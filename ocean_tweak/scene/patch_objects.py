@@ -33,8 +33,8 @@ from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
 from ..nodes.camera_surface import AREA_INPUT, FOAM_INPUT, PATCH_INPUTS
 from ..nodes.modifier_inputs import get_input, set_inputs
-from ..nodes.names import DISPLACEMENT, SLOPE_VARIANCE, WEIGHT
-from . import evaluation, foam_rings, held_sea, patch_points, vertex_attributes
+from ..nodes.names import DISPLACEMENT, WEIGHT
+from . import evaluation, foam_rings, held_sea, patch_averages, patch_points, vertex_attributes
 from .grid_mesh import Grid
 from .patch_points import Points
 from .plan import COARSE, Plan, camera_surface_of, in_window, surface_modifier
@@ -249,14 +249,20 @@ def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
     seas = [each.patch.at_resolution(each.samples) for each in lacking]
     surfaces = [evaluation.surfaces_of(sea) for sea in seas]
     with ThreadPoolExecutor(usable_cores()) as pool:
-        made = list(pool.map(lambda each: each.fields(plan.time, ADDING, plan.is_whole)[0], surfaces))
-    for each, sea, fields in zip(lacking, seas, made, strict=True):
-        lost = 0.0
-        if not each.is_coarse:  # to find it takes longer than the patch
-            lost = max(unresolved_slope_variance(sea) - unresolved_slope_variance(each.patch), 0.0)
-        grid = Grid(each.patch.domain_size * plan.scale, each.samples, each.samples)
-        _write(each.mesh, grid, fields, plan, lost=lost)
-        _shown[each.mesh.session_uid] = (moment, *each[1:])
+        made = pool.map(lambda each: each.fields(plan.time, ADDING, plan.is_whole)[0], surfaces)
+        # one is written while the next one is made
+        for each, sea, fields in zip(lacking, seas, made, strict=True):
+            lost = 0.0 if each.is_coarse else _lost(each, sea)
+            grid = Grid(each.patch.domain_size * plan.scale, each.samples, each.samples)
+            in_units = {name: _in_units(CHANNELS[name], field, plan) for name, field in fields.items()}
+            patch_averages.write(each.mesh, grid, in_units, lost)
+            _shown[each.mesh.session_uid] = (moment, *each[1:])
+
+
+def _lost(filling: _Filling, sea: OceanParameters) -> float:
+    """Mean square slope of the waves that the sea of a mesh's samples lacks. To find it takes longer than the
+    patch where it is not known."""
+    return max(unresolved_slope_variance(sea) - unresolved_slope_variance(filling.patch), 0.0)
 
 
 def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | None:
@@ -341,13 +347,11 @@ def _write(
     grid: Grid,
     fields: Mapping[str, RealArray],
     plan: Plan,
-    corner: tuple[float, float] = (0.0, 0.0),
-    lost: float = 0.0,
+    corner: tuple[float, float],
 ) -> None:
     """Put the fields ADDING of the plan's moment on points.
 
     corner : x and y of the first one at rest, m
-    lost : mean square slope of the waves that these samples lack
     """
     if len(mesh.vertices) != grid.vertices:
         mesh.clear_geometry()
@@ -355,8 +359,6 @@ def _write(
     values = {name: _in_units(CHANNELS[name], fields[name], plan) for name in sorted(ADDING)}
     for name, value in values.items():
         vertex_attributes.put(mesh, CHANNELS[name], value)
-    attribute = mesh.attributes.get(SLOPE_VARIANCE) or mesh.attributes.new(SLOPE_VARIANCE, "FLOAT", "POINT")
-    attribute.data.foreach_set("value", np.full(grid.vertices, lost, np.float32))
     places: RealArray = grid.positions()
     places[:, :2] += np.float32(plan.scale) * np.array(corner, np.float32)
     places += values["displacement"].reshape(-1, 3)

@@ -272,7 +272,10 @@ def test_slopes_are_in_the_geometry_or_told_as_variance(shown, core, patched, ca
 def test_patches_come_and_go_with_the_surface(shown, extension, patched, empty_scene):
     ocean, item = shown()
     found = patch_objects(ocean)
-    assert [len(each.data.vertices) for each in found] == [65**2, 49**2, 33**2]
+    tables = [numbers(each.data, "ocean_tweak_averages", 3) for each in found]
+    assert [tuple(table[0, :2]) for table in tables] == [(65, 65), (49, 49), (33, 33)]
+    # their averages follow, down to one cell, which has four points
+    assert [table[round(-table[0, 2]) - 1, 2] for table in tables] == [len(table) - 4 for table in tables]
     assert all(each.hide_viewport and each.hide_render and each.hide_select for each in found)
     assert [each.rotation_euler.z for each in found] == pytest.approx([0.0, 0.97, 0.37])
     count = len(bpy.data.meshes)
@@ -287,7 +290,7 @@ def test_patches_come_and_go_with_the_surface(shown, extension, patched, empty_s
     )
     settings.from_parameters(patched(patches=others), empty_scene)
     found = patch_objects(ocean)
-    assert [len(each.data.vertices) for each in found] == [97**2, 49**2]
+    assert [numbers(each.data, "ocean_tweak_averages", 3)[0, 0] for each in found] == [97, 49]
     assert found[1].rotation_euler.z == pytest.approx(1.1)
     assert len(bpy.data.meshes) == count - 1
     get = extension("nodes.modifier_inputs").get_input

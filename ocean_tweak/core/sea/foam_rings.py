@@ -123,7 +123,7 @@ class _Entering(NamedTuple):
 
 def samples_for(vertices: int) -> int:
     """Places along each side of a ring that a surface with so many vertices, in levels of its own, shows."""
-    steps = math.ceil(_STEP * SAMPLES * math.sqrt(vertices / VERTICES))
+    steps = round(_STEP * SAMPLES * math.sqrt(vertices / VERTICES))
     return round(min(max(steps, _LEAST_STEP), _STEP * SAMPLES) / _STEP)
 
 

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Averages of a field that repeats, over larger and larger cells (Williams 1983).
+
+The averages that follow are those of two by two: sample j of n stands for the place (j + ½)/n of the period,
+and lies between two samples of the averages before. Numbers that cannot be halved are rounded up, and what
+lies between two samples is interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+RealArray = NDArray[np.float32]
+
+
+def averages(field: RealArray) -> Iterator[RealArray]:
+    """Averages of a (rows, columns, …) field that repeats, from those over four samples to that over all.
+
+    Yields (⌈rows/2⌉, ⌈columns/2⌉, …), and so on, to (1, 1, …).
+    """
+    while max(field.shape[:2]) > 1:
+        field = _halved(_halved(field, 0), 1)
+        yield field
+
+
+def _halved(field: RealArray, axis: int) -> RealArray:
+    """Half as many samples along an axis, in the middle between those before."""
+    count = field.shape[axis]
+    if count % 2 == 0:
+        before = field.reshape(*field.shape[:axis], count // 2, 2, *field.shape[axis + 1 :])
+        mean = before.take(0, axis + 1)
+        mean += before.take(1, axis + 1)
+        mean *= np.float32(0.5)
+        return mean
+    wanted = (count + 1) // 2
+    place = (np.arange(wanted) + 0.5) * (count / wanted) - 0.5
+    low = np.floor(place).astype(np.intp)
+    share = (place - low).astype(np.float32).reshape(-1, *(1,) * (field.ndim - 1 - axis))
+    here, there = (field.take(number % count, axis) for number in (low, low + 1))
+    return here + share * (there - here)

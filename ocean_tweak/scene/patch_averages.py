@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The points of a live patch and of its averages, as the surface around the camera reads them.
+
+They lie one behind the other: those of the patch, x fastest, the last ones of a row and of a column being the
+first ones of the next period, then those of its averages, each closed in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import accumulate, chain
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.numerics.halving import averages
+from ..core.numerics.interpolation import wrapped
+from ..nodes.names import AVERAGES_TABLE, DISPLACEMENT, OTHERS, SLOPES, VELOCITY
+from .grid_mesh import Grid
+
+RealArray = NDArray[np.float32]
+
+
+def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], lost: float) -> None:
+    """Put a patch and its averages on points.
+
+    grid : of the patch, in Blender units
+    fields : ADDING, (N+1, N+1, …) each, in Blender units
+    lost : mean square slope of the waves that these samples lack
+    """
+    whole = {
+        DISPLACEMENT: fields["displacement"],
+        VELOCITY: fields["velocity"],
+        SLOPES: _slopes(fields["slope"], lost),
+        OTHERS: fields["strain"],
+    }
+    table = _table(grid)
+    if len(mesh.vertices) != len(table) or AVERAGES_TABLE not in mesh.attributes:
+        mesh.clear_geometry()
+        mesh.vertices.add(len(table))
+        for name in (AVERAGES_TABLE, *whole):
+            mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
+        _put(mesh, AVERAGES_TABLE, table)
+    for name, closed in whole.items():
+        more = (wrapped(level) for level in averages(closed[:-1, :-1]))
+        _put(mesh, name, np.concatenate([level.reshape(-1, 3) for level in chain([closed], more)]))
+    places = np.zeros_like(table)
+    places[: grid.vertices] = grid.positions()
+    places[: grid.vertices] += fields["displacement"].reshape(-1, 3)
+    _put(mesh, "position", places)
+    mesh.update_tag()
+
+
+def _slopes(slope: RealArray, lost: float) -> RealArray:
+    """Slopes along x and y and their squares' sum, with the waves that are not there."""
+    result = np.empty((*slope.shape[:2], 3), np.float32)
+    result[..., :2] = slope
+    np.square(slope[..., 0], out=result[..., 2])
+    result[..., 2] += np.square(slope[..., 1])
+    result[..., 2] += np.float32(lost)
+    return result
+
+
+def _table(grid: Grid) -> RealArray:
+    """(points, 3): how many points each of the averages has along x and y, and its first one's number."""
+    sides = [grid.samples + 1]
+    while sides[-1] > 2:
+        sides.append(sides[-1] // 2 + 1)
+    *first, count = accumulate((side**2 for side in sides), initial=0)
+    table = np.zeros((count, 3), np.float32)
+    table[: len(sides)] = [(side, side, number) for side, number in zip(sides, first, strict=True)]
+    table[0, 2] = -len(sides)
+    return table
+
+
+def _put(mesh: bpy.types.Mesh, name: str, values: RealArray) -> None:
+    mesh.attributes[name].data.foreach_set("vector", np.ascontiguousarray(values).reshape(-1))
