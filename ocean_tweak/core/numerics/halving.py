@@ -31,7 +31,7 @@ def _halved(field: RealArray, axis: int) -> RealArray:
     count = field.shape[axis]
     if count % 2 == 0:
         before = field.reshape(*field.shape[:axis], count // 2, 2, *field.shape[axis + 1 :])
-        mean = before.take(0, axis + 1)
+        mean: RealArray = before.take(0, axis + 1)
         mean += before.take(1, axis + 1)
         mean *= np.float32(0.5)
         return mean
@@ -40,4 +40,4 @@ def _halved(field: RealArray, axis: int) -> RealArray:
     low = np.floor(place).astype(np.intp)
     share = (place - low).astype(np.float32).reshape(-1, *(1,) * (field.ndim - 1 - axis))
     here, there = (field.take(number % count, axis) for number in (low, low + 1))
-    return here + share * (there - here)
+    return np.asarray(here + share * (there - here))
