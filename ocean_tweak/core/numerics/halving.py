@@ -31,8 +31,8 @@ def _halved(field: RealArray, axis: int) -> RealArray:
     count = field.shape[axis]
     if count % 2 == 0:
         before = field.reshape(*field.shape[:axis], count // 2, 2, *field.shape[axis + 1 :])
-        mean: RealArray = before.take(0, axis + 1)
-        mean += before.take(1, axis + 1)
+        first, second = (before[(slice(None),) * (axis + 1) + (number,)] for number in (0, 1))
+        mean = np.add(first, second, dtype=np.float32)
         mean *= np.float32(0.5)
         return mean
     wanted = (count + 1) // 2
