@@ -92,7 +92,10 @@ class _Columns:
 
     def _sum(self, component: int, by: str, along_x: ComplexArray, along_y: ComplexArray) -> Array:
         wanted = self._synthesis.terms[component, by, False]
-        coefficients = self._coefficients(wanted.column) * self._synthesis.x_factors.get(wanted, 1.0)
+        factor = self._synthesis.x_factor(wanted)
+        coefficients = self._coefficients(wanted.column)
+        if factor is not None:
+            coefficients = coefficients * factor
         return np.einsum("pk,pk->p", along_y @ coefficients, along_x).real
 
     def _coefficients(self, column: Column) -> ComplexArray:

@@ -34,6 +34,7 @@ from ..waves.contribution import BlockShares, Shares, Sharing
 from .coefficients import InitialState, PropagatedState, propagate
 from .trough_damping import TroughDamping
 
+Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
 
@@ -42,10 +43,12 @@ X, Y, Z = 0, 1, 2
 #: complex numbers in the blocks of either pass that are worked on at once, by all workers together: the
 #: wider, the quicker, up to the size of a cache
 _BLOCK = 2**17
+#: the same at least, of grids so small that little memory is no matter
+_LEAST = 2**14
 
 #: bytes a sample that a surface may take beyond its outputs, those of a column, and those of the
 #: temporaries that live for each number of a block
-_MEMORY, _COLUMN, _TEMPORARIES = 24, 4, 48
+_MEMORY, _COLUMN, _TEMPORARIES = 24, 4, 50
 
 #: rows of a block lie this much further apart than they are long, or the columns that are to become rows
 #: would all fall into the same few lines of the caches
@@ -112,31 +115,30 @@ class Synthesis:
         keys = itertools.product((X, Y, Z), ("", "x", "y", "t"), (False, True))
         return {key: term(*key, gradient=not self.sharing) for key in keys}
 
-    @cached_property
-    def x_factors(self) -> dict[Term, ComplexArray]:
-        """(i kx)ᵐ of each field that has one, (N//2+1,), and the choppiness λ where its column has none."""
-        factors: dict[Term, ComplexArray] = {}
-        for term in set(self.terms.values()):
-            factor = (1j * self.state.grid.kx[0]) ** term.x_order
-            if term.column.source == POTENTIAL and term.column.y_order == 0:
+    def x_factor(self, wanted: Term) -> ComplexArray | None:
+        """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none; None for 1."""
+        is_of_potential = wanted.column.source == POTENTIAL and wanted.column.y_order == 0
+        return self._factor(self.state.grid.kx[0], wanted.x_order, is_of_potential)
+
+    def y_factor(self, column: Column) -> ComplexArray | None:
+        """(i ky)ⁿ of a column, (N,), and the choppiness λ if it is one of the potential's derivatives."""
+        return self._factor(self.state.grid.ky[:, 0], column.y_order, column.source == POTENTIAL)
+
+    def _factor(self, wave_numbers: Array, order: int, is_of_potential: bool) -> ComplexArray | None:
+        if order == 0:
+            return None
+        key = (len(wave_numbers), order, is_of_potential)
+        if key not in self._factors:
+            factor = (1j * wave_numbers) ** order
+            if is_of_potential:
                 factor *= self.parameters.choppiness
-            if term.x_order:
-                factors[term] = factor.astype(self.dtype)
-        return factors
+            self._factors[key] = factor.astype(self.dtype)
+        return self._factors[key]
 
     @cached_property
-    def y_factors(self) -> dict[Column, ComplexArray]:
-        """(i ky)ⁿ of each column that has one, (N,), and the choppiness λ if it is one of the potential's
-        derivatives.
-        """
-        factors: dict[Column, ComplexArray] = {}
-        for column in {term.column for term in self.terms.values()}:
-            factor = (1j * self.state.grid.ky[:, 0]) ** column.y_order
-            if column.source == POTENTIAL:
-                factor *= self.parameters.choppiness
-            if column.y_order:
-                factors[column] = factor.astype(self.dtype)
-        return factors
+    def _factors(self) -> dict[tuple[int, int, bool], ComplexArray]:
+        """Those that were made: each block of a surface takes them."""
+        return {}
 
     def columns(self, wanted: Iterable[tuple[int, str]]) -> list[Column]:
         """What the first pass must make for some components and derivatives."""
@@ -211,7 +213,7 @@ class Synthesis:
         """Blocks of `count` rows or columns, beside a workspace of so many columns."""
         n = self.state.grid.resolution
         spare = max(1, _MEMORY - _COLUMN * columns)
-        numbers = min(_BLOCK, n * n * spare // _TEMPORARIES)
+        numbers = min(_BLOCK, max(_LEAST, n * n * spare // _TEMPORARIES))
         if self.sharing:  # what they take is told apart, and small blocks are slow
             numbers = _BLOCK
         size = max(1, numbers // workers // n)
@@ -253,7 +255,8 @@ class _Sources:
     def coefficients(self, column: Column) -> ComplexArray:
         """h, Φ, λDx or λDy, or a rate, times (i ky)ⁿ."""
         base = self._base(column._replace(y_order=0))
-        return base * self._synthesis.y_factors[column] if column.y_order else base
+        factor = self._synthesis.y_factor(column)
+        return base if factor is None else base * factor
 
     def _base(self, column: Column) -> ComplexArray:
         if column not in self._bases:
@@ -333,8 +336,9 @@ class Rows:
             out[...] = self._made[wanted]
             return out
         coefficients = self._first_pass[wanted.column][self._block]
-        if wanted.x_order:
-            coefficients = coefficients * self._synthesis.x_factors[wanted]
+        factor = self._synthesis.x_factor(wanted)
+        if factor is not None:
+            coefficients = coefficients * factor
         self._made[wanted] = _inverse_real(coefficients, out)
         return self._made[wanted]
 
