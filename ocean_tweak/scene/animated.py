@@ -93,16 +93,33 @@ def set_keys(
     """
     _remove_animation(item)
     for path, values in samples.items():
-        data_path = _GROUP + re.sub(r"\.(\d+)", r"[\1]", path)
-        # makes action, slot and curve where there are none
-        item.keyframe_insert(data_path, frame=first_frame)
-        points = next(curve for curve in curves_of(item) if curve.data_path == data_path).keyframe_points
-        points.add(len(values) - len(points))
-        frames = (first_frame + np.arange(len(values))) / float(time_stretch(scene))
-        points.foreach_set("co", np.stack((frames, values), axis=-1).astype(np.float32).ravel())
-        for point in points:
-            point.interpolation = "LINEAR"
-        points.handles_recalc()
+        key_each_frame(item, _GROUP + re.sub(r"\.(\d+)", r"[\1]", path), scene, first_frame, values)
+
+
+def key_each_frame(
+    item: bpy.types.Object,
+    data_path: str,
+    scene: bpy.types.Scene,
+    first_frame: int,
+    values: Sequence[float],
+    index: int = -1,
+) -> None:
+    """Give a property a key a frame of the scene, linear between.
+
+    index : of a property that is several numbers
+    """
+    # makes action, slot and curve where there are none
+    item.keyframe_insert(data_path, index=index, frame=first_frame)
+    known = (data_path, max(index, 0))
+    points = next(
+        curve for curve in curves_of(item) if (curve.data_path, curve.array_index) == known
+    ).keyframe_points
+    points.add(len(values) - len(points))
+    frames = (first_frame + np.arange(len(values))) / float(time_stretch(scene))
+    points.foreach_set("co", np.stack((frames, values), axis=-1).astype(np.float32).ravel())
+    for point in points:
+        point.interpolation = "LINEAR"
+    points.handles_recalc()
 
 
 def move_keys(item: bpy.types.Object, places: Mapping[int, int | None]) -> None:

@@ -77,9 +77,10 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
 
 
 @_loud
-def follow_before_frame(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
-    """A script may have moved floating objects since the last evaluation."""
+def follow_before_frame(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+    """A script may have moved floating objects or keyed masks since the last evaluation."""
     float_carrier.follow()
+    mask_following.bind(scene)
 
 
 @_loud
@@ -95,7 +96,9 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
     """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
     for item in _evaluated_oceans(scene, depsgraph):
         if is_animated(item):
-            show(item, scene, of_a_frame(item) & ~Wanted.FILES, shown_settings(item, depsgraph))
+            shown = shown_settings(item, depsgraph)
+            mask_following.take_over(item, shown, depsgraph)
+            show(item, scene, of_a_frame(item) & ~Wanted.FILES, shown)
 
 
 @_loud
@@ -137,8 +140,9 @@ def refresh_for_images(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | 
 @persistent
 def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Let masks follow their objects where these, or the ocean, are moved, edited or painted by hand."""
-    if depsgraph is None or not depsgraph.id_type_updated("OBJECT"):
+    if depsgraph is None or not any(map(depsgraph.id_type_updated, ("OBJECT", "ACTION"))):
         return
+    mask_following.bind(scene)
     moved, edited = set(), set()
     for update in depsgraph.updates:  # one at a time: Blender may take a kept one for its own object
         is_moved, is_edited = update.is_updated_transform, update.is_updated_geometry

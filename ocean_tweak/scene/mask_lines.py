@@ -18,16 +18,19 @@ def lines_of(item: bpy.types.Object, to_ocean: Matrix) -> NDArray[np.float32]:
     """(lines, 4) x and y of both ends of each edge, Blender units; of a curve, of the edges it is drawn with.
 
     Without modifiers: one of them may read the sea, which the mask moves.
+
+    item : as evaluated or not, whose place is taken
     """
     if item.type not in KINDS:
         return np.zeros((0, 4), np.float32)
-    mesh = item.data if item.type == "MESH" else item.to_mesh()
+    shape = item.original
+    mesh = shape.data if item.type == "MESH" else shape.to_mesh()
     ends = np.empty(2 * len(mesh.edges), np.int32)
     mesh.edges.foreach_get("vertices", ends)
     places = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("co", places)
     if item.type != "MESH":
-        item.to_mesh_clear()
+        shape.to_mesh_clear()
     matrix = np.array(to_ocean @ item.matrix_world)
     moved = places.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
     return moved[ends, :2].reshape(-1, 4).astype(np.float32)

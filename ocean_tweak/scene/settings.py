@@ -165,6 +165,17 @@ class OceanSettings(Protocol):
     def place_masks(self) -> None:
         """Measure the distances of masks from where their objects are now."""
 
+    def take_mask_places(self, shown: OceanSettings) -> None:
+        """Measure from where an evaluation has the masks' objects.
+
+        shown : these settings as evaluated
+        """
+
+    def let_mask_follow(self, path: str, item: bpy.types.Object) -> None:
+        """Put an object where the distance of a mask, by its path in the parameters, is measured from, and
+        measure it from that.
+        """
+
     def painted_meshes(self) -> set[bpy.types.Object]:
         """Those whose weights masks have read."""
 

@@ -7,15 +7,20 @@ import math
 from collections.abc import Iterable, Iterator
 
 import bpy
+import numpy as np
 
-from ..core import OceanParameters
+from ..core import Mask, OceanParameters, ParameterError, Raster
 from ..core.data.frames import Frame
+from ..core.data.raster import LARGEST_SIDE
 from ..core.data.validation import changing_fields
-from ..core.parameters.shot import OCEAN_TIME, Animation, Shot
+from ..core.parameters.shot import OCEAN_TIME, Animation, Samples, Shot
 from . import handlers
-from .animated import clock_of, has_own_time, is_animated, set_keys, shown_settings
-from .settings import settings_of
+from .animated import clock_of, has_own_time, is_animated, key_each_frame, set_keys, shown_settings
+from .settings import OceanObjectError, link_beside, settings_of
 from .view_layers import evaluated, taking_part
+
+#: ends of paths of masks' places
+_PLACE = ("mask.x", "mask.y")
 
 
 def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()) -> Shot:
@@ -30,32 +35,71 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
     # one more on either side: the velocity of an end is that of the motion through it
     first, last = math.floor(min(wanted)) - 1, math.ceil(max(wanted)) + 1
-    samples = [
-        _sample(item, scene, depsgraph) for depsgraph in evaluations(scene, range(first, last + 1), item)
-    ]
+    seas, samples = zip(
+        *(_sample(item, scene, depsgraph) for depsgraph in evaluations(scene, range(first, last + 1), item)),
+        strict=True,
+    )
     changing = {
-        path: tuple(sample[path] for sample in samples)
+        path: _joined(path, [sample[path] for sample in samples])
         for path in samples[0]
         if path == OCEAN_TIME or any(sample[path] != samples[0][path] for sample in samples)
     }
     if not changing:
         return Shot(parameters)
-    return Shot(parameters, Animation(first, tuple(changing.items())))
+    # the sea of the first, whatever frame the scene shows now
+    return Shot(seas[0], Animation(first, tuple(changing.items())))
+
+
+def _joined(path: str, values: list[float | Raster]) -> Samples:
+    """A value of each frame. Raises ParameterError for lines that are not always as many."""
+    if not isinstance(values[0], Raster):
+        return tuple(values)
+    if len({lines.shape for lines in values}) > 1:
+        raise ParameterError(
+            path, "lines", "must be as many in each frame: the mask's object gains or loses edges"
+        )
+    if len(values) > LARGEST_SIDE:
+        reason = f"must be at most {LARGEST_SIDE} with a mask whose shape moves: take the shot in parts"
+        raise ParameterError(path, f"{len(values)} frames", reason)
+    return Raster(np.concatenate([lines.values for lines in values]), values[0].name)
 
 
 def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
-    """Give an ocean, which is the shot's sea already, keys for what changes; none where nothing does."""
+    """Give an ocean, which is the shot's sea already, keys for what changes; none where nothing does.
+
+    Masks that move get a keyed object. Raises OceanObjectError for one whose lines move, before any change.
+    """
     samples = dict(shot.animation.samples) if shot.animation is not None else {}
+    for path in samples:
+        if path.endswith("mask.lines"):
+            raise OceanObjectError(
+                f"{path} moves in this shot, as its object did: choose that object again, whose keys move it"
+            )
     settings = settings_of(item)
     with settings.quiet():
         settings.use_ocean_time = OCEAN_TIME in samples
         settings.time_scale = 1.0
     first = shot.animation.first_frame if shot.animation is not None else 0
-    set_keys(
-        item, scene, first, {path: settings.blender_values(path, samples[path], scene) for path in samples}
-    )
+    values = {path: settings.blender_values(path, samples[path], scene) for path in samples}
+    masks = dict.fromkeys(path.rpartition(".")[0] for path in samples if path.endswith(_PLACE))
+    set_keys(item, scene, first, {path: values[path] for path in values if not path.endswith(_PLACE)})
+    for mask in masks:
+        along = [values.get(f"{mask}.{axis}") for axis in ("x", "y")]
+        place = _place_over(item)
+        settings.let_mask_follow(mask, place)
+        for index, values_along in enumerate(along):
+            if values_along is not None:
+                key_each_frame(place, "location", scene, first, values_along, index)
     if samples:
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+
+
+def _place_over(ocean: bpy.types.Object) -> bpy.types.Object:
+    """An empty in an ocean's axes."""
+    item = bpy.data.objects.new(f"{ocean.name} mask", None)
+    item.parent = ocean
+    link_beside(item, ocean)
+    return item
 
 
 def evaluations(
@@ -82,18 +126,29 @@ def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:
 
 def _sample(
     item: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
-) -> dict[str, float]:
-    """What can be animated, by its path, at the scene's present frame."""
+) -> tuple[OceanParameters, dict[str, float | Raster]]:
+    """The sea at the scene's present frame, and what of it can be animated, by its path."""
     settings = shown_settings(item, depsgraph)
     parameters = settings.to_parameters(scene)
     values = dict(_values(parameters))
     if has_own_time(settings):
         values[OCEAN_TIME] = float(clock_of(settings, scene, parameters.timing.start_frame).time)
-    return values
+    return parameters, values
 
 
-def _values(parameters: OceanParameters) -> Iterator[tuple[str, float]]:
+def _values(parameters: OceanParameters) -> Iterator[tuple[str, float | Raster]]:
     yield from ((name, getattr(parameters, name)) for name in changing_fields(OceanParameters))
     for index, layer in enumerate(parameters.layers):
         own = changing_fields(type(layer))
         yield from ((f"layers.{index}.{name}", getattr(layer, name)) for name in own)
+    yield from _places("", parameters.mask)
+    for name, entries in (("layers", parameters.layers), ("patches", parameters.patches)):
+        for index, entry in enumerate(entries):
+            yield from _places(f"{name}.{index}.", entry.mask)
+
+
+def _places(owner: str, mask: Mask | None) -> Iterator[tuple[str, float | Raster]]:
+    """What changes of a mask whose object moves."""
+    if mask is not None and mask.source == "DISTANCE":
+        names = ("x", "y") if mask.lines is None else ("lines",)
+        yield from ((f"{owner}mask.{name}", getattr(mask, name)) for name in names)

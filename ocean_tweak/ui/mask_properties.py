@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import bpy
 import numpy as np
@@ -98,7 +99,7 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
         "image_channels": channels_property(),
         "object": PointerProperty(
             name="Object", type=bpy.types.Object, options=set(), update=_placed, **_OVERRIDE,
-            description="Waves are told by the distance to it. It is followed when it is moved by hand",
+            description="Waves are told by the distance to it. It is followed, moved by hand or by itself",
         ),
         "measured_from": EnumProperty(
             name="Measured From", default="ORIGIN", options=set(), update=_placed, **_OVERRIDE,
@@ -127,17 +128,33 @@ def place(group: bpy.types.PropertyGroup) -> None:
     """Measure from where the mask's object is now, if it has one."""
     if group.object is None:
         return
-    to_ocean = group.id_data.matrix_world.inverted_safe()
-    if group.measured_from == "SHAPE":
-        lines = mask_lines.to_text(mask_lines.lines_of(group.object, to_ocean))
-        if lines != group.lines:
-            group.lines = lines
+    measured = _measured(group)
+    if "lines" in measured:
+        if measured["lines"] != group.lines:
+            group.lines = measured["lines"]
             changed(group, bpy.context)
         return
-    x, y, _ = to_ocean @ group.object.matrix_world.translation
-    for name, value in (("x", x), ("y", y)):
+    for name, value in measured.items():
         if abs(getattr(group, name) - value) > 1e-5 * max(1.0, abs(value)):
             setattr(group, name, value)
+
+
+def take_place(group: bpy.types.PropertyGroup, evaluated: bpy.types.PropertyGroup) -> None:
+    """Measure from where an evaluation has the mask's object, exactly."""
+    if evaluated.object is None:
+        return
+    for name, value in _measured(evaluated).items():
+        if getattr(group, name) != value:
+            setattr(group, name, value)
+
+
+def _measured(group: bpy.types.PropertyGroup) -> dict[str, Any]:
+    """The properties that tell where the mask's object is: as evaluated where the group is."""
+    to_ocean = group.id_data.matrix_world.inverted_safe()
+    if group.measured_from == "SHAPE":
+        return {"lines": mask_lines.to_text(mask_lines.lines_of(group.object, to_ocean))}
+    x, y, _ = to_ocean @ group.object.matrix_world.translation
+    return {"x": x, "y": y}
 
 
 def has_read(group: bpy.types.PropertyGroup) -> bool:
@@ -167,7 +184,9 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
     """The mask; None where waves are everywhere. Raises ParameterError for one that cannot be."""
     if group.source == "NONE":
         return None
-    values = parameter_properties.read(group, Mask, metres, ("source",))
+    is_seen = group.source == "DISTANCE" and group.id_data.is_evaluated and group.object is not None
+    seen = _measured(group) if is_seen else {}
+    values = parameter_properties.read(group, Mask, metres, ("source",), seen)
     try:
         if group.source == "NOISE":
             return Mask(**{**values, "source": "NOISE"})
@@ -177,7 +196,13 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
             if not name.startswith("noise_") or group.is_property_set(name)
         }  # fmt: skip
         if group.source not in _IMAGES:
-            return Mask(**{**values, "source": "DISTANCE", "lines": _lines(group, metres)})
+            return Mask(
+                **{
+                    **values,
+                    "source": "DISTANCE",
+                    "lines": _lines(group, seen.get("lines", group.lines), metres),
+                }
+            )
         source = source_images.source_of(group)
         if source is None:
             remedy = "choose one, or no mask" if group.source == "IMAGE" else "press Read Weights"
@@ -188,16 +213,16 @@ def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:
         raise error.inside("mask") from None
 
 
-def _lines(group: bpy.types.PropertyGroup, metres: Fraction) -> Raster | None:
+def _lines(group: bpy.types.PropertyGroup, text: str, metres: Fraction) -> Raster | None:
     """Those that a distance is measured from; None for a place. Raises ParameterError for none."""
     item = group.object
-    if item is not None and floating.floats(item):
+    if item is not None and floating.floats(item.original):
         raise ParameterError(
             "object", item.name, "it floats on the water, which would follow itself: choose one that does not"
         )
     if group.measured_from == "ORIGIN":
         return None
-    lines = mask_lines.from_text(group.lines)
+    lines = mask_lines.from_text(text)
     if not len(lines):
         name = "" if item is None else item.name
         raise ParameterError(

@@ -130,15 +130,21 @@ def write(
 
 
 def read(
-    group: bpy.types.PropertyGroup, kind: type, metres: Fraction, without: tuple[str, ...] = ()
+    group: bpy.types.PropertyGroup,
+    kind: type,
+    metres: Fraction,
+    without: tuple[str, ...] = (),
+    seen: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Values of a group by field name, in SI units and not yet validated.
+
+    seen : what some properties should be, in Blender units
 
     Raises ParameterError where what the file stores beside the properties is damaged.
     """
     result = _exact_values(group)
     for field in _plain_fields(kind, without):
-        value = getattr(group, field.name)
+        value = (seen or {}).get(field.name, getattr(group, field.name))
         if field.metadata["kind"] is float:
             value = _exact_float(field, value, result.get(field.name), metres)
         result[field.name] = value

@@ -16,7 +16,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, OceanParameters, Spray, Timing, Water, WaveLayer
+from ..core import Foam, Mask, OceanParameters, Spray, Timing, Water, WaveLayer
 from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.validation import Off
 from ..core.waves.kinds import shown
@@ -141,6 +141,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "spray": PointerProperty(type=OCEAN_PG_spray, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
         "is_ocean": BoolProperty(**_HIDDEN),
+        # whose driver needs the objects of masks that move, so that Blender evaluates these first
+        "mask_motion": FloatProperty(options={"HIDDEN", "ANIMATABLE"}),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
         "placed_size": FloatProperty(**_HIDDEN),
         "stays_behind": BoolProperty(**_HIDDEN),
@@ -289,6 +291,26 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             if mask.source == "DISTANCE":
                 mask_properties.place(mask)
 
+    def take_mask_places(self, shown: bpy.types.PropertyGroup) -> None:
+        """Measure from where an evaluation has the masks' objects.
+
+        shown : these settings as evaluated
+        """
+        for own, evaluated in zip(self._masks(), shown._masks(), strict=True):
+            if own.source == "DISTANCE":
+                mask_properties.take_place(own, evaluated)
+
+    def let_mask_follow(self, path: str, item: bpy.types.Object) -> None:
+        """Put an object where the distance of a mask, by its path in the parameters, is measured from, and
+        measure it from that.
+        """
+        owner, _, number = path.removesuffix(".mask").partition(".")
+        group = {"layers": self.layers, "patches": self.patches}[owner][int(number)] if number else self
+        mask = (group.group if owner == "layers" else group).mask
+        item.location = mask.x, mask.y, 0.0
+        bpy.context.view_layer.update()
+        mask.object = item
+
     def painted_meshes(self) -> set[bpy.types.Object]:
         """Those whose weights masks have read."""
         return {mask.mesh for mask in self._masks() if mask_properties.has_read(mask)}
@@ -304,7 +326,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
-        kind = WaveLayer if path.startswith("layers.") else OceanParameters
+        of_mask = path.rpartition(".")[0].endswith("mask")
+        kind = Mask if of_mask else WaveLayer if path.startswith("layers.") else OceanParameters
         unit = parameter_properties.unit_of(kind, path.rpartition(".")[2], metres_per_unit(scene))
         return [value / unit for value in values]
 

@@ -140,7 +140,10 @@ def test_a_mask_says_what_it_lacks(draw, item):
     assert waits() == ""
     mesh.keyframe_insert("location", frame=1)
     mask.object = mesh
-    assert "Beach has keys, which masks do not follow" in " ".join(draw(item))
+    bpy.context.view_layer.update()
+    assert "Beach moves by itself" not in " ".join(draw(item))  # for it is followed
+    item.driver_remove("ocean_tweak.mask_motion")
+    assert "Beach moves by itself, which masks of a linked ocean do not follow" in " ".join(draw(item))
 
 
 def test_a_number_and_its_unit_stay_in_one_line(extension):

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, ParameterError, Patch, Timing, WaveLayer
+from ocean_tweak.core import Mask, Ocean, OceanParameters, ParameterError, Patch, Raster, Timing, WaveLayer
 from ocean_tweak.core.parameters.fingerprint import frame_fingerprint, shot_fingerprint
 from ocean_tweak.core.parameters.shot import ANIMATED, Animation, Shot
 from ocean_tweak.core.sea.bake import ShotSeas
@@ -182,6 +183,74 @@ def test_a_stretched_shot_is_slower_and_says_so_only_where_it_is() -> None:
 
 
 def test_what_can_change_during_a_shot_is_what_the_documentation_says():
-    """docs/batch.md: of a layer these five, of the sea choppiness and its time."""
+    """docs/batch.md: of a layer these five, of the sea choppiness and its time, of masks where they are."""
     of_layers = ("wind_speed", "wind_direction", "fetch", "swell", "amplitude_scale")
-    assert (*(f"layers.*.{name}" for name in of_layers), "choppiness", "ocean_time") == ANIMATED
+    of_masks = [f"{of}mask.{name}" for of in ("", "layers.*.", "patches.*.") for name in ("x", "y", "lines")]
+    assert (*(f"layers.*.{name}" for name in of_layers), "choppiness", *of_masks, "ocean_time") == ANIMATED
+
+
+# masks that move
+
+PIER = [[[10.0, 20.0, 30.0, 20.0]], [[14.0, 20.0, 34.0, 24.0]], [[14.0, 26.0, 34.0, 30.0]]]
+MOVING = {
+    "first_frame": 10,
+    "samples": {
+        "mask.x": [1.0, 3.0, 3.0],
+        "layers.1.mask.y": [5.0, 5.0, 9.0],
+        "layers.0.mask.lines": {"values": PIER},
+    },
+}  # fmt: skip
+
+
+@pytest.fixture
+def masked() -> OceanParameters:
+    mask = Mask(inner_radius=4.0, outer_radius=9.0)
+    layers = tuple(replace(layer, mask=mask) for layer in SEA.layers)
+    return SEA.replace(mask=mask, layers=layers)
+
+
+def test_masks_move(masked: OceanParameters) -> None:
+    shot = Shot.from_dict({**masked.to_dict(), "animation": MOVING})
+    assert Shot.from_json(shot.to_json()) == shot
+    for frame, x, y, line in (
+        (10, 1.0, 5.0, [10.0, 20.0, 30.0, 20.0]),
+        (Fraction("10.5"), 2.0, 5.0, [12.0, 20.0, 32.0, 22.0]),
+        (Fraction("11.25"), 3.0, 6.0, [14.0, 21.5, 34.0, 25.5]),
+        (12, 3.0, 9.0, [14.0, 26.0, 34.0, 30.0]),
+    ):
+        parameters = shot.at(frame).parameters
+        assert parameters.mask == replace(masked.mask, x=x)
+        assert parameters.layers[1].mask == replace(masked.mask, y=y)
+        assert parameters.layers[0].mask == replace(masked.mask, lines=Raster([[line]]))
+    others = {**MOVING, "samples": {**MOVING["samples"], "mask.x": [1.0, 3.0, 3.5]}}
+    other = Shot.from_dict({**masked.to_dict(), "animation": others})
+    assert shot_fingerprint(other) != shot_fingerprint(shot)
+    assert frame_fingerprint(other, 12) != frame_fingerprint(shot, 12)
+    assert frame_fingerprint(other, 11) == frame_fingerprint(shot, 11)
+
+
+def test_masks_of_patches_move(masked: OceanParameters) -> None:
+    patches = (Patch(SEA.domain_size, 0.0, 20.0, 1e6, 32), Patch(44.0, 0.7, 9.0, 20.0, 32, masked.mask))
+    sea = SEA.replace(patches=patches)
+    shot = Shot(sea, Animation(1, (("patches.1.mask.x", (2.0, 7.0)),)))
+    assert shot.at(2).parameters == sea.replace(patches=(patches[0], replace(patches[1], mask=Mask(
+        x=7.0, inner_radius=4.0, outer_radius=9.0))))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("path", "values", "told"),
+    [
+        ("layers.0.mask.x", (1.0, 2.0), "there is no mask"),
+        ("patches.0.mask.x", (1.0, 2.0), "the sea has only 0 patches"),
+        ("mask.x", (0.0, 2e6), r"mask\.x"),
+        ("mask.x", Raster(PIER), "must be numbers"),
+        ("mask.lines", (1.0, 2.0), "a raster with a row per frame"),
+        ("mask.lines", Raster([[[1.0, 2.0]]]), "4 channels"),
+        ("mask.lines", Raster([PIER[0], [[0.0, 0.0, 9e3, 0.0]]]), "480 m long"),
+        ("mask.strength", (1.0, 2.0), "can change during a shot"),
+    ],
+)
+def test_masks_that_cannot_move_so(path: str, values: object, told: str) -> None:
+    sea = SEA.replace(mask=Mask(inner_radius=4.0, outer_radius=9.0))
+    with pytest.raises(ParameterError, match=told):
+        Shot(sea, Animation(1, ((path, values),)))

@@ -12,6 +12,8 @@ from ..data.raster import Raster
 from ..data.validation import Off, Validated, choice, integer, number, raster, switch
 
 MASK_SOURCES = ("IMAGE", "DISTANCE", "NOISE")
+#: what changes of a mask whose object moves
+MOVING = ("x", "y", "lines")
 #: gusts of a noise along each side of a domain
 MOST_GUSTS = 40
 #: lines of a mask, each as much work as a mask's place, and how many domains each may be long

@@ -2,7 +2,8 @@
 """A shot: a sea, and what of it changes from frame to frame.
 
 Each frame is the sea of that frame's parameters at that frame's ocean time, made from its number alone.
-The samples are given a frame apart; between them values are linear.
+The samples are given a frame apart; between them values are linear. The lines of a mask are a raster whose
+rows are the frames.
 """
 
 from __future__ import annotations
@@ -11,27 +12,35 @@ import json
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..data import formats
 from ..data.errors import ParameterError
 from ..data.frames import LARGEST_FRAME, Frame
 from ..data.plain_data import to_plain
+from ..data.raster import Raster, check_numbers, numbers_in
 from ..data.validation import changing_fields
+from ..masks.parameters import MOVING, Mask
 from ..waves.kinds import KINDS
 from .ocean_parameters import OceanParameters, parse_json
 
 #: seconds on the waves' own clock, where it does not simply follow the frames
 OCEAN_TIME = "ocean_time"
 
-#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer
+#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer or patch
 ANIMATED = (
     *dict.fromkeys(f"layers.*.{name}" for kind in KINDS for name in changing_fields(kind)),
     *changing_fields(OceanParameters),
+    *(f"{owner}mask.{name}" for owner in ("", "layers.*.", "patches.*.") for name in MOVING),
     OCEAN_TIME,
 )
+
+#: samples of a value, one a frame; a raster has a row for each
+Samples = tuple[float, ...] | Raster
 
 _ONE_SEA = "later frames would show other waves"
 #: why the rest cannot: first part of the path → reason
@@ -47,8 +56,10 @@ _CONSTANT = {
     **{kind.former_list: kind.constant for kind in KINDS if kind.former_list},
     "timing": "a shot has one frame rate; animate ocean_time instead",
 }
-_LAYER = re.compile(r"layers\.[0-9]{1,6}\.")
+_NUMBERED = re.compile(r"(layers|patches)\.[0-9]{1,6}\.")
 _MOST_SAMPLES = 1_000_000
+#: numbers of a line of a mask
+_ENDS = 4
 _KEY = "animation"
 
 
@@ -70,13 +81,14 @@ class Animation:
     """Samples a frame apart.
 
     first_frame : that of the first sample
-    samples : path (see ANIMATED) and values, all of one length, SI units and radians
+    samples : path (see ANIMATED) and values, all of one length, SI units and radians; of lines of a mask a
+        raster, a row a frame
 
     Raises ParameterError for a path that cannot be animated and for values that are no finite numbers.
     """
 
     first_frame: int
-    samples: tuple[tuple[str, tuple[float, ...]], ...]
+    samples: tuple[tuple[str, Samples], ...]
 
     def __post_init__(self) -> None:
         if isinstance(self.first_frame, bool) or not isinstance(self.first_frame, int):
@@ -88,21 +100,18 @@ class Animation:
         for path, values in self.samples:
             _check_path(path)
             _check_values(path, values)
-        lengths = {path: len(values) for path, values in self.samples}
+        lengths = {path: _length(values) for path, values in self.samples}
         if len(set(lengths.values())) > 1:
             raise ParameterError("samples", lengths, "must all have as many samples")
-        object.__setattr__(
-            self,
-            "samples",
-            tuple(sorted((path, tuple(float(value) for value in values)) for path, values in self.samples)),
-        )
+        settled = sorted(self.samples, key=lambda sample: sample[0])
+        object.__setattr__(self, "samples", tuple((path, _settled(values)) for path, values in settled))
 
     @property
     def last_frame(self) -> int:
         """That of the last sample."""
-        return self.first_frame + len(self.samples[0][1]) - 1
+        return self.first_frame + _length(self.samples[0][1]) - 1
 
-    def at(self, frame: Frame) -> dict[str, float]:
+    def at(self, frame: Frame) -> dict[str, float | Raster]:
         """Values by path at a frame, linear between samples. Raises ParameterError where there are none."""
         if not self.first_frame <= frame <= self.last_frame:
             raise ParameterError(
@@ -112,15 +121,12 @@ class Animation:
             )  # fmt: skip
         index = math.floor(frame) - self.first_frame
         share = float(frame - math.floor(frame))
-        return {
-            path: values[index] + share * (values[index + 1] - values[index]) if share else values[index]
-            for path, values in self.samples
-        }
+        return {path: _between(values, index, share) for path, values in self.samples}
 
     def rate(self, path: str, frame: Frame) -> float | None:
         """Change a frame of a value: that of the line between samples, at a sample the mean of both sides."""
         values = dict(self.samples).get(path)
-        if values is None:
+        if values is None or isinstance(values, Raster):
             return None
         position = Fraction(frame) - self.first_frame
         last = len(values) - 1
@@ -132,7 +138,10 @@ class Animation:
         """Plain data, as it stands in a JSON file."""
         return {
             "first_frame": self.first_frame,
-            "samples": {path: list(values) for path, values in self.samples},
+            "samples": {
+                path: values.to_plain() if isinstance(values, Raster) else list(values)
+                for path, values in self.samples
+            },
         }
 
     @classmethod
@@ -143,13 +152,10 @@ class Animation:
         samples = data["samples"]
         if not isinstance(samples, dict):
             raise ParameterError(f"{_KEY}.samples", samples, "must be an object of lists")
-        for path, values in samples.items():
-            if not isinstance(values, list):
-                raise ParameterError(
-                    f"{_KEY}.samples.{path}", values, "must be a list with a number per frame"
-                )
+        check_numbers(numbers_in(samples))
         try:
-            return cls(data["first_frame"], tuple((path, tuple(v)) for path, v in samples.items()))
+            known = tuple((path, _from_plain(path, values)) for path, values in samples.items())
+            return cls(data["first_frame"], known)
         except ParameterError as error:
             raise error.inside(_KEY) from None
 
@@ -171,33 +177,38 @@ class Shot:
             except ParameterError as error:
                 raise error.inside(_KEY) from None
 
-    def _extremes(self) -> Iterator[dict[str, float]]:
-        """The least and the greatest of each value: allowed ranges have no holes."""
+    def _extremes(self) -> Iterator[dict[str, float | Raster]]:
+        """The least and the greatest of each value, and the longest lines: allowed ranges have no holes."""
         if self.animation is not None:
             for choose in (min, max):
-                yield {path: choose(values) for path, values in self.animation.samples}
+                yield {
+                    path: _longest(values) if isinstance(values, Raster) else choose(values)
+                    for path, values in self.animation.samples
+                }
 
-    def _with(self, values: Mapping[str, float]) -> OceanParameters:
-        layers = list(self.parameters.layers)
+    def _with(self, values: Mapping[str, float | Raster]) -> OceanParameters:
+        entries: dict[str, list[Any]] = {
+            "layers": list(self.parameters.layers), "patches": list(self.parameters.patches),
+        }  # fmt: skip
         changes: dict[str, Any] = {}
         for path, value in values.items():
-            number, _, name = path.removeprefix("layers.").partition(".")
+            owner, _, name = path.rpartition(".")
+            known, _, rest = owner.partition(".")
             if path == OCEAN_TIME:
                 continue
-            if not name:
-                changes[path] = value
-                continue
-            index = int(number)
-            if index >= len(layers):
-                raise ParameterError(path, value, f"the sea has only {len(layers)} layers")
-            if name not in changing_fields(type(layers[index])):
-                reason = f"is constant over a shot: {layers[index].constant}"
-                raise ParameterError(f"samples.{path}", "animated", reason)
-            try:
-                layers[index] = layers[index].changed(**{name: value})
-            except ParameterError as error:
-                raise error.inside(f"layers.{index}") from None
-        return self.parameters.replace(layers=tuple(layers), **changes)
+            if not owner:
+                changes[name] = value
+            elif owner == "mask":
+                changes["mask"] = _moved(changes.get("mask", self.parameters.mask), path, value)
+            else:
+                number, _, mask = rest.partition(".")
+                own, index = entries[known], int(number)
+                if index >= len(own):
+                    raise ParameterError(path, value, f"the sea has only {len(own)} {known}")
+                own[index] = _changed(own[index], path, value, bool(mask))
+        # without patches there are no entries to say anew
+        patches = {"patches": tuple(entries["patches"])} if self.parameters.patches else {}
+        return self.parameters.replace(layers=tuple(entries["layers"]), **patches, **changes)
 
     def at(self, frame: Frame) -> Moment:
         """What determines a frame, which may lie between two.
@@ -255,13 +266,76 @@ def time_text(time: Fraction) -> Any:
 
 
 def _check_path(path: str) -> None:
-    if _LAYER.sub("layers.*.", path) in ANIMATED:
+    if _NUMBERED.sub(r"\1.*.", path) in ANIMATED:
         return
     reason = _CONSTANT.get(path.partition(".")[0], f"only {', '.join(ANIMATED)} can change during a shot")
     raise ParameterError(f"samples.{path}", "animated", f"is constant over a shot: {reason}")
 
 
-def _check_values(path: str, values: tuple[object, ...]) -> None:
+def _changed(entry: Any, path: str, value: float | Raster, of_mask: bool) -> Any:
+    """A layer or a patch with another value, of its own or of its mask."""
+    if of_mask:
+        return replace(entry, mask=_moved(getattr(entry, "mask", None), path, value))
+    owner, _, name = path.rpartition(".")
+    if name not in changing_fields(type(entry)):
+        reason = f"is constant over a shot: {entry.constant}"
+        raise ParameterError(f"samples.{path}", "animated", reason)
+    try:
+        return entry.changed(**{name: value})
+    except ParameterError as error:
+        raise error.inside(owner) from None
+
+
+def _moved(mask: Mask | None, path: str, value: float | Raster) -> Mask:
+    owner, _, name = path.rpartition(".")
+    if mask is None:
+        raise ParameterError(
+            f"samples.{path}", "animated", "there is no mask: give it one, or leave this out"
+        )
+    try:
+        changes: dict[str, Any] = {name: value}
+        return replace(mask, **changes)
+    except ParameterError as error:
+        raise error.inside(owner) from None
+
+
+def _length(values: Samples) -> int:
+    return values.shape[0] if isinstance(values, Raster) else len(values)
+
+
+def _settled(values: Samples) -> Samples:
+    return values if isinstance(values, Raster) else tuple(float(value) for value in values)
+
+
+def _between(values: Samples, index: int, share: float) -> float | Raster:
+    """The value after a sample, linear to the next one."""
+    if isinstance(values, Raster):
+        rows = values.values[index : index + 2].astype(np.float64)
+        return Raster(rows[:1] + share * (rows[1:] - rows[:1]) if share else rows[:1], values.name)
+    return values[index] + share * (values[index + 1] - values[index]) if share else values[index]
+
+
+def _longest(lines: Raster) -> Raster:
+    """The row with the longest line along an axis."""
+    x0, y0, x1, y1 = np.moveaxis(lines.values, -1, 0)
+    longest = np.maximum(np.abs(x1 - x0), np.abs(y1 - y0)).max(axis=1)
+    return Raster(lines.values[int(np.argmax(longest))][np.newaxis], lines.name)
+
+
+def _from_plain(path: str, values: object) -> Samples:
+    if isinstance(values, dict) and path.endswith(".lines"):
+        return Raster.from_plain(values)
+    if not isinstance(values, list):
+        raise ParameterError(f"samples.{path}", values, "must be a list with a number per frame")
+    return tuple(values)
+
+
+def _check_values(path: str, values: Samples) -> None:
+    if isinstance(values, Raster) or path.endswith(".lines"):
+        if not (isinstance(values, Raster) and path.endswith(".lines") and values.shape[2] == _ENDS):
+            reason = f"must be numbers; lines of a mask a raster with a row per frame and {_ENDS} channels"
+            raise ParameterError(f"samples.{path}", type(values).__name__, reason)
+        return
     if not 1 <= len(values) <= _MOST_SAMPLES:
         raise ParameterError(f"samples.{path}", f"{len(values)} values", f"must be from 1 to {_MOST_SAMPLES}")
     for index, value in enumerate(values):

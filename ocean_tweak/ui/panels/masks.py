@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...scene import source_images
+from ...scene import mask_following, source_images
 from ..field_drawing import draw_fields
 from ..mask_operators import ACTIVE_LAYER, WHOLE_SEA, OCEAN_OT_read_weights
 from .drawing import SubPanel, active_settings, message, split
@@ -90,11 +90,12 @@ def _lacking(group: bpy.types.PropertyGroup) -> str:
 
 def _standing_still(group: bpy.types.PropertyGroup) -> str:
     """What a mask does not do that its object does; empty where there is nothing."""
-    item = group.object
-    animation = None if group.source != "DISTANCE" or item is None else item.animation_data
-    if animation is None or animation.action is None:
+    item, ocean = group.object, group.id_data
+    if group.source != "DISTANCE" or item is None or item not in mask_following.moving_objects(ocean):
         return ""
-    return f"{item.name} has keys, which masks do not follow: this one stays where it was put by hand"
+    if mask_following.is_bound(ocean):
+        return ""
+    return f"{item.name} moves by itself, which masks of a linked ocean do not follow: this one stands still"
 
 
 def _has_weights(group: bpy.types.PropertyGroup) -> bool:
