@@ -36,7 +36,13 @@ def foam(ocean: Ocean, name: str = "foam") -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("wind", "resolution", "size", "stride"),
-    [(10.0, 192, 300.0, 4), (15.0, 256, 200.0, 3), (24.0, 192, 300.0, 4), (25.0, 192, 750.0, 6)],
+    [
+        (10.0, 192, 300.0, 3),
+        (15.0, 256, 200.0, 3),
+        (24.0, 192, 300.0, 4),
+        (25.0, 192, 750.0, 5),
+        (25.0, 256, 500.0, 4),
+    ],
 )
 def test_foam_is_nearly_that_of_all_moments(wind: float, resolution: int, size: float, stride: int) -> None:
     """The same in outline and amount: a correlation of 0.98, and a tenth of the mean."""
@@ -59,7 +65,7 @@ def test_no_bars_lie_where_the_sea_was_looked_at() -> None:
         old = age > 2.0
         moments = np.rint((time - age[old]) / step).astype(int) % stride
         of_moments += np.bincount(moments, weight[old], stride)
-    assert stride == 4
+    assert stride == 3
     np.testing.assert_allclose(of_moments / np.mean(of_moments), 1.0, atol=0.12)
 
 

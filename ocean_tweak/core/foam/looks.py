@@ -24,8 +24,9 @@ RealArray = NDArray[np.floating]
 
 #: looks before a moment, and after it, that tell of it
 _SIDE = 3
-#: phase in rad by which the highest frequency that is kept may turn from a look to the next
-_REACH = 2.45
+#: phase in rad by which the highest frequency that is kept may turn from a look to the next: a tenth more
+#: takes a ninth less looks, and a storm's foam is no longer like that of all moments
+_REACH = 2.25
 #: moments from a look to the next, at the most
 _MOST = 8
 #: power that is not within the band, over that which is
