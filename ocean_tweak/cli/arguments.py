@@ -267,6 +267,7 @@ def _add_usd(commands: _Commands, in_blender: bool) -> None:
         help="threads that make frames; 2 by default",
     )
     _add_openjd(parser)
+    _add_spray(parser)
     _add_usd_content(parser.add_argument_group("what the layers hold"))
     forms = parser.add_argument_group("one form only")
     forms.add_argument(

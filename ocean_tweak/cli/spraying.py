@@ -5,16 +5,12 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..core import Ocean, OceanParameters, Spray
-from ..core.parameters.shot import Moment
+from ..core import Spray
 from ..core.sea.bake import BakedFrame
-from ..core.sea.foam_levels import FoamLevels
-from ..core.sea.spray import CameraSpray, TileSpray, check_spray
-from ..core.spray.particles import Particles
+from ..core.sea.spray import ShotSpray, check_spray
 from ..export.cache.job import Job
 from ..export.cache.locks import claimed
 from ..export.spray import SpraySequence
@@ -63,38 +59,15 @@ def bake_spray(arguments: argparse.Namespace, folder: Path, job: Job, wanted: Wa
     ):
         todo = [frame for frame in frames if not files.is_whole(frame)]
         progress.begin(len(todo))
-        maker = SprayMaker(wanted.place)
+        maker = ShotSpray(job.shot, wanted.spray, wanted.place)
         try:
             for frame in todo:
                 if stop.is_set():
                     progress.fail("stopped")
                     return FAILED
                 started = time.perf_counter()
-                path = files.write(frame, maker.at(job.shot.at(frame), wanted.spray))
+                path = files.write(frame, maker.at(frame))
                 progress.frame(BakedFrame(frame, (path,), time.perf_counter() - started))
         finally:
             progress.end()
     return DONE
-
-
-class SprayMaker:
-    """Spray of a shot's moments: of one sea, or of another where it is animated."""
-
-    def __init__(self, place: tuple[float, float] | None) -> None:
-        self._place = place
-        self._made: tuple[OceanParameters, Callable[[Moment, Spray], Particles]] | None = None
-
-    def at(self, moment: Moment, spray: Spray) -> Particles:
-        """Particles at a moment, with velocities per second of the shot."""
-        if self._made is None or self._made[0] != moment.parameters:
-            self._made = moment.parameters, self._maker(moment.parameters)
-        made = self._made[1](moment, spray)
-        return made if moment.rate == 1.0 else made._replace(velocity=made.velocity * moment.rate)
-
-    def _maker(self, sea: OceanParameters) -> Callable[[Moment, Spray], Particles]:
-        place = self._place
-        if place is None:
-            tile = TileSpray(Ocean(sea))
-            return lambda moment, spray: tile.at(moment.time, spray)
-        around = CameraSpray(FoamLevels(sea))
-        return lambda moment, spray: around.at(moment.time, spray, place)

@@ -13,8 +13,8 @@ from pathlib import Path
 from ..core.data.frames import Frame, format_frames
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import readable_bytes
-from ..core.parameters.shot import Shot
 from ..core.sea.regions import Area
+from ..core.sea.spray import ShotSpray
 from ..export.cache.folders import read_job
 from ..export.cache.records import recorded_frames
 from ..export.usd.export import Export
@@ -22,7 +22,8 @@ from ..export.usd.isolated import problems_of
 from ..export.usd.package import Package, asset_name, with_samples_between
 from .outcome import DONE, FAILED, UsageError, shell_word
 from .progress import Progress
-from .seas import SceneOceans, chosen_seas
+from .seas import FileSea, SceneOceans, chosen_seas
+from .spraying import spray_of
 from .stopping import stop_requested
 
 _LOG = logging.getLogger(__name__)
@@ -33,7 +34,8 @@ _THREADS = 2
 
 def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
     """Write a sea as USD layers."""
-    shot, frames, area = _what(arguments, scene_oceans)
+    sea, frames, area = _what(arguments, scene_oceans)
+    shot = sea.shot
     package = Package(
         arguments.name or asset_name(arguments.out),
         shot,
@@ -52,7 +54,9 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
         raise UsageError("--stitch makes no frames: leave out --only")
     if arguments.form != "clips" and arguments.stitch:
         raise UsageError(f"--stitch: is for --form clips, not {arguments.form}")
-    export = Export(package, arguments.out, arguments.bake, arguments.force)
+    wanted = spray_of(arguments, sea)
+    spray = None if wanted is None else ShotSpray(shot, wanted.spray, wanted.place)
+    export = Export(package, arguments.out, arguments.bake, arguments.force, spray)
     progress = Progress(package.name, arguments.json, arguments.openjd)
     chosen = arguments.only or package.frames
     with stop_requested() as stop:
@@ -87,16 +91,20 @@ def _make(
     progress: Progress,
     stopped: Callable[[], bool],
 ) -> None:
-    left = export.left(frames)
-    progress.say(f"{left} of {len(frames) * export.rounds} frames to make", left=left)
+    spray = arguments.spray and not arguments.only
+    of_spray = len(export.package.frames) if spray else 0
+    left, total = export.left(frames) + of_spray, len(frames) * export.rounds + of_spray
+    progress.say(f"{left} of {total} frames to make", left=left)
     progress.begin(left)
     workers = arguments.workers or min(_THREADS, os.cpu_count() or 1)
+    rounds = [export.make(frames, workers), *([export.make_spray()] if spray else [])]
     try:
-        with closing(export.make(frames, workers)) as making:
-            for made in making:
-                progress.frame(made)
-                if stopped():
-                    break
+        for making in rounds:
+            with closing(making):
+                for made in making:
+                    progress.frame(made)
+                    if stopped():
+                        return
     finally:
         progress.end()
 
@@ -109,7 +117,7 @@ def _stopped(package: Package) -> str:
 
 def _what(
     arguments: argparse.Namespace, scene_oceans: SceneOceans | None
-) -> tuple[Shot, tuple[Frame, ...], Area | None]:
+) -> tuple[FileSea, tuple[Frame, ...], Area | None]:
     """The sea, its frames and its area, of the arguments or of a bake. Raises UsageError or CacheError."""
     if arguments.bake is not None:
         return _of_bake(arguments)
@@ -122,10 +130,10 @@ def _what(
     frames = arguments.frames or sea.frames
     if not frames:
         raise UsageError("--frames: say which frames to write")
-    return sea.shot, frames, arguments.area
+    return sea, frames, arguments.area
 
 
-def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...], Area | None]:
+def _of_bake(arguments: argparse.Namespace) -> tuple[FileSea, tuple[Frame, ...], Area | None]:
     folder: Path = arguments.bake
     if arguments.form != "displacement":
         raise UsageError(f"--bake is for --form displacement, not {arguments.form}")
@@ -141,7 +149,7 @@ def _of_bake(arguments: argparse.Namespace) -> tuple[Shot, tuple[Frame, ...], Ar
     frames = arguments.frames or job.frames or recorded_frames(folder)
     if not frames:
         raise UsageError(f"{folder}: holds no frames")
-    return job.shot, frames, _on_its_texels(job.area)
+    return FileSea(job.shot), frames, _on_its_texels(job.area)
 
 
 def _on_its_texels(area: Area | None) -> Area | None:

@@ -19,11 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
+from ..data.frames import Frame
 from ..foam.model import FoamModel, breaking_of
 from ..foam.threshold import foam_outlook, foam_wind
 from ..numerics import random
 from ..numerics.machine import usable_memory
 from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.shot import Shot
 from ..parameters.spray import Spray
 from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, MEAN_LIFE, Crests, Particles, expected, in_the_air, joined, longest_life
@@ -163,6 +165,38 @@ class CameraSpray:
             sea = self._levels.seas[region.level]
             made.append(_crests(sea.foam_model, sea.parameters, index, cells, at, water, strength))
         return made
+
+
+class ShotSpray:
+    """Spray of a shot's frames; quickest where they follow each other.
+
+    place : x and y in m around which it is made; None for the tile of a sea, which then must have one
+    """
+
+    def __init__(self, shot: Shot, spray: Spray, place: tuple[float, float] | None = None) -> None:
+        self._shot = shot
+        self._spray = spray
+        self._place = place
+        self._made: tuple[OceanParameters, Callable[[Fraction], Particles]] | None = None
+
+    def at(self, frame: Frame) -> Particles:
+        """Particles at a frame, with velocities per second of the shot.
+
+        Raises SprayError for more than the memory holds.
+        """
+        moment = self._shot.at(frame)
+        if self._made is None or self._made[0] != moment.parameters:
+            self._made = moment.parameters, self._maker(moment.parameters)
+        made = self._made[1](moment.time)
+        return made if moment.rate == 1.0 else made._replace(velocity=made.velocity * np.float32(moment.rate))
+
+    def _maker(self, sea: OceanParameters) -> Callable[[Fraction], Particles]:
+        spray, place = self._spray, self._place
+        if place is None:
+            tile = TileSpray(Ocean(sea))
+            return lambda time: tile.at(time, spray)
+        around = CameraSpray(FoamLevels(sea))
+        return lambda time: around.at(time, spray, place)
 
 
 class Square(NamedTuple):

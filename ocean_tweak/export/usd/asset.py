@@ -17,6 +17,7 @@ from .library import pxr
 from .material import MATERIAL, SCOPE
 from .mesh import ROOT
 from .package import Package
+from .spray import SPRAY
 
 GEOMETRY, TILES = "geo", "tiles"
 VARIANT_SET = "resolution"
@@ -28,11 +29,14 @@ def prim_name(package: Package) -> str:
     return str(pxr().Tf.MakeValidIdentifier(package.name))
 
 
-def write_payload(path: Path, package: Package, geometry: str, material: str, box: Box) -> None:
+def write_payload(
+    path: Path, package: Package, geometry: str, material: str, box: Box, spray: str | None = None
+) -> None:
     """Write payload.usd: geometry and material under the asset's own prim.
 
     geometry, material : names of the layers beside it
     box : around one tile in all frames
+    spray : way to the layer of the spray; None for none
     """
     modules = pxr()
     root = f"/{prim_name(package)}"
@@ -44,6 +48,9 @@ def write_payload(path: Path, package: Package, geometry: str, material: str, bo
         looks = modules.UsdGeom.Scope.Define(stage, f"{root}/{SCOPE}").GetPrim()
         looks.GetReferences().AddReference(f"./{material}")
         _add_sea(stage, scope, package, geometry, box)
+        if spray is not None:
+            beside = stage.DefinePrim(f"{sea_path(package, root)}/{SPRAY}")
+            beside.GetReferences().AddReference(spray)
         binding = modules.UsdShade.MaterialBindingAPI.Apply(scope)
         water = modules.UsdShade.Material(stage.GetPrimAtPath(f"{root}/{SCOPE}/{MATERIAL}"))
         binding.Bind(water)

@@ -13,6 +13,7 @@ import numpy as np
 from ...core import ParameterError
 from ...core.data.frames import Frame, format_frames
 from ...core.sea.bake import BakedFrame, bake
+from ...core.sea.spray import ShotSpray
 from ..cache.folders import read_job
 from ..cache.job import Job
 from ..cache.records import unfinished
@@ -27,6 +28,7 @@ from .material import write_material
 from .mesh import ROOT, SURFACE, Edition, write_topology
 from .package import LAYER_NAMES, Package, edition_folder
 from .points import points_sink
+from .spray import SPRAY_LAYER, write_spray
 
 TOPOLOGY, MANIFEST, PAYLOAD, MATERIAL = "topology.usd", "manifest.usda", "payload.usd", "mtl.usd"
 #: form → the layer of the geometry, and the others that belong to it alone
@@ -44,6 +46,7 @@ class Export:
     top : the asset's own layer; all others lie beside it
     bake : folder of a bake whose images displace the sea; none to make one beside the asset
     force : replace files of others, and clips that are there already
+    spray : to be shown beside the sea; None for none
 
     Raises UsdError where `pxr` is missing, ParameterError for a file that has no name of a layer.
     """
@@ -52,6 +55,7 @@ class Export:
     top: Path
     bake: Path | None = None
     force: bool = False
+    spray: ShotSpray | None = None
 
     def __post_init__(self) -> None:
         pxr()
@@ -74,6 +78,8 @@ class Export:
     def paths(self) -> Iterator[Path]:
         """All layers but the clips."""
         yield self.top
+        if self.spray is not None:
+            yield self._spray_layer
         for folder, _ in self.editions:
             for name in (*_GEOMETRY[self.package.form], MATERIAL, PAYLOAD):
                 yield folder / name
@@ -124,6 +130,15 @@ class Export:
         """Make frames; yields each when it is written. Those of points appear together at the end."""
         yield from _MAKERS[self.package.form](self, frames, workers)
 
+    def make_spray(self) -> Iterator[BakedFrame]:
+        """Make the spray of all frames, if any is wanted; yields each. It appears at the end."""
+        if self.spray is not None:
+            yield from write_spray(self._spray_layer, self.package, self.spray)
+
+    @property
+    def _spray_layer(self) -> Path:
+        return self.top.with_name(SPRAY_LAYER)
+
     def finish(self) -> None:
         """Write the layers that hold the frames together. Raises UsdError where frames are missing."""
         package = self.package
@@ -136,7 +151,10 @@ class Export:
             boxes.append(box)
             material = folder / MATERIAL
             write_material(material, package, self._relative_images(material))
-            write_payload(folder / PAYLOAD, package, _GEOMETRY[package.form][0], MATERIAL, box)
+            spray = (
+                None if self.spray is None else textures.relative_path(self._spray_layer, folder / PAYLOAD)
+            )
+            write_payload(folder / PAYLOAD, package, _GEOMETRY[package.form][0], MATERIAL, box, spray)
             sync_folder(folder)
             payloads[edition.resolution] = f"./{(folder / PAYLOAD).relative_to(self.top.parent).as_posix()}"
         write_asset(self.top, package, payloads, union(boxes))

@@ -16,6 +16,13 @@ from ...core.numerics.interpolation import wrapped
 RealArray = NDArray[np.floating]
 
 
+def turned(vectors: RealArray, up_axis: str) -> RealArray:
+    """(…, 3) vectors along the axes of a layer: for Y they are turned by -90° about x."""
+    if up_axis == "Y":
+        return np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
+    return vectors
+
+
 @dataclass(frozen=True)
 class UsdGrid:
     """A mesh over the tile of a sea.
@@ -53,8 +60,7 @@ class UsdGrid:
 
     def turned(self, vectors: RealArray, scale: float = 1.0) -> RealArray:
         """(…, 3) vectors as (vertices, 3) along the layer's axes, times the scale; may change the array."""
-        if self.up_axis == "Y":  # turned by -90° about x
-            vectors = np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
+        vectors = turned(vectors, self.up_axis)
         if scale != 1.0:
             vectors *= scale
         return vectors.reshape(-1, 3)

@@ -25,7 +25,7 @@ from .attributes import ATTRIBUTES, outputs_of
 FORMS = ("points", "clips", "displacement")
 UP_AXES = ("Z", "Y")
 #: names of the layers beside the asset's own
-LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest")
+LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest", "spray")
 #: limits of resolutions to choose from, of tiles along a side, and of metres in a unit
 MOST_VARIANTS, MOST_TILES, UNITS = 16, 64, (1e-6, 1e6)
 _NAME = re.compile(r"[\w\- ]+(\.[\w\- ]+)*")

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`usd --spray`: points with ids, widths and velocities beside the mesh, in the layer's units and axes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
+from ocean_tweak.core.sea.spray import TileSpray
+
+pxr = pytest.importorskip("pxr")
+from pxr import Usd, UsdGeom, UsdShade, UsdValidation  # noqa: E402
+
+SEA = OceanParameters(
+    resolution=64, domain_size=100.0, seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=300e3),)
+)
+
+
+def export(folder: Path, *more: str, form: str = "points") -> Path:
+    sea, top = folder / "sea.json", folder / "asset" / "sea.usd"
+    sea.write_text(SEA.to_json(), encoding="utf-8")
+    arguments = ["usd", "--params", str(sea), "--frames", "12-13", "--out", str(top), "--form", form]
+    assert main([*arguments, "--spray", *more]) == 0
+    return top
+
+
+def points_of(top: Path) -> UsdGeom.Points:
+    stage = Usd.Stage.Open(str(top))
+    (found,) = (prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Points))
+    points = UsdGeom.Points(found)
+    points.stage = stage  # as long as the prim is used
+    return points
+
+
+@pytest.mark.parametrize("form", ["points", "clips"])
+def test_points_are_the_particles(tmp_path: Path, form: str) -> None:
+    points = points_of(export(tmp_path, "--up-axis", "Y", "--metres-per-unit", "0.01", form=form))
+    expected = TileSpray(Ocean(SEA)).at(12 / 24.0, Spray())
+    assert len(expected.age) > 500
+    x, y, z = 100.0 * expected.position.T
+    np.testing.assert_allclose(points.GetPointsAttr().Get(13.0), np.stack((x, z, -y), -1), rtol=1e-5)
+    x, y, z = 100.0 * expected.velocity.T
+    np.testing.assert_allclose(points.GetVelocitiesAttr().Get(13.0), np.stack((x, z, -y), -1), rtol=1e-5)
+    np.testing.assert_allclose(points.GetWidthsAttr().Get(13.0), 200.0 * expected.radius, rtol=1e-5)
+    np.testing.assert_array_equal(points.GetIdsAttr().Get(13.0), expected.id)
+    assert points.GetWidthsInterpolation() == "vertex"
+
+
+def test_the_extent_holds_every_particle_whole(tmp_path: Path) -> None:
+    points = points_of(export(tmp_path))
+    low, high = np.array(points.GetExtentAttr().Get(12.0))
+    place = np.array(points.GetPointsAttr().Get(12.0))
+    half = 0.5 * np.array(points.GetWidthsAttr().Get(12.0))[:, np.newaxis]
+    assert np.all(place - half >= low - 1e-4)
+    assert np.all(place + half <= high + 1e-4)
+
+
+def test_spray_has_its_own_look_and_goes_with_tiles(tmp_path: Path) -> None:
+    top = export(tmp_path, "--tiles", "2x1")
+    stage = Usd.Stage.Open(str(top))
+    (prim,) = (prim for prim in stage.TraverseAll() if prim.IsA(UsdGeom.Points))
+    bound, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
+    assert bound.GetPath().name == "look"
+    instancer = next(each for each in stage.TraverseAll() if each.IsA(UsdGeom.PointInstancer))
+    assert prim.GetPath().HasPrefix(UsdGeom.PointInstancer(instancer).GetPrototypesRel().GetTargets()[0])
+    assert main(["usd-verify", str(top)]) == 0
+
+
+def test_pixars_validators_find_nothing(tmp_path: Path) -> None:
+    stage = Usd.Stage.Open(str(export(tmp_path)))
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    errors = UsdValidation.ValidationContext(validators).Validate(stage)
+    assert [f"{error.GetName()}: {error.GetMessage()}" for error in errors] == []
+
+
+def test_a_sea_without_spray_is_refused_before_anything_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    top = tmp_path / "asset" / "sea.usd"
+    arguments = ["usd", "--frames", "1", "--out", str(top), "--form", "points", "--spray"]
+    assert main([*arguments, "--set", "layers.0.wind_speed=5"]) == 2
+    assert "tears nothing off" in capsys.readouterr().err
+    assert not top.parent.exists()
