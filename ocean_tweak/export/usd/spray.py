@@ -81,7 +81,7 @@ def _values(particles: Particles, package: Package) -> dict[str, Any]:
     scale = np.float32(package.scale)
     points = turned(particles.position * scale, package.up_axis)
     radius = particles.radius * scale
-    widest = float(radius.max(initial=0.0))
+    widest = float(np.max(radius, initial=0.0))
     box = np.zeros((2, 3), np.float32)
     if len(points):
         box = np.stack([points.min(axis=0) - widest, points.max(axis=0) + widest])
