@@ -10,6 +10,7 @@ from griffe import Class, Extension, Object
 
 #: a first line `name : text` or `name, other : text`, and the lines that go on, which are indented
 _ENTRY = re.compile(r"^(\*{0,2}[a-z_]\w*(?:, [a-z_]\w*)*) : (.*(?:\n[ ]+\S.*)*)$", re.MULTILINE)
+_EXAMPLES = "Examples\n--------"
 #: entries that follow each other
 _LIST = re.compile(rf"(?:{_ENTRY.pattern}\n?)+", re.MULTILINE)
 
@@ -26,13 +27,14 @@ class ParametersExtension(Extension):
 
 
 def listed(docstring: str, title: str) -> str:
-    """A docstring whose entries stand in one section of NumPy's style."""
-
-    def section(block: re.Match[str]) -> str:
-        entries = [f"{name}\n    {_joined(text)}" for name, text in _entries(block[0])]
-        return "\n".join([title, "-" * len(title), *entries, ""])
-
-    return _LIST.sub(section, docstring, count=1)
+    """A docstring with its entries in one section of NumPy's style, after the text and before examples."""
+    found = _LIST.search(docstring)
+    if found is None:
+        return docstring
+    text, head, examples = (docstring[: found.start()] + docstring[found.end() :]).partition(_EXAMPLES)
+    entries = [f"{name}\n    {_joined(told)}" for name, told in _entries(found[0])]
+    section = "\n".join([title, "-" * len(title), *entries])
+    return f"{text.rstrip()}\n\n{section}\n\n{head}{examples}"
 
 
 def _entries(block: str) -> list[tuple[str, str]]:
