@@ -4,12 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import NamedTuple
 
 import bpy
+from mathutils import Matrix
 
 from ..core import Foam, OceanParameters, Timing, Water, WaveLayer
+from . import ocean_object
 from .animated import OCEAN_TIME, channel_bags, curves_of
+from .evaluation import surfaces_of
+from .plan import new_viewport_sea
 from .settings import settings_of
 from .units import frame_rate, metres_per_unit
 
@@ -20,6 +25,7 @@ _SPECTRA = {
     "JONSWAP": "JONSWAP",
     "TEXEL_MARSEN_ARSLOE": "TMA",
 }
+_MOMENT = 0.05  # s
 _WITH_FETCH = ("JONSWAP", "TEXEL_MARSEN_ARSLOE")
 
 
@@ -71,6 +77,63 @@ def convert(item: bpy.types.Object, modifier: bpy.types.OceanModifier, scene: bp
         _samples(modifier.viewport_resolution),
         tuple(_lost(item, modifier)),
     )
+
+
+class Made(NamedTuple):
+    """What a conversion made.
+
+    original : still as it was
+    lost : a sentence for each setting that has no counterpart
+    """
+
+    original: bpy.types.Object
+    ocean: bpy.types.Object
+    lost: tuple[str, ...]
+
+
+class Converting:
+    """A conversion that can be given up as long as its waves are made, which another thread does.
+
+    `finish` adds the ocean in the place of the object, once `done` is `steps`. Raises ParameterError for
+    settings that mean no sea.
+    """
+
+    steps = 1
+
+    def __init__(
+        self, original: bpy.types.Object, modifier: bpy.types.OceanModifier, scene: bpy.types.Scene
+    ) -> None:
+        self._original, self._modifier, self._scene, self.done = original, modifier, scene, 0
+        self._result = convert(original, modifier, scene)
+        sea = new_viewport_sea(self._result.parameters, self._result.viewport_resolution)
+        self._worker = ThreadPoolExecutor(1, "Ocean Tweak")
+        self._waves = self._worker.submit(surfaces_of(sea).ocean.prepare)
+
+    def advance(self) -> None:
+        """Wait for the waves for a moment. Raises MemoryError for a sea too large."""
+        wait([self._waves], _MOMENT)
+        if self._waves.done():
+            self._waves.result()
+            self.done = 1
+
+    def finish(self) -> Made:
+        """Add the ocean. Raises what `ocean_object.add` raises; then nothing is added."""
+        self._worker.shutdown()
+        original, result = self._original, self._result
+        item = ocean_object.add(
+            self._scene, result.parameters, name=original.name, collection=original.users_collection[0],
+            viewport_resolution=result.viewport_resolution,
+        )  # fmt: skip
+        settings_of(item).repeats_x, settings_of(item).repeats_y = result.repeats
+        item.matrix_world = original.matrix_world @ Matrix.Translation((*corner(self._modifier), 0.0))
+        for material in original.data.materials:
+            item.data.materials.append(material)
+        carry_time(original, self._modifier, item)
+        return Made(original, item, result.lost)
+
+    def cancel(self) -> None:
+        """Nothing was changed; waves that are being made are not waited for."""
+        self._worker.shutdown(wait=False, cancel_futures=True)
 
 
 def corner(modifier: bpy.types.OceanModifier) -> tuple[float, float]:

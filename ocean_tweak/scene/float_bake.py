@@ -64,7 +64,7 @@ class FloatBake:
             floating.check(item, ocean)
         if not len(frames):
             raise FloatError("The first frame lies after the last one")
-        self.frames, self.done = frames, 0
+        self.frames, self.steps, self.done = frames, len(frames), 0
         self._scene, self._frame = scene, (scene.frame_current, scene.frame_subframe)
         self._riders = [self._begin(item, ocean, ride(item), is_wet) for item in chosen]
         self._taking_part = ExitStack()

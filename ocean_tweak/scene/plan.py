@@ -117,12 +117,29 @@ class Plan:
     def viewport_sea(self, coarse: bool = False) -> OceanParameters:
         """The sea that the viewport shows; coarse, one of few samples."""
         samples = self.viewport.samples
-        parameters = self.parameters.at_resolution(min(COARSE, samples) if coarse else samples)
-        if not self.has_own_render:
-            return parameters
-        foam = parameters.foam
-        most = min(foam.resolution or parameters.resolution, VIEWPORT_FOAM)
-        return parameters.replace(foam=dataclasses.replace(foam, resolution=most))
+        return _sea_in_viewport(
+            self.parameters, min(COARSE, samples) if coarse else samples, self.has_own_render
+        )
+
+
+def new_viewport_sea(parameters: OceanParameters, viewport_resolution: int) -> OceanParameters:
+    """The sea that the viewport will show of a live ocean that is made with these."""
+    samples = min(_most_samples(viewport_resolution), parameters.resolution)
+    return _sea_in_viewport(parameters, samples, samples != parameters.resolution)
+
+
+def _sea_in_viewport(parameters: OceanParameters, samples: int, has_own_render: bool) -> OceanParameters:
+    parameters = parameters.at_resolution(samples)
+    if not has_own_render:
+        return parameters
+    foam = parameters.foam
+    most = min(foam.resolution or parameters.resolution, VIEWPORT_FOAM)
+    return parameters.replace(foam=dataclasses.replace(foam, resolution=most))
+
+
+def _most_samples(viewport_resolution: int) -> int:
+    """An even number, as the core wants it."""
+    return max(viewport_resolution // 2 * 2, _LEAST_SAMPLES)
 
 
 def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
@@ -132,8 +149,7 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
     """
     parameters, metres = settings.to_parameters(scene), metres_per_unit(scene)
     size = float(Fraction(parameters.domain_size) / metres)
-    # an even number, as the core wants it
-    most = max(settings.viewport_resolution // 2 * 2, _LEAST_SAMPLES)
+    most = _most_samples(settings.viewport_resolution)
     if settings.source == "LIVE":
         render, view = parameters.resolution, min(most, parameters.resolution)
         quads = view

@@ -16,37 +16,82 @@ from .view_layers import evaluated, taking_part
 Array = NDArray[np.float64]
 
 
-def weights_seen(
-    ocean: bpy.types.Object, mesh: bpy.types.Object | None, group: str, scene: bpy.types.Scene, samples: int
-) -> Raster:
-    """(samples, samples) weights of the highest face over or under each place of the domain; 0 beside it.
+_BLOCK = 4096  # rays of a step
+
+
+class WeightsReading:
+    """A reading that can be done a step at a time, and given up: it changes nothing.
+
+    `finish` gives (samples, samples) weights of the highest face over or under each place of the domain, 0
+    beside it, after `advance` was called once for each of `steps`.
 
     mesh : as its modifiers leave it, wherever it stands and whatever hides it
     group : name of its vertex group
 
-    Raises OceanObjectError for a mesh or group that is not there, or not over the domain.
+    Raises OceanObjectError for a mesh or group that is not there.
     """
-    if mesh is None or mesh.type != "MESH":
-        raise OceanObjectError("Choose a mesh that has the weights")
-    if group not in mesh.vertex_groups:
-        there = ", ".join(item.name for item in mesh.vertex_groups) or "none"
-        raise OceanObjectError(f"{mesh.name} has no vertex group {group!r}: it has {there}")
-    with taking_part(scene, mesh, geometry=True):
-        made = mesh.evaluated_get(evaluated(scene))
-        data = made.to_mesh()
-        try:
-            weight = _weights(data, mesh.vertex_groups[group].index)
-            data.transform(ocean.matrix_world.inverted_safe() @ made.matrix_world)
-            data.calc_loop_triangles()
-            corners, places = _arrays(data)
-        finally:
-            made.to_mesh_clear()
-    seen = _seen(corners, places, weight, settings_of(ocean).domain_size, samples)
-    if not np.isfinite(seen).any():
-        raise OceanObjectError(
-            f"{mesh.name} is neither over nor under the patch of {ocean.name}: move it there"
-        )
-    return Raster(np.nan_to_num(seen, nan=0.0), f"{mesh.name} {group}")
+
+    def __init__(
+        self,
+        ocean: bpy.types.Object,
+        mesh: bpy.types.Object | None,
+        group: str,
+        scene: bpy.types.Scene,
+        samples: int,
+    ) -> None:
+        if mesh is None or mesh.type != "MESH":
+            raise OceanObjectError("Choose a mesh that has the weights")
+        if group not in mesh.vertex_groups:
+            there = ", ".join(item.name for item in mesh.vertex_groups) or "none"
+            raise OceanObjectError(f"{mesh.name} has no vertex group {group!r}: it has {there}")
+        self._ocean, self._mesh, self._group, self._scene = ocean, mesh, group, scene
+        self._seen = np.full((samples, samples), np.nan)
+        self._rows = max(1, _BLOCK // samples)
+        # the mesh as numbers, the tree of its faces, and blocks of rows
+        self.steps, self.done = 2 + -(-samples // self._rows), 0
+
+    def advance(self) -> None:
+        """Go on by a step."""
+        if self.done == 0:
+            self._look()
+        elif self.done == 1:
+            self._tree = _tree_of(self._corners, self._places)
+        else:
+            first = (self.done - 2) * self._rows
+            rows = range(first, min(first + self._rows, len(self._seen)))
+            size = settings_of(self._ocean).domain_size
+            _see(self._seen, rows, self._tree, self._corners, self._places, self._weight, size)
+        self.done += 1
+
+    def finish(self) -> Raster:
+        """The weights. Raises OceanObjectError for a mesh that is not over or under the domain."""
+        if not np.isfinite(self._seen).any():
+            raise OceanObjectError(
+                f"{self._mesh.name} is neither over nor under the patch of {self._ocean.name}: move it there"
+            )
+        return Raster(np.nan_to_num(self._seen, nan=0.0), f"{self._mesh.name} {self._group}")
+
+    def cancel(self) -> None:
+        """Nothing was changed."""
+
+    def _look(self) -> None:
+        with taking_part(self._scene, self._mesh, geometry=True):
+            made = self._mesh.evaluated_get(evaluated(self._scene))
+            data = made.to_mesh()
+            try:
+                self._weight = _weights(data, self._mesh.vertex_groups[self._group].index)
+                data.transform(self._ocean.matrix_world.inverted_safe() @ made.matrix_world)
+                data.calc_loop_triangles()
+                self._corners, self._places = _arrays(data)
+            finally:
+                made.to_mesh_clear()
+
+
+def weights_seen(reading: WeightsReading) -> Raster:
+    """The weights of a reading, all at once. Raises as its `finish`."""
+    while reading.done < reading.steps:
+        reading.advance()
+    return reading.finish()
 
 
 def _weights(mesh: bpy.types.Mesh, index: int) -> Array:
@@ -67,32 +112,41 @@ def _arrays(mesh: bpy.types.Mesh) -> tuple[NDArray[np.int32], NDArray[np.float32
     return corners.reshape(-1, 3), places.reshape(-1, 3)
 
 
-def _seen(
-    corners: NDArray[np.int32], places: NDArray[np.float32], weight: Array, size: float, samples: int
-) -> Array:
-    """(samples, samples) weight at the middle of each cell [y, x]; not a number beside the mesh."""
-    result = np.full((samples, samples), np.nan)
+def _tree_of(corners: NDArray[np.int32], places: NDArray[np.float32]) -> BVHTree | None:
     if not len(corners):
-        return result
-    tree = BVHTree.FromPolygons(places.tolist(), corners.tolist(), all_triangles=True)
+        return None
+    return BVHTree.FromPolygons(places.tolist(), corners.tolist(), all_triangles=True)
+
+
+def _see(
+    seen: Array,
+    rows: range,
+    tree: BVHTree | None,
+    corners: NDArray[np.int32],
+    places: NDArray[np.float32],
+    weight: Array,
+    size: float,
+) -> None:
+    """Put weights at the middle of each cell into some rows of (samples, samples); beside the mesh none."""
+    if tree is None:
+        return
     top, down = float(places[:, 2].max()) + 1.0, Vector((0.0, 0.0, -1.0))
-    middle = (np.arange(samples) + 0.5) * (size / samples)
+    middle = (np.arange(len(seen)) + 0.5) * (size / len(seen))
     hits = [
         (row, column, number)
-        for row, y in enumerate(middle)
+        for row in rows
         for column, x in enumerate(middle)
-        if (number := tree.ray_cast(Vector((x, y, top)), down)[2]) is not None
+        if (number := tree.ray_cast(Vector((x, middle[row], top)), down)[2]) is not None
     ]
     if not hits:
-        return result
-    rows, columns, numbers = np.array(hits).T
+        return
+    numbered, columns, numbers = np.array(hits).T
     a, b, c = (places[corners[numbers, corner], :2].astype(np.float64) for corner in range(3))
-    at = np.stack((middle[columns], middle[rows]), axis=-1)
+    at = np.stack((middle[columns], middle[numbered]), axis=-1)
     whole = _cross(b - a, c - a)
     share_b, share_c = _cross(at - a, c - a) / whole, _cross(b - a, at - a) / whole
     shares = np.clip(np.stack((1.0 - share_b - share_c, share_b, share_c)), 0.0, 1.0)
-    result[rows, columns] = np.sum(shares.T * weight[corners[numbers]], axis=1)
-    return result
+    seen[numbered, columns] = np.sum(shares.T * weight[corners[numbers]], axis=1)
 
 
 def _cross(first: Array, second: Array) -> Array:

@@ -1,24 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Float on Ocean: what the artist presses to let objects ride the sea, live or baked to keyframes."""
 
-import time
-
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..core import ParameterError
 from ..scene import contact, floating
 from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
 from ..scene.portability import has_ocean
-from ..scene.settings import OceanObjectError, is_ocean
+from ..scene.settings import is_ocean
 from .active_ocean import refuse, shown_ocean
-
-_EXPECTED_ERRORS = (OceanObjectError, ParameterError, MemoryError, OSError)
-# s of a modal bake before the window may draw again
-_TURN = 0.05
+from .stepped_operator import SteppedOperator
 
 
 def floatable(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -163,7 +157,7 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
         return {"FINISHED"} if done else {"CANCELLED"}
 
 
-class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
+class OBJECT_OT_ocean_float_bake(_Rides, SteppedOperator, bpy.types.Operator):
     """Bake the floating of the selected objects to keyframes."""
 
     bl_idname = "object.ocean_tweak_float_bake"
@@ -182,82 +176,26 @@ class OBJECT_OT_ocean_float_bake(_Rides, bpy.types.Operator):
     )
     shown = ("frame_start", "frame_end", *_Rides.shown)
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Bake a few frames at a time, so that the window shows how far it is and Esc is heard."""
-        if bpy.app.background:
-            return self.execute(context)
-        if not self._begin(context):
-            return {"CANCELLED"}
-        manager = context.window_manager
-        manager.progress_begin(0, len(self._bake.frames))
-        context.workspace.status_text_set("Baking the float to keyframes. Esc: give up")
-        self._timer = manager.event_timer_add(0.01, window=context.window)
-        manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+    doing = "Baking the float to keyframes"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Bake all frames at once."""
-        if not self._begin(context):
-            return {"CANCELLED"}
-        return self._go_on(context, until=float("inf"))
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Go on for a moment, unless Esc is pressed."""
-        if event.type == "ESC" and event.value == "PRESS":
-            self._bake.cancel()
-            self._clean_up(context)
-            self.report({"WARNING"}, translated("Given up: everything is as it was"))
-            return {"CANCELLED"}
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        result = self._go_on(context, until=time.monotonic() + _TURN)
-        if result != {"RUNNING_MODAL"}:
-            self._clean_up(context)
-        return result
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Blender itself ends the operator: the file is closed, and its objects with it."""
-        self._clean_up(context)
-
-    def _go_on(self, context: bpy.types.Context, until: float) -> set[str]:
-        bake = self._bake
-        try:
-            while bake.done < len(bake.frames):
-                bake.advance()
-                context.window_manager.progress_update(bake.done)
-                if time.monotonic() > until:
-                    return {"RUNNING_MODAL"}
-            baked = bake.finish()
-        except _EXPECTED_ERRORS as error:
-            bake.cancel()
-            return refuse(self, error)
-        self.report(
-            {"INFO"},
-            translated("Objects baked, frames {first} to {last}: {count}").format(
-                first=bake.frames[0], last=bake.frames[-1], count=baked
-            ),
-        )
-        return {"FINISHED"}
-
-    def _clean_up(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
-
-    def _begin(self, context: bpy.types.Context) -> bool:
+    def begin(self, context: bpy.types.Context) -> FloatBake:
+        """Look at all objects, and move none."""
         for name in ("frame_start", "frame_end"):
             if not self.properties.is_property_set(name):
                 setattr(self, name, getattr(context.scene, name))
         frames = range(self.frame_start, self.frame_end + 1)
-        try:
-            ocean = self.chosen_ocean(context)
-            self._bake = FloatBake(
-                context.scene, floatable(context), ocean, self.ride_of, frames, self.use_contact
-            )
-        except _EXPECTED_ERRORS as error:
-            refuse(self, error)
-            return False
-        return True
+        ocean = self.chosen_ocean(context)
+        return FloatBake(context.scene, floatable(context), ocean, self.ride_of, frames, self.use_contact)
+
+    def conclude(self, _context: bpy.types.Context, baked: int) -> set[str]:
+        """Tell how many objects have keys."""
+        self.report(
+            {"INFO"},
+            translated("Objects baked, frames {first} to {last}: {count}").format(
+                first=self.frame_start, last=self.frame_end, count=baked
+            ),
+        )
+        return {"FINISHED"}
 
 
 class OBJECT_OT_ocean_float_remove(bpy.types.Operator):

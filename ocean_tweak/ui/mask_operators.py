@@ -5,16 +5,18 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import IntProperty
 
-from ..core import ParameterError
+from ..core import ParameterError, Raster
 from ..scene.settings import OceanObjectError, settings_of
+from ..scene.vertex_weights import WeightsReading
 from . import mask_properties
 from .active_ocean import OfActiveOcean, active_layer, refuse, shown_ocean
+from .stepped_operator import SteppedOperator
 
 #: in the place of a patch's number: whose mask it is
 ACTIVE_LAYER, WHOLE_SEA = -1, -2
 
 
-class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
+class OCEAN_OT_read_weights(OfActiveOcean, SteppedOperator, bpy.types.Operator):
     """Read the weights of a mesh over or under the water into a mask."""
 
     bl_idname = "ocean.read_weights"
@@ -34,18 +36,26 @@ class OCEAN_OT_read_weights(OfActiveOcean, bpy.types.Operator):
         description="Samples of the image along each side of the domain",
     )  # fmt: skip
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Read, or change nothing."""
-        group = self._mask(context)
-        if group is None:
-            return refuse(self, "The active layer has no mask: choose waves, an image or a wind field")
+    doing = "Reading the weights"
+
+    def begin(self, context: bpy.types.Context) -> WeightsReading:
+        """Look for the mask and its mesh."""
+        mask = self._mask(context)
+        if mask is None:
+            raise OceanObjectError("The active layer has no mask: choose waves, an image or a wind field")
+        return mask_properties.reading_of(mask, context.scene, self.samples)
+
+    def conclude(self, context: bpy.types.Context, seen: Raster) -> set[str]:
+        """Let the mask have the weights, and tell what they come to."""
         try:
-            share = mask_properties.read_weights(group, context.scene, self.samples)
-        except (OceanObjectError, ParameterError) as error:
+            mask_properties.take_weights(self._mask(context), seen)
+        except ParameterError as error:
             return refuse(self, error)
         self.report(
             {"INFO"},
-            translated("The weights let {share:.0f} % of the waves through").format(share=100.0 * share),
+            translated("The weights let {share:.0f} % of the waves through").format(
+                share=100.0 * float(seen.values.mean())
+            ),
         )
         return {"FINISHED"}
 

@@ -15,7 +15,7 @@ from ..core.data.plain_data import to_plain
 from ..core.masks.parameters import MOST_GUSTS
 from ..scene import floating, mask_lines, source_images
 from ..scene.source_images import ImageSource
-from ..scene.vertex_weights import weights_seen
+from ..scene.vertex_weights import WeightsReading, weights_seen
 from . import parameter_properties
 from .parameter_properties import changed
 
@@ -162,13 +162,22 @@ def has_read(group: bpy.types.PropertyGroup) -> bool:
     return group.source == "VERTEX_GROUP" and None not in (group.mesh, group.image)
 
 
-def read_weights(group: bpy.types.PropertyGroup, scene: bpy.types.Scene, samples: int) -> float:
-    """Read the weights of the mask's mesh into its image. Returns the share of the waves that they let by.
+def reading_of(group: bpy.types.PropertyGroup, scene: bpy.types.Scene, samples: int) -> WeightsReading:
+    """A reading of the weights of the mask's mesh, not yet begun. Raises OceanObjectError without any."""
+    return WeightsReading(group.id_data, group.mesh, group.vertex_group, scene, samples)
+
+
+def read_weights(group: bpy.types.PropertyGroup, scene: bpy.types.Scene, samples: int) -> None:
+    """Read the weights of the mask's mesh into its image, all at once.
 
     Raises OceanObjectError for a mesh that has none over or under the domain, ParameterError for a damaged
     image of before; then nothing is changed.
     """
-    seen = weights_seen(group.id_data, group.mesh, group.vertex_group, scene, samples)
+    take_weights(group, weights_seen(reading_of(group, scene, samples)))
+
+
+def take_weights(group: bpy.types.PropertyGroup, seen: Raster) -> None:
+    """Let weights that were read be the mask's image. Raises ParameterError for a damaged one of before."""
     # an image of an earlier reading that nobody else shows is replaced
     before = group.image
     candidates = [] if before is None else [ImageSource(before)]
@@ -177,7 +186,6 @@ def read_weights(group: bpy.types.PropertyGroup, scene: bpy.types.Scene, samples
         bpy.data.images.remove(before)
     if group.source != "VERTEX_GROUP":
         group.source = "VERTEX_GROUP"
-    return float(seen.values.mean())
 
 
 def read(group: bpy.types.PropertyGroup, metres: Fraction) -> Mask | None:

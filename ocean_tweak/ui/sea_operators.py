@@ -6,14 +6,14 @@ import dataclasses
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
-from mathutils import Matrix
 
 from ..core import Ocean, OceanParameters, ParameterError, WaveLayer, layer_for_sea_state
 from ..core.parameters.presets import built_in
-from ..scene import conversion, ocean_object
+from ..scene import conversion
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .resizing import tell_what_stays
+from .stepped_operator import SteppedOperator
 
 #: wavelengths of the peak that a domain should hold
 _WAVELENGTHS = 4.5
@@ -116,7 +116,7 @@ def _round(size: float) -> float:
     return float(f"{size:.2g}")
 
 
-class OCEAN_OT_convert(bpy.types.Operator):
+class OCEAN_OT_convert(SteppedOperator, bpy.types.Operator):
     """Make one of our oceans out of Blender's Ocean modifier."""
 
     bl_idname = "ocean.convert"
@@ -140,25 +140,18 @@ class OCEAN_OT_convert(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add the ocean, then hide or delete the original, and say what did not carry over."""
-        original, scene = context.active_object, context.scene
-        modifier, name = conversion.ocean_modifier(original), original.name
-        try:
-            result = conversion.convert(original, modifier, scene)
-            item = ocean_object.add(
-                scene, result.parameters, name=name,
-                collection=original.users_collection[0], viewport_resolution=result.viewport_resolution,
-            )  # fmt: skip
-        except ocean_object.EXPECTED_ERRORS as error:
-            return refuse(self, error)
-        settings_of(item).repeats_x, settings_of(item).repeats_y = result.repeats
-        item.matrix_world = original.matrix_world @ Matrix.Translation((*conversion.corner(modifier), 0.0))
-        for material in original.data.materials:
-            item.data.materials.append(material)
+    doing = "Converting the Ocean modifier"
+
+    def begin(self, context: bpy.types.Context) -> conversion.Converting:
+        """Read the modifier, and change nothing."""
+        original = context.active_object
+        return conversion.Converting(original, conversion.ocean_modifier(original), context.scene)
+
+    def conclude(self, context: bpy.types.Context, made: conversion.Made) -> set[str]:
+        """Hide or delete the original, and say what did not carry over."""
+        original, item, name = made.original, made.ocean, made.original.name
         context.view_layer.objects.active = item
         item.select_set(True)
-        conversion.carry_time(original, modifier, item)
         if self.keep_original:
             original.name = f"{name} Original"
             original.select_set(False)
@@ -167,10 +160,8 @@ class OCEAN_OT_convert(bpy.types.Operator):
         else:
             bpy.data.objects.remove(original)
         item.name = name
-        if result.lost:
-            self.report(
-                {"WARNING"}, translated("Not carried over: {list}").format(list="; ".join(result.lost))
-            )
+        if made.lost:
+            self.report({"WARNING"}, translated("Not carried over: {list}").format(list="; ".join(made.lost)))
         else:
             self.report(
                 {"INFO"}, translated("Everything carried over; waves now have the height of their wind")

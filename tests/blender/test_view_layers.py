@@ -113,7 +113,8 @@ def test_painted_weights_of_another_layer_are_those_of_the_moved_mesh(ocean, emp
     aside.objects.link(sheet)
     empty_scene.view_layers.new("Two")
     exclude(empty_scene, 0)
-    seen = extension("scene.vertex_weights").weights_seen(ocean, sheet, "Painted", empty_scene, 16).values
+    module = extension("scene.vertex_weights")
+    seen = module.weights_seen(module.WeightsReading(ocean, sheet, "Painted", empty_scene, 16)).values
     np.testing.assert_allclose(seen[..., 0], np.repeat([[0.0] * 8 + [1.0] * 8], 16, axis=0), atol=1e-6)
 
 

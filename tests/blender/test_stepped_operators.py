@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long work a step at a time: given up at any step it leaves nothing; all steps are what one press makes."""
+
+import bpy
+import numpy as np
+import pytest
+
+from .test_sea_operators import blenders_ocean  # noqa: F401 - a fixture
+
+
+@pytest.fixture
+def painted(empty_scene):
+    """A square over the domain with weights that grow along x."""
+    bpy.ops.mesh.primitive_grid_add(
+        x_subdivisions=8, y_subdivisions=8, size=200.0, location=(75.0, 75.0, 0.0)
+    )
+    item = bpy.context.object
+    group = item.vertex_groups.new(name="Harbour")
+    for vertex in item.data.vertices:
+        group.add([vertex.index], (vertex.co.x + 100.0) / 200.0, "REPLACE")
+    bpy.context.view_layer.update()
+    return item
+
+
+def counts():
+    """How many datablocks of each kind there are."""
+    kinds = ("objects", "meshes", "images", "materials", "actions", "textures", "node_groups")
+    return {kind: len(getattr(bpy.data, kind)) for kind in kinds}
+
+
+def given_up_after(work, steps):
+    for _ in range(steps):
+        if work.done < work.steps:
+            work.advance()
+    work.cancel()
+
+
+@pytest.mark.parametrize("steps", [0, 1, 2, 3])
+def test_weights_that_are_given_up_leave_nothing(ocean, painted, extension, empty_scene, steps):
+    before = counts(), ocean.ocean_tweak.to_parameters(empty_scene)
+    reading = extension("scene.vertex_weights").WeightsReading(ocean, painted, "Harbour", empty_scene, 512)
+    assert reading.steps > 10
+    given_up_after(reading, steps)
+    assert (counts(), ocean.ocean_tweak.to_parameters(empty_scene)) == before
+
+
+def test_weights_a_step_at_a_time_are_those_of_the_mesh(ocean, painted, extension, empty_scene):
+    """Linear in x on the mesh, so they are on the domain: 1/8 at its left edge, 7/8 at its right one."""
+    module = extension("scene.vertex_weights")
+    reading = module.WeightsReading(ocean, painted, "Harbour", empty_scene, 96)
+    done = []
+    while reading.done < reading.steps:
+        reading.advance()
+        done.append(reading.done)
+    assert done == list(range(1, reading.steps + 1))
+    x = (np.arange(96) + 0.5) / 96
+    expected = np.broadcast_to(0.125 + 0.75 * x, (96, 96))
+    np.testing.assert_allclose(reading.finish().values[..., 0], expected, atol=1e-5)
+
+
+@pytest.mark.parametrize("steps", [0, 1, 100])
+def test_a_conversion_that_is_given_up_leaves_nothing(blenders_ocean, extension, empty_scene, steps):  # noqa: F811
+    before = counts()
+    conversion = extension("scene.conversion")
+    work = conversion.Converting(blenders_ocean, blenders_ocean.modifiers[0], empty_scene)
+    given_up_after(work, steps)
+    assert counts() == before
+    assert blenders_ocean.name == "Old Sea"
+    assert not blenders_ocean.hide_get()
+
+
+def test_waves_of_a_conversion_are_made_once(blenders_ocean, extension, empty_scene):  # noqa: F811
+    """Those that were made while Esc was heard are those that the ocean shows."""
+    conversion, evaluation = extension("scene.conversion"), extension("scene.evaluation")
+    work = conversion.Converting(blenders_ocean, blenders_ocean.modifiers[0], empty_scene)
+    while work.done < work.steps:
+        work.advance()
+    made = work.finish()
+    plan = extension("scene.plan").plan_for(made.ocean, made.ocean.ocean_tweak, empty_scene)
+    expected = extension("scene.plan").new_viewport_sea(
+        plan.parameters, made.ocean.ocean_tweak.viewport_resolution
+    )
+    assert plan.viewport_sea() == expected
+    assert evaluation.surfaces_of(plan.viewport_sea()) is evaluation.surfaces_of(expected)
+
+
+class Timer:
+    """An event of a window."""
+
+    def __init__(self, kind):
+        self.type, self.value = kind, "PRESS"
+
+
+@pytest.mark.parametrize("presses", [0, 2])
+def test_esc_is_heard_between_steps(extension, presses):
+    """Of an operator that takes one step an event, as long as each takes longer than a turn."""
+    module, log = extension("ui.stepped_operator"), []
+
+    class Work:
+        steps, done = 3, 0
+
+        def advance(self):
+            self.done += 1
+            log.append(self.done)
+
+        def finish(self):
+            log.append("finished")
+            return "result"
+
+        def cancel(self):
+            log.append("cancelled")
+
+    class Operator(module.SteppedOperator):
+        def begin(self, _context):
+            return Work()
+
+        def conclude(self, _context, result):
+            log.append(result)
+            return {"FINISHED"}
+
+        def report(self, *told):
+            log.append(told[0])
+
+        def _clean_up(self, _context):
+            log.append("cleaned")
+
+    operator = Operator()
+    operator._work = operator.begin(None)
+    module._TURN, turn = -1.0, module._TURN
+    try:
+        for _ in range(presses):
+            assert operator.modal(bpy.context, Timer("TIMER")) == {"RUNNING_MODAL"}
+        assert operator.modal(bpy.context, Timer("MOUSEMOVE")) == {"RUNNING_MODAL"}
+        assert operator.modal(bpy.context, Timer("ESC")) == {"CANCELLED"}
+    finally:
+        module._TURN = turn
+    assert log == [*range(1, presses + 1), "cancelled", "cleaned", {"WARNING"}]
+
+
+def test_without_a_window_a_press_does_all_of_it(ocean, painted):
+    mask = ocean.ocean_tweak.mask
+    mask.mesh, mask.vertex_group = painted, "Harbour"
+    bpy.context.view_layer.objects.active = ocean
+    assert bpy.ops.ocean.read_weights("INVOKE_DEFAULT", patch=-2, samples=16) == {"FINISHED"}
+    assert mask.source == "VERTEX_GROUP"
+    assert mask.image is not None
+    with pytest.raises(RuntimeError, match="Choose a mesh"):
+        mask.mesh = None
+        bpy.ops.ocean.read_weights("INVOKE_DEFAULT", patch=-2)
