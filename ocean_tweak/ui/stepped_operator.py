@@ -62,7 +62,7 @@ class SteppedOperator:
             return {"CANCELLED"}
         manager = context.window_manager
         manager.progress_begin(0, self._work.steps)
-        context.workspace.status_text_set(f"{self.doing}. Esc: give up")
+        self._tell(context)
         self._timer = manager.event_timer_add(_LOOK, window=context.window)
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -77,7 +77,9 @@ class SteppedOperator:
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         result = self._go_on(context, until=time.monotonic() + _TURN)
-        if result != {"RUNNING_MODAL"}:
+        if result == {"RUNNING_MODAL"}:
+            self._tell(context)
+        else:
             self._clean_up(context)
         return result
 
@@ -110,6 +112,10 @@ class SteppedOperator:
             work.cancel()
             return refuse(self, error)
         return self.conclude(context, result)
+
+    def _tell(self, context: bpy.types.Context) -> None:
+        share = 100 * self._work.done // self._work.steps
+        context.workspace.status_text_set(f"{self.doing}: {share} %   |   Esc: give up")
 
     def _clean_up(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
