@@ -85,7 +85,11 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
     needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in of_parts]
     state, surface = sum(need.state for need in needs), sum(need.surface for need in needs)
     if not parameters.is_cascade:
-        state += _PLACED * parameters.resolution**2 * sum(part.patch > 0 for part in of_parts)
+        state += (
+            _PLACED
+            * parameters.resolution**2
+            * sum(part.patch > 0 or part.rotation != 0.0 for part in of_parts)
+        )
         keys = max(
             (
                 len({key for name in group for key in CHANNELS[name].needs})
