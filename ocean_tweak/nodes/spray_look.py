@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..core.spray.drops import MIST
+from ..core.spray.drops import DROPLET, MIST
 from .building import Panel, Plug
 from .shading import Shading
 from .spray import KIND, LEFT
@@ -17,7 +17,7 @@ from .versioned import GroupKind
 
 #: of the light that comes off a particle, what has come through it
 _THROUGH = 0.45
-#: how much softer mist is towards its rim than a ball of even density
+#: how much softer spume and mist are towards their rims than a ball of even density
 _RIM = 2.0
 
 _PANELS = (
@@ -25,7 +25,8 @@ _PANELS = (
         "Spray",
         (
             ("Color", "NodeSocketColor", (0.92, 0.93, 0.94, 1.0), "Of spume and mist"),
-            ("Spume", "NodeSocketFloat", 0.8, "Opacity of spume and drops in their middle"),
+            ("Drops", "NodeSocketFloat", 0.9, "Opacity of single drops in their middle"),
+            ("Spume", "NodeSocketFloat", 0.3, "Opacity of a piece of a sheet of spume in its middle"),
             ("Mist", "NodeSocketFloat", 0.04, "Opacity of mist in its middle, when it is new"),
             ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
         ),
@@ -39,12 +40,13 @@ def _build(tree: bpy.types.NodeTree) -> None:
     geometry = shade.node("ShaderNodeNewGeometry").outputs
     facing = shade.number("DOT_PRODUCT", geometry["Normal"], geometry["Incoming"])
     facing = shade.math("ABSOLUTE", facing)
-    is_mist = shade.math("COMPARE", shade.value(KIND), float(MIST), 0.5)
+    kind = shade.value(KIND)
+    is_mist, is_drop = (shade.math("COMPARE", kind, float(each), 0.5) for each in (MIST, DROPLET))
+    soft = shade.math("POWER", facing, _RIM)
     left = shade.math("MAXIMUM", shade.value(LEFT), 0.0)
-    mist = shade.math(
-        "MULTIPLY", given["Mist"], shade.math("MULTIPLY", left, shade.math("POWER", facing, _RIM))
-    )
-    spume = shade.math("MULTIPLY", given["Spume"], facing)
+    mist = shade.math("MULTIPLY", given["Mist"], shade.math("MULTIPLY", left, soft))
+    sheet = shade.math("MULTIPLY", given["Spume"], soft)
+    spume = shade.mix(is_drop, sheet, shade.math("MULTIPLY", given["Drops"], facing))
     path = shade.math(
         "DIVIDE",
         shade.math("MULTIPLY", shade.node("ShaderNodeCameraData").outputs["View Distance"], -3.912),
@@ -59,4 +61,4 @@ def _build(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Surface": shade.mix_shaders(opacity, clear, shade.mix_shaders(_THROUGH, off, through))})
 
 
-SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 1, _build, "ShaderNodeTree")
+SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 2, _build, "ShaderNodeTree")

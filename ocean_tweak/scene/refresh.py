@@ -165,7 +165,7 @@ def _refresh_sea(
             missing |= Wanted.HISTORY
     if Wanted.RENDER in wanted:
         patch_objects.show_for_render(item, plan, points, scene)
-        spray.refresh(item, plan, scene, share=1.0)
+        spray.refresh(item, plan, scene, is_rendered=True)
         if plan.has_own_render and not is_baked:
             _write_render(settings, plan)
     if Wanted.SURFACE in wanted:

@@ -115,13 +115,13 @@ class Wanted:
 
 
 def wanted(
-    ocean: bpy.types.Object, plan: Plan, scene: bpy.types.Scene, share: float = _IN_WINDOW
+    ocean: bpy.types.Object, plan: Plan, scene: bpy.types.Scene, is_rendered: bool = False
 ) -> Wanted | None:
     """The spray that an ocean wants; None where there is none.
 
-    share : of all particles, those that are made, as much larger
+    is_rendered : whether all particles are wanted, which without a window always are
     """
-    spray = plan.whole.spray
+    spray, share = plan.whole.spray, 1.0 if is_rendered or bpy.app.background else _IN_WINDOW
     if spray is None or why_none(plan.whole) is not None or spray.amount == 0.0:
         return None
     shown = dataclasses.replace(spray, amount=spray.amount * share, size=min(spray.size / share**0.5, 1.0))
@@ -137,18 +137,18 @@ def refresh(
     plan: Plan,
     scene: bpy.types.Scene,
     patient: bool = True,
-    share: float = _IN_WINDOW,
+    is_rendered: bool = False,
 ) -> bool:
     """Make, renew or remove an ocean's spray. Returns whether it shows all that it will.
 
     patient : otherwise what takes long is left out
-    share : of all particles, those that are made, as much larger
+    is_rendered : whether all particles are wanted, which without a window always are
 
     Raises SprayError for more particles than the memory holds.
     """
     if ocean.library is not None:
         return True
-    asked = wanted(ocean, plan, scene, share)
+    asked = wanted(ocean, plan, scene, is_rendered)
     if asked is None:
         remove(ocean)
         if plan.whole.spray is not None and (why := why_none(plan.whole)) is not None:

@@ -2,6 +2,7 @@
 """Spray of an ocean: points at the particles of the core, made anew with each frame, gone with the ocean."""
 
 import importlib
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -36,10 +37,9 @@ def spray_of(ocean):
     return next((child for child in ocean.children if child.name.endswith("Spray")), None)
 
 
-def made(time, share=0.125):
-    """The core's particles, as few and as large as a window shows."""
-    shown = Spray(amount=share, size=0.008 / share**0.5)
-    return TileSpray(Ocean(SEA)).at(time, shown)
+def made(time):
+    """The core's particles."""
+    return TileSpray(Ocean(SEA)).at(time, Spray())
 
 
 def test_points_are_the_particles_of_the_frame(ocean, empty_scene):
@@ -62,6 +62,16 @@ def test_between_frames_points_go_on_by_their_velocity(ocean, empty_scene):
     )
     empty_scene.frame_set(12, subframe=0.75)  # nearer to 13 than to 12
     assert len(points(spray_of(ocean))["radius"]) == len(before["radius"])
+
+
+def test_a_window_shows_an_eighth_as_much_larger(extension, ocean, empty_scene, monkeypatch):
+    module = extension("scene.spray")
+    plan = extension("scene.plan").plan_for(ocean, ocean.ocean_tweak, empty_scene)
+    monkeypatch.setattr(module.bpy, "app", SimpleNamespace(background=False))
+    shown = module.wanted(ocean, plan, empty_scene).spray
+    assert shown.amount == 0.125
+    assert shown.size == pytest.approx(0.008 * 8**0.5)
+    assert module.wanted(ocean, plan, empty_scene, is_rendered=True).spray.amount == 1.0
 
 
 def test_a_switch_and_numbers_that_change_no_wave(ocean, empty_scene):

@@ -18,7 +18,7 @@ class Spray(Validated):
     )  # fmt: skip
     size: float = number(
         0.008, 1e-4, 1.0, "m", "Radius with which a drop of half a millimetre is drawn: each stands for many."
-        " Mist and larger drops grow with it", "from true drops to handfuls of water",
+        " Sheets of spume, mist and larger drops grow with it", "from true drops to handfuls of water",
     )  # fmt: skip
     wind: float = number(
         1.0, 0.0, 4.0, "", "Multiplies the wind that carries spray. How much spray there is follows from the"

@@ -36,9 +36,9 @@ _UPWARD, _UPWARD_BY_WIND = 3.5, 0.04
 _DIFFERENCE = 0.35
 #: s; drops have fallen back by then
 _DROPS_FLY = 2.0
-#: drawn radii: the drop that has that of the settings, m; mist over it; and the friction velocities by which
-#: mist spreads
-_DRAWN_AS, _MIST, _SPREADING = 0.5e-3, 40.0, 0.3
+#: drawn radii: the drop that has that of the settings, m; a piece of a sheet of spume, and mist, over it; and
+#: the friction velocities by which mist spreads
+_DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 4.0, 40.0, 0.3
 
 #: s; mean time that a particle is in the air, and bytes of one while frames are made and shown
 MEAN_LIFE, BYTES = 0.5, 300
@@ -212,8 +212,10 @@ def _bounded_normal(key: NDArray[np.uint64], stream: int) -> RealArray:
 
 
 def _drawn(kind: NDArray[np.int8], radius: RealArray, age: RealArray, spray: Spray, wind: Wind) -> RealArray:
-    """Radii in m with which particles are drawn: mist is many drops, which turbulence spreads."""
-    drawn = radius * np.float32(spray.size / _DRAWN_AS)
+    """Radii in m with which particles are drawn: spume is a piece of a sheet, mist many drops, which
+    turbulence spreads."""
+    drawn = radius * np.where(kind == drops.SPUME, np.float32(_SHEET), np.float32(1.0))
+    drawn *= np.float32(spray.size / _DRAWN_AS)
     spread = _MIST * spray.size + _SPREADING * friction_velocity(wind.speed) * age
     return np.where(kind == drops.MIST, spread, drawn).astype(np.float32)
 
