@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Foam, Ocean, OceanParameters, ParameterError, Patch, Places, WaveLayer
+from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.parameters.patch_seas import merged_bands, parts
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea.bake import ShotSeas
@@ -257,5 +258,7 @@ def test_places_of_joined_patches_have_the_waves_that_the_grid_holds() -> None:
 def test_memory_is_told() -> None:
     apart = memory_need(merged_bands(joined(256)), {"displacement"})
     together = memory_need(joined(256), {"displacement"})
-    assert together.state == apart.state
     assert together.surface == apart.surface + 3 * 3 * 256**2 * 4
+    Ocean(joined(256)).surface(0.0)
+    kept = MEMO.report()["places of tiles"]  # where samples lie between those of other patches
+    assert kept <= together.state - apart.state < 1.2 * kept
