@@ -24,8 +24,8 @@ _TEMPORARY_ARRAYS = 5
 #: bytes a sample of an area: where it lies, between which samples of a part, and what is read there
 _READING = 80
 
-#: bytes a sample of a tile that are kept for each part which is read between its samples: where it lies there,
-#: and how much counts at the far sides
+#: bytes a sample of a tile that are kept for each part which is read between its samples: where it lies
+#: there, and how much counts at the far sides
 _PLACED = 18
 
 #: bytes a sample of an area where foam is made: births there and where old foam is drawn from
