@@ -24,6 +24,8 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+from cloud_shadows import CloudShadows
+from cloud_shadows import add as add_cloud_shadows
 from extension import Extension, enable
 
 LARGEST = 200_000  # bytes
@@ -39,13 +41,19 @@ class Shot(NamedTuple):
     wind : speed in m/s and fetch in m of another sea, on patches down to waves of a fifth of a metre; None
         for the mood's own
     changes : of fields of the mood
+    foam : as a share of what the wind leaves
     is_afloat : whether something floats before the camera
+    away : how far that is, at least and at most, in m; None for where the mood has it
+    shadows : of clouds on the water
     """
 
     mood: str
     wind: tuple[float, float] | None = None
     changes: Mapping[str, float] = MappingProxyType({})
+    foam: float = 1.0
     is_afloat: bool = True
+    away: tuple[float, float] | None = None
+    shadows: CloudShadows | None = None
 
 
 SHOTS = {
@@ -60,16 +68,17 @@ SHOTS = {
         },
     ),
     "aerial-60m": Shot(
-        "FRESH_BREEZE", (11.0, 150e3), is_afloat=False,
+        "FRESH_BREEZE", (13.0, 200e3), away=(150.0, 210.0), foam=2.5,
         changes={
-            "eye": 60.0, "tilt": math.radians(12.0), "lens": 28.0, "rings": 0, "sun": math.radians(45.0),
+            "eye": 60.0, "tilt": math.radians(10.0), "lens": 32.0, "rings": 0, "visibility": 60e3,
+            "sun": math.radians(38.0), "sun_elevation": math.radians(17.0), "exposure": -0.1,
         },
     ),
     "aerial-300m": Shot(
-        "STORM", is_afloat=False,
+        "STORM", away=(780.0, 950.0), shadows=CloudShadows(size=2200.0, left=0.15),
         changes={
-            "eye": 300.0, "tilt": math.radians(15.0), "lens": 28.0, "exposure": 0.3, "visibility": 22e3,
-            "sun": math.radians(-75.0), "sun_elevation": math.radians(26.0), "overcast": 0.45,
+            "eye": 300.0, "tilt": math.radians(11.5), "lens": 35.0, "exposure": -0.3, "visibility": 90e3,
+            "sun": math.radians(-46.0), "sun_elevation": math.radians(26.0), "clouds": 0.65, "overcast": 0.12,
         },
     ),
 }  # fmt: skip
@@ -117,17 +126,27 @@ def build(extension: Extension, shot: Shot, engine: str) -> None:
     bpy.ops.wm.read_homefile(use_empty=True)
     mood = dataclasses.replace(moods.MOODS[shot.mood], **shot.changes)
     if shot.wind is not None:
-        mood = dataclasses.replace(mood, waves=partial(wind_sea, extension, *shot.wind))
+        mood = dataclasses.replace(mood, waves=partial(wind_sea, extension, *shot.wind, shot.foam))
+    if shot.away is not None:
+        afloat = extension.module("scene.afloat").AFLOAT
+        nearest, farthest = shot.away
+        afloat["SHOT"] = dataclasses.replace(afloat["BOAT"], nearest=nearest, farthest=farthest)
+        mood = dataclasses.replace(mood, floats="SHOT")
     moods.MOODS["SHOT"] = mood
     surroundings.build(bpy.context.scene, "SHOT", surroundings.Wishes(engine=engine, afloat=shot.is_afloat))
+    if shot.shadows is not None:
+        add_cloud_shadows(extension, bpy.context.scene, shot.shadows)
 
 
-def wind_sea(extension: Extension, wind_speed: float, fetch: float) -> Any:
-    """Parameters of a wind's sea that runs towards the camera."""
+def wind_sea(extension: Extension, wind_speed: float, fetch: float, foam: float) -> Any:
+    """Parameters of a wind's sea that runs towards the camera, with so much of the usual foam."""
     core, plan = extension.module("core"), extension.module("core.sea.patch_plan")
     direction = extension.module("scene.moods").VIEW + math.radians(205.0)
     layer = core.WaveLayer(wind_speed=wind_speed, fetch=fetch, wind_direction=direction, swell=0.3)
-    return plan.planned(core.OceanParameters(seed=3, layers=(layer,)), plan.Wish(finest=0.2, area=900.0))
+    return plan.planned(
+        core.OceanParameters(seed=3, layers=(layer,), foam=core.Foam(coverage=foam)),
+        plan.Wish(finest=0.2, area=900.0),
+    )
 
 
 def set_quality(scene: bpy.types.Scene, width: int, samples: int) -> None:

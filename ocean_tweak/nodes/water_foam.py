@@ -37,7 +37,7 @@ _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
 _SOFT = (0.2, 0.1)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
-_FADE = (0.5, 2.0)
+_FADE = (0.25, 1.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
 _PAGE = (1.5976, 0.070566)
 #: from a rim inwards, in standard deviations of the laces: until foam is thick, and how far its slope reaches
