@@ -49,6 +49,7 @@ def run_script(plan: Plan, where: str) -> dict[str, Any]:
     arguments = [
         "--sizes", *map(str, plan.scene), "--latency", str(plan.latency), "--rounds", str(plan.rounds),
         "--judge", str(plan.scene[-1]), "--place", PLACES[where], "--out", str(out),
+        *["--bake-horizon"] * (not plan.smoke),
     ]  # fmt: skip
     command = blender.command(_SCRIPT, arguments, where=where)
     answer = subprocess.run(

@@ -37,15 +37,15 @@ def rows(plain: Contender, rounds: int, group: str) -> Iterator[Row]:
     plain : a sea of 512² samples without maps
     """
     scene = bpy.data.scenes.new(_SHOWN)
-    with _in_window():
+    with in_window():
         start = time.perf_counter()
         ocean = surroundings.build(scene, _MOOD, surroundings.Wishes()).ocean
         seconds = time.perf_counter() - start
         surface = camera_surface_of(ocean)
         _mesh(scene, surface)  # only now it is known where the camera is
-        _finish(ocean)
+        finish(ocean)
     yield Row(group, "To the Horizon: from the click to a free window", seconds, "s", target="horizon click")
-    sides = {_PLAIN: _player(*plain), _SHOWN: _player(scene, surface, ocean)}
+    sides = {_PLAIN: player(*plain), _SHOWN: player(scene, surface, ocean)}
     yield ratio_row(
         group, "To the Horizon: frame → mesh, consecutive frames, against a plain sea",
         interleaved(sides, rounds), _SHOWN, _PLAIN, target="horizon frame",
@@ -59,12 +59,12 @@ def rows(plain: Contender, rounds: int, group: str) -> Iterator[Row]:
     )  # fmt: skip
 
 
-def _in_window() -> AbstractContextManager[object]:
+def in_window() -> AbstractContextManager[object]:
     """As if somebody looked on."""
     return patch.object(refinement, "has_window", lambda: True)
 
 
-def _finish(ocean: bpy.types.Object) -> None:
+def finish(ocean: bpy.types.Object) -> None:
     """Let follow what follows in a window."""
     while refinement.is_outstanding(ocean):
         refinement.go_on()
@@ -82,7 +82,7 @@ def _render_row(
         def run() -> None:
             set_inputs(modifier, {_BUDGET: budget})
             surface.update_tag()
-            with _in_window() if not wanted else nullcontext():
+            with in_window() if not wanted else nullcontext():
                 scene.frame_set(next(frames))
             refresh(ocean, scene, wanted)
             counts[name] = len(_mesh(scene, surface).vertices)
@@ -104,14 +104,14 @@ def _render_row(
     return replace(row, value=row.value * share, quartiles=(low * share, high * share))
 
 
-def _player(
+def player(
     scene: bpy.types.Scene, item: bpy.types.Object, ocean: bpy.types.Object | None = None
 ) -> Callable[[], None]:
     """Goes to the next frame and asks for the mesh; raises RuntimeError where more of an ocean follows."""
     frames = itertools.count(2)
 
     def run() -> None:
-        with _in_window():
+        with in_window():
             scene.frame_set(next(frames))
             _mesh(scene, item)
             if ocean is not None and refinement.is_unfinished(ocean):

@@ -2,7 +2,7 @@
 """Script for Blender: the built-in Ocean modifier against our live oceans, from frame to evaluated mesh.
 
 blender --background --factory-startup --python benchmarks/in_blender.py --
-        --sizes 256 512 1024 --latency 512 --rounds 9 --place LABEL --out FILE.json
+        --sizes 256 512 1024 --latency 512 --rounds 9 --place LABEL [--bake-horizon] --out FILE.json
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import horizon
+from benchmarks import horizon, playback
 from benchmarks.measure import Timings, interleaved
 from benchmarks.plan import sea
 from benchmarks.rows import Row, ratio_row
@@ -51,6 +51,12 @@ def main() -> None:
     rows = [row for size in arguments.sizes for row in frame_rows(size, arguments)]
     rows += latency_rows(arguments.latency, arguments)
     rows += horizon.rows(live(512, "NODES"), arguments.rounds, f"Blender, {arguments.place}")
+    where = f"Blender, {arguments.place}"
+    rows += playback.rows(
+        lambda samples: live(samples, "NODES"), sea(arguments.latency), arguments.rounds, where
+    )
+    if arguments.bake_horizon:
+        rows.append(playback.horizon_row(arguments.rounds, where))
     remove_scenes()
     report = {
         "blender": bpy.app.version_string,
@@ -70,6 +76,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--rounds", type=int, required=True)
     parser.add_argument("--place", required=True, help="which Blender this is")
     parser.add_argument("--judge", type=int, default=1024, help="the size that the targets speak of")
+    parser.add_argument("--bake-horizon", action="store_true", help="bake To the Horizon: some minutes")
     parser.add_argument("--out", type=Path, required=True)
     return parser.parse_args(argv)
 

@@ -83,6 +83,16 @@ TARGETS = {
     "horizon render": Target("a vertex of its render", 2.0, "× one of its viewport"),
     "horizon drag": Target("Wind dragged there until the first mesh", 8.0, "× a plain sea"),
     "horizon click": Target("from the click on To the Horizon to a free window", 1.5, "s"),
+    "baked": Target(
+        "a baked sea of 512² played, displacement alone", 1.0, "× the same live",
+        what_limits="Blender's Image Texture node, which reads the image for each vertex: more than half of "
+        "the frame; with all files in its cache already it takes nine tenths as long",
+    ),
+    "baked memory": Target("memory that grows while more is played than Blender's cache holds", 10.0, "MB"),
+    "baked horizon": Target(
+        "To the Horizon baked and played", 1.2, "× the same live",
+        what_limits="its patches' points, which Blender reads from files of 12 to 26 MB in each frame",
+    ),
     "bake": Target(
         "bake of `disp` at 1024², two workers", 1.15, "× (compute + encode)/2", needs_two_cores=True
     ),
@@ -102,13 +112,17 @@ TARGETS = {
     "cascades": Target("three 512² patches, 6 fields + minimum eigenvalue each", 3.2, "× one 512² patch"),
     "foam alone": Target(
         "foam of a frame by itself, 512² to 2048², one thread", 25.0, "× one six-field frame",
-        what_limits="looks at the past, each two thirds of a six-field frame: as many as the frequencies of "
-        "the strains ask for, 30 to 60; what would save some loses either short crests or their trace",
+        what_limits="looks at the past, each two thirds of a six-field frame: 26 to 46, as many as the "
+        "frequencies of strains ask for. Tried: looks a tenth further apart, a band of the sea's own "
+        "spectrum and more looks around a moment (a correlation of 0.976 with the foam of all moments in "
+        "fine storms), a frame that moves with the waves (a seventh fewer at best), strains interpolated "
+        "one by one (a fifth fewer looks, as much more to interpolate); phases are a seventh of a look",
     ),
     "foam of places alone": Target(
         "foam of a cascade at 200,000 places by itself", 30.0, "looks at them",
-        what_limits="the shortest patch, whose strains change too fast for fewer looks, and in windrows as "
-        "many places again from which old foam is drawn",
+        what_limits="47 looks, as many as the strains of the shortest patch ask for, each read at the places "
+        "that old foam is drawn from, and a quarter of them at those that it is drawn to as well; transforms "
+        "alone take 14. Tried: reading in parts of the places, for which patches fall out of the caches",
     ),
     "joined": Target(
         "three patches joined on 1024², displacement, one thread", 2.5, "× one patch of 1024²",
