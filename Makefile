@@ -32,7 +32,7 @@ test-window: ## the tests in a real Blender's window, by mouse and keyboard; wan
 	@$(PYTHON) -m tools.setup
 	@$(VENV) -m pytest -q tests/ui
 
-guide:      ## follow docs/first-sea.md in a real Blender's window, and renew its pictures
+guide:      ## follow docs/first-sea.md and docs/ship.md in a real Blender's window, and renew their pictures
 	@$(PYTHON) -m tools.setup
 	@$(VENV) -m tools.guide
 
