@@ -26,8 +26,8 @@ _PANELS = (
         (
             ("Color", "NodeSocketColor", (0.92, 0.93, 0.94, 1.0), "Of spume and mist"),
             ("Drops", "NodeSocketFloat", 0.9, "Opacity of single drops in their middle"),
-            ("Spume", "NodeSocketFloat", 0.3, "Opacity of a piece of a sheet of spume in its middle"),
-            ("Mist", "NodeSocketFloat", 0.04, "Opacity of mist in its middle, when it is new"),
+            ("Spume", "NodeSocketFloat", 0.45, "Opacity of a piece of a sheet of spume in its middle"),
+            ("Mist", "NodeSocketFloat", 0.06, "Opacity of mist in its middle, when it is new"),
             ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
         ),
     ),
@@ -61,4 +61,4 @@ def _build(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Surface": shade.mix_shaders(opacity, clear, shade.mix_shaders(_THROUGH, off, through))})
 
 
-SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 2, _build, "ShaderNodeTree")
+SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 3, _build, "ShaderNodeTree")

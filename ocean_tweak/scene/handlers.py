@@ -189,6 +189,8 @@ def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
         bake_state.warn(item)
         if text := portability.sharp_under_blur(item, scene):
             failures.warned(item, "blur", text)
+        if text := spray.too_few_bounces(item, scene):
+            failures.warned(item, "bounces", text)
 
 
 @persistent

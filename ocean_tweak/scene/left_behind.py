@@ -21,8 +21,12 @@ def clear() -> bool:
     Returns whether there are any.
     """
     deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
+    # nobody reads an ocean for its spray: it is freed, and its child has no parent any more
+    alone = [item for item in bpy.data.objects if spray.is_ours(item) and item.parent is None]
+    for item in [item for item in alone if item.library is None and item.users_collection]:
+        _take_away(item)
     if not deleted:
-        return False
+        return bool(alone)
     for item in [item for item in bpy.data.objects if item.library is None and item.users_collection]:
         if item.parent in deleted and is_made_for_oceans(item):
             _take_away(item)

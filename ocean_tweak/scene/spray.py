@@ -51,6 +51,8 @@ _NAME = "Ocean Tweak Spray"
 _KIND = "spray"
 #: of all particles, those that a window shows, as much larger
 _IN_WINDOW = 0.125
+#: layers of mist that light goes through in Cycles
+TRANSPARENT_BOUNCES = 64
 #: frames that there are: those of live spray have no files
 _MOST = 1_048_574
 #: s after the spray that was made last, within which the next one is quickly made
@@ -177,6 +179,17 @@ def refresh(
     _write(item.data, values, plan)
     _shown[item.data.session_uid] = content
     return True
+
+
+def too_few_bounces(ocean: bpy.types.Object, scene: bpy.types.Scene) -> str | None:
+    """What to say where Cycles ends light in dense mist, which then is dark; None where all is well."""
+    bounces = scene.cycles.transparent_max_bounces if scene.render.engine == "CYCLES" else TRANSPARENT_BOUNCES
+    if spray_of(ocean) is None or bounces >= TRANSPARENT_BOUNCES:
+        return None
+    return (
+        f"mist will be dark where it is dense: Cycles has {bounces} transparent bounces, set "
+        f"{TRANSPARENT_BOUNCES} in Render > Light Paths"
+    )
 
 
 def spray_of(ocean: bpy.types.Object) -> bpy.types.Object | None:

@@ -26,6 +26,7 @@ from .clear_water import clear_place
 from .moods import MOODS, VIEW, Mood
 from .settings import VIEWPORT_RESOLUTION, settings_of
 from .sky import new_sun, new_world
+from .spray import TRANSPARENT_BOUNCES
 from .units import frame_rate, metres_per_unit
 
 #: how far beside the middle of the picture the highest wave may be, rad
@@ -102,6 +103,9 @@ def build(
     if chosen.eye < _BOAT:
         ride(camera, place, parameters, scene)
     kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
+    if parameters.spray is not None:
+        bounces = scene.cycles.transparent_max_bounces
+        scene.cycles.transparent_max_bounces = max(bounces, TRANSPARENT_BOUNCES)
     if not chosen.rings:
         add_camera_surface(ocean, scene, budget=chosen.vertices)
     if wishes.afloat:

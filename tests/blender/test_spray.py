@@ -102,6 +102,27 @@ def test_two_oceans_have_a_spray_each_and_one_goes_with_its_ocean(extension, oce
     assert spray_of(other) is not None
 
 
+def test_spray_of_a_deleted_ocean_goes_with_it(ocean, empty_scene):
+    assert spray_of(ocean).name in empty_scene.objects
+    name = spray_of(ocean).name
+    for item in empty_scene.objects:
+        item.select_set(item == ocean)
+    bpy.ops.object.delete()
+    bpy.context.view_layer.update()
+    assert name not in empty_scene.objects
+
+
+def test_mist_that_cycles_would_darken_is_told(extension, ocean, empty_scene):
+    told = extension("scene.spray").too_few_bounces
+    empty_scene.render.engine = "CYCLES"
+    assert "Cycles has 8 transparent bounces, set 64" in told(ocean, empty_scene)
+    empty_scene.cycles.transparent_max_bounces = 64
+    assert told(ocean, empty_scene) is None
+    ocean.ocean_tweak.use_spray = False
+    empty_scene.cycles.transparent_max_bounces = 8
+    assert told(ocean, empty_scene) is None
+
+
 def test_a_file_is_without_points_but_with_their_material(extension, ocean, empty_scene, tmp_path):
     look = spray_of(ocean).modifiers[0]
     assert look.node_group.name.startswith("Ocean Tweak Spray")

@@ -5,6 +5,7 @@ import bpy
 
 from ...core.sea.spray import why_none
 from ...scene.refresh import sea_of_settings
+from ...scene.spray import too_few_bounces
 from .. import camera_operators, material_operators, parameter_operators
 from ..active_ocean import shown_ocean
 from ..field_drawing import draw_fields, draw_switched
@@ -101,6 +102,8 @@ class OCEAN_PT_spray(SubPanel, bpy.types.Panel):
         sea = sea_of_settings(shown_ocean(context), context.scene)
         if settings.use_spray and sea is not None and (why := why_none(sea)) is not None:
             message(layout, context, f"No spray: {why}")
+        if text := too_few_bounces(shown_ocean(context), context.scene):
+            message(layout, context, f"{text[0].upper()}{text[1:]}")
 
 
 class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
