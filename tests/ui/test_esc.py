@@ -29,6 +29,18 @@ with over('WINDOW'):
     bpy.ops.ed.undo_push(message='old sea')
 """
 CONVERT = "with over('WINDOW'): bpy.ops.ocean.convert('INVOKE_DEFAULT', True)"
+CUBE = """
+with over('WINDOW'):
+    bpy.ops.mesh.ocean_tweak_add()
+    ocean().use_foam, ocean().viewport_resolution = False, 32
+    cube = bpy.data.objects['Cube']
+    for item in bpy.context.scene.objects: item.select_set(item == cube)
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.ed.undo_push(message='cube')
+"""
+BAKE = "with over('WINDOW'): bpy.ops.object.ocean_tweak_float_bake('INVOKE_DEFAULT', True, frame_end={})"
+BAKING = "any(each.bl_idname == 'OBJECT_OT_ocean_tweak_float_bake' for each in window().modal_operators)"
+KEYED = "bpy.data.objects['Cube'].animation_data is not None"
 READING = "any(each.bl_idname == 'OCEAN_OT_read_weights' for each in window().modal_operators)"
 CONVERTING = "any(each.bl_idname == 'OCEAN_OT_convert' for each in window().modal_operators)"
 IMAGE = "ocean().mask.image is not None"
@@ -79,3 +91,24 @@ def test_conversion(hand, over_view):
     hand.wait("len(oceans())", 0)
     hand.key("ctrl+shift+z")
     hand.wait("list(oceans())", ["Old Sea"])
+
+
+def test_float(hand, over_view):
+    over_view(CUBE)
+    hand.wait("is_refining()", False)
+    before = hand.ask("[bpy.context.scene.frame_current, sorted(bpy.data.objects.keys())]")
+    over_view(BAKE.format(2000))
+    hand.wait("bpy.context.scene.frame_current", lambda frame: frame > 3)
+    hand.keep("float-being-baked", moving=True)
+    hand.key("Escape")
+    hand.wait(BAKING, False)
+    assert not hand.ask(KEYED)
+    assert hand.ask("[bpy.context.scene.frame_current, sorted(bpy.data.objects.keys())]") == before
+    over_view(BAKE.format(5))
+    hand.wait(KEYED)
+    hand.wait(BAKING, False)
+    hand.to_viewport()
+    hand.key("ctrl+z")
+    hand.wait(KEYED, False)
+    hand.key("ctrl+shift+z")
+    hand.wait(KEYED)
