@@ -22,8 +22,9 @@ def clear() -> bool:
     """
     deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
     # nobody reads an ocean for its spray: it is freed, and its child has no parent any more
-    alone = [item for item in bpy.data.objects if spray.is_ours(item) and item.parent is None]
-    for item in [item for item in alone if item.library is None and item.users_collection]:
+    own = (item for item in bpy.data.objects if spray.is_ours(item) and item.library is None)
+    alone = [item for item in own if item.parent is None and item.users_collection]
+    for item in alone:
         _take_away(item)
     if not deleted:
         return bool(alone)

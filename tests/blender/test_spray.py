@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
-from ocean_tweak.core.sea.spray import TileSpray
+from ocean_tweak.core.sea.foam_levels import FoamLevels
+from ocean_tweak.core.sea.patch_plan import Wish, planned
+from ocean_tweak.core.sea.spray import CameraSpray, TileSpray
 
 SEA = OceanParameters(
     resolution=64, domain_size=100.0, seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=300e3),), spray=Spray()
@@ -82,6 +84,22 @@ def test_a_switch_and_numbers_that_change_no_wave(ocean, empty_scene):
     ocean.ocean_tweak.use_spray = False
     assert spray_of(ocean) is None
     assert ocean.ocean_tweak.to_parameters(empty_scene).spray is None
+
+
+def test_a_sea_of_patches_has_it_around_the_camera(extension, empty_scene):
+    sea = planned(OceanParameters(seed=2, layers=SEA.layers), Wish(finest=4.0, area=200.0))
+    shown = sea.replace(spray=Spray(life=1.0, amount=0.2), patches=sea.patches).on_one_grid(64)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    camera.location = (100.0, 50.0, 4.0)
+    bpy.context.view_layer.update()
+    ocean = extension("scene.ocean_object").add(empty_scene, shown)
+    extension("scene.camera_surface").add_camera_surface(ocean, empty_scene)
+    empty_scene.frame_set(2)
+    expected = CameraSpray(FoamLevels(sea)).at(1 / 24.0, shown.spray, (100.0, 50.0))
+    assert len(expected.age) > 1000
+    np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
 
 
 def test_a_sea_without_spray_says_why(ocean, empty_scene, caplog):
