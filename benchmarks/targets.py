@@ -77,12 +77,19 @@ TARGETS = {
     ),
     "horizon frame": Target(
         "frame → mesh of To the Horizon, consecutive frames", 10.0, "× a plain sea of 512² without maps",
-        what_limits="foam around the camera, the waves of four patches, and the lattice, whose squares one "
-        "core joins anew in every frame of a camera that moves",
+        what_limits="eleven fields of each of four patches and the strains under foam of six sizes of cells, "
+        "which take longer than the nodes; fewer vertices show other waves than a render",
     ),
     "horizon render": Target("a vertex of its render", 2.0, "× one of its viewport"),
-    "horizon drag": Target("Wind dragged there until the first mesh", 8.0, "× a plain sea"),
-    "horizon click": Target("from the click on To the Horizon to a free window", 1.5, "s"),
+    "horizon drag": Target(
+        "Wind dragged there until the first mesh", 8.0, "× a plain sea",
+        what_limits="waves of five seas are drawn anew: of each patch, and of the ocean's own mesh",
+    ),
+    "horizon click": Target(
+        "from the click on To the Horizon to a free window", 1.5, "s",
+        what_limits="Blender's calls for a thousand nodes, each of which looks through its whole tree, and "
+        "the sea, without whose highest wave the camera has no place",
+    ),
     "baked": Target(
         "a baked sea of 512² played, displacement alone", 1.0, "× the same live",
         what_limits="Blender's Image Texture node, which reads the image for each vertex: more than half of "

@@ -45,7 +45,6 @@ class Builder:
         outputs: Iterable[Plug] = (),
     ) -> None:
         self.tree = tree
-        self._column = 0
         plugs = [*outputs]
         if not plugs:
             tree.is_modifier = True
@@ -75,8 +74,6 @@ class Builder:
     def add(self, kind: str, inputs: dict[str, Input] | None = None, **settings: Any) -> bpy.types.Node:
         """A node with its settings, and with values or links on its inputs by their names."""
         node = self.tree.nodes.new(kind)
-        node.location = (200 * self._column, -40 * (self._column % 8))
-        self._column += 1
         for name, value in settings.items():
             setattr(node, name, value)
         for name, value in (inputs or {}).items():

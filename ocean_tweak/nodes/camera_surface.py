@@ -13,14 +13,11 @@ from typing import NamedTuple
 
 import bpy
 
-from ..core.parameters.patch import MOST_PATCHES
-from .averaged import AVERAGED, SOCKETS
-from .averages import AVERAGES, ocean_carried
 from .building import Builder, Plug, Socket, output
 from .camera_foam import CAMERA_FAN, CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
-from .camera_patch import CAMERA_PATCH
-from .fields import alone, combined, coordinates, named_attribute, sample_index, whole_number
+from .camera_sum import CAMERA_SUM, OF_SUM, SUMMED
+from .fields import alone, coordinates, named_attribute, sample_index, whole_number
 from .foam_pile import FOAM_PILE
 from .frame_warnings import joined_text
 from .globe import EARTH_RADIUS, curved_normal, reach_of
@@ -36,10 +33,9 @@ from .names import (
     SLOPES,
     TEXTURE_COORDINATES,
     VELOCITY,
-    WEIGHT,
 )
 from .sample import OCEAN_INPUT, Spaces
-from .surface import CELL, GRID_FACTS
+from .surface import GRID_FACTS
 from .versioned import GroupKind, node_group
 
 #: cells of the lattice in the shortest wave that is left
@@ -55,10 +51,6 @@ _LUMP_CELLS = 80.0
 _LEAST_BREAKING = 0.02
 #: inputs of the pile of foam → attributes of the surface
 _OF_PILE = {"Displacement": DISPLACEMENT, "Velocity": VELOCITY, "Breaking": BREAKING}
-#: of the sea's patches, where it has several; under masks a patch may be several too
-PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
-#: of what does not repeat
-AREA_INPUT = "Area"
 #: of foam on rings around a camera
 FOAM_INPUT = "Foam"
 #: of fresh foam on it
@@ -80,20 +72,7 @@ INPUTS = (
     Plug("Planet Radius", "NodeSocketFloat", EARTH_RADIUS, "Of that globe, in Blender units"),
     Plug("Fade", "NodeSocketBool", True, "Let waves too short for the grid become roughness"),
     Plug("Material", "NodeSocketMaterial", None, "Of the surface"),
-    *(
-        Plug(
-            name,
-            "NodeSocketObject",
-            None,
-            "Mesh of one patch of a sea of several; none shows the ocean's own",
-        )
-        for name in PATCH_INPUTS
-    ),
-    Plug(
-        "Weights", "NodeSocketObject", None,
-        "Points over the domain with the weights of patches; none takes those of the ocean's mesh",
-    ),
-    Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, and is 0 along its sides"),
+    *OF_SUM,
     Plug(
         FOAM_INPUT, "NodeSocketObject", None,
         "Points with foam around a camera, or before it; none shows that of the ocean's mesh",
@@ -227,66 +206,14 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket, finest: Socket) ->
     return build.math("MAXIMUM", size, finest)
 
 
-def _summed(build: Builder, sea: _Sea, size: Socket, foam_around: Socket) -> dict[str, Socket]:
-    """What is shown at a vertex: the patches, or the ocean's mesh; foam around the camera, or of the mesh.
-
-    Besides attributes there are, in the ocean's axes, slopes with the variance that they lack, and strain.
-    """
-    info = build.add("GeometryNodeObjectInfo", {"Object": build.given(PATCH_INPUTS[0])})
-    is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
-    own = _of_mesh(build, sea, size, is_one)
-    has_foam = build.logic("NIMPLY", output(sea.of_foam, "Is There"), is_one)
-    around = dict(zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, foam_around), strict=True))
-    foam = {name: build.switch("FLOAT", has_foam, own[name], value) for name, value in around.items()}
-    sums = {
-        socket: build.switch("VECTOR", is_one, (0.0, 0.0, 0.0), own[name]) for name, socket in SOCKETS.items()
-    }
-    whole = {**_weights(build, sea), "Ocean": build.given("Ocean"), "Corner": sea.corner}
-    whole |= {"Size": size, "Fade": build.given("Fade")}
-    for number, name in enumerate((*PATCH_INPUTS, AREA_INPUT), start=1):
-        of_patch = {"Weight": WEIGHT.format(number)} if name != AREA_INPUT else {"Repeats": False}
-        inputs = {**whole, **of_patch, **sums, "Patch": build.given(name)}
-        patch = build.group(node_group(CAMERA_PATCH), inputs)
-        sums = {socket: output(patch, socket) for socket in sums}
-    values = {name: sums[socket] for name, socket in SOCKETS.items()}
-    cusp = build.switch("FLOAT", is_one, _cusp(build, values[OTHERS]), own[CUSP])
-    return {**values, **foam, CUSP: cusp}
-
-
-def _of_mesh(build: Builder, sea: _Sea, size: Socket, is_moving: Socket) -> dict[str, Socket]:
-    """What the ocean's mesh has of foam, and where that moves the surface, how."""
-    position = output(build.add("GeometryNodeInputPosition"), "Position")
-    mesh = output(sea.facts, "Geometry")
-    counts = {name: output(sea.facts, name) for name in ("Columns", "Rows")}
-    fade, spacing = {"Fade": build.given("Fade")}, output(sea.facts, "Spacing")
-    carried = {"Geometry": ocean_carried(build, mesh, is_moving), "Moving": is_moving}
-    averages = build.group(node_group(AVERAGES), {**carried, **counts, **fade})
-    inputs = {"Averages": output(averages, "Geometry"), "Levels": output(averages, "Levels")}
-    at = {"Spacing": spacing, "Place": position, "Size": size}
-    read = build.group(node_group(AVERAGED), {**inputs, **at, **counts, **fade})
-    x, y, squares = coordinates(build, output(read, SOCKETS[SLOPES]))
-    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
-    lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
-    foam, cusp, breaking = coordinates(build, output(read, SOCKETS[OTHERS]))
-    # a mean of births would be the age of none of them
-    read_there = {
-        "Geometry": mesh,
-        "Value": output(named_attribute(build, FOAM_AGE, "FLOAT"), "Attribute"),
-        "Place": build.vector("DIVIDE", position, spacing),
-        **counts,
-    }
-    age, _, _ = coordinates(build, output(build.group(node_group(CELL), read_there), "Value"))
-    return {
-        DISPLACEMENT: output(read, SOCKETS[DISPLACEMENT]),
-        VELOCITY: output(read, SOCKETS[VELOCITY]),
-        SLOPES: combined(build, x, y, lost),
-        # a mesh's normals are of its present shape already
-        OTHERS: build.scaled(output(read, SOCKETS[OTHERS]), 0.0),
-        FOAM: foam,
-        CUSP: cusp,
-        BREAKING: breaking,
-        FOAM_AGE: age,
-    }
+def _summed(build: Builder, sea: _Sea, size: Socket, foam: Socket) -> dict[str, Socket]:
+    """What is shown at a vertex: attributes, and in the ocean's axes slopes with the variance that they lack,
+    and strain."""
+    inputs = {plug.name: build.given(plug.name) for plug in (OCEAN_INPUT, *OF_SUM)}
+    inputs |= {"Fade": build.given("Fade"), "Size": size, "Foam": foam}
+    inputs["Has Foam"] = output(sea.of_foam, "Is There")
+    made = build.group(node_group(CAMERA_SUM), inputs)
+    return {name: output(made, socket) for name, socket in SUMMED.items()}
 
 
 def _of_rings(build: Builder, sea: _Sea, size: Socket) -> Socket:
@@ -299,30 +226,6 @@ def _of_rings(build: Builder, sea: _Sea, size: Socket) -> Socket:
         "Size": size,
     }
     return output(build.group(node_group(CAMERA_FOAM), inputs), "Value")
-
-
-def _cusp(build: Builder, strain: Socket) -> Socket:
-    """How far the sum of the strains compresses the surface: what a cusp is, `core.synthesis.channels`."""
-    xx, yy, shear = coordinates(build, strain)
-    half_sum, half_difference = (
-        build.math("MULTIPLY", build.math(operation, xx, yy), 0.5) for operation in ("ADD", "SUBTRACT")
-    )
-    root = alone(build, "LENGTH", combined(build, half_difference, shear))
-    return build.math("MAXIMUM", build.math("SUBTRACT", root, half_sum), 0.0)
-
-
-def _weights(build: Builder, sea: _Sea) -> dict[str, Socket]:
-    """Points that have the patches' weights, and how they lie."""
-    given = build.add(
-        "GeometryNodeObjectInfo", {"Object": build.given("Weights")}, transform_space="ORIGINAL"
-    )
-    count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": output(given, "Geometry")})
-    none = build.compare("EQUAL", output(count, "Point Count"), 0)
-    own = output(sea.facts, "Geometry")
-    points = build.switch("GEOMETRY", none, output(given, "Geometry"), own)
-    facts = build.group(node_group(GRID_FACTS), {"Geometry": points})
-    lie = {name: output(facts, name) for name in ("Spacing", "Columns", "Rows")}
-    return {"Weights": output(facts, "Geometry"), **lie}
 
 
 def _finished(
@@ -422,4 +325,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 9, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 10, _build)

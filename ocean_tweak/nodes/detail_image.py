@@ -7,35 +7,50 @@ averages the pattern of far water before the shader has made foam of it, and Cyc
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable
+from functools import partial
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.numerics.memo import MEMO
 from ..core.numerics.rounding import rounded
 from .surface_detail import foam_lace, gradient, gusts, ripple_slopes, spline_weights
 
-_KEY = "ocean_tweak_image"
+_KEY, _CHANNELS = "ocean_tweak_image", "channels of images"
+_Maker = Callable[[], Iterable[NDArray[np.float64]]]
 _RESOLUTION = 512
 _GUST_RESOLUTION = 128
 #: of the root mean square: fewer digits than a float has, and the image takes a third of the room in a file
 _PRECISION = 1.0 / 64.0
 
 
+def make_ahead() -> None:
+    """Let another thread make what images that the file lacks will show."""
+    lacking = [each for each in (_RIPPLES, _LACE, _GUSTS) if _present(_tag(*each[:2])) is None]
+
+    def make() -> None:
+        for name, version, channels in lacking:
+            MEMO.get(_CHANNELS, _tag(name, version), partial(_channels, channels))
+
+    threading.Thread(target=make, daemon=True).start()
+
+
 def ripple_image() -> bpy.types.Image:
     """Slopes of ripples in red and green."""
-    return _image("Ocean Tweak Ripples", 1, lambda: ripple_slopes(_RESOLUTION))
+    return _image(*_RIPPLES)
 
 
 def lace_image() -> bpy.types.Image:
     """The lace of foam in red, and in green and blue how it changes along x and y over a whole side."""
-    return _image("Ocean Tweak Lace", 2, _lace)
+    return _image(*_LACE)
 
 
 def gust_image() -> bpy.types.Image:
     """Where gusts ruffle the water, in red, evenly distributed over 0…1."""
-    return _image("Ocean Tweak Gusts", 2, lambda: [gusts(_GUST_RESOLUTION)])
+    return _image(*_GUSTS)
 
 
 def _lace() -> Iterable[NDArray[np.float64]]:
@@ -43,13 +58,31 @@ def _lace() -> Iterable[NDArray[np.float64]]:
     return lace, *gradient(lace)
 
 
-def _image(name: str, version: int, make: Callable[[], Iterable[NDArray[np.float64]]]) -> bpy.types.Image:
+#: images by name, version and what makes their channels
+_RIPPLES = ("Ocean Tweak Ripples", 1, partial(ripple_slopes, _RESOLUTION))
+_LACE = ("Ocean Tweak Lace", 2, _lace)
+_GUSTS = ("Ocean Tweak Gusts", 2, lambda: [gusts(_GUST_RESOLUTION)])
+
+
+def _tag(name: str, version: int) -> str:
+    return f"{name} {version}"
+
+
+def _present(tag: str) -> bpy.types.Image | None:
+    own = (image for image in bpy.data.images if image.library is None)
+    return next((image for image in own if image.get(_KEY) == tag), None)
+
+
+def _channels(make: _Maker) -> list[NDArray[np.floating]]:
+    return [rounded(spline_weights(field), _PRECISION) for field in make()]
+
+
+def _image(name: str, version: int, make: _Maker) -> bpy.types.Image:
     """The file's image of this name and version; made when it has none."""
-    tag = f"{name} {version}"
-    for image in bpy.data.images:
-        if image.library is None and image.get(_KEY) == tag:
-            return image
-    channels = [rounded(spline_weights(field), _PRECISION) for field in make()]
+    tag = _tag(name, version)
+    if (image := _present(tag)) is not None:
+        return image
+    channels = MEMO.get(_CHANNELS, tag, lambda: _channels(make))
     side = len(channels[0])
     pixels = np.zeros((side, side, 4), np.float32)
     pixels[..., 3] = 1.0

@@ -9,6 +9,7 @@ from . import (
     camera_foam,
     camera_grid,
     camera_patch,
+    camera_sum,
     camera_surface,
     contact,
     extension_check,
@@ -27,6 +28,7 @@ from . import (
     spray_look,
     surface,
     water,
+    water_pattern,
 )
 
 ALL_KINDS = (
@@ -52,6 +54,7 @@ ALL_KINDS = (
     averages.AVERAGES,
     averaged.AVERAGED,
     camera_patch.CAMERA_PATCH,
+    camera_sum.CAMERA_SUM,
     camera_foam.RING_FACTS,
     camera_foam.RING,
     camera_foam.CAMERA_FOAM,
@@ -60,6 +63,8 @@ ALL_KINDS = (
     camera_surface.CAMERA_SURFACE,
     spray.SPRAY,
     spray_look.SPRAY_LOOK,
+    water_pattern.RIPPLES,
+    water_pattern.LACE,
     water.WATER,
     contact.CONTACT,
     contact.WET_BAND,

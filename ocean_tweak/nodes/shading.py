@@ -25,7 +25,6 @@ class Shading:
     def __init__(self, tree: bpy.types.NodeTree) -> None:
         tree.nodes.clear()
         self.tree = tree
-        self._count = 0
 
     def interface(self, outputs: Iterable[Plug], panels: Iterable[Panel]) -> bpy.types.Node:
         """Give a group its sockets; returns the node that holds its inputs."""
@@ -53,8 +52,6 @@ class Shading:
     def node(self, kind: str, inputs: dict[Any, Value] | None = None, **settings: Any) -> bpy.types.Node:
         """A node with its settings, and with links or values on its inputs, by name or number."""
         node = self.tree.nodes.new(kind)
-        node.location = (180 * (self._count // 6), -160 * (self._count % 6))
-        self._count += 1
         for name, value in settings.items():
             setattr(node, name, value)
         for key, value in (inputs or {}).items():

@@ -11,6 +11,8 @@ import bpy
 from ..core.data.formats import NewerFormatError
 
 _KEY = "ocean_tweak_group"
+# of nodes side by side: how far apart, and how many above each other
+_WIDE, _HIGH, _IN_COLUMN = 180, 160, 6
 
 
 @dataclass(frozen=True)
@@ -46,8 +48,20 @@ def node_group(kind: GroupKind) -> bpy.types.NodeTree:
     check_not_newer(own, kind)
     group = bpy.data.node_groups.new(kind.name, kind.tree_type)
     kind.build(group)
+    lay_out(group)
     group[_KEY] = kind.tag
     return group
+
+
+def lay_out(tree: bpy.types.NodeTree) -> None:
+    """Put a tree's nodes side by side, in the order in which they were made.
+
+    All at once: Blender looks through the whole tree whenever a node is moved.
+    """
+    places = [
+        (_WIDE * (number // _IN_COLUMN), -_HIGH * (number % _IN_COLUMN)) for number in range(len(tree.nodes))
+    ]
+    tree.nodes.foreach_set("location", [float(along) for place in places for along in place])
 
 
 def kind_name(group: bpy.types.NodeTree | None) -> str:

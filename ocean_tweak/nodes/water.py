@@ -281,4 +281,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 7, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 8, _build, "ShaderNodeTree")

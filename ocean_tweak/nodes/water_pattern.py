@@ -8,15 +8,17 @@ the domain repeats.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import bpy
 
-from .building import Socket
+from .building import Panel, Plug, Socket
 from .detail_image import gust_image, lace_image, ripple_image
 from .names import TEXTURE_COORDINATES
 from .shading import Shading
 from .surface_detail import LACE_CELLS
+from .versioned import GroupKind, node_group
 
 #: custom properties of an ocean, read by the material; lengths in metres
 DOMAIN = "ocean_tweak_domain_size"
@@ -32,6 +34,18 @@ _OTHER_DOMAIN = 100.0
 _OTHER_SPACING = 0.5
 #: cosine of the angle between normal and view, below which a footprint grows no more
 _LEAST_FACING = 0.02
+
+
+def _number(name: str, description: str) -> Plug:
+    return Plug(name, "NodeSocketFloat", 1.0, description)
+
+
+#: inputs of what is laid over the water
+_LIES = (
+    Plug("Rest", "NodeSocketVector", (0.0, 0.0, 0.0), "Point of the water at rest, in periods of the domain"),
+    _number("Domain", "Length of a period, m"),
+    _number("Angle", "Of the tile's x axis, rad counter-clockwise from x"),
+)
 
 
 class Place(NamedTuple):
@@ -102,9 +116,18 @@ def ripples(shade: Shading, at: Place, size: Socket, turn: float, travel: Socket
     travel : m that the pattern has gone along its x axis
     strength : root mean square of the slopes
     """
-    laid = _tile(shade, at, ripple_image(), size, turn, travel)
+    inputs = {**_lies(shade, at, turn), "Size": size, "Travel": travel, "Strength": strength}
+    return shade.node("ShaderNodeGroup", inputs, node_tree=node_group(RIPPLES)).outputs[0]
+
+
+def _build_ripples(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    inputs = (*_LIES, _number("Size", "Of the tile, m"), _number("Travel", "m"), _number("Strength", "Slope"))
+    outputs = (Plug("Slope", "NodeSocketVector", None, "Along the ocean's x and y"),)
+    given = shade.interface(outputs, (Panel("Ripples", inputs),)).outputs
+    laid = _tile(shade, given, ripple_image(), given["Size"], given["Travel"])
     along, across, _ = shade.separate(laid.colour)
-    return shade.scale(_turned(shade, laid.along, along, across), strength)
+    shade.finish({"Slope": shade.scale(_turned(shade, laid.along, along, across), given["Strength"])})
 
 
 class Lace(NamedTuple):
@@ -120,12 +143,30 @@ class Lace(NamedTuple):
 
 def lace(shade: Shading, at: Place, cell: Socket | float, turn: float, stretch: int = 1) -> Lace:
     """The lace with cells of this length along the wind, in m; they are `stretch` times as narrow across."""
-    size = shade.math("MULTIPLY", cell, float(LACE_CELLS))
-    laid = _tile(shade, at, lace_image(), size, turn, 0.0, float(stretch))
+    inputs = {**_lies(shade, at, turn), "Cell": cell, "Stretch": float(stretch)}
+    made = shade.node("ShaderNodeGroup", inputs, node_tree=node_group(LACE)).outputs
+    return Lace(made["Height"], made["Slope"])
+
+
+def _build_lace(tree: bpy.types.NodeTree) -> None:
+    shade = Shading(tree)
+    inputs = (
+        *_LIES,
+        _number("Cell", "Length, m"),
+        _number("Stretch", "How much narrower across; a whole number"),
+    )
+    outputs = (
+        Plug("Height", "NodeSocketFloat", None, "Normally distributed"),
+        Plug("Slope", "NodeSocketVector", None, "Along the ocean's x and y, over the size of a cell"),
+    )
+    given = shade.interface(outputs, (Panel("Lace", inputs),)).outputs
+    size, stretch = shade.math("MULTIPLY", given["Cell"], float(LACE_CELLS)), given["Stretch"]
+    laid = _tile(shade, given, lace_image(), size, 0.0, stretch)
     height, along, across = shade.separate(laid.colour)
-    slope = _turned(shade, laid.along, along, shade.math("MULTIPLY", across, float(stretch)))
+    slope = _turned(shade, laid.along, along, shade.math("MULTIPLY", across, stretch))
     # the narrow side of a cell is what a pile of foam is high by
-    return Lace(height, shade.scale(slope, 1.0 / (LACE_CELLS * stretch)))
+    narrow = shade.math("DIVIDE", 1.0 / LACE_CELLS, stretch)
+    shade.finish({"Height": height, "Slope": shade.scale(slope, narrow)})
 
 
 def gust(shade: Shading, at: Place, size: float) -> Socket:
@@ -136,24 +177,27 @@ def gust(shade: Shading, at: Place, size: float) -> Socket:
     return shade.separate(_read(shade, gust_image(), shade.scale(at.world, 1.0 / size)))[0]
 
 
+def _lies(shade: Shading, at: Place, turn: float) -> dict[str, Socket]:
+    """Where a tile lies that is turned away from the wind by an angle."""
+    return {"Rest": at.rest, "Domain": at.domain, "Angle": shade.math("ADD", at.wind, turn)}
+
+
 def _tile(
     shade: Shading,
-    at: Place,
+    given: Mapping[str, Socket],
     image: bpy.types.Image,
-    size: Socket | float,
-    turn: float,
+    size: Socket,
     travel: Socket | float,
-    stretch: float = 1.0,
+    stretch: Socket | float = 1.0,
 ) -> Tile:
     """An image laid over the water; `stretch` is a whole number, by which it is narrower across."""
-    periods = shade.math("MAXIMUM", shade.math("DIVIDE", at.domain, size), 1.0)
-    angle = shade.math("ADD", at.wind, turn)
+    periods = shade.math("MAXIMUM", shade.math("DIVIDE", given["Domain"], size), 1.0)
     a, b = (
-        shade.math("ROUND", shade.math("MULTIPLY", periods, shade.math(name, angle)))
+        shade.math("ROUND", shade.math("MULTIPLY", periods, shade.math(name, given["Angle"])))
         for name in ("COSINE", "SINE")
     )
     axis, across = shade.combine(a, b), shade.combine(shade.math("MULTIPLY", b, -1.0), a)
-    u, v = (shade.number("DOT_PRODUCT", at.rest, each) for each in (axis, across))
+    u, v = (shade.number("DOT_PRODUCT", given["Rest"], each) for each in (axis, across))
     u = shade.math("SUBTRACT", u, shade.math("DIVIDE", travel, size))
     point = shade.combine(u, shade.math("MULTIPLY", v, stretch))
     return Tile(_read(shade, image, point), shade.vector("NORMALIZE", axis))
@@ -169,3 +213,8 @@ def _turned(shade: Shading, axis: Socket, along: Socket, across: Socket) -> Sock
     x, y, _ = shade.separate(axis)
     side = shade.combine(shade.math("MULTIPLY", y, -1.0), x)
     return shade.vector("ADD", shade.scale(axis, along), shade.scale(side, across))
+
+
+# a tree of nodes is the slower to build the larger it is: what is laid several times is a group
+RIPPLES = GroupKind("Ocean Tweak Ripples", 1, _build_ripples, "ShaderNodeTree")
+LACE = GroupKind("Ocean Tweak Lace", 1, _build_lace, "ShaderNodeTree")

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -93,10 +94,13 @@ class _Maker:
         MEMO.put(_RINGS, self._parameters, self)  # it has grown
         return made
 
-    def follow(self, wanted: _Shown) -> None:
-        """Make a window's rings around another place or moment, and only then let go of those it shows."""
+    def follow(self, wanted: _Shown, told: Callable[[float], None]) -> None:
+        """Make a window's rings around another place or moment, and only then let go of those it shows.
+
+        told : hears the share that is made
+        """
         rings = FoamRings(self._levels, wanted.samples)
-        rings.at(wanted.time, wanted.place)
+        rings.at(wanted.time, wanted.place, told=told)
         with self._busy:
             self._few, self._shown = rings, wanted
 
@@ -154,9 +158,12 @@ class Around:
         _fill(mesh, rings, self)
         return is_complete
 
-    def make(self) -> None:
-        """Let it be quickly made from now on; touches no data of Blender and may run on any thread."""
-        _maker(self.sea).follow(self._in_window)
+    def make(self, told: Callable[[float], None]) -> None:
+        """Let it be quickly made from now on; touches no data of Blender and may run on any thread.
+
+        told : hears the share that is made, 0…1
+        """
+        _maker(self.sea).follow(self._in_window, told)
 
     @property
     def _in_window(self) -> _Shown:

@@ -31,7 +31,8 @@ from ..core.sea.placed_waves import placed_fields
 from ..core.statistics.unresolved_slopes import unresolved_slope_variance
 from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
-from ..nodes.camera_surface import AREA_INPUT, FOAM_INPUT, PATCH_INPUTS
+from ..nodes.camera_sum import AREA_INPUT, PATCH_INPUTS
+from ..nodes.camera_surface import FOAM_INPUT
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
 from . import evaluation, foam_rings, held_sea, patch_averages, patch_points, vertex_attributes

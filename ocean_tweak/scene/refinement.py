@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import bpy
@@ -57,7 +58,8 @@ def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], ob
     if surface is not None:
         points = patch_points.points_of(settings, plan, scene)
         around = foam_rings.around(surface, plan, points, scene)
-        jobs += [around.make] if around is not None else []
+        told = partial(_outstanding.shares.__setitem__, item.session_uid)
+        jobs += [partial(around.make, told)] if around is not None else []
     asked = spray.wanted(item, plan, scene)
     if asked is not None:
         jobs.append(asked.make)
@@ -94,12 +96,14 @@ class _Outstanding:
     missing : what an ocean lacks, of what _JOBS make
     due : when all samples are wanted
     making : what is being made
+    shares : of foam around a camera that is being made, what there is of it, 0…1
     worker : the thread that makes it
     """
 
     missing: dict[int, Wanted] = field(default_factory=dict)
     due: dict[int, float] = field(default_factory=dict)
     making: dict[tuple[int, Wanted], Future[Any]] = field(default_factory=dict)
+    shares: dict[int, float] = field(default_factory=dict)
     worker: ThreadPoolExecutor | None = None
 
     @property
@@ -123,6 +127,7 @@ class _Outstanding:
         for uid in self.uids.difference(uids):
             self.missing.pop(uid, None)
             self.due.pop(uid, None)
+            self.shares.pop(uid, None)
             for part in _JOBS:
                 self.making.pop((uid, part), None)
 
@@ -130,6 +135,7 @@ class _Outstanding:
         """Let the thread make something."""
         if self.worker is None:
             self.worker = ThreadPoolExecutor(1, "Ocean Tweak")
+        self.shares.pop(uid, None)
         self.making[uid, part] = self.worker.submit(job)
 
     def clear(self) -> None:
@@ -237,6 +243,12 @@ def is_unfinished(item: bpy.types.Object) -> bool:
     return _outstanding.lacks(item.session_uid, Wanted.SAMPLES | Wanted.HISTORY)
 
 
+def foam_share(item: bpy.types.Object) -> float | None:
+    """Of the foam around a camera that is being made, what there is by now, 0…1; None where none is made."""
+    uid = item.session_uid
+    return _outstanding.shares.get(uid) if (uid, Wanted.HISTORY) in _outstanding.making else None
+
+
 def is_outstanding(item: bpy.types.Object) -> bool:
     """Whether the surface or the statistics shown are not yet those of the settings."""
     return item.session_uid in _outstanding.uids
@@ -263,6 +275,8 @@ def go_on() -> float | None:
             _start(oceans[uid], part)
     if made:
         redraw_views()
+    elif any(part is Wanted.HISTORY for _, part in _outstanding.making):
+        redraw_views({"UI"})  # where a bar tells of it
     return _INTERVAL if _outstanding.uids else None
 
 
@@ -313,9 +327,10 @@ def _fail(item: bpy.types.Object, part: Wanted, error: BaseException) -> None:
     tell(item, error)
 
 
-def redraw_views() -> None:
-    """Let the 3D views and their panels show what is new."""
+def redraw_views(regions: Container[str] = ("UI", "WINDOW")) -> None:
+    """Let the 3D views and their panels show what is new, or some regions of them."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+            for region in area.regions if area.type == "VIEW_3D" else ():
+                if region.type in regions:
+                    region.tag_redraw()

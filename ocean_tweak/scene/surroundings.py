@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters, Timing
+from ..nodes import detail_image
 from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
@@ -81,6 +82,8 @@ def build(
     if mood not in MOODS:
         raise ValueError(f"mood = {mood!r}: must be one of {', '.join(MOODS)}")
     chosen, target = MOODS[mood], collection or scene.collection
+    # while the sea is made, and Blender's own data, for which there is one thread alone
+    detail_image.make_ahead()
     left = startup_file.untouched_objects(scene)
     is_empty = len(left) == len(scene.objects)
     parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))

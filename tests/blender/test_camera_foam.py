@@ -244,7 +244,17 @@ def test_a_window_has_few_places_and_a_picture_from_it_all_of_them(
     extension("nodes.modifier_inputs").set_inputs(item.modifiers[0], {"Viewport Vertex Budget": 37_500})
     (points,) = [child for child in ocean.children if child.name.endswith("Foam")]
     empty_scene.frame_set(10)
-    run_until(window, lambda: not window.is_unfinished(ocean))
+    shares = []
+
+    def is_there():
+        shares.append(window.foam_share(ocean))
+        return not window.is_unfinished(ocean)
+
+    run_until(window, is_there)
+    known = [share for share in shares if share is not None]  # how much of it is made by now
+    assert known == sorted(known)
+    assert 0.0 <= known[0] <= known[-1] < 1.0
+    assert window.foam_share(ocean) is None
     empty_scene.frame_set(11)
     few = len(points.data.vertices)
     refresh = extension("scene.refresh")

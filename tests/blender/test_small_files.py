@@ -133,8 +133,8 @@ def test_without_the_extension_the_merged_sea_is_shown(surrounded, extension, tm
     _, surface = surrounded
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "sea.blend"))
     seen, _ = look(Path(bpy.data.filepath), [surface.name], [1], tmp_path)
-    camera_surface = extension("nodes.camera_surface")
-    nothing = dict.fromkeys((*camera_surface.PATCH_INPUTS, "Weights", camera_surface.FOAM_INPUT))
+    patches = extension("nodes.camera_sum").PATCH_INPUTS
+    nothing = dict.fromkeys((*patches, "Weights", extension("nodes.camera_surface").FOAM_INPUT))
     extension("nodes.modifier_inputs").set_inputs(surface.modifiers[0], nothing)
     surface.update_tag()
     merged = numbers(evaluated_mesh(surface), "position", 3)

@@ -43,7 +43,10 @@ def test_rings_of_fewer_places_are_a_part_of_them(sea, rings):
     """A surface of a fourth of the vertices has half of them along each side, and the same foam there."""
     count = samples_for(50_000)
     assert (count, samples_for(200_000), samples_for(10**7)) == (SAMPLES // 2, SAMPLES, SAMPLES)
-    few = FoamRings(FoamLevels(sea), count).at(TIME, Place(300.0, -200.0))
+    shares = []
+    few = FoamRings(FoamLevels(sea), count).at(TIME, Place(300.0, -200.0), told=shares.append)
+    assert shares == pytest.approx(np.arange(len(shares)) / len(shares))
+    assert len(shares) > 1
     for number, (own, whole) in enumerate(zip(few.foam, rings.foam, strict=True)):
         cell = FINEST * 2.0**number
         column, row = (

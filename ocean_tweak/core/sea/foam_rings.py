@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -147,10 +147,17 @@ class FoamRings:
         """Bytes of the places and their births."""
         return sum(lying.foam.nbytes for lying in self._lying)
 
-    def at(self, time: float | Fraction, place: Place, history: bool = True) -> Rings:
+    def at(
+        self,
+        time: float | Fraction,
+        place: Place,
+        history: bool = True,
+        told: Callable[[float], None] = lambda _: None,
+    ) -> Rings:
         """Foam around a place at a time in s. It may be called on any thread.
 
         history : whether what is left of earlier moments is wanted too, and not what breaks now alone
+        told : hears the share of these moments, 0…1, that is remembered by now
         """
         now = self._rings[0].sea.foam_model.reduced(time)
         firsts = [ring.around(place, now) for ring in self._rings]
@@ -167,7 +174,9 @@ class FoamRings:
             wanting = rings + [entering.foam for _, entering in moved if entering is not None]
             missing = [foam.missing(now) for foam in wanting]
             # moment by moment, because rings share strains
-            for index in sorted({index for each in missing for index in each}):
+            moments = sorted({index for each in missing for index in each})
+            for number, index in enumerate(moments):
+                told(number / len(moments))
                 for foam, of_foam in zip(wanting, missing, strict=True):
                     if index in of_foam:
                         foam.remember(index)

@@ -144,7 +144,7 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     column = layout.box().column(align=True)
     is_baked = settings.source == "SEQUENCE" and bool(settings.baked_sea)
     baked: dict[str, Any] = parsed(settings.baked_sea) if is_baked else {}
-    _waves_title(column.row(), is_baked, bool(settings.statistics), refinement.is_outstanding(item))
+    _waves_title(column.row(), item, is_baked, bool(settings.statistics))
     if baked:
         for label, text in _baked_rows(context.scene, baked):
             row(column, label, text)
@@ -158,9 +158,12 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         message(layout, context, warning)
 
 
-def _waves_title(layout: bpy.types.UILayout, is_baked: bool, is_known: bool, is_refined: bool) -> None:
+def _waves_title(layout: bpy.types.UILayout, item: bpy.types.Object, is_baked: bool, is_known: bool) -> None:
     """Draw one row, whatever it says: none below it moves when a refinement begins or ends."""
-    if is_refined:
+    share = refinement.foam_share(item)
+    if share is not None:
+        layout.progress(factor=share, text="Making the foam of earlier moments…")
+    elif refinement.is_outstanding(item):
         layout.label(text="Refining…", icon="SORTTIME")
     elif is_baked:
         layout.label(text="The bake", icon="FILE_CACHE")

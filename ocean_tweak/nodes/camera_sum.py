@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Geometry nodes that say what a grid around the camera shows: the sum of an ocean's patches, or its mesh.
+
+Foam is that around the camera where there is some, and otherwise that of the ocean's mesh.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ..core.parameters.patch import MOST_PATCHES
+from .averaged import AVERAGED, SOCKETS
+from .averages import AVERAGES, ocean_carried
+from .building import Builder, Plug, Socket, output
+from .camera_patch import CAMERA_PATCH
+from .fields import alone, combined, coordinates, named_attribute
+from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, FOAM_AGE, OTHERS, SLOPES, VELOCITY, WEIGHT
+from .sample import OCEAN_INPUT
+from .surface import CELL, GRID_FACTS
+from .versioned import GroupKind, node_group
+
+#: of the sea's patches, where it has several; under masks a patch may be several too
+PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
+#: of what does not repeat
+AREA_INPUT = "Area"
+#: what may be added up
+OF_SUM = (
+    *(
+        Plug(
+            name,
+            "NodeSocketObject",
+            None,
+            "Mesh of one patch of a sea of several; none shows the ocean's own",
+        )
+        for name in PATCH_INPUTS
+    ),
+    Plug(
+        "Weights",
+        "NodeSocketObject",
+        None,
+        "Points over the domain with the weights of patches; none takes those of the ocean's mesh",
+    ),
+    Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, and is 0 along its sides"),
+)
+#: attributes and what is in the ocean's axes → sockets
+SUMMED = {**SOCKETS, FOAM: "Foam", BREAKING: "Breaking", FOAM_AGE: "Foam Age", CUSP: "Cusp"}
+
+_INPUTS = (
+    OCEAN_INPUT,
+    *OF_SUM,
+    Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
+    Plug("Fade", "NodeSocketBool", True, "Average by the size of the cells"),
+    Plug("Foam", "NodeSocketVector", None, "Foam, breaking and age around the camera"),
+    Plug("Has Foam", "NodeSocketBool", False, "Whether there is some"),
+)
+_OUTPUTS = (
+    *(Plug(socket, "NodeSocketVector", None, "In the ocean's axes") for socket in SOCKETS.values()),
+    *(
+        Plug(socket, "NodeSocketFloat", None, "At the vertex")
+        for name, socket in SUMMED.items()
+        if name not in SOCKETS
+    ),
+)
+
+
+def _build(tree: bpy.types.NodeTree) -> None:
+    build = Builder(tree, _INPUTS, _OUTPUTS)
+    ocean = {"Object": build.given("Ocean")}
+    mesh = output(build.add("GeometryNodeObjectInfo", ocean, transform_space="ORIGINAL"), "Geometry")
+    facts = build.group(node_group(GRID_FACTS), {"Geometry": mesh})
+    info = build.add("GeometryNodeObjectInfo", {"Object": build.given(PATCH_INPUTS[0])})
+    is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
+    own = _of_mesh(build, facts, is_one)
+    has_foam = build.logic("NIMPLY", build.given("Has Foam"), is_one)
+    around = dict(zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, build.given("Foam")), strict=True))
+    foam = {name: build.switch("FLOAT", has_foam, own[name], value) for name, value in around.items()}
+    sums = {
+        socket: build.switch("VECTOR", is_one, (0.0, 0.0, 0.0), own[name]) for name, socket in SOCKETS.items()
+    }
+    whole = {**_weights(build, facts), "Corner": output(facts, "Corner")}
+    whole |= {name: build.given(name) for name in ("Ocean", "Size", "Fade")}
+    for number, name in enumerate((*PATCH_INPUTS, AREA_INPUT), start=1):
+        of_patch = {"Weight": WEIGHT.format(number)} if name != AREA_INPUT else {"Repeats": False}
+        inputs = {**whole, **of_patch, **sums, "Patch": build.given(name)}
+        patch = build.group(node_group(CAMERA_PATCH), inputs)
+        sums = {socket: output(patch, socket) for socket in sums}
+    values = {name: sums[socket] for name, socket in SOCKETS.items()}
+    cusp = build.switch("FLOAT", is_one, _cusp(build, values[OTHERS]), own[CUSP])
+    shown = {**values, **foam, CUSP: cusp}
+    build.finish_with({socket: shown[name] for name, socket in SUMMED.items()})
+
+
+def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[str, Socket]:
+    """What the ocean's mesh has of foam, and where that moves the surface, how."""
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    mesh = output(facts, "Geometry")
+    counts = {name: output(facts, name) for name in ("Columns", "Rows")}
+    fade, spacing = {"Fade": build.given("Fade")}, output(facts, "Spacing")
+    carried = {"Geometry": ocean_carried(build, mesh, is_moving), "Moving": is_moving}
+    averages = build.group(node_group(AVERAGES), {**carried, **counts, **fade})
+    inputs = {"Averages": output(averages, "Geometry"), "Levels": output(averages, "Levels")}
+    at = {"Spacing": spacing, "Place": position, "Size": build.given("Size")}
+    read = build.group(node_group(AVERAGED), {**inputs, **at, **counts, **fade})
+    x, y, squares = coordinates(build, output(read, SOCKETS[SLOPES]))
+    held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
+    lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
+    foam, cusp, breaking = coordinates(build, output(read, SOCKETS[OTHERS]))
+    # a mean of births would be the age of none of them
+    read_there = {
+        "Geometry": mesh,
+        "Value": output(named_attribute(build, FOAM_AGE, "FLOAT"), "Attribute"),
+        "Place": build.vector("DIVIDE", position, spacing),
+        **counts,
+    }
+    age, _, _ = coordinates(build, output(build.group(node_group(CELL), read_there), "Value"))
+    return {
+        DISPLACEMENT: output(read, SOCKETS[DISPLACEMENT]),
+        VELOCITY: output(read, SOCKETS[VELOCITY]),
+        SLOPES: combined(build, x, y, lost),
+        # a mesh's normals are of its present shape already
+        OTHERS: build.scaled(output(read, SOCKETS[OTHERS]), 0.0),
+        FOAM: foam,
+        CUSP: cusp,
+        BREAKING: breaking,
+        FOAM_AGE: age,
+    }
+
+
+def _cusp(build: Builder, strain: Socket) -> Socket:
+    """How far the sum of the strains compresses the surface: what a cusp is, `core.synthesis.channels`."""
+    xx, yy, shear = coordinates(build, strain)
+    half_sum, half_difference = (
+        build.math("MULTIPLY", build.math(operation, xx, yy), 0.5) for operation in ("ADD", "SUBTRACT")
+    )
+    root = alone(build, "LENGTH", combined(build, half_difference, shear))
+    return build.math("MAXIMUM", build.math("SUBTRACT", root, half_sum), 0.0)
+
+
+def _weights(build: Builder, own: bpy.types.Node) -> dict[str, Socket]:
+    """Points that have the patches' weights, and how they lie."""
+    given = build.add(
+        "GeometryNodeObjectInfo", {"Object": build.given("Weights")}, transform_space="ORIGINAL"
+    )
+    count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": output(given, "Geometry")})
+    none = build.compare("EQUAL", output(count, "Point Count"), 0)
+    points = build.switch("GEOMETRY", none, output(given, "Geometry"), output(own, "Geometry"))
+    facts = build.group(node_group(GRID_FACTS), {"Geometry": points})
+    lie = {name: output(facts, name) for name in ("Spacing", "Columns", "Rows")}
+    return {"Weights": output(facts, "Geometry"), **lie}
+
+
+CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 1, _build)
