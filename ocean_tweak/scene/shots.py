@@ -64,17 +64,22 @@ def _joined(path: str, values: list[float | Raster]) -> Samples:
     return Raster(np.concatenate([lines.values for lines in values]), values[0].name)
 
 
+def check_keys(shot: Shot) -> None:
+    """Raise OceanObjectError for a shot that no keys of an ocean can hold: it moves lines of a mask."""
+    for path, _ in shot.animation.samples if shot.animation is not None else ():
+        if path.endswith("mask.lines"):
+            raise OceanObjectError(
+                f"{path} moves in this shot, which only the keys of an object can tell: open the .blend file "
+                "that it was made in"
+            )
+
+
 def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
     """Give an ocean, which is the shot's sea already, keys for what changes; none where nothing does.
 
-    Masks that move get a keyed object. Raises OceanObjectError for one whose lines move, before any change.
+    shot : one that `check_keys` lets pass; a mask that moves in it gets a keyed object
     """
     samples = dict(shot.animation.samples) if shot.animation is not None else {}
-    for path in samples:
-        if path.endswith("mask.lines"):
-            raise OceanObjectError(
-                f"{path} moves in this shot, as its object did: choose that object again, whose keys move it"
-            )
     settings = settings_of(item)
     with settings.quiet():
         settings.use_ocean_time = OCEAN_TIME in samples

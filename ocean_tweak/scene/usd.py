@@ -22,7 +22,7 @@ from .cache_place import bake_name, shown_bake
 from .command_process import CommandProcess, Running
 from .preferences import user_folder
 from .settings import VIEWPORT_RESOLUTION, OceanObjectError, settings_of
-from .shots import animate
+from .shots import animate, check_keys
 from .units import frame_rate, set_frame_rate, set_time_stretch, shortest_decimal, time_stretch
 
 _FOLDER = "usd"
@@ -155,6 +155,7 @@ def add_from_layer(
     """
     prim, package = read_package(path)
     shot, before = package.shot, (frame_rate(scene), time_stretch(scene))
+    check_keys(shot)
     if use_frame_rate:
         set_frame_rate(scene, shot.parameters.timing.fps)
         set_time_stretch(scene, shot.parameters.timing.stretch)

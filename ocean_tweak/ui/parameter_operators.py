@@ -12,7 +12,7 @@ from ..core import OceanParameters, ParameterError
 from ..export.files import LARGEST_JSON, read_bytes
 from ..export.sea_files import sea_of_text, write_sea
 from ..scene.settings import OceanObjectError, settings_of
-from ..scene.shots import animate, shot_of
+from ..scene.shots import animate, check_keys, shot_of
 from ..scene.source_images import open_image
 from ..scene.units import frame_rate, set_frame_rate, set_time_stretch, time_stretch
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
@@ -57,6 +57,7 @@ class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper
             path = Path(self.filepath)
             text = read_bytes(path, LARGEST_JSON).decode("utf-8")
             shot = sea_of_text(text, path.parent, open_image)
+            check_keys(shot)
             apply_parameters(context, shot.parameters, self.use_frame_rate)
             animate(shown_ocean(context), context.scene, shot)
         except (ParameterError, OceanObjectError, OSError, UnicodeDecodeError) as error:

@@ -13,7 +13,7 @@ from ..scene.image_sequence import find_sequence
 from ..scene.refinement import show
 from ..scene.refresh import Wanted
 from ..scene.settings import settings_of
-from ..scene.shots import animate
+from ..scene.shots import animate, check_keys
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .parameter_operators import apply_parameters
 
@@ -94,6 +94,7 @@ class OCEAN_OT_settings_from_bake(OfActiveOcean, bpy.types.Operator):
         if shot is None:
             return refuse(self, "The files do not say what they were baked from")
         try:
+            check_keys(shot)
             apply_parameters(context, shot.parameters, use_frame_rate=True)
         except ocean_object.EXPECTED_ERRORS as error:
             return refuse(self, error)

@@ -118,7 +118,7 @@ def test_a_bake_has_the_motion(ocean, core, empty_scene, tmp_path):
     assert "mask.y" in ocean.ocean_tweak.bake_differs
 
 
-def test_a_shape_that_turns(ocean, core, empty_scene, extension):
+def test_a_shape_that_turns(ocean, core, empty_scene, extension, tmp_path):
     """A wall of 40 m about its end: a quarter turn in ten frames."""
     data = bpy.data.meshes.new("Wall")
     data.from_pydata([(0.0, 0.0, 0.0), (40.0, 0.0, 0.0)], [(0, 1)], [])
@@ -141,8 +141,11 @@ def test_a_shape_that_turns(ocean, core, empty_scene, extension):
     assert track.shape == (LAST + 2, 1, 4)
     np.testing.assert_allclose(track[1], [[60.0, 60.0, 100.0, 60.0]], atol=1e-4)
     np.testing.assert_allclose(np.hypot(*(track[:, 0, 2:] - track[:, 0, :2]).T), 40.0, rtol=1e-5)
-    with pytest.raises(extension("scene.settings").OceanObjectError, match="choose that object again"):
-        extension("scene.shots").animate(ocean, empty_scene, shot)
+    file, before = tmp_path / "shot.json", ocean.ocean_tweak.to_parameters(empty_scene)
+    file.write_text(shot.to_json(), encoding="utf-8")
+    with pytest.raises(RuntimeError, match=r"mask\.lines moves in this shot"):
+        bpy.ops.ocean.import_parameters(filepath=str(file))
+    assert ocean.ocean_tweak.to_parameters(empty_scene) == before
 
 
 def test_a_render_has_the_place_of_its_frame(ocean, core, empty_scene, tmp_path):
