@@ -274,7 +274,7 @@ def test_a_hero_wave_says_when_and_how_fast(draw, item, empty_scene):
     wave.wavelength, wave.crest_height = 25.0, 2.0
     drawn = draw(item)
     assert {"Frame 37", "6.25 m/s", "3.12 m/s"} <= set(drawn)
-    assert "Hero wave 1: waves of 25 m break" in " ".join(drawn)
+    assert "Hero wave 1: waves 25 m long break" in " ".join(drawn)
     wave.muted = True
     assert "Frame 37" not in draw(item)
 

@@ -93,7 +93,7 @@ def test_drives_and_servers_of_windows_are_refused_in_words(
     bpy.context.view_layer.objects.active = item
     item.ocean_tweak.cache_folder = item.ocean_tweak.usd.file = typed
     assert item.ocean_tweak.cache_folder == typed
-    said = r"is a Windows path.*choose it anew"
+    said = r"is a Windows path.*choose it again"
     with pytest.raises(RuntimeError, match=said):
         bpy.ops.ocean.bake()
     with pytest.raises(ValueError, match=said):
