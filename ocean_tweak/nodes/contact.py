@@ -8,6 +8,8 @@ shows the water shows the collar.
 
 Ripples of length λ run outwards as waves in deep water do, ω² = 2πg/λ. The distance from the waterline is
 that of the first order, (f - 1)/|∇f|, f being 1 on it (Taubin 1994, ACM Transactions on Graphics 13).
+
+In a strong wind there is white water where waves break on the hull's windward end, and a wash down the wind.
 """
 
 from __future__ import annotations
@@ -31,6 +33,10 @@ _TRAINS = ((1.0, 0.2), (0.43, 0.13))
 _SCATTER = 5.0  # rad, by which they are out of step around the hull
 #: of the foam's width: how far it reaches where the noise is least, and how much farther where it is greatest
 _NARROW, _WIDE = 0.25, 1.7
+#: how much wider it is at the windward end, and from which share of the hull on
+_BOW_WIDER, _BOW = 2.0, (0.4, 0.9)
+#: of the wash: where along the hull it begins and is whole, and how its breadth grows on the way
+_WASH_BEGINS, _WASH_SPREADS = (-0.7, 0.6), 0.14
 
 CONTACT_INPUTS = (
     OCEAN_INPUT,
@@ -48,11 +54,13 @@ LOOK_INPUTS = (
     ("Foam Width", "NodeSocketFloat", 0.25, "In metres; it is thinned out over about twice as much"),
     ("Ripples", "NodeSocketFloat", 1.0, "Multiplies their height"),
     ("Ripple Length", "NodeSocketFloat", 0.5, "Of the longest, from crest to crest, in metres"),
+    ("Wash", "NodeSocketFloat", 0.0, "Length of the white water down the wind, in metres; 0 for none"),
 )
 _HULL_INPUTS = (
     ("Half Length", "NodeSocketFloat", 1.0, "Of the waterline along x, in metres"),
     ("Half Beam", "NodeSocketFloat", 1.0, "Of the waterline along y, in metres"),
     ("Fullness", "NodeSocketFloat", 2.0, "Of the waterline: 1 is a rhombus, 2 an ellipse, more a box"),
+    ("Lee", "NodeSocketVector", (1.0, 0.0, 0.0), "Down the wind, of unit length, in the upright axes"),
 )
 _CHAIN = (
     ("Foam Map", "NodeSocketFloat", 0.0, "Foam of the collars before"),
@@ -121,7 +129,7 @@ def _build_collar(tree: bpy.types.NodeTree) -> None:
     place = shade.node("ShaderNodeMapping", mapped, vector_type="POINT").outputs[0]
     away = _distance(shade, given, place)
     uneven = _uneven(shade, given, place)
-    foam = shade.math("MULTIPLY", is_there, _foam(shade, given, away, uneven))
+    foam = shade.math("MULTIPLY", is_there, _foam(shade, given, place, away, uneven))
     ripples = shade.math("MULTIPLY", is_there, _ripples(shade, given, away, uneven))
     shade.finish(
         {
@@ -159,12 +167,34 @@ def _uneven(shade: Shading, given: dict[str, Socket], place: Socket) -> Socket:
     return shade.smooth(shade.noise(moving, 1.0, Detail=2.0), 0.3, 0.7)
 
 
-def _foam(shade: Shading, given: dict[str, Socket], away: Socket, uneven: Socket) -> Socket:
-    reach = shade.math("MULTIPLY", given["Foam Width"], shade.mix(uneven, _NARROW, _WIDE))
+def _foam(shade: Shading, given: dict[str, Socket], place: Socket, away: Socket, uneven: Socket) -> Socket:
+    x, y, _ = shade.separate(place)
+    lee_x, lee_y, _ = shade.separate(given["Lee"])
+    length, beam = given["Half Length"], given["Half Beam"]
+    down = _dot(shade, x, y, lee_x, lee_y)
+    # half of the hull's extent down the wind and across it
+    extent = _dot(shade, length, beam, *(shade.math("ABSOLUTE", part) for part in (lee_x, lee_y)))
+    breadth = _dot(shade, length, beam, *(shade.math("ABSOLUTE", part) for part in (lee_y, lee_x)))
+    share = shade.math("DIVIDE", down, extent)
+    is_washed = shade.math("GREATER_THAN", given["Wash"], 0.0)
+    bow = shade.smooth(shade.math("MULTIPLY", share, -1.0), *_BOW, 1.0, 1.0 + _BOW_WIDER)
+    wide = shade.math("MULTIPLY", shade.mix(uneven, _NARROW, _WIDE), shade.mix(is_washed, 1.0, bow))
+    reach = shade.math("MULTIPLY", given["Foam Width"], wide)
     outside = shade.math("DIVIDE", shade.math("MAXIMUM", away, 0.0), shade.math("MAXIMUM", reach, 1e-6))
-    return shade.math(
-        "MULTIPLY", given["Foam"], shade.math("EXPONENT", shade.math("MULTIPLY", outside, -1.0))
-    )
+    around = shade.math("EXPONENT", shade.math("MULTIPLY", outside, -1.0))
+    # the wash: a stripe that grows wider and fades
+    along = shade.math("MAXIMUM", down, 0.0)
+    aside = shade.math("SUBTRACT", shade.math("MULTIPLY", y, lee_x), shade.math("MULTIPLY", x, lee_y))
+    aside = shade.math("DIVIDE", aside, shade.math("MULTIPLY_ADD", along, _WASH_SPREADS, breadth))
+    fades = shade.math("DIVIDE", along, shade.math("MAXIMUM", given["Wash"], 1e-6))
+    lost = shade.math("MULTIPLY_ADD", aside, aside, fades)
+    wash = shade.math("EXPONENT", shade.math("MULTIPLY", lost, -1.0))
+    wash = shade.math("MULTIPLY", wash, shade.smooth(share, *_WASH_BEGINS, 0.0, is_washed))
+    return shade.math("MULTIPLY", given["Foam"], shade.math("MAXIMUM", around, wash))
+
+
+def _dot(shade: Shading, x: Socket, y: Socket, of_x: Socket, of_y: Socket) -> Socket:
+    return shade.math("MULTIPLY_ADD", x, of_x, shade.math("MULTIPLY", y, of_y))
 
 
 def _ripples(shade: Shading, given: dict[str, Socket], away: Socket, uneven: Socket) -> Socket:
@@ -198,5 +228,5 @@ def _build_ripple_normal(tree: bpy.types.NodeTree) -> None:
 
 CONTACT = GroupKind("Ocean Contact", 1, _build_contact)
 WET_BAND = GroupKind("Ocean Tweak Wet Band", 1, _build_wet, "ShaderNodeTree")
-COLLAR = GroupKind("Ocean Tweak Collar", 1, _build_collar, "ShaderNodeTree")
+COLLAR = GroupKind("Ocean Tweak Collar", 2, _build_collar, "ShaderNodeTree")
 RIPPLE_NORMAL = GroupKind("Ocean Tweak Ripple Normal", 1, _build_ripple_normal, "ShaderNodeTree")

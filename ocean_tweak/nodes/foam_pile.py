@@ -14,12 +14,10 @@ from .versioned import GroupKind
 
 #: how far the roll hangs forward of its height
 _FORWARD = 0.7
-#: strength of breaking with which it is as high as it gets
-_WHOLE = 0.6
-#: how uneven it is
-_UNEVEN = 4.5
-#: how high it gets, of its mean: a lone lump would be a spike
-_HIGHEST = 1.9
+#: strength of breaking with which it is as high as it gets; it begins without a step
+_WHOLE = 0.7
+#: how uneven it is: gently, as a lone lump would be a spike, and what is finer is a matter of shading
+_UNEVEN = 2.2
 
 _INPUTS = (
     Plug("Displacement", "NodeSocketVector", None, "Of the water, in the ocean's axes"),
@@ -36,7 +34,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     _, _, elevation = coordinates(build, build.given("Displacement"))
     crest = build.math("MAXIMUM", elevation, 0.0)
     whole = build.math("MINIMUM", build.math("DIVIDE", build.given("Breaking"), _WHOLE), 1.0)
-    mean = build.math("MULTIPLY", build.math("MULTIPLY", crest, build.given("Height")), whole)
+    rising = build.math("MULTIPLY", whole, whole)
+    mean = build.math("MULTIPLY", build.math("MULTIPLY", crest, build.given("Height")), rising)
     height = build.math("MULTIPLY", mean, _lumps(build))
     x, y, _ = coordinates(build, build.given("Velocity"))
     ahead = build.scaled(alone(build, "NORMALIZE", combined(build, x, y, 0.0)), _FORWARD)
@@ -48,9 +47,9 @@ def _lumps(build: Builder) -> Socket:
     """Around 1; they lie on the water at rest, and so ride with it."""
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     place = build.vector("DIVIDE", position, combined(build, *(build.given("Lump"),) * 3))
-    noise = build.add("ShaderNodeTexNoise", {"Vector": place, "Scale": 1.0, "Detail": 1.5})
+    noise = build.add("ShaderNodeTexNoise", {"Vector": place, "Scale": 1.0, "Detail": 0.5})
     off = build.math("MULTIPLY", build.math("SUBTRACT", noise.outputs[0], 0.5), _UNEVEN)
-    return build.math("MINIMUM", build.math("MAXIMUM", build.math("ADD", off, 1.0), 0.0), _HIGHEST)
+    return build.math("MAXIMUM", build.math("ADD", off, 1.0), 0.0)
 
 
-FOAM_PILE = GroupKind("Ocean Tweak Foam Pile", 2, _build)
+FOAM_PILE = GroupKind("Ocean Tweak Foam Pile", 3, _build)

@@ -152,7 +152,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     at = place(shade, given)
     foam = foam_at(shade, given)
     slope, roughness = _waves(shade, given, at)
-    absorption, backscatter = coefficients(shade, given, foam)
+    cover = foam_cover(shade, given, at, foam)
+    absorption, backscatter = coefficients(shade, given, foam, cover)
     through = given["Transmission"]
     normal = _normal(shade, given, slope)
     inputs = {
@@ -162,7 +163,6 @@ def _build(tree: bpy.types.NodeTree) -> None:
         "Emission Color": crest_glow(shade, given, absorption), "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
-    cover = foam_cover(shade, given, at, foam)
     piled = _normal(shade, given, cover.slope)
     shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, cover, piled))
     hazy = _in_haze(shade, given, at, shown)
@@ -281,4 +281,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 8, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 9, _build, "ShaderNodeTree")

@@ -23,11 +23,11 @@ from .water_pattern import WIND_SPEED, Place, lace
 #: laces: length of their cells in Foam Sizes, turn away from the wind in rad, and how much narrower they are
 #: across; three for foam as it was made, and two for what the wind has drawn out
 _LACES = ((0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (0.5, 0.04, 3), (1.4, 0.0, 5))
-#: variances of the laces: of foam that is being made, of some seconds, old, and old in streaks
+#: variances of the laces: of foam that is being made, of some seconds and old; and in a wind that draws it
+#: out, down the crests' fronts while it is young
 _FRESH = (0.20, 0.60, 0.20, 0.0, 0.0)
-_YOUNG = (0.10, 0.36, 0.54, 0.0, 0.0)
-_OLD = (0.04, 0.16, 0.80, 0.0, 0.0)
-_DRAWN_OUT = (0.03, 0.11, 0.05, 0.36, 0.45)
+_YOUNG, _OLD = (0.11, 0.36, 0.53, 0.0, 0.0), (0.04, 0.17, 0.79, 0.0, 0.0)
+_SPILLED, _DRAWN_OUT = (0.12, 0.22, 0.16, 0.50, 0.0), (0.035, 0.115, 0.05, 0.36, 0.44)
 _YOUTH = 0.8  # s, in which foam loses half of what it had while it was made
 _BREAKS = 0.2  # strength of breaking from which foam is new
 _GROWTH = (0.5, 9.0)  # s, between which holes grow
@@ -35,7 +35,7 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.2, 0.1)
+_SOFT = (0.22, 0.12)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.25, 1.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
@@ -45,9 +45,11 @@ _THICK, _SLOPING = 1.2, 0.6
 #: how far inside foam its points are where no lace is seen, by the share's quantile: constant and slope
 _INSIDE = (0.55, 0.22)
 #: height of foam at its rim in cells, of old and of fresh foam, and of the billows of fresh foam
-_EDGE, _BILLOW = (0.03, 0.05), 0.04
+_EDGE, _BILLOW = (0.03, 0.05), 0.03
 #: light that creases of fresh foam keep from themselves, and of piles that are too small to be seen
-_CREASED, _SHADOW = 0.30, 0.21
+_CREASED, _SHADOW = 0.24, 0.17
+#: how far bubbles reach beyond the foam above them, and how softly, in standard deviations of the laces
+_HALO, _HALO_SOFT = 0.7, 0.6
 #: brightness of a rim, which is thin and wet, of old and of fresh foam
 _RIM_LIGHT = (0.6, 0.85)
 
@@ -71,11 +73,13 @@ class Cover(NamedTuple):
     amount : 0…1, how much of the point is covered
     light : 0…1, what rims and creases, and piles too small to be seen, leave of its brightness
     slope : of its piles, along the ocean's x and y
+    bubbles : 0…1, of those in the water below, which reach beyond it
     """
 
     amount: Socket
     light: Socket
     slope: Socket
+    bubbles: Socket
 
 
 def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
@@ -125,7 +129,14 @@ def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) 
         amount=shade.math("MULTIPLY", amount, has_any),
         light=_light(shade, foam, laid, inwards),
         slope=shade.scale(laid.slope, _steepness(shade, given, foam, inwards)),
+        bubbles=shade.math("MULTIPLY", _bubbles(shade, laid, kept, inwards), has_any),
     )
+
+
+def _bubbles(shade: Shading, laid: _Laid, kept: Socket, inwards: Socket) -> Socket:
+    """As foam that covers a little more, with rims that are softer."""
+    spread = shade.math("SQRT", shade.math("MULTIPLY_ADD", laid.unseen, kept, _HALO_SOFT**2))
+    return _normal_share(shade, shade.math("DIVIDE", shade.math("ADD", inwards, _HALO), spread))
 
 
 def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _Laid:
@@ -152,8 +163,9 @@ def _variances(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[So
     grown = shade.smooth(foam.age, *_GROWTH)
     variances = []
     for part in (slice(0, 3), slice(2, 5)):
+        young = shade.mix_vectors(streaks, _YOUNG[part], _SPILLED[part])
         old = shade.mix_vectors(streaks, _OLD[part], _DRAWN_OUT[part])
-        aged = shade.mix_vectors(grown, _YOUNG[part], old)
+        aged = shade.mix_vectors(grown, young, old)
         variances.append(shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part])))
     return *variances[0], *variances[1][1:]
 

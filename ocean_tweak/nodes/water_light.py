@@ -15,15 +15,13 @@ from __future__ import annotations
 from .building import Socket
 from .names import CUSP
 from .shading import Shading
-from .water_foam import Foam
+from .water_foam import Cover, Foam
 from .water_pattern import DEPTH
 
 #: share of light that a flat surface throws back down from below, and factor of the two-flow model
 THROWN_BACK = 0.47
 SURFACE_FACTOR = 0.33
 
-#: bubbles live longer than the foam above them: of what there was, F to this power is left where foam has F
-_BUBBLES_LEFT = 0.5
 #: of old foam's bubbles beside fresh foam's
 _OLD_BUBBLES = 0.55
 #: cusps between which a crest is sharp
@@ -38,10 +36,9 @@ _AWAY = (0.05, 0.45)
 _SCATTERED = 0.25
 
 
-def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, Socket]:
+def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam, cover: Cover) -> tuple[Socket, Socket]:
     """Absorption and backscatter per metre, with the bubbles under foam and in crests."""
-    left = shade.math("MULTIPLY", shade.math("POWER", foam.share, _BUBBLES_LEFT),
-                      shade.mix(foam.youth, _OLD_BUBBLES, 1.0))  # fmt: skip
+    left = shade.math("MULTIPLY", cover.bubbles, shade.mix(foam.youth, _OLD_BUBBLES, 1.0))
     bubbles = shade.math("MAXIMUM", left, shade.math("MULTIPLY", sharpness(shade), given["Crest Light"]))
     amount = shade.math("MULTIPLY", bubbles, given["Bubbles"])
     return given["Absorption"], shade.vector(

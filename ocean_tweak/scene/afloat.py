@@ -33,6 +33,7 @@ class Afloat:
     keel : how far that is below its origin
     draft : of its keel below the water
     nearest, farthest : from the camera
+    hidden : of it, by the water before it; as little as can be without a number
     """
 
     label: str
@@ -42,6 +43,7 @@ class Afloat:
     draft: float
     nearest: float
     farthest: float
+    hidden: float | None = None
 
 
 AFLOAT = {
@@ -54,6 +56,7 @@ AFLOAT = {
         boat_hull.DRAFT + boat_hull.LADEN,
         6.0 * boat_hull.LENGTH,
         9.0 * boat_hull.LENGTH,
+        hidden=0.8,
     ),
 }
 
@@ -100,7 +103,7 @@ def _best_seen(
     heading: float,
     parameters: OceanParameters,
 ) -> tuple[float, float]:
-    """x and y in the patch, in m, where the water stands highest above all that lies before it.
+    """x and y in the patch, in m, where the water before it hides as much as is wanted.
 
     angle : of the camera, from one side of its picture to the other
     heading : of what floats there
@@ -116,5 +119,6 @@ def _best_seen(
     x, y = (place[axis] + share * away[:, axis] for axis in (0, 1))
     height = Ocean(parameters).height_at(x, y, parameters.timing.time(parameters.timing.start_frame))
     slope = (height - place[2]) / (share * np.hypot(*away.T))
-    best = int((slope[-1] - slope[:-1].max(axis=0)).argmax())
+    hidden = (slope[:-1].max(axis=0) - slope[-1]) * np.hypot(*away.T)
+    best = int((hidden if chosen.hidden is None else np.abs(hidden - chosen.hidden)).argmin())
     return float(x[-1, best]), float(y[-1, best])

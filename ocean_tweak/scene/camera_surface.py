@@ -22,7 +22,7 @@ from .units import metres_per_unit
 __all__ = ["add_camera_surface", "camera_surface_of", "remove_camera_surface"]
 
 _BUDGET = 200_000
-_PILE = 0.06  # of foam on breaking crests, as a share of their elevation
+_PILE = 0.025  # of foam on breaking crests, as a share of their elevation
 #: cells that a ring of the surface keeps from its middle to its edge, up to the horizon of a camera at 125 m
 _LEAST_CELLS = 32
 _FARTHEST = 40e3  # m

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a camera up in the air sees of an ocean."""
+"""What a camera sees of an ocean."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from ..core.sea.foam_fan import View
 from ..nodes.modifier_inputs import get_input
 from .plan import camera_matrix, camera_of, surface_modifier
 
-#: m, from which on a camera is up in the air: lower ones have foam on rings around them
-AERIAL = 20.0
+#: m, from which on a camera is up in the air; lower ones are among the waves, which come as near as that
+AERIAL, _NEAR = 20.0, 5.0
 #: rad below the horizon, between which the lowest line of sight is for a fan to be before the camera
 _LOWEST = math.radians(2.0), math.radians(60.0)
+#: m, of a camera in a trough or under water: the surface reaches as far as from there
+_LEAST_HEIGHT = 2.0
 #: rad, of the picture to each side at the most
 _WIDEST = math.radians(100.0)
 #: places along each side of the picture that are looked at
@@ -26,7 +28,7 @@ _ALONG = 9
 def view_of(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> View | None:
     """What the camera of a surface sees of the water, at rest and in m, in the ocean's space.
 
-    None for one that is low, that looks down, or up, or is not one with a perspective.
+    None for one that looks down, or up, or is not one with a perspective.
 
     scale : Blender units in a metre
     """
@@ -37,16 +39,20 @@ def view_of(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> 
     x, y, height = matrix.translation / scale
     sight = _sight(camera, matrix, scene)
     lowest = math.asin(-min(sight[:, 2].min(), 0.0))
-    if height < AERIAL or not _LOWEST[0] <= lowest <= _LOWEST[1]:
+    is_low = height < AERIAL
+    if lowest > _LOWEST[1] or (lowest < _LOWEST[0] and not is_low):
         return None
     middle = sight.mean(axis=0)
     azimuth = math.atan2(middle[1], middle[0])
-    on_water = sight[sight[:, 2] <= 0.0]
+    # crests rise above the horizon of one among them
+    on_water = sight if is_low else sight[sight[:, 2] <= 0.0]
     aside = np.angle((on_water[:, 0] + 1j * on_water[:, 1]) * np.exp(-1j * azimuth))
     half_angle = float(np.abs(aside).max())
     if half_angle > _WIDEST:
         return None
-    return View(x, y, height, azimuth, half_angle, lowest, _reach(surface, height, scale))
+    near = _NEAR if is_low else height / math.tan(lowest)
+    reach = _reach(surface, max(height, _LEAST_HEIGHT), scale)
+    return View(x, y, near, azimuth, half_angle, reach, is_low)
 
 
 def _sight(camera: bpy.types.Object, matrix: Matrix, scene: bpy.types.Scene) -> np.ndarray:

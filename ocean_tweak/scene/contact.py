@@ -7,14 +7,17 @@ that: `refresh` brings the materials into step. Where nobody does, a deleted obj
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 from ..core import ParameterError
 from ..core.foam.threshold import foam_wind
+from ..core.waves.contribution import Wind
 from ..nodes.contact import COLLAR, CONTACT, RIPPLE_NORMAL
 from ..nodes.modifier_inputs import all_inputs, set_inputs
 from ..nodes.versioned import is_of_kind, node_group
@@ -36,6 +39,8 @@ _WIDEST_FOAM, _LONGEST_RIPPLE = 1.5, 2.0  # m
 #: by the wind in m/s: foam at a hull, and how much wider it lies around it
 _FOAM_BY_WIND = (2.0, 10.0), (0.2, 0.95)
 _WIDER_BY_WIND = (12.0, 25.0), (1.0, 5.0)
+#: and a wash down the wind, of the length of the waterline
+_WASH_BY_WIND = (12.0, 25.0), (0.0, 1.6)
 _WET_BAND = 0.12  # of the beam
 #: inputs of a collar that are links
 _LINKED = {"Vector", "Foam Map", "Height", "Time"}
@@ -273,9 +278,18 @@ def _fitted(item: bpy.types.Object, ocean: bpy.types.Object, hull: Hull | None, 
     if hull is None or line is None:
         return {}
     metres = float(metres_per_unit(scene_of(item)))
-    wind = _wind_speed(ocean)
-    foam = float(np.interp(wind, *_FOAM_BY_WIND))
-    return {**_placed(hull, line, level, metres), **_sized(line, metres, wind), "Foam": foam}
+    wind = _wind(ocean)
+    speed = 0.0 if wind is None else wind.speed
+    foam = float(np.interp(speed, *_FOAM_BY_WIND))
+    values = {**_placed(hull, line, level, metres), **_sized(line, metres, speed), "Foam": foam}
+    return values if wind is None else {**values, "Lee": _lee(item, ocean, hull, wind.direction)}
+
+
+def _lee(item: bpy.types.Object, ocean: bpy.types.Object, hull: Hull, direction: float) -> Sequence[float]:
+    """Down the wind in the upright axes of a hull; `direction` is in rad, in the ocean's axes."""
+    wind = ocean.matrix_world.to_quaternion() @ Vector((math.cos(direction), math.sin(direction), 0.0))
+    lee = hull.tilt @ (item.matrix_world.to_quaternion().inverted() @ wind)
+    return tuple(lee.xy.normalized().to_3d())
 
 
 def _placed(hull: Hull, line: Waterline, level: float, metres: float) -> dict[str, object]:
@@ -295,13 +309,13 @@ def _sized(line: Waterline, metres: float, wind: float) -> dict[str, object]:
     return {
         "Foam Width": min(_FOAM_WIDTH * beam, _WIDEST_FOAM) * float(np.interp(wind, *_WIDER_BY_WIND)),
         "Ripple Length": min(_RIPPLE_LENGTH * beam, _LONGEST_RIPPLE),
+        "Wash": 2.0 * line.half_length * metres * float(np.interp(wind, *_WASH_BY_WIND)),
     }
 
 
-def _wind_speed(ocean: bpy.types.Object) -> float:
-    """Of the wind that makes an ocean's foam, m/s; 0 without one."""
+def _wind(ocean: bpy.types.Object) -> Wind | None:
+    """The wind that makes an ocean's foam; None without one."""
     try:
-        wind = foam_wind(settings_of(ocean).to_parameters(scene_of(ocean)))
+        return foam_wind(settings_of(ocean).to_parameters(scene_of(ocean)))
     except ParameterError:
-        wind = None
-    return 0.0 if wind is None else wind.speed
+        return None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam around the camera, or before one up in the air: points that the surface around the camera reads.
+"""Foam around the camera, or before it: points that the surface around the camera reads.
 
-On rings it is around a camera that is low, and in windows, where they have few places. A picture from the air
-waits for a fan, which is as dense as its pixels.
+On rings it is in windows, where they have few places, and around a camera that looks down. A picture waits
+for a fan, which is as dense as its pixels.
 
 It is made where somebody waits for it; in a window the history of another moment or of another place follows,
 and until then there is foam where crests break now.
@@ -124,7 +124,7 @@ class Around:
     sea : of several patches
     time : s
     place : of the camera
-    view : of one up in the air
+    view : of one that is turned towards the horizon
     vertices : of the surface, at the most
     in_window : of the surface in a window
     frame : of the scene, in which it is shown

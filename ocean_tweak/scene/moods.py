@@ -25,7 +25,7 @@ class Mood:
 
     waves : gives the sea's parameters
     water : a key of `water_material.WATERS`
-    sun, sun_elevation, clouds, overcast : as in `Sky`, the sun's azimuth from the view
+    sun, sun_elevation, clouds, overcast, sunlight : as in `Sky`, the sun's azimuth from the view
     visibility : in the air
     exposure : of the picture, in stops
     eye : height of the camera above the water at its place
@@ -54,6 +54,7 @@ class Mood:
     rings: int
     floats: str = "BUOY"
     vertices: int = 200_000
+    sunlight: float = 0.0
 
     def sea(self, timing: Timing) -> OceanParameters:
         """The sea's parameters."""
@@ -61,7 +62,7 @@ class Mood:
 
     def sky(self, view: float = VIEW) -> Sky:
         """The sky, for a camera that looks along `view`."""
-        return Sky(self.sun_elevation, view + self.sun, self.clouds, self.overcast)
+        return Sky(self.sun_elevation, view + self.sun, self.clouds, self.overcast, self.sunlight)
 
 
 def _wind_sea(
@@ -107,9 +108,9 @@ MOODS = {
     "STORM": Mood(
         "Storm", "25 m/s over 800 km: waves of fifteen metres, breaking crests and streaks of foam",
         waves=_storm, water="STORM",
-        sun=_degrees(24.0), sun_elevation=_degrees(12.0), clouds=0.6, overcast=0.95,
-        visibility=2.5e3, exposure=0.0, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
-        floats="BOAT", vertices=1_000_000,
+        sun=_degrees(-85.0), sun_elevation=_degrees(16.0), clouds=0.6, overcast=0.95, sunlight=1.0,
+        visibility=6e3, exposure=-0.4, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
+        floats="BOAT", vertices=2_000_000,
     ),
     "HORIZON": Mood(
         "To the Horizon", "9 m/s and a swell, from ripples before the camera to the horizon",

@@ -62,17 +62,20 @@ class Sky:
     sun_elevation, sun_azimuth : rad; the azimuth counter-clockwise from +x
     clouds : 0…1, of the blue sky that fair-weather clouds cover
     overcast : 0…1, from a sky with a sun to closed, torn cloud with light beneath its edge
+    sunlight : 0…1, of the sun's light that comes through a break in closed cloud
     """
 
     sun_elevation: float
     sun_azimuth: float
     clouds: float = 0.35
     overcast: float = 0.0
+    sunlight: float = 0.0
 
     @property
     def sun_irradiance(self) -> tuple[float, float, float]:
         """Red, green and blue on a surface that faces the sun, W/m² of Blender's."""
-        return _at(_SUN, self.sun_elevation, EXPOSURE * (1.0 - self.overcast) ** 2)
+        share = max((1.0 - self.overcast) ** 2, self.sunlight)
+        return _at(_SUN, self.sun_elevation, EXPOSURE * share)
 
     def haze(self, azimuth: float) -> tuple[float, float, float]:
         """Radiance of the air at the horizon, towards an azimuth in rad."""

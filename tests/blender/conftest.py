@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests inside Blender share: seas small enough to be quick, and what they must look like."""
 
+import dataclasses
 import sys
 from fractions import Fraction
 from types import SimpleNamespace
@@ -175,7 +176,7 @@ def rendering(empty_scene):
 
 @pytest.fixture
 def quick(extension, monkeypatch):
-    """Moods with few samples: the sea itself is tested elsewhere."""
+    """Moods with few samples and vertices: the sea itself is tested elsewhere."""
     moods = extension("scene.moods")
     original = moods.Mood.sea
 
@@ -183,6 +184,9 @@ def quick(extension, monkeypatch):
         return original(self, timing).replace(resolution=64, foam=extension("core").Foam(resolution=32))
 
     monkeypatch.setattr(moods.Mood, "sea", small)
+    for name, mood in moods.MOODS.items():
+        few = dataclasses.replace(mood, vertices=min(mood.vertices, 20_000))
+        monkeypatch.setitem(moods.MOODS, name, few)
     return moods.MOODS
 
 

@@ -129,6 +129,24 @@ def test_it_is_well_in_the_picture(afloat, extension, quick, empty_scene, mood):
     assert not 0.45 < np.mean(across) < 0.55
 
 
+def test_water_before_the_boat_hides_some_of_its_hull_and_nothing_of_its_house(quick, extension, empty_scene):
+    bpy.ops.ocean.add_scene(mood="STORM")
+    boat, camera = empty_scene.objects["Fishing Boat"], empty_scene.camera
+    ocean = next(item for item in empty_scene.objects if item.ocean_tweak.is_ocean)
+    sea = extension("core").Ocean(ocean.ocean_tweak.to_parameters(empty_scene))
+    matrix = boat.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world
+    local = np.array([vertex.co for vertex in boat.data.vertices])
+    eye = np.array(camera.location)
+    points = np.array([matrix @ vertex.co for vertex in boat.data.vertices])
+    way = np.linspace(0.05, 0.95, 60)[:, np.newaxis, np.newaxis]
+    line = eye + way * (points - eye)
+    place = line - np.array(ocean.location)
+    water = sea.height_at(place[..., 0], place[..., 1], sea.parameters.timing.time(empty_scene.frame_current))
+    hidden = np.any(water > line[..., 2], axis=0)
+    assert 0.1 < np.mean(hidden[(local[:, 2] > -0.5) & (local[:, 2] < 1.5)]) < 0.9
+    assert not np.any(hidden[local[:, 2] > 3.5])
+
+
 def test_the_boat_heads_into_the_storm(quick, empty_scene):
     bpy.ops.ocean.add_scene(mood="STORM")
     boat = empty_scene.objects["Fishing Boat"]

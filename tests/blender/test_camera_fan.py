@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The surface that a camera up in the air sees: dense in the picture, to its lower edge, with its foam."""
+"""The surface that a camera sees: dense in the picture, to its lower edge, with its foam."""
 
 import math
 
@@ -100,13 +100,14 @@ def test_its_foam_is_that_of_the_core_where_its_vertices_are(shown, extension, c
     assert np.median(foam) < 2.0 * levels.beyond.foam
 
 
-def test_low_cameras_and_those_that_look_down_have_rings(shown):
+def test_cameras_that_look_down_have_rings_and_all_others_a_fan(shown):
     def columns(item):
         (points,) = [child for child in item.parent.children if child.name.endswith("Foam")]
         return points.data.vertices[-1].co.y
 
     assert columns(shown(60.0, 0.25)) > 0.0
-    assert columns(shown(6.0, 0.25)) == 0.0
+    assert columns(shown(6.0, 0.25)) > 0.0
+    assert columns(shown(2.0, -0.1)) > 0.0
     assert columns(shown(60.0, 1.4)) == 0.0
 
 

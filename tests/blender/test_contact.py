@@ -372,6 +372,36 @@ def test_foam_lies_around_the_hull_and_follows_it(
         assert seen_from_above(ocean).max() == 0.0  # its node is left, without an object
 
 
+def test_a_strong_wind_draws_a_wash_down_the_wind(
+    extension, ocean, disc, select, empty_scene, seen_from_above
+):
+    """However the hull is turned; none in a breeze."""
+    wind = 1.1
+    ocean.ocean_tweak.layers[0].wind_direction = wind
+    lee, windward = (np.linalg.norm(places() - to, axis=-1) < 0.3 for to in washed(wind, 3.0))
+    for speed, turn, reaches in ((9.0, 0.0, False), (25.0, 0.0, True), (25.0, 2.0, True)):
+        ocean.ocean_tweak.layers[0].wind_speed = speed
+        item = disc()
+        item.rotation_euler.z = turn
+        update()
+        select(item)
+        bpy.ops.object.ocean_tweak_float()
+        (collar,) = extension("scene.contact").collars_of(item)
+        collar.inputs["Foam Width"].default_value = 0.05  # so that only the wash is as far away
+        empty_scene.frame_set(5)
+        foam = seen_from_above(ocean)
+        assert foam[windward].max() < 0.01
+        assert (foam[lee].min() > 0.15) == reaches
+        bpy.data.objects.remove(item)
+        update()
+
+
+def washed(wind, away):
+    """Places so far down the wind and up the wind from the middle, in m."""
+    step = away * np.array((math.cos(wind), math.sin(wind)))
+    return AT + step, AT - step
+
+
 def test_eevee_draws_the_same_collar(ocean, disc, select, empty_scene, seen_from_above):
     item = disc()
     select(item)

@@ -235,6 +235,14 @@ def test_the_lamp_lights_the_crests_wherever_it_turns(water, empty_scene, extens
     assert max(given("Sun Light")) == pytest.approx(3.0)
 
 
+def test_sun_comes_through_a_break_in_closed_cloud(extension):
+    sky = extension("scene.sky").Sky
+    clear = np.array(sky(math.radians(14.0), 0.0).sun_irradiance)
+    for overcast, sunlight, share in ((0.95, 0.0, 0.0025), (0.95, 0.7, 0.7), (0.2, 0.1, 0.64)):
+        found = sky(math.radians(14.0), 0.0, overcast=overcast, sunlight=sunlight).sun_irradiance
+        assert found == pytest.approx(share * clear, rel=1e-6)
+
+
 def test_a_pixel_is_the_camera_s(water, empty_scene):
     material = water.water_material()
     item = bpy.data.objects.new("Item", bpy.data.meshes.new("Item"))

@@ -15,10 +15,11 @@ from ocean_tweak.core.sea.foam_levels import FINEST, FoamLevels
 
 TIME = Fraction(25, 8)
 PLACES = 12_000
+HEIGHT, LOWEST = 40.0, math.radians(27.0)
 VIEW = View(
-    x=40.0, y=-25.0, height=40.0, azimuth=1.9, half_angle=math.radians(33.0), lowest=math.radians(27.0),
-    reach=30e3,
-)  # fmt: skip
+    x=40.0, y=-25.0, near=HEIGHT / math.tan(LOWEST), azimuth=1.9, half_angle=math.radians(33.0), reach=30e3
+)
+AMONG = dataclasses.replace(VIEW, near=5.0, half_angle=math.radians(20.0), reach=8e3, is_low=True)
 
 
 @pytest.fixture(scope="module")
@@ -47,13 +48,13 @@ def seen_from(fan, view):
 @pytest.mark.parametrize("height", [25.0, 100.0, 400.0])
 def test_cells_grow_with_height_and_distance_as_what_a_pixel_covers(levels, height):
     """Of a picture of as many pixels as the fan has places: one to three, near and far."""
-    view = dataclasses.replace(VIEW, height=height)
+    view = dataclasses.replace(VIEW, near=height / math.tan(LOWEST))
     made = FoamFan(levels, PLACES).at(Fraction(0), view)
     assert PLACES * 0.97 < made.x.size <= PLACES
     place = made.x + 1j * made.y
     cells = np.sqrt(np.abs(np.diff(place, axis=0)[:, :-1]) * np.abs(np.diff(place, axis=1)[:-1]))
     distance, angle = (part[:-1, :-1] for part in seen_from(made, view))
-    inside = (np.abs(angle) < view.half_angle) & (distance > height / math.tan(view.lowest))
+    inside = (np.abs(angle) < view.half_angle) & (distance > view.near)
     inside &= distance < 10.0 * height
     pixel = 2.0 * view.half_angle * math.sqrt(27.0 / 64.0 / PLACES)
     slant = np.hypot(distance, height)
@@ -63,9 +64,24 @@ def test_cells_grow_with_height_and_distance_as_what_a_pixel_covers(levels, heig
     np.testing.assert_allclose(made.size[:-1, :-1][inside], cells[inside], rtol=0.1)
 
 
+def test_before_a_camera_among_the_waves_cells_are_as_a_pixel_on_their_faces(levels):
+    """Of a face that rises by a third: as many pixels wide at every distance, and some times as long."""
+    made = FoamFan(levels, PLACES).at(Fraction(0), AMONG)
+    assert PLACES * 0.97 < made.x.size <= PLACES
+    place = made.x + 1j * made.y
+    distance, angle = (part[:-1, :-1] for part in seen_from(made, AMONG))
+    inside = (np.abs(angle) < AMONG.half_angle) & (distance > 2.0 * AMONG.near)
+    inside &= distance < 0.5 * AMONG.reach
+    along, across = (np.abs(np.diff(place, axis=0))[:, :-1], np.abs(np.diff(place, axis=1))[:-1])
+    assert np.median((along / across)[inside]) == pytest.approx(3.0, rel=0.15)
+    wide = (across / distance)[inside]
+    assert wide.max() < 1.3 * wide.min()
+    assert np.mean(inside) > 0.2  # of vertices all around it would be a ninth
+
+
 def test_the_whole_picture_lies_on_it(fan):
     distance, angle = seen_from(fan, VIEW)
-    corner = VIEW.height / math.tan(VIEW.lowest)
+    corner = VIEW.near
     dense = np.median(fan.size[(distance < 1.1 * corner) & (distance > 0.95 * corner)])
     for aside in (-1.0, -0.5, 0.0, 0.5, 1.0):
         near = np.hypot(distance - corner, corner * (angle - aside * VIEW.half_angle)).min()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Places at rest, and foam on them, for a picture of the sea from the air: as dense as its pixels are.
+"""Places at rest, and foam on them, for a picture of the sea: as dense as its pixels are.
 
 From a height h a pixel covers what is at the distance r, r along the horizon and r²/h towards it. The fan's
 columns are directions from the foot of the camera, dense within the picture and few beside it; its rows are
-r ∝ 1/u² for even steps of u, so that cells are r wide and r^1.5 long: near the geometric mean of both.
+r ∝ 1/u² for even steps of u, so that cells are r wide and r^1.5 long: near the geometric mean of both. A
+camera among the waves sees their faces, on which a pixel is some times as long as it is wide: cells are, too.
 
 Each row has the foam of the level (`foam_levels`) whose cells are the next smaller ones; near to the next
 level it goes over into that. Foam is made where the picture looks, and has the mean elsewhere. What counts
@@ -29,10 +30,10 @@ from .foam_levels import FINEST, FoamLevels
 
 Array = NDArray[np.float64]
 
-#: rad, of the steps in which a fan turns and tilts, and by how much of the height it moves at once
+#: rad, of the steps in which a fan turns, and by how much of the way to the nearest water it moves at once
 _TURN, _MOVE = math.radians(5.0), 0.125
-#: heights are of so many steps to an octave
-_HEIGHTS = 4
+#: distances of the nearest water are of so many steps to an octave
+_STEPS = 4
 #: how much nearer than the flat water at the picture's edge the fan begins to be dense: crests are higher
 _NEARER = 0.85
 #: rows before that, and columns beside the picture: they are for light alone
@@ -41,6 +42,8 @@ _ROWS_BEFORE, _COLUMNS_BESIDE = 16, 48
 _FOOT = 0.02
 #: rows to a column of the picture
 _ROWS_TO_COLUMNS = 0.7
+#: how much longer than wide cells are before a camera among the waves
+_ON_FACES = 3.0
 #: share of a level's octave of cell sizes after which the next one begins to show
 _OVER = 0.85
 
@@ -50,35 +53,34 @@ class View:
     """What a camera sees of the water.
 
     x, y : of the place below it, m
-    height : m
+    near : m from there to the nearest water in the picture
     azimuth : rad counter-clockwise from +x, of the middle of the picture
     half_angle : rad from there to the farthest direction in the picture
-    lowest : rad below the horizon, of the lowest line of sight
     reach : m, how far water is to be shown
+    is_low : whether it is among the waves
     """
 
     x: float
     y: float
-    height: float
+    near: float
     azimuth: float
     half_angle: float
-    lowest: float
     reach: float
+    is_low: bool = False
 
     def stepped(self, drift: tuple[float, float], time: float) -> View:
         """One that sees as much, and is the same for all views near it; its place is that of the time 0."""
-        height = 2.0 ** (math.floor(_HEIGHTS * math.log2(self.height)) / _HEIGHTS)
-        move = _MOVE * height
+        near = 2.0 ** (math.floor(_STEPS * math.log2(self.near)) / _STEPS)
+        move = _MOVE * near
         x, y = (
             move * round((along - time * speed) / move)
             for along, speed in zip((self.x, self.y), drift, strict=True)
         )
         return replace(
-            self, x=x, y=y, height=height,
+            self, x=x, y=y, near=near,
             azimuth=_TURN * round(self.azimuth / _TURN),
             # what moves aside by half a step of the place is seen at the near edge
             half_angle=min(_TURN * math.ceil(self.half_angle / _TURN + 1.0), math.pi - _TURN),
-            lowest=_TURN * math.ceil(self.lowest / _TURN),
         )  # fmt: skip
 
 
@@ -121,7 +123,7 @@ class _Places(NamedTuple):
 
 
 class FoamFan:
-    """The foam of a sea of patches before a camera up in the air. Making it is cheap.
+    """The foam of a sea of patches before a camera. Making it is cheap.
 
     It serves ascending times and a view that stays near; any other is made from the sea alone, and is the
     same. One thread at a time goes on with it, and others wait.
@@ -204,12 +206,18 @@ class FoamFan:
 
 def _places(view: View, count: int) -> _Places:
     """Those of a fan of so many places, at the most."""
-    columns = int(math.sqrt(count / _ROWS_TO_COLUMNS))
-    columns -= _COLUMNS_BESIDE
+    near = _NEARER * view.near
+    farthest = max(view.reach, 2.0 * near)
+    octaves = math.log(farthest / near)
+    ratio = octaves / (2.0 * view.half_angle * _ON_FACES) if view.is_low else _ROWS_TO_COLUMNS
+    # c columns with ratio·c rows of c and those beside
+    columns = int(math.sqrt(0.25 * _COLUMNS_BESIDE**2 + count / ratio) - 0.5 * _COLUMNS_BESIDE)
     rows = count // (columns + _COLUMNS_BESIDE) - _ROWS_BEFORE
-    near = _NEARER * view.height / math.tan(view.lowest)
-    u = np.linspace(1.0, math.sqrt(near / max(view.reach, 2.0 * near)), rows)
-    before, dense = near * np.linspace(_FOOT, 1.0, _ROWS_BEFORE + 1)[:-1], near / u**2
+    if view.is_low:
+        dense = near * np.exp(np.linspace(0.0, octaves, rows))
+    else:
+        dense = near / np.linspace(1.0, math.sqrt(near / farthest), rows) ** 2
+    before = near * np.linspace(_FOOT, 1.0, _ROWS_BEFORE + 1)[:-1]
     distance = np.concatenate((before, dense))
     in_picture = np.linspace(-view.half_angle, view.half_angle, columns)
     beside = np.linspace(view.half_angle, 2.0 * math.pi - view.half_angle, _COLUMNS_BESIDE + 1)[1:]
