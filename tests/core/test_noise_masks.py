@@ -106,6 +106,10 @@ def test_it_loops_with_the_sea() -> None:
     begin, middle, end = (at(GUSTS, X, Y, time, loop).value for time in (2, Fraction(29, 2), 27))
     np.testing.assert_array_equal(begin, end)
     assert np.abs(begin - middle).max() > 0.5
+    step = Fraction(1, 10_000)
+    ahead, behind = (at(GUSTS, X, Y, 2 + sign * step, loop).value for sign in (1, -1))
+    rate = at(GUSTS, X, Y, 2, loop).by_t
+    np.testing.assert_allclose(rate, (ahead - behind) / (2 * float(step)), atol=2e-4 * np.abs(rate).max())
 
 
 def test_inverted_and_weaker_with_another() -> None:
