@@ -18,7 +18,7 @@ _GRID_CELLS = 2.0
 
 _INPUTS = (
     Plug("Averages", "NodeSocketGeometry", None, "Points of a surface and of its averages"),
-    Plug("Levels", "NodeSocketGeometry", None, "Points that tell where each of them begins"),
+    Plug("Levels", "NodeSocketGeometry", None, "Points that hold where each of them begins"),
     Plug("Columns", "NodeSocketInt", 2, "Of the surface itself, its vertices along x"),
     Plug("Rows", "NodeSocketInt", 2, "Its vertices along y"),
     Plug("Spacing", "NodeSocketVector", None, "Between them"),

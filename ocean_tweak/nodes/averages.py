@@ -45,7 +45,9 @@ _MESH = (
     Plug("Rows", "NodeSocketInt", 2, "Vertices along y"),
 )
 _FADE = Plug("Fade", "NodeSocketBool", True, "Average; otherwise there is the surface alone")
-_IS_MOVING = Plug("Moving", "NodeSocketBool", True, "Displacement, velocity and slopes are wanted too")
+_IS_MOVING = Plug(
+    "Moving", "NodeSocketBool", True, "Whether displacement, velocity and slopes are needed too"
+)
 _OUTPUTS = (
     Plug("Geometry", "NodeSocketGeometry", None, "Points of the surface and of all its averages"),
     Plug(

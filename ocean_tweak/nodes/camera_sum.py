@@ -30,7 +30,7 @@ OF_SUM = (
             name,
             "NodeSocketObject",
             None,
-            "Mesh of one patch of a sea of several; none shows the ocean's own",
+            "Mesh of one patch of a sea of several; without one the ocean's own mesh is shown",
         )
         for name in PATCH_INPUTS
     ),
@@ -38,9 +38,9 @@ OF_SUM = (
         "Weights",
         "NodeSocketObject",
         None,
-        "Points over the domain with the weights of patches; none takes those of the ocean's mesh",
+        "Points over the domain with the weights of patches; without them those of the ocean's mesh are used",
     ),
-    Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, and is 0 along its sides"),
+    Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, 0 along its sides"),
 )
 #: attributes and what is in the ocean's axes → sockets
 SUMMED = {**SOCKETS, FOAM: "Foam", BREAKING: "Breaking", FOAM_AGE: "Foam Age", CUSP: "Cusp"}

@@ -68,18 +68,19 @@ INPUTS = (
     ),
     Plug("To Horizon", "NodeSocketBool", True, "Reach as far as the camera sees from its height"),
     Plug("Reach", "NodeSocketFloat", 5000.0, "How far the grid goes instead, in Blender units"),
-    Plug("Curvature", "NodeSocketBool", True, "Let the water fall away as on a globe"),
+    Plug("Curvature", "NodeSocketBool", True, "Curve the water like a globe"),
     Plug("Planet Radius", "NodeSocketFloat", EARTH_RADIUS, "Of that globe, in Blender units"),
-    Plug("Fade", "NodeSocketBool", True, "Let waves too short for the grid become roughness"),
+    Plug("Fade", "NodeSocketBool", True, "Turn waves that are too short for the grid into roughness"),
     Plug("Material", "NodeSocketMaterial", None, "Of the surface"),
     *OF_SUM,
     Plug(
         FOAM_INPUT, "NodeSocketObject", None,
-        "Points with foam around a camera, or before it; none shows that of the ocean's mesh",
+        "Points with foam around or in front of a camera; without them the foam of the ocean's "
+        "mesh is shown",
     ),
     Plug(
         PILE_INPUT, "NodeSocketFloat", 0.0,
-        "Height of foam on breaking crests, as a share of their elevation; heights of the water stay",
+        "Height of foam on breaking crests, as a fraction of their elevation; the water keeps its height",
     ),
 )  # fmt: skip
 
@@ -310,8 +311,8 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     old = joined_text(
         build,
         "Foam around the camera is that of frame", output(sea.of_foam, "Frame"),
-        "as the Ocean Tweak extension does not run here: shown is that of the ocean's own mesh, on coarser "
-        "samples",
+        "as the Ocean Tweak extension does not run here: the foam of the ocean's own mesh is "
+        "shown, on coarser samples",
     )  # fmt: skip
     is_below = build.compare("LESS_THAN", coordinates(build, sea.eye)[2], 0.0, "FLOAT")
     shown = [

@@ -17,10 +17,7 @@ from .versioned import GroupKind, is_of_kind
 
 _BEACON = ".Ocean Tweak Runs"
 _NODE = "Beacon"
-_LINE = (
-    "Ocean Tweak: oceans that are computed live stand still, as the extension does not run here; enable it, "
-    "or bake them"
-)
+_LINE = "Ocean Tweak: live oceans stand still, as the extension does not run here; enable it, or bake them"
 
 INPUTS = (
     Plug("Live", "NodeSocketBool", False, "The extension computes the sea of each frame", hidden=True),
@@ -29,7 +26,9 @@ INPUTS = (
 
 
 def _build(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, INPUTS, (Plug("Is Absent", "NodeSocketBool", None, "Nobody will move a live sea"),))
+    build = Builder(
+        tree, INPUTS, (Plug("Is Absent", "NodeSocketBool", None, "Nothing will move a live sea"),)
+    )
     information = build.add("GeometryNodeImageInfo", {"Image": _beacon()})
     information.name = _NODE
     dark = build.compare("EQUAL", output(information, "Width"), 0)
@@ -37,8 +36,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     message = joined_text(
         build,
         "The sea stands still as it was in frame", build.given("Held Frame"),
-        "as it is computed live and the Ocean Tweak extension does not run here: enable the extension, or "
-        "bake the ocean",
+        "because it is live and the Ocean Tweak extension does not run here: enable the "
+        "extension, or bake the ocean",
     )  # fmt: skip
     warning = build.add("GeometryNodeWarning", {"Show": absent, "Message": message}, warning_type="WARNING")
     line = output(build.add("GeometryNodeImportCSV", {"Path": _LINE}), "Point Cloud")

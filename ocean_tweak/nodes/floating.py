@@ -25,20 +25,20 @@ RIDE_INPUTS = (
     OCEAN_INPUT,
     Plug(
         "Waterline", "NodeSocketFloat", 0.0,
-        "Across what floats: shorter waves do not move it. 0 follows the surface at a point",
+        "Size of what floats: shorter waves do not move it. 0 follows the surface at a point",
     ),
     Plug("Draft", "NodeSocketFloat", 0.0, "How deep it sits: from its lowest point up to the surface"),
     Plug("Keel", "NodeSocketFloat", 0.0, "How far below the origin its lowest point is"),
     Plug("Tilt", "NodeSocketFloat", 1.0, "How much it tilts with the surface: 0 stays upright"),
-    Plug("Drift", "NodeSocketFloat", 0.0, "How much it goes along with the water: 0 stays above its place"),
+    Plug("Drift", "NodeSocketFloat", 0.0, "How much it moves with the water: 0 stays above its place"),
     Plug(
         "Keep Height", "NodeSocketBool", False,
-        "Stay as high above the surface as its place is above calm water, whatever Draft and Keel say",
+        "Stay as high above the surface as its place is above calm water, whatever Draft and Keel are",
     ),
 )  # fmt: skip
 AS_ONE = Plug(
     "As One", "NodeSocketBool", False,
-    "Move all of the geometry as one thing around its origin, not each instance by itself",
+    "Move all of the geometry as one around its origin, not each instance by itself",
 )  # fmt: skip
 
 

@@ -25,7 +25,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     missing = joined_text(
         build,
         "The displacement image of frame", build.given("Frame"),
-        "is missing or cannot be read, and the sea is flat: bake it again or choose other files",
+        "is missing or cannot be read, so the sea is flat: bake it again or choose other files",
     )  # fmt: skip
     shown = [
         output(build.add("GeometryNodeWarning", {"Show": show, "Message": text}, warning_type=kind), "Show")

@@ -14,7 +14,7 @@ from .names import DISPLACEMENT
 from .versioned import GroupKind
 
 INPUTS = (
-    ("Ocean", "NodeSocketObject", None, "The ocean that goes on"),
+    ("Ocean", "NodeSocketObject", None, "The ocean to continue"),
     ("Rings", "NodeSocketInt", 4, "Rings of copies around the ocean in renders"),
     ("Viewport Rings", "NodeSocketInt", 1, "Rings of copies around the ocean in the viewport"),
     ("Far Distance", "NodeSocketFloat", 30_000.0, "Where the flat water beyond them ends, in Blender units"),

@@ -50,7 +50,7 @@ _SEA_INPUTS = (
     *SCALE_INPUTS,
     Plug(
         "Warn Out of Range", "NodeSocketBool", False,
-        "Show a warning at frames that have no file. The nearest file is held either way",
+        "Show a warning at frames without a file. The nearest file is held either way",
     ),
     *ABSENCE_INPUTS,
     Plug(
@@ -68,7 +68,7 @@ _GRID_PANEL = Panel(
             "Make Grid",
             "NodeSocketBool",
             False,
-            "Put a grid in the place of the mesh; it keeps the materials",
+            "Replace the mesh by a grid; the materials are kept",
         ),
         *(plug for plug in GRID_INPUTS if plug[0] not in ("Samples", "Live")),
     ),

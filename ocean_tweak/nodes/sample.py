@@ -23,7 +23,7 @@ INPUTS = (
     Plug("Position", "NodeSocketVector", None, "Where to look: the surface right above or below it"),
     Plug(
         "At Rest", "NodeSocketBool", False,
-        "Take the position for that of the water at rest, and tell where this water is now",
+        "Treat the position as that of water at rest, and return where this water is now",
     ),
 )  # fmt: skip
 

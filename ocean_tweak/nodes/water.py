@@ -58,12 +58,12 @@ WATER_PANEL = Panel(
         ),
         (
             "Backscatter", "NodeSocketColor", (0.0016, 0.0022, 0.0035, 1.0),
-            "Light that turns back in a metre of water, by colour; particles make the sea brighter",
+            "Light scattered back in a metre of water, by colour; particles make the sea brighter",
         ),
-        ("Water Depth", "NodeSocketFloat", 0.0, "In metres; 0 takes the depth of the ocean's waves"),
+        ("Water Depth", "NodeSocketFloat", 0.0, "In metres; 0 uses the depth of the ocean's waves"),
         ("Bottom Color", "NodeSocketColor", (0.42, 0.37, 0.27, 1.0), "What lies under shallow water"),
         ("Bubbles", "NodeSocketFloat", 0.06, "Backscatter in a metre of water under fresh foam"),
-        ("Crest Light", "NodeSocketFloat", 0.15, "Share of it in sharp crests, which light shines into"),
+        ("Crest Light", "NodeSocketFloat", 0.15, "Fraction of it in sharp crests, which light shines into"),
         ("Crest Glow", "NodeSocketFloat", 1.0, "Multiplies the sun's light that shines through sharp crests"),
         (
             "Transmission", "NodeSocketFloat", 0.0,
@@ -75,28 +75,30 @@ FOAM_PANEL = Panel(
     "Foam",
     (
         ("Foam Amount", "NodeSocketFloat", 1.0, "Multiplies the ocean's foam"),
-        ("Foam Map", "NodeSocketFloat", 0.0, "Foam from an image, instead of or above the ocean's own"),
+        ("Foam Map", "NodeSocketFloat", 0.0, "Foam from an image, added to the ocean's own"),
         ("Foam Color", "NodeSocketColor", (0.90, 0.91, 0.91, 1.0), "Of dense foam"),
-        ("Foam Roughness", "NodeSocketFloat", 0.8, "Of foam's own surface"),
-        ("Foam Size", "NodeSocketFloat", 6.0, "Of the pattern that foam thins out by, in metres"),
+        ("Foam Roughness", "NodeSocketFloat", 0.8, "Of the surface of foam"),
+        ("Foam Size", "NodeSocketFloat", 6.0, "Size of the foam pattern, in metres"),
         ("Foam Relief", "NodeSocketFloat", 1.0, "How high fresh foam is piled up"),
         (
             "Foam Streaks", "NodeSocketFloat", -1.0,
-            "How far old foam is drawn out along the wind, 0 to 1; -1 lets the wind decide, from 7 Bft on",
+            "How far old foam is stretched along the wind, 0 to 1; -1 follows the wind, from 7 Bft on",
         ),
     ),
 )  # fmt: skip
 SURFACE_PANEL = Panel(
     "Surface",
     (
-        ("Slopes", "NodeSocketFloat", 1.0, "Multiplies the slope variance of the waves finer than the mesh"),
-        ("Ripples", "NodeSocketFloat", 1.0, "Share of them drawn as waves near the camera, not as roughness"),
-        ("Ripple Distance", "NodeSocketFloat", 120.0, "In metres, where half of the ripples are roughness"),
+        ("Slopes", "NodeSocketFloat", 1.0, "Multiplies the slope variance of waves finer than the mesh"),
+        ("Ripples", "NodeSocketFloat", 1.0, "Fraction of them drawn as waves near the camera, not as "
+        "roughness"),
+        ("Ripple Distance", "NodeSocketFloat", 120.0, "Distance in metres at which half of the ripples "
+        "have become roughness"),
         ("Gusts", "NodeSocketFloat", 0.5, "How unevenly gusts ruffle the water"),
-        ("Time", "NodeSocketFloat", 0.0, "Seconds, in which the ripples run on"),
+        ("Time", "NodeSocketFloat", 0.0, "Time in seconds that moves the ripples"),
         (
             "Normal Map", "NodeSocketVector", (0.0, 0.0, 0.0),
-            "Normal in the ocean's own axes, as the normal files hold it; unlinked, it is the mesh's",
+            "Normal in the ocean's own axes, as in the normal files; unlinked, the normal of the mesh",
         ),
     ),
 )  # fmt: skip
@@ -105,12 +107,13 @@ LIGHT_PANEL = Panel(
     (
         (
             "Sun Direction", "NodeSocketVector", (0.0, 0.0, 1.0),
-            "Towards the sun, in the world; an ocean scene links it to its lamp",
+            "Direction to the sun, in the world; an ocean scene links it to its lamp",
         ),
-        ("Sun Light", "NodeSocketColor", (0.0, 0.0, 0.0, 1.0), "The sun's irradiance; black: no crest glows"),
+        ("Sun Light", "NodeSocketColor", (0.0, 0.0, 0.0, 1.0), "Irradiance of the sun; black for no glow "
+        "in crests"),
         (
             "Pixel Angle", "NodeSocketFloat", 0.0006,
-            "What a pixel of the camera sees, in radians: patterns below it fade into their mean",
+            "Angle of a camera pixel, in radians: smaller patterns fade into their mean",
         ),
     ),
 )  # fmt: skip
@@ -119,14 +122,14 @@ AIR_PANEL = Panel(
     (
         (
             "Visibility", "NodeSocketFloat", 0.0,
-            "Distance in metres at which haze leaves a fiftieth of the contrast; 0 for air without haze",
+            "Visibility in metres, at which haze leaves a fiftieth of the contrast; 0 for no haze",
         ),
         ("Haze Color", "NodeSocketColor", (0.6, 0.65, 0.7, 1.0), "The sky's at the horizon"),
     ),
 )  # fmt: skip
 OUTPUTS = (
-    Plug("Surface", "NodeSocketShader", None, "To the material's Surface"),
-    Plug("Volume", "NodeSocketShader", None, "To the material's Volume, only for Transmission"),
+    Plug("Surface", "NodeSocketShader", None, "Link to the material's Surface"),
+    Plug("Volume", "NodeSocketShader", None, "Link to the material's Volume, for Transmission only"),
     Plug("Foam", "NodeSocketFloat", None, "How much foam covers the water, with its pattern"),
 )
 

@@ -31,11 +31,11 @@ _WATERS = ("Water", "0e0a7c52-6f0b-4f0e-9d0a-5a2f1c6b7e02")
 _CATALOGUES = "blender_assets.cats.txt"
 _ABOUT = f"# Catalogues of {LIBRARY}. Written anew with its assets\n\nVERSION 1\n\n"
 _GROUPS = {
-    ocean_group(): "Moves a grid by displacement images, and writes foam, velocity and normals",
+    ocean_group(): "Moves a grid with displacement images, and writes foam, velocity and normals",
     SAMPLE: "Height, normal, foam and motion of an ocean above any position",
     FLOAT: "Lets instances, or a geometry as a whole, ride an ocean",
     WATER: "Shader of sea water with foam",
-    WET_BAND: "Shader values of what the water has made wet",
+    WET_BAND: "Shader values for wet surfaces",
 }
 #: what lies in the water in a group's picture: colour, and the share of it that is wet
 _MARKS = {

@@ -45,7 +45,7 @@ def parameters_of(path: Path, frame: int) -> OceanParameters:
     """
     metadata = read_header(path)
     if "parameters" not in metadata:
-        raise SequenceError(f"{path} does not say what it was baked from: switch off Use Its Parameters")
+        raise SequenceError(f"{path} does not say which sea it was baked from: switch off Use Its Parameters")
     told = metadata["parameters"]
     try:
         return OceanParameters.from_dict(told)
@@ -61,7 +61,9 @@ def parameters_of(path: Path, frame: int) -> OceanParameters:
             f"not either ({error}): switch off Use Its Parameters"
         ) from None
     if parameters.to_dict(brief=True) != modern(told):
-        raise SequenceError(f"{path} is of another sea than the job beside it: switch off Use Its Parameters")
+        raise SequenceError(
+            f"{path} belongs to another sea than the job beside it: switch off Use Its Parameters"
+        )
     return parameters
 
 
@@ -163,7 +165,7 @@ def warn(item: bpy.types.Object) -> None:
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         failures.warned(
             item, "bake",
-            f"not the settings, but the bake in {folder_of(settings)} is shown: {found[0].path} is "
+            f"the bake in {folder_of(settings)} is shown, not the settings: {found[0].path} is "
             f"{found[0].own} and was {found[0].baked}{more}",
         )  # fmt: skip
 

@@ -104,7 +104,7 @@ def delete(item: bpy.types.Object, names: Iterable[str] = ()) -> clean.Cleaned:
     wanted = list(names) or [name for name, folder in versions.items() if folder.resolve() not in shown]
     for name in wanted:
         if name not in versions:
-            raise OceanObjectError(f"{_home(item)} has no bake {name}: look at the disk again")
+            raise OceanObjectError(f"{_home(item)} has no bake {name}: refresh the list")
         reader = shown.get(versions[name].resolve())
         if reader is not None:
             raise OceanObjectError(f"{reader} shows {name}: choose another bake there, or go back to live")

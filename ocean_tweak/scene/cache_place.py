@@ -121,7 +121,7 @@ def take_along(item: bpy.types.Object) -> ImageSequence:
     """
     folder = shown_bake(item)
     if folder is None:
-        raise OceanObjectError("The ocean reads no bake that could be copied")
+        raise OceanObjectError("The ocean reads no bake that can be copied")
     goal = cache_folder(item) / folder.parent.name / folder.name
     if not goal.exists():
         _refuse_foreign(folder)
@@ -142,4 +142,4 @@ def _refuse_foreign(folder: Path) -> None:
     """Raise OceanObjectError for a link or a pipe in a bake: what a link leads to may be private."""
     for path in folder.rglob("*"):
         if is_link(path) or not (path.is_file() or path.is_dir()):
-            raise OceanObjectError(f"{path} is a link or no file, which is not copied: remove it")
+            raise OceanObjectError(f"{path} is a link or not a file, and is not copied: remove it")

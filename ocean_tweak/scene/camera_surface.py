@@ -48,7 +48,7 @@ def add_camera_surface(
     Raises OceanObjectError for an object that is no ocean.
     """
     if not is_ocean(ocean):
-        raise OceanObjectError(f"{ocean.name} is no ocean: choose one to show around the camera")
+        raise OceanObjectError(f"{ocean.name} is not an ocean: choose one to show around the camera")
     parameters = settings_of(ocean).to_parameters(scene)
     metres = float(metres_per_unit(scene))
     name = f"{ocean.name} Camera Surface"

@@ -154,19 +154,19 @@ def _lost(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> Iterator
     if modifier.wave_scale != 1.0:
         yield f"Scale {modifier.wave_scale:.3g}: wind gives the wave height; change it with Amplitude Scale"
     if modifier.wave_alignment > 0.0:
-        yield f"Alignment {modifier.wave_alignment:.3g}: use Swell, which draws waves out"
+        yield f"Alignment {modifier.wave_alignment:.3g}: use Swell, which stretches waves into trains"
     if modifier.geometry_mode == "DISPLACE":
-        yield "The mesh's own shape: the sea gets a grid of its own"
+        yield "The shape of the mesh: the sea gets its own grid"
     if modifier.use_foam and modifier.foam_coverage != 0.0:
-        yield f"Foam coverage {modifier.foam_coverage:.3g}: foam covers what the wind makes it cover"
+        yield f"Foam coverage {modifier.foam_coverage:.3g}: foam follows the wind"
     if modifier.use_spray:
-        yield "Spray: there is no map of it"
+        yield "Spray: there is no spray map"
     if modifier.wave_scale_min > 0.02:
         yield f"Smallest wave {modifier.wave_scale_min:.3g} m: use Short Wave Cutoff"
     if modifier.sharpen_peak_jonswap and modifier.spectrum in _WITH_FETCH:
         yield f"Sharpen peak {modifier.sharpen_peak_jonswap:.3g}: use Peak Enhancement"
     if _has_layered_time(item, modifier):
-        yield "The keys of Time in the nonlinear animation: the sea moves with the frames"
+        yield "Keys of Time in the nonlinear animation: the sea follows the scene's frames"
 
 
 def carry_time(original: bpy.types.Object, modifier: bpy.types.OceanModifier, item: bpy.types.Object) -> None:

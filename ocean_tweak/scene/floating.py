@@ -26,15 +26,16 @@ _SHIP_TILT = 0.8
 RIDES = {
     "OBJECT": (
         "By Object",
-        "Cameras, lights and speakers keep their height above the water. All else feels no waves shorter "
-        "than its beam, and sits a third of that deep, as ships do, but at most half its height",
+        "Cameras, lights and speakers keep their height above the water. Everything else ignores "
+        "waves shorter than its beam and sits a third of the beam deep, as ships do, but at most "
+        "half its height",
     ),
     "SHIP": (
         "Ship",
-        "Feels no waves shorter than its length, tilts by 0.8 of what the surface does, and sits a third of "
-        "its beam deep, but at most half its height",
+        "Ignores waves shorter than its length, tilts 0.8 times as much as the surface, and sits "
+        "a third of its beam deep, but at most half its height",
     ),
-    "CUSTOM": ("Custom", "As the numbers below say"),
+    "CUSTOM": ("Custom", "Set by the numbers below"),
 }
 
 
@@ -161,7 +162,9 @@ def take_off(item: bpy.types.Object) -> None:
 def check(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
     """Raise FloatError where an object cannot float on an ocean."""
     if is_ocean(item) or not is_ocean(ocean):
-        raise FloatError(f"{item.name} cannot float on {ocean.name}: choose an ocean, and what is none")
+        raise FloatError(
+            f"{item.name} cannot float on {ocean.name}: choose an ocean, and an object that is not one"
+        )
     if item.library is not None:
         raise FloatError(f"{item.name} is linked from another file: make it local or override it")
     if item in _ancestors(ocean):
@@ -179,7 +182,9 @@ def chosen_ocean(
     if name:
         oceans = [ocean for ocean in oceans if ocean.name == name]
     if not oceans:
-        raise FloatError(f"{name!r} is no ocean of this scene" if name else "There is no ocean in this scene")
+        raise FloatError(
+            (f"{name!r} is not an ocean of this scene") if name else "There is no ocean in this scene"
+        )
     return active if active in oceans else oceans[0]
 
 

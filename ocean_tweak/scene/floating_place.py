@@ -65,7 +65,7 @@ def water_at(
     Raises ParameterError, OceanObjectError or MemoryError for an ocean that has no surface there.
     """
     if not is_ocean(ocean):
-        raise FloatError(f"{ocean.name} is no ocean any more: its modifier was applied or removed")
+        raise FloatError(f"{ocean.name} is no longer an ocean: its modifier was applied or removed")
     settings = shown_settings(ocean, depsgraph)
     plan = plan_for(ocean, settings, scene)
     if settings.source == "LIVE":

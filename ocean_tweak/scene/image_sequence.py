@@ -270,7 +270,7 @@ def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
         header = read_header(path)
         if "area" in header:
             raise SequenceError(
-                f"{path} shows an area, which does not repeat as the ocean's mesh does: bake without --area"
+                f"{path} shows an area, which does not repeat like the ocean's mesh: bake without --area"
             )
         timing = Timing(**header["parameters"]["timing"])
         return timing.fps, timing.stretch

@@ -100,20 +100,20 @@ MOODS = {
         exposure=0.0, eye=2.4, crest_distance=30.0, lens=35.0, tilt=_degrees(3.0), rings=9,
     ),
     "FRESH_BREEZE": Mood(
-        "Fresh Breeze", "10 m/s: waves of two metres and a half with white horses",
+        "Fresh Breeze", "10 m/s: waves of 2.5 m with whitecaps",
         waves=partial(_wind_sea, 10.0, 120e3, 400.0, 512, _degrees(215.0)), water="OCEANIC",
         sun=_degrees(75.0), sun_elevation=_degrees(34.0), clouds=0.55, overcast=0.0,
         visibility=30e3, exposure=0.0, eye=3.0, crest_distance=14.0, lens=40.0, tilt=_degrees(2.0), rings=5,
     ),
     "STORM": Mood(
-        "Storm", "25 m/s over 800 km: waves of fifteen metres, breaking crests and streaks of foam",
+        "Storm", "25 m/s over 800 km: waves of 15 m, breaking crests and streaks of foam",
         waves=_storm, water="STORM",
         sun=_degrees(-85.0), sun_elevation=_degrees(16.0), clouds=0.6, overcast=0.95, sunlight=1.0,
         visibility=6e3, exposure=-0.4, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
         floats="BOAT", vertices=2_000_000,
     ),
     "HORIZON": Mood(
-        "To the Horizon", "9 m/s and a swell, from ripples before the camera to the horizon",
+        "To the Horizon", "9 m/s and a swell, from ripples at the camera to the horizon",
         waves=partial(_preset_sea, "horizon"), water="OCEANIC",
         sun=_degrees(40.0), sun_elevation=_degrees(24.0), clouds=0.5, overcast=0.0, visibility=150e3,
         exposure=0.0, eye=2.0, crest_distance=14.0, lens=35.0, tilt=_degrees(4.0), rings=0,

@@ -115,8 +115,8 @@ def end(item: bpy.types.Object) -> None:
             for name in MAP_INPUTS:
                 setattr(maps, name, None)
     _log.warning(
-        "%s: its modifier was applied or removed, so it is a mesh like any other from now on%s",
-        item.name, "; its camera surface is gone with the sea" if has_surface else "",
+        "%s: its modifier was applied or removed, so it is now an ordinary mesh%s",
+        item.name, "; its camera surface was removed" if has_surface else "",
     )  # fmt: skip
 
 

@@ -93,8 +93,8 @@ def refresh(
         of_sea = parts(parameters)
         if len(of_sea) > len(PATCH_INPUTS):
             raise OceanObjectError(
-                f"Masks part this sea's patches into {len(of_sea)}, and a camera surface shows "
-                f"{len(PATCH_INPUTS)}: take masks or patches away, or the camera surface"
+                f"Masks divide this sea's patches into {len(of_sea)}, and a camera surface shows "
+                f"at most {len(PATCH_INPUTS)}: remove masks, patches or the camera surface"
             )
         made = _refreshed(ocean, plan, points, of_sea, coarse)
         when = SeaTime(plan.time, parameters.loop_duration)

@@ -142,7 +142,9 @@ def sharp_under_blur(ocean: bpy.types.Object, scene: bpy.types.Scene) -> str:
         return ""
     if patch_objects.shot_maps(ocean):  # points, which have it, show the sea
         return ""
-    return "Motion blur is on, but the bake has no velocity: its water stays sharp. Bake it with Velocity on"
+    return (
+        "Motion blur is on, but the bake has no velocity, so its water stays sharp. Bake it with Velocity on"
+    )
 
 
 def forget_all() -> None:
@@ -159,10 +161,10 @@ def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     if settings_of(ocean).source == "LIVE":
         return (_live(ocean), *_readers(ocean))
     if surface is not None and patch_objects.shows_area(ocean):
-        reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile has not"
+        reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile does not have"
         return (Need(surface.name, reason, "mute their layers"),)
     if surface is not None and patch_objects.lack_points(ocean):
-        reason = f"shows the patches of {ocean.name}, of which its bake has no points"
+        reason = f"shows the patches of {ocean.name}, whose bake has no points"
         return (Need(surface.name, reason, f"bake {ocean.name} again"),)
     return ()
 
@@ -183,7 +185,7 @@ def _readers(ocean: bpy.types.Object) -> Iterator[Need]:
             yield Need(item.name, f"reads {ocean.name}, which is computed live", f"bake {ocean.name}")
             continue
         for other in float_carrier.carried_by(item):
-            remedy = f"bake {ocean.name}, or its floating to keys"
+            remedy = f"bake {ocean.name}, or bake the floating to keys"
             yield Need(other.name, f"floats on {ocean.name}, which is computed live", remedy)
 
 

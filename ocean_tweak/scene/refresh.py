@@ -381,7 +381,7 @@ def _refresh_mesh(item: bpy.types.Object, grid: Grid) -> None:
     if grid_mesh.is_current(item.data, grid):
         return
     if item.data.is_editmode:
-        raise OceanObjectError("The mesh is in Edit Mode: leave it to rebuild the grid")
+        raise OceanObjectError("The mesh is in Edit Mode: leave Edit Mode to rebuild the grid")
     if item.data.users > 1:
         item.data = item.data.copy()
     grid_mesh.fill(item.data, grid)

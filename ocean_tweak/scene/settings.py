@@ -24,21 +24,21 @@ if TYPE_CHECKING:  # it reads the settings' paths itself
 METHODS = {
     "DISPLACE": (
         "Displace Modifier",
-        "Displace modifiers move the mesh by images. Baked frames with gaps between them, before 0 or under "
-        "Time Stretching are nothing for them: those are moved by geometry nodes",
+        "Displace modifiers move the mesh with images. They cannot show baked frames with gaps, "
+        "frames below 0 or Time Stretching: use geometry nodes for those",
     ),
-    "NODES": ("Geometry Nodes", "A geometry nodes modifier moves the mesh. The fastest"),
+    "NODES": ("Geometry Nodes", "A geometry nodes modifier moves the mesh. The fastest method"),
 }
 SOURCES = {
-    "LIVE": ("Live", "Compute the sea on every frame change. Needs no files, but this extension"),
+    "LIVE": ("Live", "Compute the sea at every frame change. Needs no files, but this extension"),
     "SEQUENCE": ("Baked", "Read a baked EXR sequence. Also works where this extension is not installed"),
 }
 
 OUT_OF_RANGE = {
-    "HOLD": ("Hold", "Show the last frame before that was baked, else the first"),
+    "HOLD": ("Hold", "Show the last baked frame before it, or else the first"),
     "WARN": (
         "Warn",
-        "Show the last frame before that was baked, else the first, and a warning here and in the modifier",
+        "Show the last baked frame before it, or else the first, with a warning here and in the modifier",
     ),
 }
 

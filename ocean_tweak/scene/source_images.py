@@ -31,9 +31,10 @@ from .stored_paths import image_file, relative
 
 #: how an image's numbers become a wind: the number that is calm, and the factor
 WIND_VALUES = {
-    "PLAIN": ("Plain", "A number of 1 is the wind's speed, 0 is calm, as in decimal images", 0.0, 1.0),
+    "PLAIN": ("Plain", "1 is the wind speed, 0 is calm, as in float images", 0.0, 1.0),
     "CENTRED": (
-        "Around Grey", "Half grey is calm, 0 and 1 are the wind's speed either way, as in painted images",
+        "Around Grey", "Half grey is calm, 0 and 1 are the wind speed in either direction, as in painted "
+            "images",
         0.5, 2.0,
     ),
 }  # fmt: skip

@@ -27,8 +27,8 @@ def mend_all() -> None:
                 settings.property_unset(name)
         if mended:
             _log.warning(
-                "%s: values of the file that are not allowed were replaced, numbers by the nearest, choices "
-                "by the default: %s",
+                "%s: invalid values in the file were replaced, numbers by the nearest and "
+                "choices by the default: %s",
                 item.name, ", ".join(mended),
             )  # fmt: skip
 

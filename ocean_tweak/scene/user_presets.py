@@ -63,11 +63,12 @@ def save(preset: Preset, replace: bool = False) -> str:
     if len(text) > LARGEST:
         raise ParameterError(
             "title", preset.title,
-            f"its images make it larger than the {LARGEST // 1000} kB of a preset: export the parameters",
+            f"its images make it larger than the {LARGEST // 1000} kB of a preset: export the "
+            "parameters instead",
         )  # fmt: skip
     path = path_of(key)
     if path.exists() and not replace:
-        raise ParameterError("title", preset.title, "is the name of another preset already")
+        raise ParameterError("title", preset.title, "is already the name of another preset")
     write_text(path, text)
     _draw(preset, path.with_suffix(".png"))
     _presets_of.cache_clear()  # clocks of disks are coarse: a second change may not move them

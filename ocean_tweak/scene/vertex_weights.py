@@ -40,7 +40,7 @@ class WeightsReading:
         samples: int,
     ) -> None:
         if mesh is None or mesh.type != "MESH":
-            raise OceanObjectError("Choose a mesh that has the weights")
+            raise OceanObjectError("Choose a mesh with the weights")
         if group not in mesh.vertex_groups:
             there = ", ".join(item.name for item in mesh.vertex_groups) or "none"
             raise OceanObjectError(f"{mesh.name} has no vertex group {group!r}: it has {there}")
@@ -67,7 +67,7 @@ class WeightsReading:
         """The weights. Raises OceanObjectError for a mesh that is not over or under the domain."""
         if not np.isfinite(self._seen).any():
             raise OceanObjectError(
-                f"{self._mesh.name} is neither over nor under the patch of {self._ocean.name}: move it there"
+                f"{self._mesh.name} is neither above nor below the patch of {self._ocean.name}: move it there"
             )
         return Raster(np.nan_to_num(self._seen, nan=0.0), f"{self._mesh.name} {self._group}")
 

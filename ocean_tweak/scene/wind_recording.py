@@ -159,12 +159,12 @@ def _falloff(distance: Array, power: float, least: float | None, most: float | N
 
 def _check_size(frames: int, samples: int) -> None:
     if frames > MOST_KEYS:
-        raise OceanObjectError(f"{frames} frames are too many for a recording: take each so many-th, "
-                               f"{MOST_KEYS} in all")  # fmt: skip
+        raise OceanObjectError(f"{frames} frames are too many for a recording: record fewer, at most "
+        f"{MOST_KEYS} in all")  # fmt: skip
     if frames * samples**2 > MOST_VECTORS:
         raise OceanObjectError(
-            f"{frames} frames of {samples}² vectors are too many: {MOST_VECTORS} in all, so take fewer "
-            "samples or a larger step"
+            f"{frames} frames of {samples}² vectors are too many: at most {MOST_VECTORS} in all; "
+            "use fewer samples or a larger step"
         )
 
 
@@ -197,6 +197,6 @@ def from_text(text: str, name: str) -> tuple[WindKey, ...]:
         check_numbers(numbers_in(plain))
         keys = tuple(from_plain(WindKey, data) for data in plain)
     except (ValueError, TypeError) as error:
-        raise ParameterError("recording", text[:20], f"cannot be read, record anew: {error}") from None
+        raise ParameterError("recording", text[:20], f"cannot be read, record it again: {error}") from None
     MEMO.put(_RECORDINGS, name, _Recording(keys, raster_bytes(keys)))
     return keys

@@ -79,7 +79,9 @@ class BackgroundOperator(OfActiveOcean):
 
     def failed(self) -> set[str]:
         """Report why the process failed."""
-        return refuse(self, self._process.error or f"{self.doing} {self._process.name} failed without a word")
+        return refuse(
+            self, self._process.error or (f"{self.doing} {self._process.name} failed without a message")
+        )
 
     def _start(self, context: bpy.types.Context) -> bool:
         self._item, self._scene = shown_ocean(context).name, context.scene.name

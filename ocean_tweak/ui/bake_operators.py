@@ -25,8 +25,8 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
 
     bl_idname = "ocean.bake"
     bl_description = (
-        "Write the scene's frames as EXR images into the cache; frames that are there already stay. "
-        "The window stays free, Esc stops after a whole frame"
+        "Write the scene's frames as EXR images into the cache; existing frames are kept. You "
+        "can go on working; Esc stops after a complete frame"
     )
     bl_label = "Bake"
     bl_options = {"REGISTER"}
@@ -37,7 +37,7 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
     use_result: BoolProperty(
         name="Use the Result",
         default=True,
-        description="Let the baked frames move the ocean when all are there",
+        description="Show the baked frames when all are there",
     )
 
     def begin(self, context: bpy.types.Context) -> BakeProcess:
@@ -60,7 +60,7 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
             if bake.is_stopped:
                 self.report(
                     {"INFO"},
-                    translated("Stopped after {done} frames: bake again to go on").format(done=bake.done),
+                    translated("Stopped after {done} frames: bake again to continue").format(done=bake.done),
                 )
                 return {"CANCELLED"}
             settings.bake_done = min(settings.bake_done, settings.bake_total - 1)
@@ -86,7 +86,7 @@ class OCEAN_OT_stop_bake(StopsProcess, bpy.types.Operator):
     """Stop baking the active ocean."""
 
     bl_idname = "ocean.stop_bake"
-    bl_description = "Stop after the frames that are under way; a later bake goes on from there"
+    bl_description = "Stop after the current frames; a later bake continues from there"
     bl_label = "Stop"
     bl_options = {"INTERNAL"}
     processes = bake_process
@@ -97,7 +97,7 @@ class OCEAN_OT_look_at_bakes(OfActiveOcean, bpy.types.Operator):
     """Look at the disk for the active ocean's bakes, and try out what the next one takes."""
 
     bl_idname = "ocean.look_at_bakes"
-    bl_description = "List the bakes of this ocean with their sizes, and try out what the next one takes"
+    bl_description = "List the bakes of this ocean with their sizes, and estimate the next one"
     bl_label = "Show Sizes"
     bl_options = {"INTERNAL"}
 
@@ -114,7 +114,7 @@ class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
     """Delete old bakes of the active ocean from the disk."""
 
     bl_idname = "ocean.delete_bake"
-    bl_description = "Delete the baked frames of this version from the disk; undo does not bring them back"
+    bl_description = "Delete the baked frames of this version from the disk; this cannot be undone"
     bl_label = "Delete Bake"
     bl_options = {"INTERNAL"}
 
@@ -153,7 +153,9 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
     """Copy the bake that the active ocean reads beside the file."""
 
     bl_idname = "ocean.take_cache_along"
-    bl_description = "Copy the baked frames that the ocean reads into its cache folder, and read them there"
+    bl_description = (
+        "Copy the baked frames that the ocean reads into its cache folder, and read them from there"
+    )
     bl_label = "Copy Bake Here"
     bl_options = {"REGISTER", "UNDO"}
 

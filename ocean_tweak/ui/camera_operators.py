@@ -17,15 +17,15 @@ class OCEAN_OT_add_camera_surface(OfActiveOcean, bpy.types.Operator):
 
     bl_idname = "ocean.add_camera_surface"
     bl_description = (
-        "Show the ocean on a surface that is dense at the camera and reaches the horizon. Its own mesh is "
-        "left out of renders"
+        "Show the ocean on a surface that is dense near the camera and reaches the horizon. Its "
+        "own mesh is left out of renders"
     )
     bl_label = "Camera Surface"
     bl_options = {"REGISTER", "UNDO"}
 
     budget: IntProperty(
         name="Vertices",
-        description="The most vertices that the surface may have (1000 to 20000000)",
+        description="Maximum number of vertices of the surface (1000 to 20000000)",
         default=200_000, min=1000, max=20_000_000, soft_max=2_000_000,
     )  # fmt: skip
 
@@ -55,7 +55,7 @@ class OCEAN_OT_remove_camera_surface(OfActiveOcean, bpy.types.Operator):
     """Show the ocean by its own mesh again."""
 
     bl_idname = "ocean.remove_camera_surface"
-    bl_description = "Remove the surface around the camera, and show the ocean by its own mesh again"
+    bl_description = "Remove the surface around the camera, and show the ocean's own mesh again"
     bl_label = "Remove Camera Surface"
     bl_options = {"REGISTER", "UNDO"}
 

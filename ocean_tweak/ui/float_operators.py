@@ -39,9 +39,9 @@ class _OnOcean:
         elif not has_ocean(context.scene):
             cls.poll_message_set("There is no ocean in this scene: add one first")
         elif not context.selected_objects:
-            cls.poll_message_set("Select the objects that shall float")
+            cls.poll_message_set("Select the objects to float")
         elif not floatable(context):
-            cls.poll_message_set("Only oceans are selected: select the objects that shall float on them")
+            cls.poll_message_set("Only oceans are selected: select the objects to float on them")
         else:
             return True
         return False
@@ -58,15 +58,15 @@ class _Rides(_OnOcean):
         name="Float As",
         items=[(key, *texts) for key, texts in floating.RIDES.items()],
         default="OBJECT",
-        description="What waterline, draft and tilt are taken from",
+        description="What sets waterline, draft and tilt",
     )
     waterline: FloatProperty(
         name="Waterline",
         min=0.0,
         soft_max=1000.0,
         unit="LENGTH",
-        description="Across what floats: waves shorter than this do not move it. "
-        "0 follows the surface at the object's origin",
+        description="Size of what floats: shorter waves do not move it. 0 follows the surface at the "
+        "object's origin",
     )
     draft: FloatProperty(
         name="Draft",
@@ -88,7 +88,7 @@ class _Rides(_OnOcean):
         min=0.0,
         max=1.0,
         subtype="FACTOR",
-        description="How much it goes along with the water's to and fro: 0 stays above its place",
+        description="How much it moves back and forth with the water: 0 stays above its place",
     )
     keep_height: BoolProperty(
         name="Keep Height",
@@ -98,8 +98,8 @@ class _Rides(_OnOcean):
     use_contact: BoolProperty(
         name="Contact with Water",
         default=True,
-        description="Put a collar of foam and ripples on the water around it, and let its meshes know where "
-        "they are wet",
+        description="Put a collar of foam and ripples on the water around it, and mark where its meshes "
+        "are wet",
     )
     shown = ("ride", "waterline", "draft", "tilt", "drift", "keep_height", "use_contact")
 
@@ -128,8 +128,8 @@ class OBJECT_OT_ocean_float(_Rides, bpy.types.Operator):
 
     bl_idname = "object.ocean_tweak_float"
     bl_description = (
-        "Let the selected objects ride the ocean's surface. Move, turn, parent and animate them as before: "
-        "they float where you put them"
+        "Let the selected objects ride the waves. Move, rotate, parent and animate them as "
+        "before: they float where you put them"
     )
     bl_label = "Float on Ocean"
     bl_options = {"REGISTER", "UNDO"}
@@ -162,18 +162,16 @@ class OBJECT_OT_ocean_float_bake(_Rides, SteppedOperator, bpy.types.Operator):
 
     bl_idname = "object.ocean_tweak_float_bake"
     bl_description = (
-        "Bake the floating of the selected objects to keyframes of location and rotation, on the sea of the "
-        "render. Objects that float already keep their ocean and settings. Esc gives up"
+        "Bake the floating of the selected objects to keyframes of location and rotation, on the "
+        "sea of the render. Objects that already float keep their ocean and settings. Esc cancels"
     )
     bl_label = "Bake Float to Keyframes"
     bl_options = {"REGISTER", "UNDO"}
 
     frame_start: IntProperty(
-        name="First Frame", description="First frame that gets keys; the scene's as long as it is not set"
+        name="First Frame", description="First frame to key; by default that of the scene"
     )
-    frame_end: IntProperty(
-        name="Last Frame", description="Last frame that gets keys; the scene's as long as it is not set"
-    )
+    frame_end: IntProperty(name="Last Frame", description="Last frame to key; by default that of the scene")
     shown = ("frame_start", "frame_end", *_Rides.shown)
 
     doing = "Baking the float to keyframes"
@@ -203,8 +201,8 @@ class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
 
     bl_idname = "object.ocean_tweak_float_remove"
     bl_description = (
-        "Let the selected objects float no more, live or baked: they stand where they floated, without the "
-        "waves, and with their own animation"
+        "Stop floating the selected objects, live or baked: they stay where they were placed, "
+        "without waves and with their own animation"
     )
     bl_label = "Remove Float"
     bl_options = {"REGISTER", "UNDO"}
@@ -231,15 +229,14 @@ class OBJECT_OT_ocean_contact(_OnOcean, bpy.types.Operator):
 
     bl_idname = "object.ocean_tweak_contact"
     bl_description = (
-        "Put a collar of foam and ripples on the water around the selected objects, floating or not, and let "
-        "their meshes know where they are wet. Done again, it fits the collars to what was moved or changed"
+        "Put a collar of foam and ripples on the water around the selected objects, floating or "
+        "not, and mark where their meshes are wet. Use it again to refit the collars after a "
+        "change"
     )
     bl_label = "Contact with Water"
     bl_options = {"REGISTER", "UNDO"}
 
-    use_contact: BoolProperty(
-        name="Touch", default=True, description="Switched off, the water leaves them alone"
-    )
+    use_contact: BoolProperty(name="Touch", default=True, description="Off removes collar and wet band")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Touch or part."""

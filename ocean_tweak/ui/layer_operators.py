@@ -67,7 +67,7 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
         name="Wind",
         items=[(key, *_WINDS[key]) for key in WIND_FIELDS],
         options={"SKIP_SAVE"},
-        description="The wind field to begin with",
+        description="The wind field to start with",
     )
 
     @classmethod
@@ -96,7 +96,7 @@ class OCEAN_OT_layer_duplicate(_OfLayers, bpy.types.Operator):
     """Duplicate the active layer."""
 
     bl_idname = "ocean.layer_duplicate"
-    bl_description = "Duplicate the active layer; the copy has waves of its own"
+    bl_description = "Duplicate the active layer; the copy has its own random waves"
     bl_label = "Duplicate Layer"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -124,7 +124,7 @@ class OCEAN_OT_layer_remove(_OfLayers, bpy.types.Operator):
         settings = settings_of(shown_ocean(context))
         kinds = [layer.kind for layer in settings.layers]
         if kinds.count("WAVES") < 2 and kinds[nearest(settings.active_layer, kinds)] == "WAVES":
-            cls.poll_message_set("A sea has at least one layer of waves: mute it for flat water")
+            cls.poll_message_set("A sea has at least one wave layer: mute it for flat water")
             return False
         return True
 
@@ -168,7 +168,7 @@ class OCEAN_OT_layer_solo(_OfLayers, bpy.types.Operator):
     """Hear the active layer alone."""
 
     bl_idname = "ocean.layer_solo"
-    bl_description = "Mute all layers but the active one; again, to have all of them back"
+    bl_description = "Mute all layers but the active one; press again to restore them"
     bl_label = "Solo Layer"
     bl_options = {"REGISTER", "UNDO"}
 

@@ -67,11 +67,11 @@ _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
         "image_values": EnumProperty(
             name="Numbers", default="CENTRED", **_SHOWN,
             items=[(key, *texts[:2]) for key, texts in source_images.WIND_VALUES.items()],
-            description="Which number is calm",
+            description="Pixel value that means no wind",
         ),
         "image_speed": FloatProperty(
             name="Speed (m/s)", default=12.0, min=0.01, max=100.0, precision=2, step=10, **_SHOWN,
-            description="Wind in m/s where a number of the image is at its end",
+            description="Wind in m/s at the largest pixel value",
         ),
         "recording": StringProperty(**_HIDDEN),
         "recording_hash": StringProperty(**_HIDDEN),
@@ -81,14 +81,14 @@ _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
         ),
         "show_vectors": BoolProperty(
             name="Show Wind", options=set(), **_OVERRIDE,
-            description="Draw the wind of this frame as arrows over the patch, while the ocean is active",
+            description="Draw the wind at this frame as arrows over the patch while the ocean is active",
         ),
     },
     "IMAGE": {
         "image": PointerProperty(
             name="Image", type=bpy.types.Image, **_SHOWN,
-            description="Image whose trace the waves bear; without one, white noise. "
-            "It covers one patch, of a colour image the luminance",
+            description="Image that becomes waves; without one, white noise. It covers one patch; colour "
+            "images count by their luminance",
         ),
         "image_channels": channels_property(),
     },

@@ -21,15 +21,15 @@ class OCEAN_OT_read_weights(OfActiveOcean, SteppedOperator, bpy.types.Operator):
 
     bl_idname = "ocean.read_weights"
     bl_description = (
-        "Read the weights of the mask's mesh as they are seen from above the domain into an image. "
-        "Read again when they were painted or moved"
+        "Read the weights of the mask's mesh, seen from above the domain, into an image. Read "
+        "them again after painting or moving"
     )
     bl_label = "Read Weights"
     bl_options = {"REGISTER", "UNDO"}
 
     patch: IntProperty(
         name="Patch", default=ACTIVE_LAYER, min=WHOLE_SEA, options={"SKIP_SAVE"},
-        description="Number of the patch whose mask it is, from 0; -1: the active layer's, -2: the sea's",
+        description="Number of the patch with the mask, from 0; -1: the active layer, -2: the sea",
     )  # fmt: skip
     samples: IntProperty(
         name="Samples", default=128, min=2, max=1024,

@@ -24,16 +24,16 @@ _SHOWN = {"options": set(), "update": changed, **_OVERRIDE}
 
 SOURCES = {
     "NONE": ("None", "Waves everywhere"),
-    "IMAGE": ("Image", "Waves as high as the image is bright; it covers the domain"),
-    "VERTEX_GROUP": ("Vertex Group", "Waves as high as the weights of a mesh over or under the water"),
-    "DISTANCE": ("Distance", "No waves near an object, all of them far from it"),
+    "IMAGE": ("Image", "Wave height follows the brightness of an image that covers the domain"),
+    "VERTEX_GROUP": ("Vertex Group", "Wave height follows the weights of a mesh above or below the water"),
+    "DISTANCE": ("Distance", "No waves near an object, full waves far from it"),
     "NOISE": ("Noise", "Gusts: waves in patches that move along and change"),
 }
 MEASURED_FROM = {
-    "ORIGIN": ("Origin", "The distance to the object's origin, or to a place"),
+    "ORIGIN": ("Origin", "Distance from the object's origin, or from a place"),
     "SHAPE": (
         "Shape",
-        "The distance to the nearest edge of the mesh, or to the curve: of a breakwater, a coast",
+        "Distance from the nearest edge of the mesh, or from the curve: a breakwater, a coast",
     ),
 }
 #: those that end as an image
@@ -99,22 +99,22 @@ class OCEAN_PG_mask(bpy.types.PropertyGroup):
         "image_channels": channels_property(),
         "object": PointerProperty(
             name="Object", type=bpy.types.Object, options=set(), update=_placed, **_OVERRIDE,
-            description="Waves are told by the distance to it. It is followed, moved by hand or by itself",
+            description="Falloff is measured from this object, and follows it by hand and by animation",
         ),
         "measured_from": EnumProperty(
             name="Measured From", default="ORIGIN", options=set(), update=_placed, **_OVERRIDE,
             items=[(key, *texts) for key, texts in MEASURED_FROM.items()],
-            description="What of the object the distance is measured from, seen from above",
+            description="Which part of the object the distance is measured from, seen from above",
         ),
         # of the object's shape, in the ocean's axes and Blender units
         "lines": StringProperty(options={"HIDDEN"}, **_OVERRIDE),
         "mesh": PointerProperty(
             name="Mesh", type=bpy.types.Object, options=set(), poll=_is_mesh, **_OVERRIDE,
-            description="A mesh that lies over or under the water, with the weights",
+            description="A mesh above or below the water, with the weights",
         ),
         "vertex_group": StringProperty(
             name="Vertex Group", options=set(), **_OVERRIDE,
-            description="Weight 1 lets all waves through; beside the mesh there are none",
+            description="Weight 1 lets all waves through; outside the mesh there are none",
         ),
     }  # fmt: skip
 
@@ -226,7 +226,9 @@ def _lines(group: bpy.types.PropertyGroup, text: str, metres: Fraction) -> Raste
     item = group.object
     if item is not None and floating.floats(item.original):
         raise ParameterError(
-            "object", item.name, "it floats on the water, which would follow itself: choose one that does not"
+            "object",
+            item.name,
+            "it floats on this water, which would follow itself: choose one that does not float",
         )
     if group.measured_from == "ORIGIN":
         return None
@@ -234,7 +236,7 @@ def _lines(group: bpy.types.PropertyGroup, text: str, metres: Fraction) -> Raste
     if not len(lines):
         name = "" if item is None else item.name
         raise ParameterError(
-            "object", name, "it has no edges to measure from: choose a mesh or a curve with some"
+            "object", name, "it has no edges to measure from: choose a mesh with edges, or a curve"
         )
     return Raster(lines[np.newaxis] * float(metres), "lines")
 

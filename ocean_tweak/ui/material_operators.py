@@ -27,7 +27,7 @@ class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
         name="Water",
         items=[(key, label, description) for key, (label, description, _) in water_material.WATERS.items()],
         default="OCEANIC",
-        description="What is dissolved and afloat in the water",
+        description="What is dissolved and suspended in the water",
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -52,8 +52,8 @@ class OCEAN_OT_install_assets(bpy.types.Operator):
 
     bl_idname = "ocean.install_assets"
     bl_description = (
-        "Write the node groups and water materials into a library in your own folder, and add it to the "
-        "asset browser. Disabling the extension takes it out again"
+        "Write the node groups and water materials into a library in your user folder, and add "
+        "it to the asset browser. Disabling the extension removes it"
     )
     bl_label = "Install Ocean Assets"
     bl_options = {"REGISTER"}
@@ -89,8 +89,8 @@ def register() -> None:
     bpy.types.Material.ocean_tweak_water_colour = bpy.props.FloatVectorProperty(
         name="Water Color", subtype="COLOR", size=3, min=0.0, max=1.0, precision=3, options=set(),
         get=_colour, set=_set_colour,
-        description="Colour of deep water; white is the brightest that water can be. Absorption and "
-        "Backscatter of the material follow, and can have keys",
+        description="Colour of deep water; white is the brightest that water can be. The material's "
+        "Absorption and Backscatter follow, and can be keyed",
     )  # fmt: skip
 
 

@@ -23,8 +23,8 @@ class NODE_OT_ocean_tweak_add_group(bpy.types.Operator):
     group: EnumProperty(
         name="Group",
         items=(
-            ("SAMPLE", SAMPLE.name, "Height, normal, foam and motion of the sea above any position"),
-            ("FLOAT", FLOAT.name, "Let instances, or a geometry as a whole, ride the sea"),
+            ("SAMPLE", SAMPLE.name, "Height, normal, foam and motion of the sea at any position"),
+            ("FLOAT", FLOAT.name, "Let instances, or a geometry as a whole, ride the waves"),
         ),
     )
 

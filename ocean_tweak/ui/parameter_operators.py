@@ -38,7 +38,7 @@ class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper
 
     bl_idname = "ocean.import_parameters"
     bl_description = (
-        "Give the active ocean the parameters of a JSON file, and keys where these change during the shot"
+        "Give the active ocean the parameters of a JSON file, with keys where they change during the shot"
     )
     bl_label = "Import Parameters"
     bl_options = {"REGISTER", "UNDO"}
@@ -47,7 +47,7 @@ class OCEAN_OT_import_parameters(OfActiveOcean, bpy.types.Operator, ImportHelper
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
     use_frame_rate: BoolProperty(
         name="Set Frame Rate",
-        description="Give the scene the file's frame rate, so that every frame shows the file's waves",
+        description="Give the scene the frame rate of the file, so that every frame shows its waves",
         default=True,
     )
 
@@ -70,7 +70,8 @@ class OCEAN_OT_export_parameters(OfActiveOcean, bpy.types.Operator, ExportHelper
 
     bl_idname = "ocean.export_parameters"
     bl_description = (
-        "Write the parameters of the active ocean to a JSON file, a sample a frame where they are animated"
+        "Write the parameters of the active ocean to a JSON file, with a sample per frame where "
+        "they are animated"
     )
     bl_label = "Export Parameters"
     bl_options = {"REGISTER"}

@@ -159,7 +159,7 @@ def _exact_values(group: bpy.types.PropertyGroup) -> dict[str, Any]:
         values = None
     if not isinstance(values, dict):
         raise ParameterError(
-            "exact", group.exact, "is damaged in this file: take a preset or other parameters"
+            "exact", group.exact, "is damaged in this file: choose a preset or other parameters"
         )
     return values
 
@@ -271,7 +271,7 @@ def switch_of(
     return {
         f"{SWITCH}{name}": bpy.props.BoolProperty(
             name=wording.label(name), get=is_on, set=switch, options=set(), override={"LIBRARY_OVERRIDABLE"},
-            description=f"{description}. Switched off, it {off.means}",
+            description=f"{description}. Off: {off.means}",
         ),
         before: kept(options={"HIDDEN"}, override={"LIBRARY_OVERRIDABLE"}),
     }  # fmt: skip

@@ -32,7 +32,8 @@ class _OfPatches(OfOwnList):
         tell_what_stays(self, settings)
         if before.trough_damping != after.trough_damping:
             self.report(
-                {"INFO"}, translated("Trough Damping is 0 now: patches do not know each other's troughs")
+                {"INFO"},
+                translated("Trough Damping is now 0: a patch cannot be damped by the troughs of another"),
             )
         return {"FINISHED"}
 
@@ -46,8 +47,8 @@ class OCEAN_OT_plan_patches(_OfPatches, bpy.types.Operator):
 
     bl_idname = "ocean.plan_patches"
     bl_description = (
-        "Make as many patches as it takes, up to four, for the finest detail, the area without repetition "
-        "and the memory above. The patches that are there go"
+        "Replace the patches with as many as needed, up to four, for the finest detail, the area "
+        "without repetition and the memory above"
     )
     bl_label = "Plan Patches"
     bl_options = {"REGISTER", "UNDO"}
@@ -63,8 +64,8 @@ class OCEAN_OT_patch_add(_OfPatches, bpy.types.Operator):
 
     bl_idname = "ocean.patch_add"
     bl_description = (
-        "Add a patch behind the last: it takes the shorter half of that one's octaves or, where these are "
-        "too few or have no end, goes on with shorter waves"
+        "Add a patch after the last: it takes the shorter half of that one's octaves or, where "
+        "these are too few or have no end, continues with shorter waves"
     )
     bl_label = "Add Patch"
     bl_options = {"REGISTER", "UNDO"}
@@ -105,7 +106,9 @@ class OCEAN_OT_patch_remove(_OfPresentPatches, bpy.types.Operator):
     """Remove the active patch."""
 
     bl_idname = "ocean.patch_remove"
-    bl_description = "Remove the active patch; the one before it, or behind the first, takes over its waves"
+    bl_description = (
+        "Remove the active patch; the one before it takes over its waves (the second those of the first)"
+    )
     bl_label = "Remove Patch"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -120,7 +123,7 @@ class OCEAN_OT_one_patch(_OfPresentPatches, bpy.types.Operator):
 
     bl_idname = "ocean.one_patch"
     bl_description = (
-        "Take all patches away: the sea is one with all waves, as large and with as many samples as it is now"
+        "Replace all patches with one that holds all waves, with the same size and samples as now"
     )
     bl_label = "One Patch"
     bl_options = {"REGISTER", "UNDO"}

@@ -139,19 +139,19 @@ PLAN = {
     "plan_finest": FloatProperty(
         name="Finest Detail", default=0.1, min=0.0, soft_min=0.01, precision=3, step=1, unit="LENGTH",
         options=set(), **_OVERRIDE,
-        description=f"Length of the shortest waves that Plan Patches plans for {_range('finest')}",
+        description=f"Length of the shortest waves to plan for {_range('finest')}",
     ),
     "plan_area": FloatProperty(
         name="No Repeats In", default=1000.0, min=0.0, soft_min=10.0, precision=1, step=1000,
         unit="LENGTH", options=set(), **_OVERRIDE,
-        description=f"Side of a square in which nothing shall be seen to repeat {_range('area')}",
+        description=f"Side of a square in which no repetition shows {_range('area')}",
     ),
     "plan_memory": IntProperty(
         name="Memory (MB)", default=2000, min=int(WISHES["memory"][0]) // _MEGABYTE,
         max=int(WISHES["memory"][1]) // _MEGABYTE, soft_min=100, soft_max=64_000, step=100,
         options=set(), **_OVERRIDE,
-        description="Megabytes that all patches together may take: with more of them, patches are larger "
-        "and repeat less",
+        description="Memory in megabytes for all patches together: with more, patches are larger and "
+        "repeat less",
     ),
 }  # fmt: skip
 

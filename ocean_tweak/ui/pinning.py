@@ -13,13 +13,13 @@ class OCEAN_OT_pin(bpy.types.Operator):
 
     bl_idname = "ocean.pin"
     bl_description = (
-        "Show this ocean in the sidebar, whatever is selected. Without a pin it shows the active ocean, else "
-        "the one that the active object floats on, else the first by name"
+        "Show this ocean in the sidebar, whatever is selected. Without a pin the sidebar shows "
+        "the active ocean, or else the one that the active object floats on, or the first by name"
     )
     bl_label = "Pin Ocean"
     bl_options = {"REGISTER", "UNDO"}
 
-    ocean: StringProperty(name="Ocean", description="Name of the ocean; empty takes the pin out")
+    ocean: StringProperty(name="Ocean", description="Name of the ocean; empty removes the pin")
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -30,7 +30,7 @@ class OCEAN_OT_pin(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Pin it."""
         if self.ocean and self.ocean not in (item.name for item in known_oceans(context.scene)):
-            self.report({"ERROR"}, f"{self.ocean!r} is no ocean of this scene")
+            self.report({"ERROR"}, f"{self.ocean!r} is not an ocean of this scene")
             return {"CANCELLED"}
         setattr(context.scene, PINNED, self.ocean)
         return {"FINISHED"}

@@ -16,9 +16,9 @@ from ..scene.preferences import preferences
 
 _LEVELS = (
     ("ERROR", "Errors", "What failed"),
-    ("WARNING", "Warnings", "Also what may not be as it was meant"),
+    ("WARNING", "Warnings", "Also possible problems"),
     ("INFO", "Information", "Also what is done"),
-    ("DEBUG", "Details", "Also what is looked at, for a report of a fault"),
+    ("DEBUG", "Details", "Also what is read, for bug reports"),
 )
 
 
@@ -37,27 +37,26 @@ class OCEAN_AP_preferences(bpy.types.AddonPreferences):
 
     log_level: EnumProperty(
         name="Console",
-        description="What the extension writes to the console, a line each that begins with ocean_tweak",
+        description="What the extension writes to the console, in lines that begin with ocean_tweak",
         items=_LEVELS,
         default="WARNING",
         update=lambda _self, _context: apply(),
     )
     write_log: BoolProperty(
         name="Log of Bakes",
-        description="Write what happens in a bake, with times, into a file beside its folder, vNNN-hash8.log",
+        description="Write a log of each bake, with times, beside its folder: vNNN-hash8.log",
     )
 
     memory_is_automatic: BoolProperty(
         name="Automatic Memory",
-        description="Keep seas and their latest surfaces in up to a quarter of the machine's memory, so that "
-        "they need not be made again",
+        description="Cache seas and their latest surfaces in up to a quarter of the machine's memory",
         default=True,
         update=lambda _self, _context: apply(),
     )
     memory: IntProperty(
         name="Memory (MB)",
-        description="Up to so much is kept of all seas together, of what was used last. A sea that is shown "
-        "is kept even where it takes more",
+        description="Memory limit of the cache for all seas; what was used least recently goes first. A "
+        "sea that is shown is kept even if it needs more",
         default=4000, min=10, max=10_000_000, soft_min=500, soft_max=64_000, step=100,
         update=lambda _self, _context: apply(),
     )  # fmt: skip

@@ -64,7 +64,7 @@ class OCEAN_OT_save_preset(OfActiveOcean, bpy.types.Operator):
     """Keep the active ocean's sea as a preset."""
 
     bl_idname = "ocean.save_preset"
-    bl_description = "Keep the active ocean's sea as a preset of your own, with a picture of it"
+    bl_description = "Save the active ocean's sea as your own preset, with a picture of it"
     bl_label = "Save Preset"
     bl_options = {"REGISTER", "UNDO"}
     bl_property = "title"
@@ -97,14 +97,14 @@ class _OfOwnPreset:
     def _missing(self) -> set[str] | None:
         if self.key in user_presets.own_presets():
             return None
-        return refuse(self, f"There is no preset of your own with the key {self.key!r}")
+        return refuse(self, f"You have no preset with the key {self.key!r}")
 
 
 class OCEAN_OT_rename_preset(_OfOwnPreset, bpy.types.Operator):
     """Give a preset of your own another name."""
 
     bl_idname = "ocean.rename_preset"
-    bl_description = "Give a preset of your own another name"
+    bl_description = "Rename one of your own presets"
     bl_label = "Rename Preset"
     bl_options = {"REGISTER"}
     bl_property = "title"
@@ -134,7 +134,7 @@ class OCEAN_OT_delete_preset(_OfOwnPreset, bpy.types.Operator):
     """Delete a preset of your own."""
 
     bl_idname = "ocean.delete_preset"
-    bl_description = "Delete a preset of your own; this cannot be undone"
+    bl_description = "Delete one of your own presets; this cannot be undone"
     bl_label = "Delete Preset"
     bl_options = {"REGISTER"}
 
@@ -160,7 +160,7 @@ class OCEAN_OT_import_preset(bpy.types.Operator, ImportHelper):
     """Take presets of others into your own."""
 
     bl_idname = "ocean.import_preset"
-    bl_description = "Take a preset's JSON file into your own presets; nothing in it is executed"
+    bl_description = "Add a preset from a JSON file to your own; nothing in it is executed"
     bl_label = "Import Preset"
     bl_options = {"REGISTER"}
 

@@ -107,7 +107,7 @@ def draw_spectrum() -> None:
     PREVIEWS.draw_spectrum()
 
 
-_NONE = ("NONE", "Custom", "The settings are those of no preset")
+_NONE = ("NONE", "Custom", "The settings match no preset")
 
 
 @cache

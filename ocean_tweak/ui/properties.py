@@ -97,9 +97,10 @@ class OCEAN_PG_maps(bpy.types.PropertyGroup):
 _SWITCHES = {
     "use_foam": BoolProperty(
         name="Foam", default=True, **_SHOWN,
-        description="Write the attributes foam, how much of the water is white, breaking, how much crests "
-        "break now, foam_age in seconds, and cusp, how far the water is compressed. A frame alone looks back "
-        "over six half-lives, playback goes on from the last",
+        description="Write the attributes foam (how much of the water is white), breaking (how much "
+        "crests are breaking now), foam_age in seconds, and cusp (how far the water is "
+        "compressed). A single frame looks back over six half-lives; playback continues from the "
+        "last frame",
     ),
     "use_spray": BoolProperty(
         name="Spray", default=False, **_SHOWN,
@@ -108,13 +109,13 @@ _SWITCHES = {
     ),
     "use_normals": BoolProperty(
         name="Normals", default=True, **_SHOWN,
-        description="Shade with the normals of the waves instead of those of the mesh: finer highlights for "
-        "about the cost of the displacement",
+        description="Shade with the normals of the waves instead of those of the mesh, for finer "
+        "highlights",
     ),
     "use_velocity": BoolProperty(
         name="Velocity", default=True, **_SHOWN,
-        description="Write the attribute velocity, from which Cycles makes motion blur, and by which baked "
-        "water moves between frames in any engine. Costs as much as the displacement",
+        description="Write the attribute velocity, which Cycles uses for motion blur and which moves "
+        "baked water between frames in any engine",
     ),
 }  # fmt: skip
 
@@ -122,7 +123,7 @@ _SWITCHES = {
 def _repeats(axis: str) -> object:
     return IntProperty(
         name=f"Repeats {axis.upper()}", default=1, min=1, max=64, soft_max=8, **_SHOWN,
-        description=f"Patches side by side along {axis}, without a seam. They are all alike",
+        description=f"Copies of the patch side by side along {axis}, without a seam. All are the same",
     )  # fmt: skip
 
 
@@ -150,8 +151,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "cache_folder": StringProperty(
             name="Cache", default=DEFAULT_CACHE, subtype="DIR_PATH",
             options={"PATH_SUPPORTS_BLEND_RELATIVE"}, update=path_changed("cache_folder"), **_OVERRIDE,
-            description="Folder of baked frames; each bake gets one of its own in it. // is beside the file, "
-            "~ the user's home",
+            description="Folder for baked frames; each bake gets its own folder in it. // is the folder "
+            "of the file, ~ the home folder",
         ),
         "preset": StringProperty(**_HIDDEN),
         "active_layer": IntProperty(name="Active Layer", min=0, options={"HIDDEN"}, **_OVERRIDE),
@@ -159,30 +160,30 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         **patch_properties.PLAN,
         "use_loop": BoolProperty(
             name="Loop", **_SHOWN,
-            description="Let the sea repeat itself exactly after a number of frames. Changes the speed of "
-            "the waves a little, the more the shorter the loop",
+            description="Let the sea repeat exactly after a number of frames. This changes the speed of "
+            "the waves slightly, and more for short loops",
         ),
         "loop_frames": IntProperty(
             name="Loop Frames", default=240, min=1, soft_min=24, max=1_000_000, **_SHOWN,
-            description="Frames after which the sea repeats itself",
+            description="Frames after which the sea repeats",
         ),
         "bake_done": IntProperty(**_HIDDEN),
         "bake_total": IntProperty(**_HIDDEN),
         "use_ocean_time": BoolProperty(
             name="Keyed Time", **_SHOWN,
-            description="Take the waves' time from the number beside, which can have keys, and not from the "
+            description="Take the waves' time from Ocean Time, which can be keyed, instead of the "
             "scene's frames: for speed ramps, freezes, waves that run backwards",
         ),
         "ocean_time": FloatProperty(
             name="Ocean Time", unit="TIME_ABSOLUTE", precision=3, step=10, update=changed,
-            description="The waves' time in seconds. Give it keys: without any the sea stands still",
+            description="The waves' time in seconds. Key it: without keys the sea stands still",
             options={"ANIMATABLE"}, **_OVERRIDE,
         ),
         "time_scale": FloatProperty(
             name="Time Scale", default=1.0, min=-100.0, max=100.0, soft_min=0.0, soft_max=2.0, precision=2,
             step=1, **_SHOWN,
-            description="How fast the waves run: 0.5 is half speed, 0 a still sea. They pass Start Frame at "
-            "the same moment of their motion whatever the scale",
+            description="Speed of the waves: 0.5 is half speed, 0 a still sea. At Start Frame the sea is "
+            "the same whatever the scale",
         ),
         "method": EnumProperty(
             name="Method", items=_choices(METHODS), default="NODES", **_SHOWN,
@@ -194,8 +195,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         ),
         "viewport_resolution": IntProperty(
             name="Samples in the Viewport", default=VIEWPORT_RESOLUTION, min=16, max=8192, **_SHOWN,
-            description="Samples along each side in the viewport: the same sea without its shortest waves. "
-            "Never more than in the render",
+            description="Samples along each side in the viewport: the same sea without its shortest "
+            "waves. Never more than the render has",
         ),
         "mesh_resolution": IntProperty(
             name="Mesh Quads", min=0, max=8192, **_SHOWN, description=_MESH_QUADS

@@ -12,7 +12,7 @@ from .adding import InObjectMode, make_active
 
 _ENGINES = [
     ("CYCLES", "Cycles", "Path tracing, with motion blur from the water's velocity"),
-    ("EEVEE", "EEVEE", "Quick; its motion blur takes the steps between frames"),
+    ("EEVEE", "EEVEE", "Fast; its motion blur uses the steps between frames"),
 ]
 
 
@@ -21,8 +21,8 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
 
     bl_idname = "ocean.add_scene"
     bl_description = (
-        "Add a sea with foam, water material, sky, sun, camera and something afloat. The cube, the light and "
-        "the camera of Blender's own start-up file go, unless something of the scene was changed"
+        "Add a sea with foam, water material, sky, sun, camera and something afloat. The cube, "
+        "light and camera of Blender's start-up file are removed, unless the scene was changed"
     )
     bl_label = "Ocean Scene"
     bl_options = {"REGISTER", "UNDO"}
@@ -31,29 +31,31 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         name="Mood",
         items=[(key, mood.label, mood.description) for key, mood in MOODS.items()],
         default="FRESH_BREEZE",
-        description="The sea, and the sky and water that go with it",
+        description="The sea, with its sky and water",
     )
     engine: EnumProperty(
-        name="Render Engine", items=_ENGINES, default="CYCLES", description="What renders the scene"
+        name="Render Engine", items=_ENGINES, default="CYCLES", description="Render engine of the scene"
     )
     use_new_scene: BoolProperty(
         name="New Scene",
-        description="Make everything in a scene of its own, and leave this one alone",
+        description="Make everything in a new scene, and leave this one unchanged",
         default=False,
     )
     use_new_camera: BoolProperty(
         name="Replace Camera",
-        description="Look through the new camera also where the scene has one. The old one stays an object",
+        description="Look through the new camera even if the scene has one. The old camera is kept",
         default=False,
     )
     use_new_world: BoolProperty(
         name="Replace World",
-        description="Give the scene a new sky also where it has one. The old one stays in the file",
+        description="Give the scene a new sky even if it has one. The old world is kept in the file",
         default=False,
     )
     use_buoy: BoolProperty(
         name="Something Afloat",
-        description="Let something of known size float before the camera: a boat in the storm, else a buoy",
+        description=(
+            "Let something of known size float in front of the camera: a boat in the storm, otherwise a buoy"
+        ),
         default=True,
     )
 
@@ -91,7 +93,7 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         ]
         if made.replaced:
             parts.append(
-                translated("the start-up file's {list} are gone").format(list=", ".join(made.replaced))
+                translated("removed the start-up file's {list}").format(list=", ".join(made.replaced))
             )
         if scene.camera != made.camera:
             parts.append(

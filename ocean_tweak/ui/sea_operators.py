@@ -28,7 +28,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
     """Give the active ocean a wave height and a period, or a Beaufort number."""
 
     bl_idname = "ocean.match_sea_state"
-    bl_description = "Find the wind and the fetch that make waves of a known height and period"
+    bl_description = "Find the wind and fetch that raise waves of a known height and period"
     bl_label = "Match Sea State"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -36,7 +36,7 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
         name="By",
         items=[
             ("WAVES", "Waves", "Significant wave height and peak period, as a forecast or a buoy gives them"),
-            ("BEAUFORT", "Beaufort", "A number of the wind scale"),
+            ("BEAUFORT", "Beaufort", "A force of the Beaufort scale"),
         ],
     )
     height: FloatProperty(
@@ -45,12 +45,13 @@ class OCEAN_OT_match_sea_state(OfActiveOcean, bpy.types.Operator):
     )  # fmt: skip
     period: FloatProperty(
         name="Peak Period", default=8.0, min=0.1, max=60.0, precision=1, unit="TIME_ABSOLUTE",
-        description="Peak period: that of the waves with the most energy",
+        description="Period of the waves with the most energy",
     )  # fmt: skip
     beaufort: EnumProperty(name="Wind", items=_beaufort_items(), default="beaufort_05")
     fit_domain: BoolProperty(
         name="Fit Domain", default=True,
-        description="Make the patch as large as these waves want it, of several the first at least as large",
+        description=("Resize the domain to fit these waves; of several patches, enlarge the first if it "
+        "is smaller"),
     )  # fmt: skip
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -120,7 +121,7 @@ class OCEAN_OT_convert(SteppedOperator, bpy.types.Operator):
     """Make one of our oceans out of Blender's Ocean modifier."""
 
     bl_idname = "ocean.convert"
-    bl_description = "Add an ocean with the settings of the active object's Ocean modifier in its place"
+    bl_description = "Replace the active object's Ocean modifier by an ocean with its settings"
     bl_label = "Convert Ocean Modifier"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -164,7 +165,7 @@ class OCEAN_OT_convert(SteppedOperator, bpy.types.Operator):
             self.report({"WARNING"}, translated("Not carried over: {list}").format(list="; ".join(made.lost)))
         else:
             self.report(
-                {"INFO"}, translated("Everything carried over; waves now have the height of their wind")
+                {"INFO"}, translated("Everything carried over; the waves now have the height of their wind")
             )
         return {"FINISHED"}
 

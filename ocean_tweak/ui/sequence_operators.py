@@ -22,7 +22,7 @@ class OCEAN_OT_use_sequence(OfActiveOcean, bpy.types.Operator, ImportHelper):
     """Let baked files move the active ocean."""
 
     bl_idname = "ocean.use_sequence"
-    bl_description = "Let baked files move the active ocean: choose any file NAME_disp.####.exr, or a folder"
+    bl_description = "Show baked files on the active ocean: choose any file NAME_disp.####.exr, or a folder"
     bl_label = "Use Baked Sequence"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -30,7 +30,7 @@ class OCEAN_OT_use_sequence(OfActiveOcean, bpy.types.Operator, ImportHelper):
     filter_glob: StringProperty(default="*_disp.*.exr", options={"HIDDEN"})
     use_parameters: BoolProperty(
         name="Use Its Parameters",
-        description="Take over the sea that the files were baked from, with its domain size and frame rate",
+        description="Use the sea that the files were baked from, with its domain size and frame rate",
         default=True,
     )
 
@@ -59,7 +59,7 @@ class OCEAN_OT_use_live(OfActiveOcean, bpy.types.Operator):
     """Compute the active ocean on every frame again."""
 
     bl_idname = "ocean.use_live"
-    bl_description = "Compute the active ocean on every frame again"
+    bl_description = "Compute the active ocean live again"
     bl_label = "Back to Live"
     bl_options = {"REGISTER", "UNDO"}
 
@@ -83,7 +83,7 @@ class OCEAN_OT_settings_from_bake(OfActiveOcean, bpy.types.Operator):
         if not super().poll(context):
             return False
         if settings_of(shown_ocean(context)).source != "SEQUENCE":
-            cls.poll_message_set("No bake moves the ocean")
+            cls.poll_message_set("The ocean shows no bake")
             return False
         return True
 
@@ -92,7 +92,7 @@ class OCEAN_OT_settings_from_bake(OfActiveOcean, bpy.types.Operator):
         item, scene = shown_ocean(context), context.scene
         shot = bake_state.baked_shot(settings_of(item))
         if shot is None:
-            return refuse(self, "The files do not say what they were baked from")
+            return refuse(self, "The files do not say which sea they were baked from")
         try:
             check_keys(shot)
             apply_parameters(context, shot.parameters, use_frame_rate=True)

@@ -72,7 +72,7 @@ class SteppedOperator:
         if event.type == "ESC" and event.value == "PRESS":
             self._work.cancel()
             self._clean_up(context)
-            self.report({"WARNING"}, translated("Given up: everything is as it was"))
+            self.report({"WARNING"}, translated("Cancelled: nothing was changed"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
@@ -115,7 +115,7 @@ class SteppedOperator:
 
     def _tell(self, context: bpy.types.Context) -> None:
         share = 100 * self._work.done // self._work.steps
-        context.workspace.status_text_set(f"{self.doing}: {share} %   |   Esc: give up")
+        context.workspace.status_text_set(f"{self.doing}: {share} %   |   Esc: cancel")
 
     def _clean_up(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)

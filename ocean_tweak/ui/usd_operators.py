@@ -50,8 +50,9 @@ class OCEAN_OT_export_usd(_UsdBackgroundOperator, bpy.types.Operator):
 
     bl_idname = "ocean.export_usd"
     bl_description = (
-        "Write the ocean over the scene's frames as USD layers, as computed from its settings: its patch's "
-        "corner at the origin, wherever the object stands. The window stays free, Esc stops"
+        "Write the ocean over the scene's frames as USD layers, computed from its settings, with "
+        "the patch's corner at the origin wherever the object is. You can go on working; Esc "
+        "stops"
     )
     bl_label = "Export USD"
     bl_options = {"REGISTER"}
@@ -121,8 +122,8 @@ class OCEAN_OT_verify_usd(_UsdBackgroundOperator, bpy.types.Operator):
 
     bl_idname = "ocean.verify_usd"
     bl_description = (
-        "Read the exported layers back: what is missing, stands still or differs from the sea that they were "
-        "made from, at the first, middle and last frame"
+        "Check the exported layers at the first, middle and last frame: what is missing, stands "
+        "still, or differs from their sea"
     )
     bl_label = "Verify USD"
     bl_options = {"REGISTER"}
@@ -136,7 +137,7 @@ class OCEAN_OT_verify_usd(_UsdBackgroundOperator, bpy.types.Operator):
         """Say what is wrong."""
         check: UsdCheck = self._process
         if check.is_complete:
-            self.report({"INFO"}, translated("All is well with {path}").format(path=check.path))
+            self.report({"INFO"}, translated("No errors in {path}").format(path=check.path))
             return {"FINISHED"}
         if check.is_stopped:
             return {"CANCELLED"}
@@ -151,7 +152,7 @@ class OCEAN_OT_stop_usd(StopsProcess, bpy.types.Operator):
     """Stop exporting or checking the active ocean."""
 
     bl_idname = "ocean.stop_usd"
-    bl_description = "Stop after the frames that are under way. Clips that are written stay, points do not"
+    bl_description = "Stop after the current frames. Written clips are kept, points are not"
     bl_label = "Stop"
     bl_options = {"INTERNAL"}
     processes = usd
@@ -163,8 +164,8 @@ class OCEAN_OT_import_usd(_NeedsUsd, InObjectMode, bpy.types.Operator, ImportHel
 
     bl_idname = "ocean.import_usd"
     bl_description = (
-        "Add the sea that layers of Ocean Tweak were made from, live, by the parameters that they hold. Its "
-        "patch's corner stands at the origin, as theirs does"
+        "Add a live ocean from the parameters in USD layers of Ocean Tweak, with its patch's "
+        "corner at the origin, as in the layers"
     )
     bl_label = "Import Sea from USD"
     bl_options = {"REGISTER", "UNDO"}
@@ -173,7 +174,7 @@ class OCEAN_OT_import_usd(_NeedsUsd, InObjectMode, bpy.types.Operator, ImportHel
     filter_glob: StringProperty(default=_FILTER, options={"HIDDEN"})
     use_frame_rate: BoolProperty(
         name="Set Frame Rate",
-        description="Give the scene the layers' frame rate, so that every frame shows their waves",
+        description="Give the scene the frame rate of the layers, so that every frame shows their waves",
         default=True,
     )
 

@@ -45,8 +45,8 @@ class OCEAN_PG_usd(bpy.types.PropertyGroup):
         "file": StringProperty(
             name="File", subtype="FILE_PATH", update=path_changed("file"),
             **{**_KEPT, "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}},
-            description="The asset's own layer, .usd, .usda or .usdc; the others go beside it, so give each "
-            "ocean a folder of its own. // is beside the file",
+            description="The asset's layer, .usd, .usda or .usdc; its other layers are written beside "
+            "it, so give each ocean its own folder. // is the folder of the file",
         ),
         "form": EnumProperty(
             name="Form", default=DEFAULTS["form"], description="What moves the mesh", **_KEPT,
@@ -54,8 +54,8 @@ class OCEAN_PG_usd(bpy.types.PropertyGroup):
         ),
         "use_bake": BoolProperty(
             name="Use the Bake", default=True, **_KEPT,
-            description="Displace by the images that the ocean reads, where they lie, instead of baking "
-            "others beside the layers",
+            description="Use the images that the ocean reads, in place, instead of baking new ones "
+            "beside the layers",
         ),
         "up_axis": EnumProperty(**_of("up_axis", items=[(axis, axis, "") for axis in UP_AXES])),
         "metres_per_unit": FloatProperty(

@@ -18,18 +18,25 @@ class OCEAN_OT_record_wind(OfActiveOcean, bpy.types.Operator):
 
     bl_idname = "ocean.record_wind"
     bl_description = (
-        "Record what force fields of the type Wind blow over the patch from frame to frame, strength 1 as "
-        "1 m/s. Waves remember the wind of their birth, and it cannot be asked for afterwards: record again "
-        "when a field has changed"
+        "Record the force fields of type Wind over the patch from frame to frame; strength 1 is "
+        "1 m/s. Waves keep the wind they were born with, so record again after changing a field"
     )
     bl_label = "Record Wind"
     bl_options = {"REGISTER", "UNDO"}
 
-    first: IntProperty(name="First Frame", default=1, description="Earlier the wind is that of this frame")
-    last: IntProperty(name="Last Frame", default=250, description="Later the wind is that of this frame")
+    first: IntProperty(
+        name="First Frame",
+        default=1,
+        description=("First frame of the recording; before it, the wind is held"),
+    )
+    last: IntProperty(
+        name="Last Frame",
+        default=250,
+        description=("Last frame of the recording; after it, the wind is held"),
+    )
     step: IntProperty(
         name="Step", default=4, min=1, max=1000,
-        description="Record each so many-th frame; the wind is linear between them",
+        description="Record one frame in so many; the wind is linear in between",
     )  # fmt: skip
     samples: IntProperty(
         name="Samples", default=32, min=1, max=256,
@@ -81,7 +88,7 @@ class OCEAN_OT_reload_image(OfActiveOcean, bpy.types.Operator):
     """Read the active layer's image again."""
 
     bl_idname = "ocean.reload_image"
-    bl_description = "Read the image's file again, and make the waves anew"
+    bl_description = "Read the image's file again, and update the waves"
     bl_label = "Reload Image"
     bl_options = {"REGISTER", "UNDO"}
 

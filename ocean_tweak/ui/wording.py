@@ -92,38 +92,38 @@ SCALED = {
 #: label of a choice and what it means, by the field's name
 CHOICES = {
     "dispersion": {
-        "CAPILLARY": ("Full", "Depth slows long waves, surface tension speeds up ripples: as water does"),
+        "CAPILLARY": ("Full", "Depth slows long waves, surface tension speeds up ripples, as in real water"),
         "FINITE_DEPTH": ("Gravity Only", "Depth slows long waves; ripples run without surface tension"),
-        "DEEP": ("Deep Water", "As if the water had no bottom: depth slows no waves"),
+        "DEEP": ("Deep Water", "As if the water had no bottom"),
     },
     "amplitudes": {
-        "RANDOM": ("Random", "Wave heights drawn by chance, as at sea: some seeds are higher than others"),
+        "RANDOM": ("Random", "Random wave heights, as at sea: some seeds are higher than others"),
         "DETERMINISTIC": (
             "Deterministic",
-            "Each wave as high as the spectrum has it, at a random moment: all seeds are equally high",
+            "Each wave with the height of the spectrum and a random phase: all seeds are equally high",
         ),
     },
     "orbital_motion": {
         "DEEP": ("Deep Water", "Water moves in circles, as far sideways as up and down"),
         "FINITE_DEPTH": (
             "Finite Depth",
-            "Water moves in ellipses, further sideways the shallower it is, as linear theory has it",
+            "Water moves in ellipses, wider in shallow water, as in linear wave theory",
         ),
     },
     "definition": {
-        "WIND": ("Wind", "A wind, and the distance over which it has blown"),
-        "SEA_STATE": ("Sea State", "A wave height and a period, as a forecast or a buoy gives them"),
+        "WIND": ("Wind", "Wind speed and fetch"),
+        "SEA_STATE": ("Sea State", "Wave height and period, from a forecast or a buoy"),
     },
     "spectrum": {
         "TMA": ("TMA", "JONSWAP, lower where the water is shallow (Bouws and others 1985)"),
         "JONSWAP": ("JONSWAP", "A young sea that grows with the fetch (Hasselmann and others 1973)"),
-        "PIERSON_MOSKOWITZ": ("Pierson-Moskowitz", "A fully grown sea; the fetch changes nothing"),
-        "PHILLIPS": ("Phillips", "Tessendorf's spectrum of many film oceans; the fetch changes nothing"),
+        "PIERSON_MOSKOWITZ": ("Pierson-Moskowitz", "A fully developed sea; fetch has no effect"),
+        "PHILLIPS": ("Phillips", "Tessendorf's spectrum, used in many films; fetch has no effect"),
         "GENERALIZED_AB": ("Generalized A, B", "A/ω⁵ exp(-B/ω⁴) with your own A and B; no wind"),
     },
     "depth_factor": {
-        "KITAIGORODSKII": ("Exact", "Kitaigorodskii's factor of shallow water"),
-        "THOMPSON_VINCENT": ("Approximate", "Thompson and Vincent's parabolas through that factor"),
+        "KITAIGORODSKII": ("Exact", "Kitaigorodskii's shallow-water factor"),
+        "THOMPSON_VINCENT": ("Approximate", "Thompson and Vincent's approximation by parabolas"),
     },
     "law": {
         "CALLAGHAN_2008": (
@@ -137,11 +137,11 @@ CHOICES = {
     },
     "filter": {
         "MODIFIED_PIERSON_MOSKOWITZ": ("Wind", "Modified Pierson-Moskowitz: what a wind would raise"),
-        "FRACTAL": ("Fractal", "1/f^β: equally rough at all sizes"),
-        "WATER_TEXTURE": ("Water Texture", "One wavelength stands out, as in a texture of water"),
+        "FRACTAL": ("Fractal", "1/f^β: equally rough at all scales"),
+        "WATER_TEXTURE": ("Water Texture", "One wavelength dominates, as in a water texture"),
     },
     "filter_gain": {
-        "PHYSICAL": ("Wind", "As high as the wind makes them"),
+        "PHYSICAL": ("Wind", "The height of the wind sea"),
         "PAPER": ("Wave Height", "The filter of Mastin and others (1987), at the wave height below"),
     },
     "animation": {
@@ -154,8 +154,8 @@ CHOICES = {
         "PARALLEL": ("Parallel", "Waves stay straight and parallel"),
     },
     "height": {
-        "STEEPNESS": ("Steepness", "As steep as set below, whatever their length"),
-        "WIND_SPEED": ("Wind Speed", "In proportion to the wind's speed"),
+        "STEEPNESS": ("Steepness", "With the steepness set below, whatever their length"),
+        "WIND_SPEED": ("Wind Speed", "In proportion to the wind speed"),
     },
 }
 

@@ -119,7 +119,7 @@ def test_the_console_hears_it_once_a_shot(baked, extension, empty_scene, caplog)
         empty_scene.frame_set(2)
         handlers.end_render(empty_scene)
         (record,) = caplog.records
-        assert "not the settings, but the bake in" in record.message
+        assert "is shown, not the settings" in record.message
         assert "seed is 8 and was 7" in record.message
 
 

@@ -274,7 +274,7 @@ def test_the_helper(extension, ocean_object, make_parameters, camera, empty_scen
     shown = rendering(lambda mesh: numbers(mesh, "displacement", 3))
     assert list(shown) == [item.name]
     assert np.abs(shown[item.name]).max() > 0.1
-    with pytest.raises(extension("scene.settings").OceanObjectError, match="is no ocean"):
+    with pytest.raises(extension("scene.settings").OceanObjectError, match="is not an ocean"):
         add(item, empty_scene)
 
 

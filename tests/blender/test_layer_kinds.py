@@ -166,7 +166,7 @@ def test_duplicate_move_solo_and_remove_work_for_every_kind(ocean, rich, empty_s
 def test_a_sea_keeps_a_layer_of_waves(ocean):
     bpy.ops.ocean.layer_add(kind="IMAGE")
     ocean.ocean_tweak.active_layer = 0
-    with pytest.raises(RuntimeError, match="at least one layer of waves"):
+    with pytest.raises(RuntimeError, match="at least one wave layer"):
         bpy.ops.ocean.layer_remove()
     ocean.ocean_tweak.active_layer = 1
     assert bpy.ops.ocean.layer_remove() == {"FINISHED"}

@@ -31,7 +31,7 @@ def test_add_duplicate_remove(ocean):
 
 def test_the_last_layer_stays(ocean):
     assert not bpy.ops.ocean.layer_remove.poll()
-    with pytest.raises(RuntimeError, match="at least one layer"):
+    with pytest.raises(RuntimeError, match="at least one wave layer"):
         bpy.ops.ocean.layer_remove()
 
 

@@ -187,7 +187,7 @@ def test_what_floats_is_no_mask(ocean, mask, empty_scene, extension):
     extension("scene.floating").float_on(boat, ocean)
     for item in (boat, flag):
         mask.object, mask.source = item, "DISTANCE"
-        assert "it floats on the water" in ocean.ocean_tweak.error
+        assert "it floats on this water" in ocean.ocean_tweak.error
         mask.source = "NONE"
     assert not ocean.ocean_tweak.error
 

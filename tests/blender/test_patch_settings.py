@@ -102,7 +102,7 @@ def test_planning_tells_that_troughs_are_not_damped_any_more(ocean, capsys):
     wish(ocean, 2.0, 300.0)
     assert bpy.ops.ocean.plan_patches() == {"FINISHED"}
     assert sea(ocean).trough_damping == 0.0
-    assert "Trough Damping is 0 now" in capsys.readouterr().out
+    assert "Trough Damping is now 0" in capsys.readouterr().out
     assert bpy.ops.ocean.one_patch() == {"FINISHED"}
     ocean.ocean_tweak.trough_damping = 0.4
     with pytest.raises(RuntimeError, match="trough_damping"):

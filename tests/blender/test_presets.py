@@ -59,7 +59,7 @@ def test_a_life_of_an_own_preset(ocean, own_folder, extension, tmp_path_factory)
     assert {file.name for file in own_folder.iterdir()} == {"bay_at_dawn.json", "bay_at_dawn.png"}
     assert ocean.ocean_tweak.preset == "Bay at Dawn"
     mine = sea_of(ocean)
-    with pytest.raises(RuntimeError, match="another preset already"):
+    with pytest.raises(RuntimeError, match="already the name of another preset"):
         bpy.ops.ocean.save_preset(title="Bay at Dawn")
     bpy.ops.ocean.apply_preset(key="harbour")
     assert bpy.ops.ocean.apply_preset(key="user:bay_at_dawn") == {"FINISHED"}
@@ -96,7 +96,7 @@ def test_presets_are_read_once_and_anew_after_a_change(ocean, own_folder, extens
 
 @pytest.mark.parametrize("operator", ["rename_preset", "delete_preset"])
 def test_presets_that_came_along_stay(own_folder, operator, empty_scene):
-    with pytest.raises(RuntimeError, match="no preset of your own"):
+    with pytest.raises(RuntimeError, match="You have no preset with the key"):
         getattr(bpy.ops.ocean, operator)(key="gale")
 
 

@@ -203,7 +203,7 @@ def test_what_cannot_be_recorded_is_told_and_changes_nothing(ocean, empty_scene)
         record()
     with pytest.raises(RuntimeError, match="2000 frames are too many"):
         record(last=2000, step=1)
-    with pytest.raises(RuntimeError, match="take fewer samples or a larger step"):
+    with pytest.raises(RuntimeError, match="use fewer samples or a larger step"):
         record(samples=256, last=100, step=1)
     with pytest.raises(RuntimeError, match="lies before the first"):
         record(last=0)

@@ -257,7 +257,7 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
         for name, length in parameter_properties.beyond(layer, WaveLayer, metres):
             shown = (speed_text if name == "wind_speed" else length_text)(scene, length)
             where = wording.place(f"layers.{index}.{name}")
-            warnings.append(f"{where} is out of its range and counts as {shown}")
+            warnings.append(f"{where} is out of range and counts as {shown}")
     sea = sea_of_settings(item, scene) if settings.source == "LIVE" else None
     over = None if sea is None else beyond_budget(sea)
     if over is not None:
@@ -265,7 +265,9 @@ def _object_warnings(context: bpy.types.Context) -> list[str]:
     if text := sharp_under_blur(item, scene):
         warnings.append(text)
     if settings.bake_is_elsewhere:
-        warnings.append("The baked files lie beside another file: Copy Bake Here in Bake takes them along")
+        warnings.append(
+            "The baked files are beside another .blend file: Copy Bake Here in Bake brings them along"
+        )
     return warnings
 
 
