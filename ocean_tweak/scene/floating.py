@@ -183,7 +183,7 @@ def chosen_ocean(
         oceans = [ocean for ocean in oceans if ocean.name == name]
     if not oceans:
         raise FloatError(
-            (f"{name!r} is not an ocean of this scene") if name else "There is no ocean in this scene"
+            f"{name!r} is not an ocean of this scene" if name else "There is no ocean in this scene"
         )
     return active if active in oceans else oceans[0]
 

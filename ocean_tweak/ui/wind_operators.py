@@ -27,12 +27,12 @@ class OCEAN_OT_record_wind(OfActiveOcean, bpy.types.Operator):
     first: IntProperty(
         name="First Frame",
         default=1,
-        description=("First frame of the recording; before it, the wind is held"),
+        description="First frame of the recording; before it, the wind is held",
     )
     last: IntProperty(
         name="Last Frame",
         default=250,
-        description=("Last frame of the recording; after it, the wind is held"),
+        description="Last frame of the recording; after it, the wind is held",
     )
     step: IntProperty(
         name="Step", default=4, min=1, max=1000,

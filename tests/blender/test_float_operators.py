@@ -77,7 +77,7 @@ def test_the_ocean_that_is_chosen(ocean, ocean_object, buoy, select, extension, 
     assert floats_on() == ocean  # the active one
     bpy.ops.object.ocean_tweak_float(ocean="Lake")
     assert floats_on() == lake
-    with pytest.raises(RuntimeError, match="'Pond' is no ocean of this scene"):
+    with pytest.raises(RuntimeError, match="'Pond' is not an ocean of this scene"):
         bpy.ops.object.ocean_tweak_float(ocean="Pond")
 
 

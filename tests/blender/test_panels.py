@@ -342,7 +342,7 @@ def test_a_length_that_a_curve_took_beyond_its_range_is_told(draw, item, empty_s
     empty_scene.frame_set(1)
     assert "counts as" not in " ".join(draw(item))
     empty_scene.frame_set(11)
-    assert "Layer 1, Wind Speed is out of its range and counts as 100 m/s" in " ".join(draw(item))
+    assert "Layer 1, Wind Speed is out of range and counts as 100 m/s" in " ".join(draw(item))
 
 
 def test_frames_without_a_file_are_told(draw, item, bake, ocean_object, make_parameters, empty_scene):

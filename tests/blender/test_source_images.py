@@ -258,7 +258,7 @@ def test_red_and_green_are_the_wind(ocean, wind):
 
 def test_a_wind_too_strong_for_the_patch_is_told(ocean, wind):
     wind.wind_speed = 60.0
-    assert "layers.1 = '60 m/s': this wind's waves are 367 m long" in ocean.ocean_tweak.error
+    assert "layers.1 = '60 m/s': the waves of this wind are 367 m long" in ocean.ocean_tweak.error
 
 
 def test_a_sea_from_a_file_that_names_its_image(ocean, tmp_path, expected, evaluated, empty_scene, core):

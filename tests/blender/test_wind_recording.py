@@ -199,7 +199,7 @@ def test_what_cannot_be_recorded_is_told_and_changes_nothing(ocean, empty_scene)
     with pytest.raises(RuntimeError, match="no force field of the type Wind"):
         record()
     blow(50.0)
-    with pytest.raises(RuntimeError, match=r"this wind's waves are 254\.8 m long"):
+    with pytest.raises(RuntimeError, match=r"the waves of this wind are 254\.8 m long"):
         record()
     with pytest.raises(RuntimeError, match="2000 frames are too many"):
         record(last=2000, step=1)

@@ -188,7 +188,8 @@ def test_what_needs_the_extension_is_named(horizon, extension, tmp_path, capsys)
     assert {need.name for need in needs_of(ocean)} == {ocean.name, surface.name, "Boat"}
     wanted = {need.name: need.text for need in needs_of(ocean)}
     assert (
-        wanted["Boat"] == "Boat floats on Ocean, which is computed live: bake Ocean, or its floating to keys"
+        wanted["Boat"]
+        == "Boat floats on Ocean, which is computed live: bake Ocean, or bake the floating to keys"
     )
 
     def job():

@@ -20,6 +20,12 @@ def test_links_lead_somewhere(document):
     assert [target for target in local if not (document.parent / target).exists()] == []
 
 
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_pictures_are_described(document):
+    described = re.findall(r"!\[([^]]*)\]\(", document.read_text(encoding="utf-8"))
+    assert [text for text in described if len(text.split()) < 2] == []
+
+
 def test_pictures_are_small_and_shown():
     assert PICTURES
     assert [path.name for path in PICTURES if path.stat().st_size > LARGEST] == []
