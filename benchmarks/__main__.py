@@ -66,7 +66,7 @@ def main(arguments: list[str] | None = None) -> int:
         "rounds": plan.rounds,
         "rows": [row.to_dict() for row in rows],
     }
-    return _keep(result, rows, complete=not options.rows, smoke=options.smoke)
+    return _keep(result, rows, plan, complete=not options.rows)
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:
@@ -86,17 +86,17 @@ def _measure(groups: list[str], plan: Plan) -> list[Row]:
     return rows
 
 
-def _keep(result: dict[str, Any], rows: list[Row], complete: bool, smoke: bool) -> int:
+def _keep(result: dict[str, Any], rows: list[Row], plan: Plan, complete: bool) -> int:
     """Write the results; only a complete run of full size replaces the latest one."""
     if not complete:
         report.save(result, SCRATCH / "part.json")
         return 0
     try:
-        report.check(rows, list(GROUPS))
+        report.check(rows, list(GROUPS), plan.left_out)
     except report.IncompleteRun as error:
         print(f"benchmarks: {error}", file=sys.stderr)
         return 1
-    if smoke:
+    if plan.smoke:
         report.save(result, SCRATCH / "smoke.json")
         print(f"{len(rows)} rows, all there, in {result['minutes']} minutes")
         return 0

@@ -49,7 +49,7 @@ def run_script(plan: Plan, where: str) -> dict[str, Any]:
     arguments = [
         "--sizes", *map(str, plan.scene), "--latency", str(plan.latency), "--rounds", str(plan.rounds),
         "--judge", str(plan.scene[-1]), "--place", PLACES[where], "--out", str(out),
-        *["--bake-horizon"] * (not plan.smoke),
+        *["--bake-horizon"] * ("baked horizon" not in plan.left_out),
     ]  # fmt: skip
     command = blender.command(_SCRIPT, arguments, where=where)
     answer = subprocess.run(
