@@ -13,7 +13,7 @@ from .project import ROOT
 BIN = Path(sys.executable).parent
 CHECKS = (
     ("ruff", "format", "--check"), ("ruff", "check"), ("mypy",), ("lint-imports",),
-    ("python", "-m", "tools.unused"), ("python", "-m", "tools.arrows"),
+    ("python", "-m", "tools.unused"), ("python", "-m", "tools.arrows"), ("codespell",),
 )  # fmt: skip
 FIXES = (("ruff", "format"), ("ruff", "check", "--fix"))
 
