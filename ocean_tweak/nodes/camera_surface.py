@@ -326,4 +326,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 10, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 11, _build)

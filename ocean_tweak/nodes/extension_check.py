@@ -50,7 +50,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build.finish_with({"Is Absent": build.logic("OR", output(warning, "Show"), rows)})
 
 
-ABSENCE = GroupKind("Ocean Tweak Absence", 1, _build)
+ABSENCE = GroupKind("Ocean Tweak Absence", 2, _build)
 
 
 def show_that_it_runs() -> None:

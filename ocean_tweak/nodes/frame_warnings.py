@@ -53,4 +53,4 @@ def joined_text(build: Builder, *words: Input) -> Socket:
     return output(join, "String")
 
 
-WARNINGS = GroupKind("Ocean Tweak Warnings", 1, _build)
+WARNINGS = GroupKind("Ocean Tweak Warnings", 2, _build)

@@ -184,7 +184,9 @@ def refresh(
 def too_few_bounces(ocean: bpy.types.Object, scene: bpy.types.Scene) -> str | None:
     """What to say where Cycles ends light in dense mist, which then is dark; None where all is well."""
     bounces = scene.cycles.transparent_max_bounces if scene.render.engine == "CYCLES" else TRANSPARENT_BOUNCES
-    if spray_of(ocean) is None or bounces >= TRANSPARENT_BOUNCES:
+    if (
+        bounces >= TRANSPARENT_BOUNCES or not settings_of(ocean).use_spray
+    ):  # a panel asks: no search of objects
         return None
     return (
         f"mist will be dark where it is dense: Cycles has {bounces} transparent bounces, set "

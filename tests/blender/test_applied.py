@@ -149,7 +149,7 @@ def test_what_showed_the_sea_and_what_floats_on_it(extension, ocean_object, make
     bake = extension("scene.float_bake").FloatBake(
         empty_scene, [boat], other, lambda _: floating.Ride(), range(1, 3)
     )
-    with pytest.raises(floating.FloatError, match="Ocean is no ocean any more"):
+    with pytest.raises(floating.FloatError, match="Ocean is no longer an ocean"):
         bake.advance()
     bake.cancel()
 

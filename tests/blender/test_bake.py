@@ -188,7 +188,7 @@ def test_nothing_is_taken_along_through_links(ocean, saved, extension, tmp_path,
     else:
         (folder / "other").symlink_to(secret / "key" if what == "a link" else secret)
     ocean.ocean_tweak.cache_folder = str(tmp_path / "elsewhere")
-    with pytest.raises(RuntimeError, match="other is a link or no file"):
+    with pytest.raises(RuntimeError, match="other is a link or not a file"):
         bpy.ops.ocean.take_cache_along()
     assert not list((tmp_path / "elsewhere").rglob("*other*"))
 

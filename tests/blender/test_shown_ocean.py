@@ -64,7 +64,7 @@ def test_of_two_the_active_one_the_one_below_or_the_pinned_one(
     assert shown() == "Pond"
     bpy.ops.ocean.pin()
     assert shown() == "Ocean"
-    with pytest.raises(RuntimeError, match="'Sea' is no ocean of this scene"):
+    with pytest.raises(RuntimeError, match="'Sea' is not an ocean of this scene"):
         bpy.ops.ocean.pin(ocean="Sea")
 
 

@@ -109,7 +109,7 @@ def test_foreign_layers_stay_unless_asked(ocean, tmp_path):
     foreign.parent.mkdir()
     Usd.Stage.CreateNew(str(foreign)).Save()
     before = contents(foreign.parent)
-    with pytest.raises(RuntimeError, match=r"mtl\.usd is there already .*in Blender: Overwrite"):
+    with pytest.raises(RuntimeError, match=r"mtl\.usd exists already .*in Blender: Overwrite"):
         bpy.ops.ocean.export_usd()
     assert contents(foreign.parent) == before
     usd.force = True

@@ -10,7 +10,13 @@ from ..data.validation import Validated, number
 
 @dataclass(frozen=True)
 class Spray(Validated):
-    """What breaking crests throw into the air: spume, drops and mist."""
+    """What breaking crests throw into the air: spume, drops and mist.
+
+    Examples
+    --------
+    >>> Spray(amount=0.1).life
+    4.0
+    """
 
     amount: float = number(
         1.0, 0.0, 100.0, "", "Multiplies how many particles breaking crests throw up; 1 looks as at sea",
