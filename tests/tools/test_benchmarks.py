@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from benchmarks import baking, precision, report, transforms
+from benchmarks import baking, foam_rows, precision, report, transforms
 from benchmarks.__main__ import GROUPS
 from benchmarks.measure import Timings, interleaved
 from benchmarks.plan import FULL, SMOKE
@@ -163,7 +163,8 @@ def test_published_run_is_whole(latest):
     report.check(rows, list(GROUPS))
     timed = [r for r in rows if r.seconds is not None]
     assert timed
-    assert all(r.repeats >= 7 for r in timed)
+    # foam of a frame alone takes seconds a call: three rounds
+    assert all(r.repeats >= (3 if r.group == foam_rows.GROUP else 7) for r in timed)
 
 
 def test_published_run_names_no_folder():

@@ -125,12 +125,13 @@ class Hand:
                 break
             # pictures and statistics may come late, and move all that is below them
             self.still()
-            # a button that was drawn anew under a mouse that rests does not know of it
-            self.move(place[0] + 2, place[1])
-            self.settle(1)
-            if self._is_at(*place, target, seen):
-                self._hints[target] = place
-                return place
+            for aside in (2, -2, 4, -4):
+                # a button that was drawn anew under a mouse that rests does not know of it
+                self.move(place[0] + aside, place[1])
+                self.settle(1)
+                if self._is_at(*place, target, seen):
+                    self._hints[target] = place
+                    return place
         raise NotFound(f"no button {target!r} in the sidebar; there are {sorted(filter(None, seen))}")
 
     def _search(self, target, across, seen):
