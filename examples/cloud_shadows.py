@@ -52,4 +52,5 @@ def _material(extension: Extension, clouds: CloudShadows) -> bpy.types.Material:
     clear = shade.node("ShaderNodeBsdfTransparent", {0: shade.combine(light, light, light)})
     shown = shade.node("ShaderNodeOutputMaterial")
     shade.tree.links.new(clear.outputs[0], shown.inputs["Surface"])
+    extension.module("nodes.versioned").lay_out(shade.tree)
     return material

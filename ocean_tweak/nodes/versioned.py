@@ -64,6 +64,11 @@ def lay_out(tree: bpy.types.NodeTree) -> None:
     tree.nodes.foreach_set("location", [float(along) for place in places for along in place])
 
 
+def beside(node: bpy.types.Node, number: int) -> tuple[float, float]:
+    """Where to put a node to the left of one that reads it, one of several beneath each other."""
+    return node.location.x - _WIDE, node.location.y - _HIGH * number
+
+
 def kind_name(group: bpy.types.NodeTree | None) -> str:
     """The name of the kind that a group was built as, in any version; "" for a group of somebody else."""
     return str(group.get(_KEY, "")).rpartition(" ")[0] if group is not None else ""

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..nodes.building import Socket
 from ..nodes.shading import Shading
+from ..nodes.versioned import lay_out
 
 #: brings a sunlit white surface to about 1: the sky texture counts in units of its own
 EXPOSURE = 0.055
@@ -118,6 +119,7 @@ def new_world(name: str, sky: Sky) -> bpy.types.World:
     background = shade.node("ShaderNodeBackground", {"Color": seen, "Strength": 1.0})
     shown = shade.node("ShaderNodeOutputWorld")
     shade.tree.links.new(background.outputs[0], shown.inputs["Surface"])
+    lay_out(shade.tree)
     return world
 
 

@@ -36,7 +36,7 @@ from ..nodes.shading import Shading
 from ..nodes.shown_frame import frame_values
 from ..nodes.spray import FILES, SPRAY
 from ..nodes.spray_look import SPRAY_LOOK
-from ..nodes.versioned import is_of_kind, node_group
+from ..nodes.versioned import is_of_kind, lay_out, node_group
 from . import failures, held_sea, water_material
 from .image_sequence import baked_stretch, shown_frame
 from .patch_points import files_of
@@ -366,6 +366,7 @@ def _material(ocean: bpy.types.Object) -> bpy.types.Material:
     shade = Shading(material.node_tree)
     look = shade.node("ShaderNodeGroup", node_tree=node_group(SPRAY_LOOK))
     shade.tree.links.new(look.outputs["Surface"], shade.node("ShaderNodeOutputMaterial").inputs["Surface"])
+    lay_out(shade.tree)
     water = water_material.water_node(ocean.active_material)
     if water is not None and "Visibility" in water.inputs:
         look.inputs["Visibility"].default_value = water.inputs["Visibility"].default_value

@@ -16,7 +16,7 @@ from ..core import OceanParameters
 from ..core.foam.threshold import foam_wind
 from ..core.statistics.unresolved_slopes import total_slope_variance, unresolved_slope_variance
 from ..nodes.shading import Shading
-from ..nodes.versioned import is_of_kind, is_stale, node_group
+from ..nodes.versioned import beside, is_of_kind, is_stale, lay_out, node_group
 from ..nodes.water import WATER
 from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND, WIND_SPEED
 from . import solid_foam
@@ -183,11 +183,11 @@ def light_by(material: bpy.types.Material, sun: bpy.types.Object) -> None:
     """Let a sun lamp shine through the crests of the water, wherever it turns and however bright it is."""
     group, tree = _group(material), material.node_tree
     nodes = []
-    for name in ("Sun Direction", "Sun Light"):
+    for number, name in enumerate(("Sun Direction", "Sun Light")):
         node = next((node for node in tree.nodes if node.label == name), None)
         if node is None:
             node = tree.nodes.new("ShaderNodeCombineXYZ")
-            node.label = name
+            node.label, node.location = name, beside(group, number)
             tree.links.new(node.outputs[0], group.inputs[name])
         nodes.append(node)
     follow_lamp(*nodes, sun)
@@ -230,6 +230,7 @@ def _fill(material: bpy.types.Material, values: Mapping[str, object]) -> None:
     group = shade.node("ShaderNodeGroup", inputs, node_tree=node_group(WATER))
     shown = shade.node("ShaderNodeOutputMaterial")
     shade.tree.links.new(group.outputs["Surface"], shown.inputs["Surface"])
+    lay_out(shade.tree)
     # or Cycles takes the haze for a lamp and sorts millions of triangles
     material.cycles.emission_sampling = "NONE"
     material.diffuse_color, material.roughness = _IN_SOLID, _ROUGHNESS_IN_SOLID
