@@ -153,6 +153,24 @@ def test_document_needs_its_markers(tmp_path):
         report.update_document({}, page)
 
 
+def test_targets_that_a_plan_leaves_out_need_no_rows():
+    without = [row for row in whole_run() if row.target != "baked horizon"]
+    assert len(without) < len(whole_run())
+    report.check(without, list(GROUPS), SMOKE.left_out)
+    with pytest.raises(report.IncompleteRun, match="baked horizon"):
+        report.check(without, list(GROUPS), FULL.left_out)
+
+
+def test_only_what_need_not_grow_may_measure_nothing():
+    for target, is_fine in (("baked memory", True), ("baked", False)):
+        rows = [dataclasses.replace(row, value=0.0) if row.target == target else row for row in whole_run()]
+        if is_fine:
+            report.check(rows, list(GROUPS))
+        else:
+            with pytest.raises(report.IncompleteRun, match="no measurement"):
+                report.check(rows, list(GROUPS))
+
+
 @pytest.fixture
 def latest():
     return json.loads(report.LATEST.read_text(encoding="utf-8"))
