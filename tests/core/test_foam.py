@@ -12,7 +12,8 @@ import pytest
 
 from ocean_tweak.core import Area, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer
 from ocean_tweak.core.foam import laying
-from ocean_tweak.core.foam.model import FoamHistory, FoamModel, births
+from ocean_tweak.core.foam.looks import Compressed
+from ocean_tweak.core.foam.model import Births, FoamHistory, FoamModel, births
 from ocean_tweak.core.foam.threshold import (
     foam_outlook,
     foam_wind,
@@ -280,6 +281,16 @@ def test_strength_of_foam_at_its_levels() -> None:
     assert strength[0] == pytest.approx(2.0**-5.875)
     np.testing.assert_allclose(model.strength(0.3 * rise), strength, rtol=1e-9)
     assert model.strength(np.array([0.0, 0.3, 0.375, 2.0])).tolist() == [0.0, 0.0, 1.0, 1.0]
+
+
+def test_births_that_are_not_settled_yet_count_in_the_memory() -> None:
+    """Of a place four bytes of the latest birth and four of its moment; while it is followed four and one."""
+    born = Births(FoamModel(threshold=1.0, half_life=2.0, drift=(0.0, 0.0), spacing=1.0), (10, 10), 0)
+    assert born.nbytes == 100 * 8
+    born.add(Compressed(np.arange(30), np.full(30, 2.0, np.float32)), 0)
+    assert born.nbytes == 100 * 8 + 30 * 5
+    born.settle()
+    assert born.nbytes == 100 * 8
 
 
 def test_a_lattice_of_at_most_eight_a_second() -> None:

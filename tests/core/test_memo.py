@@ -223,6 +223,18 @@ def test_a_value_that_others_keep_counts_as_long_as_they_do() -> None:
     assert store.report() == {"waves": 20 * KB}
 
 
+def test_a_value_that_fails_to_tell_its_bytes_is_not_taken_for_a_small_one() -> None:
+    class Failing:
+        @property
+        def nbytes(self) -> int:
+            return None.bytes  # type: ignore[attr-defined]
+
+    store, failing = Memo(50 * KB), Failing()
+    store.watch("foam", failing)
+    with pytest.raises(AttributeError, match="bytes"):
+        store.report()
+
+
 def test_one_call_forgets_a_kind_or_all() -> None:
     store = Memo(100 * KB)
     values = {kind: store.get(kind, 0, lambda: kilobytes(1)) for kind in ("waves", "foam")}

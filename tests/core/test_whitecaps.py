@@ -238,6 +238,22 @@ def test_windrows_leave_the_new_foam_and_the_mean_of_the_old() -> None:
     assert np.mean(foam) == pytest.approx(np.mean(plain), rel=0.12)
 
 
+def test_foam_that_leaves_nothing_has_no_windrows_to_lie_in() -> None:
+    """A half-life of 0 in a storm, in which all old foam would be drawn out: what breaks is all there is."""
+    patches = (Patch(120.0, 0.3, 12.0, 1e6, 40), Patch(31.0, -0.9, 3.0, 12.0, 32))
+    layers = (WaveLayer(wind_speed=24.0, fetch=200e3),)
+    ocean = Ocean(OceanParameters(layers=layers, patches=patches, foam=Foam(half_life=0.0)))
+    assert ocean.foam_model.windrows is not None
+    assert ocean.foam_model.windrows.strength == 1.0
+    x, y = np.random.default_rng(3).uniform(0.0, 300.0, (2, 4000))
+    found = ocean.surface(3.0, {*OF_MEMORY, "cusp"}, on=Places(x, y))
+    born = found.foam > 0.0
+    assert np.count_nonzero(born) > 20
+    assert np.min(found.cusp[born]) >= np.max(found.cusp[~born])
+    np.testing.assert_array_equal(found.foam, found.breaking)
+    assert not found.foam_age.any()
+
+
 def test_windrows_drift_with_the_foam() -> None:
     """With as much time as the foam takes for a sample they are moved by one."""
     ocean = Ocean(sea(25.0, 64, 6.0 / 64.0, foam=Foam(drift=0.04)))

@@ -189,8 +189,9 @@ class Births:
     @property
     def nbytes(self) -> int:
         """Bytes of the births and their times, and of those that are followed."""
-        followed = self._followed or ()
-        return self._latest.nbytes + self._moments.nbytes + total_bytes(followed[2:])
+        followed = self._followed
+        own = () if followed is None else (followed.most, followed.since)
+        return total_bytes((self._latest, self._moments, *own))
 
     def add(self, compressed: Compressed, index: int, moved: tuple[int, ...] = (0,)) -> None:
         """Those of a lattice time, moved by whole samples along each axis; of equal ones the later counts.

@@ -150,7 +150,9 @@ class Windrows:
 
     def stays(self, half_life: float) -> float:
         """The half-life in s of foam where it was born: less than its own where all of it is drawn out."""
-        return half_life if self.strength < 1.0 else 1.0 / (1.0 / half_life + 1.0 / _DRAWN_IN)
+        if self.strength < 1.0 or half_life == 0.0:
+            return half_life
+        return 1.0 / (1.0 / half_life + 1.0 / _DRAWN_IN)
 
     def staying(self, foam: RealArray, age: RealArray) -> RealArray:
         """What is left where it was born of old foam, which goes over into what is drawn out as it ages."""

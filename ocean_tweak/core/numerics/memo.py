@@ -233,8 +233,9 @@ class _Entry:
     used: int
 
 
-def _size(value: object) -> int:
-    return max(int(getattr(value, "nbytes", 0)), _SMALL)
+def _size(value: Any) -> int:
+    # whether it tells, its class says: to ask the value itself would take an error in telling for a no
+    return max(int(value.nbytes), _SMALL) if hasattr(type(value), "nbytes") else _SMALL
 
 
 class _Making:
