@@ -48,3 +48,8 @@ def from_text(text: str) -> NDArray[np.float64]:
     except (ValueError, RecursionError):
         lines = np.zeros((0, 4))
     return lines if lines.ndim == 2 and lines.shape[1] == 4 else np.zeros((0, 4))
+
+
+def shifted(text: str, x: float, y: float) -> str:
+    """The lines of a text of `to_text`, moved by so many Blender units."""
+    return to_text(from_text(text) + (x, y, x, y)) if text else ""

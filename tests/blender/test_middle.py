@@ -4,6 +4,7 @@
 import math
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Matrix, Vector
 
@@ -106,6 +107,33 @@ def test_what_was_placed_stays_in_the_world(ocean, child):
         after = [ocean.matrix_world @ Vector((each.x, each.y, 0.0)) for each in (wave, mask)]
         after.append(child.matrix_world.translation)
         assert [tuple(place) for place in after] == [near(place) for place in before]
+
+
+@pytest.mark.parametrize("resize", [drag, match, plan])
+def test_lines_of_a_mask_without_an_object_stay_in_the_world(
+    ocean, core, make_parameters, empty_scene, resize
+):
+    """A breakwater out of a file, of the sea and of a layer."""
+    ends = [[[15.0, 20.0, 45.0, 20.0], [45.0, 20.0, 45.0, 40.0]]]
+    mask = core.Mask(lines=core.Raster(np.array(ends), "lines"), inner_radius=4.0, outer_radius=14.0)
+    sea = make_parameters(mask=mask)
+    layer = core.WaveLayer(wind_speed=8.0, fetch=20e3, mask=mask)
+    ocean.ocean_tweak.from_parameters(sea.replace(layers=(layer,)), empty_scene)
+
+    def in_the_world():
+        bpy.context.view_layer.update()
+        settings = ocean.ocean_tweak.to_parameters(empty_scene)
+        return [
+            tuple(ocean.matrix_world @ Vector((x, y, 0.0)))
+            for each in (settings.mask, settings.layers[0].mask)
+            for x, y in each.lines.values.reshape(-1, 2)
+        ]
+
+    before, place = in_the_world(), ocean.location.copy()
+    resize(ocean)
+    assert ocean.ocean_tweak.error == ""
+    assert (ocean.location - place).length > 10.0
+    assert in_the_world() == [near(point) for point in before]
 
 
 def test_the_horizon_goes_along(ocean, empty_scene, extension, make_parameters):
