@@ -132,7 +132,11 @@ class Converting:
         return Made(original, item, result.lost)
 
     def cancel(self) -> None:
-        """Nothing was changed; waves that are being made are not waited for."""
+        """Nothing was changed."""
+        self.abandon()
+
+    def abandon(self) -> None:
+        """End the thread; waves that are being made are not waited for."""
         self._worker.shutdown(wait=False, cancel_futures=True)
 
 

@@ -112,6 +112,9 @@ class FloatBake:
         self._clear()
         self._go_back()
 
+    def abandon(self) -> None:
+        """Nothing goes on beside Blender."""
+
     def _clear(self) -> None:
         self._taking_part.close()
         for rider in self._riders:

@@ -52,4 +52,4 @@ def from_text(text: str) -> NDArray[np.float64]:
 
 def shifted(text: str, x: float, y: float) -> str:
     """The lines of a text of `to_text`, moved by so many Blender units."""
-    return to_text(from_text(text) + (x, y, x, y)) if text else ""
+    return to_text(from_text(text) + np.array((x, y, x, y))) if text else ""

@@ -74,6 +74,9 @@ class WeightsReading:
     def cancel(self) -> None:
         """Nothing was changed."""
 
+    def abandon(self) -> None:
+        """Nothing goes on beside Blender."""
+
     def _look(self) -> None:
         with taking_part(self._scene, self._mesh, geometry=True):
             made = self._mesh.evaluated_get(evaluated(self._scene))

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading the weights of a vertex group into a mask."""
 
+from contextlib import suppress
+from typing import Any
+
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import IntProperty
@@ -43,13 +46,15 @@ class OCEAN_OT_read_weights(OfActiveOcean, SteppedOperator, bpy.types.Operator):
         mask = self._mask(context)
         if mask is None:
             raise OceanObjectError("The active layer has no mask: choose waves, an image or a wind field")
+        self._ocean, self._path = mask.id_data, mask.path_from_id()
+        self._known = _known(mask)
         return mask_properties.reading_of(mask, context.scene, self.samples)
 
-    def conclude(self, context: bpy.types.Context, seen: Raster) -> set[str]:
+    def conclude(self, _context: bpy.types.Context, seen: Raster) -> set[str]:
         """Let the mask have the weights, and tell what they come to."""
         try:
-            mask_properties.take_weights(self._mask(context), seen)
-        except ParameterError as error:
+            mask_properties.take_weights(self._same_mask(), seen)
+        except (OceanObjectError, ParameterError) as error:
             return refuse(self, error)
         self.report(
             {"INFO"},
@@ -67,6 +72,23 @@ class OCEAN_OT_read_weights(OfActiveOcean, SteppedOperator, bpy.types.Operator):
             return settings.patches[self.patch].mask if self.patch < len(settings.patches) else None
         layer = active_layer(settings)
         return None if layer is None else getattr(layer.group, "mask", None)
+
+    def _same_mask(self) -> bpy.types.PropertyGroup:
+        """The mask for which the weights were read, whatever is active now.
+
+        Raises OceanObjectError where it is gone, or wants other weights by now.
+        """
+        with suppress(ValueError):  # of a path that leads nowhere
+            mask = self._ocean.path_resolve(self._path)
+            if _known(mask) == self._known:
+                return mask
+        raise OceanObjectError("The mask was removed or changed while its weights were read: read them again")
+
+
+def _known(mask: bpy.types.PropertyGroup) -> tuple[Any, ...]:
+    """What differs where a path leads to another's mask by now, or to one that wants other weights."""
+    settings = settings_of(mask.id_data)
+    return mask.mesh, mask.vertex_group, len(settings.layers), len(settings.patches)
 
 
 CLASSES = (OCEAN_OT_read_weights,)

@@ -9,11 +9,10 @@ from typing import Any, Protocol
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 
-from ..core import ParameterError
-from ..scene.settings import OceanObjectError
+from ..scene import ocean_object
 from .active_ocean import refuse
 
-_EXPECTED_ERRORS = (OceanObjectError, ParameterError, MemoryError, OSError)
+_EXPECTED_ERRORS = (OSError, *ocean_object.EXPECTED_ERRORS)
 _TURN = 0.05  # s of work before the window may draw again
 _LOOK = 0.01  # s
 
@@ -35,6 +34,9 @@ class Work(Protocol):
 
     def cancel(self) -> None:
         """Leave everything as it was before the first step."""
+
+    def abandon(self) -> None:
+        """End what goes on beside Blender, and touch none of its data: they are gone, or about to be."""
 
 
 class SteppedOperator:
@@ -70,17 +72,22 @@ class SteppedOperator:
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Go on for a moment, unless Esc is pressed."""
         if event.type == "ESC" and event.value == "PRESS":
-            self._work.cancel()
-            self._clean_up(context)
+            try:
+                self._work.cancel()
+            finally:
+                self._clean_up(context)
             self.report({"WARNING"}, translated("Cancelled: nothing was changed"))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        result = self._go_on(context, until=time.monotonic() + _TURN)
+        result = {"CANCELLED"}
+        try:
+            result = self._go_on(context, until=time.monotonic() + _TURN)
+        finally:  # after an error that nobody expects too
+            if result != {"RUNNING_MODAL"}:
+                self._clean_up(context)
         if result == {"RUNNING_MODAL"}:
             self._tell(context)
-        else:
-            self._clean_up(context)
         return result
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -89,6 +96,7 @@ class SteppedOperator:
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender itself ends the operator: the file is closed, and its objects with it."""
+        self._work.abandon()
         self._clean_up(context)
 
     def _start(self, context: bpy.types.Context) -> bool:
@@ -108,9 +116,11 @@ class SteppedOperator:
                 if time.monotonic() > until:
                     return {"RUNNING_MODAL"}
             result = work.finish()
-        except _EXPECTED_ERRORS as error:
+        except Exception as error:
             work.cancel()
-            return refuse(self, error)
+            if isinstance(error, _EXPECTED_ERRORS):
+                return refuse(self, error)
+            raise
         return self.conclude(context, result)
 
     def _tell(self, context: bpy.types.Context) -> None:

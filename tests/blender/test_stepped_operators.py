@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Long work a step at a time: given up at any step it leaves nothing; all steps are what one press makes."""
 
+import threading
+
 import bpy
 import numpy as np
 import pytest
@@ -92,53 +94,158 @@ class Timer:
         self.type, self.value = kind, "PRESS"
 
 
-@pytest.mark.parametrize("presses", [0, 2])
-def test_esc_is_heard_between_steps(extension, presses):
-    """Of an operator that takes one step an event, as long as each takes longer than a turn."""
-    module, log = extension("ui.stepped_operator"), []
+class LoggedWork:
+    """Work of three steps, of which the second raises what the operator says."""
 
-    class Work:
-        steps, done = 3, 0
+    steps, done = 3, 0
 
-        def advance(self):
-            self.done += 1
-            log.append(self.done)
+    def __init__(self, operator):
+        self._operator = operator
 
-        def finish(self):
-            log.append("finished")
-            return "result"
+    def advance(self):
+        self.done += 1
+        if self._operator.fails is not None and self.done == 2:
+            raise self._operator.fails
+        self._operator.log.append(self.done)
 
-        def cancel(self):
-            log.append("cancelled")
+    def finish(self):
+        self._operator.log.append("finished")
+        return "result"
+
+    def cancel(self):
+        self._operator.log.append("cancelled")
+
+    def abandon(self):
+        self._operator.log.append("abandoned")
+
+
+@pytest.fixture
+def stepped(extension, monkeypatch):
+    """An operator whose steps are longer than a turn, with the list of what happens to it."""
+    module = extension("ui.stepped_operator")
+    monkeypatch.setattr(module, "_TURN", -1.0)
 
     class Operator(module.SteppedOperator):
         def begin(self, _context):
-            return Work()
+            return LoggedWork(self)
 
         def conclude(self, _context, result):
-            log.append(result)
+            self.log.append(result)
             return {"FINISHED"}
 
         def report(self, *told):
-            log.append(told[0])
+            self.log.append(told[0])
 
         def _tell(self, _context):
             pass
 
         def _clean_up(self, _context):
-            log.append("cleaned")
+            self.log.append("cleaned")
 
     operator = Operator()
+    operator.log, operator.fails = [], None
     operator._work = operator.begin(None)
-    module._TURN, turn = -1.0, module._TURN
-    try:
-        for _ in range(presses):
-            assert operator.modal(bpy.context, Timer("TIMER")) == {"RUNNING_MODAL"}
-        assert operator.modal(bpy.context, Timer("MOUSEMOVE")) == {"RUNNING_MODAL"}
-        assert operator.modal(bpy.context, Timer("ESC")) == {"CANCELLED"}
-    finally:
-        module._TURN = turn
-    assert log == [*range(1, presses + 1), "cancelled", "cleaned", {"WARNING"}]
+    return operator
+
+
+@pytest.mark.parametrize("presses", [0, 2])
+def test_esc_is_heard_between_steps(stepped, presses):
+    """Of an operator that takes one step an event, as long as each takes longer than a turn."""
+    for _ in range(presses):
+        assert stepped.modal(bpy.context, Timer("TIMER")) == {"RUNNING_MODAL"}
+    assert stepped.modal(bpy.context, Timer("MOUSEMOVE")) == {"RUNNING_MODAL"}
+    assert stepped.modal(bpy.context, Timer("ESC")) == {"CANCELLED"}
+    assert stepped.log == [*range(1, presses + 1), "cancelled", "cleaned", {"WARNING"}]
+
+
+def test_after_the_last_step_the_window_is_as_before(stepped):
+    results = [stepped.modal(bpy.context, Timer("TIMER")) for _ in range(4)]
+    assert results == [*[{"RUNNING_MODAL"}] * 3, {"FINISHED"}]
+    assert stepped.log == [1, 2, 3, "finished", "result", "cleaned"]
+
+
+def test_an_error_that_is_expected_is_told(stepped):
+    stepped.fails = OSError("the disk is full")
+    stepped.modal(bpy.context, Timer("TIMER"))
+    assert stepped.modal(bpy.context, Timer("TIMER")) == {"CANCELLED"}
+    assert stepped.log == [1, "cancelled", {"ERROR"}, "cleaned"]
+
+
+def test_an_error_that_nobody_expects_leaves_nothing_in_the_window(stepped):
+    """Neither timer nor progress nor status: and it is still seen."""
+    stepped.fails = ZeroDivisionError("a bug")
+    stepped.modal(bpy.context, Timer("TIMER"))
+    with pytest.raises(ZeroDivisionError):
+        stepped.modal(bpy.context, Timer("TIMER"))
+    assert stepped.log == [1, "cancelled", "cleaned"]
+
+
+def test_when_blender_ends_it_no_data_are_touched(stepped):
+    stepped.modal(bpy.context, Timer("TIMER"))
+    stepped.cancel(bpy.context)
+    assert stepped.log == [1, "abandoned", "cleaned"]
+
+
+def test_a_conversion_that_is_abandoned_ends_its_thread(blenders_ocean, extension, empty_scene):  # noqa: F811
+    modifier = blenders_ocean.modifiers[0]
+    work = extension("scene.conversion").Converting(blenders_ocean, modifier, empty_scene)
+    threads = [each for each in threading.enumerate() if each.name.startswith("Ocean Tweak")]
+    assert threads
+    bpy.data.objects.remove(blenders_ocean)  # as when another file is opened
+    work.abandon()
+    for thread in threads:
+        thread.join(timeout=60.0)
+    assert not any(thread.is_alive() for thread in threads)
+
+
+def steps_of_reading(extension, ocean, painted):
+    """Reading weights into a mask of the active layer, begun: the operator's own methods, and its work."""
+    bpy.context.view_layer.objects.active = ocean
+    bpy.ops.ocean.layer_add(kind="WAVES")
+    ocean.ocean_tweak.active_layer = 0
+    mask = ocean.ocean_tweak.layers[0].group.mask
+    mask.mesh, mask.vertex_group = painted, "Harbour"
+    told = []
+    operator = reading_operator(extension, told)
+    work = operator.begin(bpy.context)
+    while work.done < work.steps:
+        work.advance()
+    return operator, work, told
+
+
+def reading_operator(extension, told):
+    """Read Weights without Blender's part of it, which cannot be made by hand."""
+    class_of_it = extension("ui.mask_operators").OCEAN_OT_read_weights
+    names = ("begin", "conclude", "_mask", "_same_mask")
+    own = {name: vars(class_of_it)[name] for name in names}
+    return type(
+        "Reading", (), {**own, "patch": -1, "samples": 16, "report": lambda _, *said: told.append(said)}
+    )()
+
+
+def test_weights_are_for_the_mask_that_was_asked(ocean, painted, extension):
+    """Whichever layer is active when they are read."""
+    operator, work, told = steps_of_reading(extension, ocean, painted)
+    first, second = ocean.ocean_tweak.layers
+    ocean.ocean_tweak.active_layer = 1
+    assert operator.conclude(bpy.context, work.finish()) == {"FINISHED"}
+    assert told[0][0] == {"INFO"}
+    assert first.group.mask.image is not None
+    assert second.group.mask.source == "NONE"
+    assert second.group.mask.image is None
+
+
+@pytest.mark.parametrize("change", ["removed", "another mesh"])
+def test_weights_of_a_mask_that_is_gone_are_refused(ocean, painted, extension, change):
+    operator, work, told = steps_of_reading(extension, ocean, painted)
+    if change == "removed":
+        bpy.ops.ocean.layer_remove()
+    else:
+        ocean.ocean_tweak.layers[0].group.mask.vertex_group = "Coast"
+    assert operator.conclude(bpy.context, work.finish()) == {"CANCELLED"}
+    assert told[0][0] == {"ERROR"}
+    assert "removed or changed" in told[0][1]
+    assert all(layer.group.mask.image is None for layer in ocean.ocean_tweak.layers)
 
 
 def test_without_a_window_a_press_does_all_of_it(ocean, painted):
