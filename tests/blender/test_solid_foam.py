@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Foam in the Solid view: which faces are white, that renders do not know of it, that it looks as water."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -101,9 +103,10 @@ def test_the_copy_looks_as_its_water_whatever_becomes_of_that(sheet, solid, wate
     solid.show(sheet, water)
     group = next(node for node in water.node_tree.nodes if node.type == "GROUP")
     group.inputs["Absorption"].default_value = (0.1, 0.9, 0.9, 1.0)  # a value
-    tint = water.node_tree.nodes.new("ShaderNodeCombineXYZ")  # and the structure
+    nodes, links = water.node_tree.nodes, water.node_tree.links
+    tint = nodes.new("ShaderNodeCombineXYZ")  # and the structure
     tint.inputs[0].default_value = 0.4
-    water.node_tree.links.new(tint.outputs[0], group.inputs["Backscatter"])
+    links.new(tint.outputs[0], group.inputs["Backscatter"])
     extension("scene.water_material").light_by(water, bpy.data.objects["Sun"])  # drivers too
     solid.mend()
     group.inputs["Crest Light"].default_value = 0.1
@@ -116,6 +119,87 @@ def test_the_copy_looks_as_its_water_whatever_becomes_of_that(sheet, solid, wate
     group.inputs["Crest Light"].default_value = 1.0  # nobody mends: the copy is another one, and is seen
     group.inputs["Absorption"].default_value = (0.9, 0.1, 0.1, 1.0)
     assert np.abs(rendered() - after).max() > 1e-4
+
+
+def test_the_copy_follows_what_is_within_the_water_s_nodes(sheet, solid, water, rendered):
+    """An image and how it is read, stops of a color ramp and points of a curve, each of which is seen."""
+    solid.show(sheet, water)
+    group = next(node for node in water.node_tree.nodes if node.type == "GROUP")
+    nodes, links = water.node_tree.nodes, water.node_tree.links
+    group.inputs["Absorption"].default_value = (0.5, 0.5, 0.5, 1.0)
+    tint = nodes.new("ShaderNodeCombineXYZ")
+    kinds = ("TexImage", "ValToRGB", "FloatCurve")
+    picture, ramp, curve = (nodes.new(f"ShaderNode{kind}") for kind in kinds)
+    for number, node in enumerate((picture, ramp, curve)):
+        links.new(node.outputs[0], tint.inputs[number])
+    links.new(tint.outputs[0], group.inputs["Backscatter"])
+    links.new(nodes.new("ShaderNodeTexCoord").outputs["Generated"], picture.inputs[0])
+    ramp.inputs[0].default_value = 0.5
+    white = bpy.data.images.new("White", 4, 4)
+    white.generated_color = (1.0, 1.0, 1.0, 1.0)
+
+    def give_image():
+        picture.image = white
+
+    def turn_image():
+        picture.extension, picture.texture_mapping.translation = "CLIP", (3.0, 0.0, 0.0)
+
+    def move_stop():
+        ramp.color_ramp.elements[1].position = 0.55
+
+    def move_point():
+        curve.mapping.curves[0].points[1].location = (1.0, 0.1)
+        curve.mapping.update()
+
+    solid.mend()
+    modifier = sheet.modifiers[0]
+    for change in (give_image, turn_image, move_stop, move_point):
+        change()
+        modifier.show_render = False
+        wanted = rendered()
+        modifier.show_render = True
+        assert np.abs(rendered() - wanted).max() > 1e-4, change  # the former copy
+        solid.mend()
+        assert np.abs(rendered() - wanted).max() < 1e-6, change
+
+
+@pytest.mark.parametrize("other", [True, False])
+def test_another_material_in_the_slot_is_copied_instead(sheet, solid, water, other):
+    solid.show(sheet, water)
+    sheet.material_slots[0].material = new = bpy.data.materials.new("Ink") if other else None
+    solid.mend()
+    found = evaluated_materials(sheet)[-1]
+    assert (found and found.original.name) == (f"Ink {sheet.modifiers[0].name}" if other else None)
+    if other:
+        assert new.diffuse_color[0] < found.diffuse_color[0]
+
+
+def test_another_material_of_a_camera_surface_too(solid, extension, ocean):
+    get_input = extension("nodes.modifier_inputs").get_input
+    water = extension("scene.water_material").water_material()
+    ocean.data.materials.append(water)
+    surface = extension("scene.camera_surface").add_camera_surface(ocean, bpy.context.scene)
+    around, foam = (
+        next(each for each in surface.modifiers if name in each.name) for name in ("Camera", "Foam")
+    )
+    assert get_input(foam, solid.MATERIAL_INPUT).name.startswith(water.name)
+    ink = bpy.data.materials.new("Ink")
+    extension("nodes.modifier_inputs").set_inputs(around, {"Material": ink})
+    solid.mend()
+    assert get_input(foam, solid.MATERIAL_INPUT).name.startswith("Ink")
+
+
+@pytest.mark.parametrize("kind", ["MATERIAL", "OBJECT", "MESH"])
+def test_a_window_looks_after_what_an_artist_changes(solid, monkeypatch, kind):
+    """A material in a slot of the mesh, of the object, or in a modifier tells of one of these."""
+    timers = SimpleNamespace(is_registered=lambda _: False, register=lambda what, **_: asked.append(what))
+    app = SimpleNamespace(background=False, timers=timers)
+    monkeypatch.setattr(solid, "bpy", SimpleNamespace(app=app))
+    asked = []
+    solid.follow(SimpleNamespace(id_type_updated=lambda what: what == "SCENE"))
+    assert not asked
+    solid.follow(SimpleNamespace(id_type_updated=lambda what: what == kind))
+    assert asked == [solid.mend]
 
 
 def test_what_is_mended_is_mended_once(sheet, solid, water):
