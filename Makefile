@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .tools/python-5.2/bin/python
 
-.PHONY: help setup demo test test-all test-core test-long test-window mutate same-seas lint bench bench-smoke build release docs guide papers clean
+.PHONY: help setup demo test test-all test-core test-long test-window mutate same-seas lint bench bench-smoke build release docs site guide papers clean
 
 help:       ## this list
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 14
@@ -68,6 +68,10 @@ docs:       ## write the documentation that is made from the code, and build the
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.parameters_doc
 	@$(VENV) -m tools.architecture
+	@$(VENV) -m tools.website
+
+site:       ## build the site into build/site/ from the documents as they are
+	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.website
 
 papers:     ## make the tables and pictures of docs/papers anew (some minutes)

@@ -31,3 +31,12 @@ def test_pictures_are_small_and_shown():
     assert [path.name for path in PICTURES if path.stat().st_size > LARGEST] == []
     shown = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
     assert [path.name for path in PICTURES if path.name not in shown] == []
+
+
+@pytest.mark.parametrize("script", [".ci/run", ".github/workflows/ci.yml"])
+def test_no_document_is_written_before_tests_compare_it(script):
+    """With `make docs` before them, those that find a document out of date would never fail."""
+    text = (ROOT / script).read_text(encoding="utf-8")
+    before, found, _ = text.partition("make test\n")
+    assert found
+    assert re.findall(r"make (?:docs|papers|guide|bench)$", before, flags=re.MULTILINE) == []
