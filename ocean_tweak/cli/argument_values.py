@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from ..export.frame_files import BAKED
 from ..export.places import path_of
 
 _BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
+#: m from the origin, beyond which positions of 32 bits no longer tell metres apart
+_FARTHEST = 1e7
 _WISHED = re.compile(r"(finest|area|memory)=(\d+(?:\.\d*)?|\.\d+)([a-z]*)", re.IGNORECASE)
 
 
@@ -75,6 +78,19 @@ class AreaAction(argparse.Action):
             setattr(namespace, self.dest, Area.of_words(values))
         except ValueError as error:
             parser.error(f"argument {option_string}: {error}")
+
+
+def coordinate(text: str) -> float:
+    """a place along an axis, m."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not abs(number) <= _FARTHEST:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} must be a number of metres from {-_FARTHEST:.0f} to {_FARTHEST:.0f}"
+        )
+    return number
 
 
 def tiles(text: str) -> tuple[int, int]:

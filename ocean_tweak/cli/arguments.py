@@ -135,8 +135,8 @@ def _add_spray(parser: _Arguments) -> None:
         help="write the sea's spray too, as points; --set spray.amount=2 and the like change it",
     )  # fmt: skip
     parser.add_argument(
-        "--spray-place", type=float, nargs=2, metavar=("X", "Y"),
-        help="make it around this place, in metres, and not on the sea's tile: where the camera is",
+        "--spray-place", type=argument_values.coordinate, nargs=2, metavar=("X", "Y"),
+        help="of a sea of patches: make it around this place, in metres: where the camera is",
     )  # fmt: skip
 
 

@@ -45,8 +45,10 @@ _LOG = logging.getLogger(__name__)
 
 def bake(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     """Bake each sea into its own folder of the cache; after one that fails or is stopped, no more."""
-    for name, job in jobs_of(arguments, seas).items():
-        spray = spray_of(arguments, seas[name])
+    jobs = jobs_of(arguments, seas)
+    sprays = {name: spray_of(arguments, seas[name]) for name in jobs}  # what is wrong is told before any work
+    for name, job in jobs.items():
+        spray = sprays[name]
         code = _bake_sea(arguments, cache_of(arguments, seas[name]), job)
         if code == DONE and spray is not None and not arguments.estimate:
             code = bake_spray(arguments, existing_folder(cache_of(arguments, seas[name]), job), job, spray)

@@ -62,7 +62,7 @@ def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None)
         seas = {_file_sea_name(arguments.params): FileSea(_file_shot(arguments.params))}
     else:
         seas = _chosen(scene_oceans(), arguments.object)
-    return {name: sea._replace(shot=_changed(sea.shot, arguments)) for name, sea in seas.items()}
+    return {name: sea._replace(shot=changed(sea.shot, arguments)) for name, sea in seas.items()}
 
 
 def _file_sea_name(path: Path | None) -> str:
@@ -97,8 +97,11 @@ def _chosen(oceans: Mapping[str, FileSea], name: str | None) -> dict[str, FileSe
     return {name: oceans[name]}
 
 
-def _changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
-    """The shot with the command line's changes."""
+def changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
+    """The shot with the command line's changes, and with spray where that is asked for.
+
+    Raises ParameterError or UsageError.
+    """
     data = shot.to_dict()
     if getattr(arguments, "spray", False):
         data.setdefault("spray", to_plain(Spray()))
@@ -115,10 +118,10 @@ def _changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
         value = getattr(arguments, key)
         if value is not None:
             data["timing"][key] = _value(value)
-    changed = Shot.from_dict(data)
+    made = Shot.from_dict(data)
     if arguments.plan is None:
-        return changed
-    return Shot(planned(changed.parameters, arguments.plan), changed.animation)
+        return made
+    return Shot(planned(made.parameters, arguments.plan), made.animation)
 
 
 def _value(text: str) -> Any:

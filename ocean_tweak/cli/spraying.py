@@ -38,12 +38,17 @@ def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
             raise UsageError("--spray-place: is where --spray is made, and that is missing")
         return None
     parameters = sea.shot.parameters
+    if arguments.spray_place is not None and not parameters.patches:
+        raise UsageError(
+            "--spray-place: is for a sea of patches; this one has spray on its own tile: leave it out"
+        )
     place = sea.place if arguments.spray_place is None else tuple(arguments.spray_place)
     if parameters.is_cascade and place is None:
         raise UsageError(
             "--spray: the sum of patches does not repeat: say where it is seen, --spray-place 0 0"
         )
-    spray = parameters.spray or Spray()
+    spray = parameters.spray
+    assert spray is not None  # the command's changes have given it one
     check_spray(parameters, spray)
     return WantedSpray(spray, place if parameters.patches else None)
 

@@ -22,7 +22,7 @@ from ..export.usd.isolated import problems_of
 from ..export.usd.package import Package, asset_name, with_samples_between
 from .outcome import DONE, FAILED, UsageError, shell_word
 from .progress import Progress
-from .seas import FileSea, SceneOceans, chosen_seas
+from .seas import FileSea, SceneOceans, changed, chosen_seas
 from .spraying import spray_of
 from .stopping import stop_requested
 
@@ -135,12 +135,13 @@ def _what(
 
 def _of_bake(arguments: argparse.Namespace) -> tuple[FileSea, tuple[Frame, ...], Area | None]:
     folder: Path = arguments.bake
+    of_sea = [each for each in arguments.assignments if not (arguments.spray and each.strip().startswith("spray."))]
     if arguments.form != "displacement":
         raise UsageError(f"--bake is for --form displacement, not {arguments.form}")
     given = {
-        "--params": arguments.params, "--preset": arguments.preset, "--set": arguments.assignments,
+        "--params": arguments.params, "--preset": arguments.preset, "--set": of_sea,
         "--fps": arguments.fps, "--start-frame": arguments.start_frame,
-        "--area": arguments.area,
+        "--area": arguments.area, "--plan": arguments.plan,
     }  # fmt: skip
     for option, value in given.items():
         if value:
@@ -149,7 +150,7 @@ def _of_bake(arguments: argparse.Namespace) -> tuple[FileSea, tuple[Frame, ...],
     frames = arguments.frames or job.frames or recorded_frames(folder)
     if not frames:
         raise UsageError(f"{folder}: holds no frames")
-    return FileSea(job.shot), frames, _on_its_texels(job.area)
+    return FileSea(changed(job.shot, arguments)), frames, _on_its_texels(job.area)
 
 
 def _on_its_texels(area: Area | None) -> Area | None:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from ..core.data.frames import held_frame
+from ..core.data.printable import without_exponent
 from ..core.numerics.memo import MEMO
 from ..core.parameters.spray import Spray
 from ..core.sea.foam_levels import FoamLevels
@@ -210,7 +211,7 @@ def spray_arguments(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str
     if parameters.spray is None or why_none(parameters) is not None:
         return []
     place = bake_place(ocean, scene)
-    return ["--spray", *(() if place is None else ("--spray-place", *map(str, place)))]
+    return ["--spray", *(() if place is None else ("--spray-place", *map(without_exponent, place)))]
 
 
 def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Place | None:

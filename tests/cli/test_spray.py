@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocean_tweak.cli import main
+from ocean_tweak.cli import FileSea, main
 from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea.spray import TileSpray
 from ocean_tweak.core.spray.columns import COLUMNS, columns
 from ocean_tweak.export.ply import PlyError, read_ply
@@ -99,3 +100,23 @@ def test_patches_apart_need_a_place(sea: Path, capsys: pytest.CaptureFixture[str
     assert bake(sea, "--spray", *plan) == 2
     assert "--spray-place" in capsys.readouterr().err
     assert bake(sea, "--spray-place", "0", "0") == 2
+
+
+@pytest.mark.parametrize(
+    ("place", "reason"),
+    [(("0", "0"), "is for a sea of patches"), (("nan", "0"), "'nan' must be a number of metres")],
+)
+def test_a_place_that_would_be_ignored_or_is_none_is_refused(
+    sea: Path, capsys: pytest.CaptureFixture[str], place: tuple[str, str], reason: str
+) -> None:
+    assert bake(sea, "--spray", "--spray-place", *place) == 2
+    assert reason in capsys.readouterr().err
+    assert bake(sea, "--spray", "--plan", "finest=4,area=150", "--spray-place", "0", "1e400") == 2
+    assert not (sea.parent / "out").exists()
+
+
+def test_no_sea_is_baked_where_another_has_no_spray(tmp_path: Path) -> None:
+    calm = SEA.replace(layers=(WaveLayer(wind_speed=5.0, fetch=300e3),))
+    seas = {name: FileSea(Shot(each), frames=(1,)) for name, each in (("storm", SEA), ("calm", calm))}
+    assert main(["bake", "--out", str(tmp_path / "out"), "--spray"], lambda: seas) == 2
+    assert not (tmp_path / "out").exists()

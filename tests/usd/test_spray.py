@@ -85,3 +85,18 @@ def test_a_sea_without_spray_is_refused_before_anything_is_written(
     assert main([*arguments, "--set", "layers.0.wind_speed=5"]) == 2
     assert "tears nothing off" in capsys.readouterr().err
     assert not top.parent.exists()
+
+
+def test_over_a_bake_the_spray_can_be_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sea, cache, top = tmp_path / "sea.json", tmp_path / "cache", tmp_path / "asset" / "sea.usd"
+    sea.write_text(SEA.to_json(), encoding="utf-8")
+    assert main(["bake", "--params", str(sea), "--frames", "12-13", "--out", str(cache)]) == 0
+    (folder,) = cache.glob("*/v*")
+    arguments = ["usd", "--bake", str(folder), "--out", str(top), "--form", "displacement"]
+    assert main([*arguments, "--spray", "--set", "spray.amount=0.5"]) == 0
+    expected = TileSpray(Ocean(SEA)).at(12 / 24.0, Spray(amount=0.5))
+    assert len(points_of(top).GetIdsAttr().Get(13.0)) == len(expected.id)
+    for refused in (["--set", "spray.amount=0.5"], ["--spray", "--set", "layers.0.wind_speed=9"]):
+        capsys.readouterr()
+        assert main([*arguments, *refused]) == 2
+        assert "--set: the bake in" in capsys.readouterr().err

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Words of strangers, such as keys and names out of files, as a message may repeat them."""
+"""Words of strangers, such as keys and names out of files, as a message may repeat them; numbers in words."""
 
 from __future__ import annotations
 
 import reprlib
+
+import numpy as np
 
 #: characters of a whole message
 LONGEST = 4000
@@ -51,3 +53,8 @@ def readable_bytes(size: float) -> str:
             return f"{size:.0f} {unit}" if unit == "bytes" else f"{size:.3g} {unit}"
         size /= 1000.0
     raise AssertionError
+
+
+def without_exponent(number: float) -> str:
+    """A number as the command line takes it: it would take -1e-05 for an option."""
+    return np.format_float_positional(number, trim="-")

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..data.printable import shown
+from ..data.printable import shown, without_exponent
 
 Array = NDArray[np.float64]
 
@@ -92,8 +92,8 @@ class Area:
         return cls.of_file(float(words[0]), int(words[1]), [float(word) for word in words[2:]] or (0.0, 0.0))
 
     def words(self) -> tuple[str, ...]:
-        """SIZE SAMPLES X Y, without exponents: -1e-05 would be taken for an option."""
-        size, *corner = (np.format_float_positional(number, trim="-") for number in (self.size, *self.corner))
+        """SIZE SAMPLES X Y, without exponents."""
+        size, *corner = map(without_exponent, (self.size, *self.corner))
         return (size, str(self.resolution), *corner)
 
     def to_dict(self) -> dict[str, Any]:
