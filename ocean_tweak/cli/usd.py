@@ -61,8 +61,9 @@ def run(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> int:
     chosen = arguments.only or package.frames
     with stop_requested() as stop:
         export.check(chosen)
-        if not arguments.stitch:
-            _make(export, chosen, arguments, progress, stop.is_set)
+        if arguments.stitch:
+            export.check_clips()
+        _make(export, () if arguments.stitch else chosen, arguments, progress, stop.is_set)
     if not progress.is_complete:
         progress.fail("stopped")
         _LOG.error("%s", _stopped(package))
@@ -91,13 +92,17 @@ def _make(
     progress: Progress,
     stopped: Callable[[], bool],
 ) -> None:
+    """Make frames, and the spray of all frames where it is wanted and not left for the end."""
     spray = arguments.spray and not arguments.only
+    if not frames and not spray:
+        return
     of_spray = len(export.package.frames) if spray else 0
     left, total = export.left(frames) + of_spray, len(frames) * export.rounds + of_spray
     progress.say(f"{left} of {total} frames to make", left=left)
     progress.begin(left)
     workers = arguments.workers or min(_THREADS, os.cpu_count() or 1)
-    rounds = [export.make(frames, workers), *([export.make_spray()] if spray else [])]
+    rounds = [export.make(frames, workers)] if frames else []
+    rounds += [export.make_spray()] if spray else []
     try:
         for making in rounds:
             with closing(making):
@@ -135,7 +140,9 @@ def _what(
 
 def _of_bake(arguments: argparse.Namespace) -> tuple[FileSea, tuple[Frame, ...], Area | None]:
     folder: Path = arguments.bake
-    of_sea = [each for each in arguments.assignments if not (arguments.spray and each.strip().startswith("spray."))]
+    of_sea = [
+        each for each in arguments.assignments if not (arguments.spray and each.strip().startswith("spray."))
+    ]
     if arguments.form != "displacement":
         raise UsageError(f"--bake is for --form displacement, not {arguments.form}")
     given = {

@@ -10,7 +10,11 @@ import pytest
 
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
-from ocean_tweak.core.sea.spray import TileSpray
+from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.spray import ShotSpray, TileSpray
+from ocean_tweak.export.usd.export import Export
+from ocean_tweak.export.usd.library import UsdError
+from ocean_tweak.export.usd.package import Package
 
 pxr = pytest.importorskip("pxr")
 from pxr import Usd, UsdGeom, UsdShade, UsdValidation  # noqa: E402
@@ -100,3 +104,23 @@ def test_over_a_bake_the_spray_can_be_set(tmp_path: Path, capsys: pytest.Capture
         capsys.readouterr()
         assert main([*arguments, *refused]) == 2
         assert "--set: the bake in" in capsys.readouterr().err
+
+
+def test_clips_that_were_made_apart_are_stitched_with_their_spray(tmp_path: Path) -> None:
+    for frame in ("12", "13"):
+        top = export(tmp_path, "--only", frame, form="clips")
+    assert not (top.parent / "spray.usdc").exists()
+    export(tmp_path, "--stitch", form="clips")
+    expected = TileSpray(Ocean(SEA)).at(12 / 24.0, Spray())
+    assert len(points_of(top).GetIdsAttr().Get(13.0)) == len(expected.id)
+
+
+def test_layers_are_not_put_together_without_their_spray(tmp_path: Path) -> None:
+    shot = Shot(SEA)
+    package = Package("sea", shot, (12,), form="points")
+    asset = Export(package, tmp_path / "sea.usd", spray=ShotSpray(shot, Spray()))
+    for _ in asset.make((12,)):
+        pass
+    with pytest.raises(UsdError, match=r"spray\.usdc: the spray is missing"):
+        asset.finish()
+    assert not (tmp_path / "sea.usd").exists()

@@ -139,11 +139,22 @@ class Export:
     def _spray_layer(self) -> Path:
         return self.top.with_name(SPRAY_LAYER)
 
-    def finish(self) -> None:
-        """Write the layers that hold the frames together. Raises UsdError where frames are missing."""
-        package = self.package
+    def check_clips(self) -> None:
+        """Raise UsdError where clips are missing."""
         for _, _, sink in self._clips():
             sink.check_complete()
+
+    def finish(self) -> None:
+        """Write the layers that hold the frames together.
+
+        Raises UsdError where frames or the spray are missing.
+        """
+        package = self.package
+        self.check_clips()
+        if self.spray is not None and not self._spray_layer.exists():
+            raise UsdError(
+                f"{self._spray_layer}: the spray is missing: make it before the layers are put together"
+            )
         boxes, payloads = [], {}
         for folder, edition in self.editions:
             folder.mkdir(exist_ok=True)
