@@ -8,8 +8,11 @@ of patches it is around the camera; of one that repeats, each particle is in the
 from __future__ import annotations
 
 import dataclasses
+import functools
 import glob
+import math
 import re
+import threading
 from collections.abc import Hashable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -26,7 +29,7 @@ from ..core.numerics.memo import MEMO
 from ..core.parameters.spray import Spray
 from ..core.sea.foam_levels import FoamLevels
 from ..core.sea.placed_waves import repeating
-from ..core.sea.spray import CameraSpray, TileSpray, why_none
+from ..core.sea.spray import CameraSpray, TileSpray, squares, why_none
 from ..core.spray.columns import COLUMNS, columns
 from ..core.spray.particles import Particles
 from ..export.frame_files import SPRAY as SPRAY_FILES
@@ -61,36 +64,56 @@ _IS_NEAR = Fraction(1)
 
 Place = tuple[float, float]
 
+
+@dataclass(frozen=True)
+class _Held:
+    """What a mesh holds, and the frame for which it was asked."""
+
+    content: Hashable
+    frame: Fraction
+
+
 # what the meshes hold, by their session uid
-_shown: dict[int, Hashable] = {}
+_shown: dict[int, _Held] = {}
 
 
 class _Maker:
-    """Spray of a sea, and of which time it was made last."""
+    """Spray of a sea, and of which time and where it was made last."""
 
     def __init__(self, sea: OceanParameters, is_around: bool) -> None:
-        self._around = CameraSpray(FoamLevels(sea)) if is_around else None
-        self._tile = None if is_around else TileSpray(Ocean(sea))
-        self._last: Fraction | None = None
+        self._levels = FoamLevels(sea) if is_around else None
+        self._source = TileSpray(Ocean(sea)) if self._levels is None else CameraSpray(self._levels)
+        self._last: tuple[Fraction, Place] | None = None
+        self._busy = threading.Lock()
 
     @property
     def nbytes(self) -> int:
         """Bytes of the crests that are remembered."""
-        return sum(each.nbytes for each in (self._around, self._tile) if each is not None)
+        return self._source.nbytes
 
     def at(self, time: Fraction, spray: Spray, place: Place) -> Particles:
         """All that is in the air at a time. It may be called on any thread."""
-        self._last = time
-        return self._tile.at(time, spray) if self._around is None else self._around.at(time, spray, place)
+        with self._busy:
+            if isinstance(self._source, TileSpray):
+                made = self._source.at(time, spray)
+            else:
+                made = self._source.at(time, spray, place)
+            self._last = time, place
+        return made
 
-    def is_near(self, time: Fraction) -> bool:
-        """Whether the spray of a time is quickly made."""
-        return self._last is not None and 0 <= time - self._last <= _IS_NEAR
+    def is_near(self, time: Fraction, place: Place) -> bool:
+        """Whether the spray of a time around a place is quickly made: nobody is making any now, and what was
+        made last is a little older, in the same squares of cells."""
+        if self._last is None or self._busy.locked():
+            return False
+        last, there = self._last
+        is_there = self._levels is None or squares(self._levels, place) == squares(self._levels, there)
+        return is_there and 0 <= time - last <= _IS_NEAR
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """Spray that is wanted of an ocean at a time in s.
+    """Spray that is wanted of an ocean at a time in s, that of a whole frame.
 
     sea : whose crests break
     place : x and y of the camera, in the ocean's space, m
@@ -106,14 +129,17 @@ class Wanted:
     repeats: tuple[int, int]
 
     @property
-    def maker(self) -> _Maker:
-        """What makes it."""
-        return MEMO.get(_KIND, (self.sea, self.is_around), lambda: _Maker(self.sea, self.is_around))
+    def is_near(self) -> bool:
+        """Whether it is quickly made."""
+        maker = MEMO.find(_KIND, (self.sea, self.is_around))
+        return maker is not None and maker.is_near(self.time, self.place)
 
     def make(self) -> Particles:
         """Make it; touches no data of Blender and may run on any thread."""
-        made = self.maker.at(self.time, self.spray, self.place)
-        MEMO.put(_KIND, (self.sea, self.is_around), self.maker)  # it has grown
+        key = self.sea, self.is_around
+        maker = MEMO.get(_KIND, key, lambda: _Maker(*key))
+        made = maker.at(self.time, self.spray, self.place)
+        MEMO.put(_KIND, key, maker)  # it has grown
         return made
 
 
@@ -132,7 +158,7 @@ def wanted(
     goes_on = surface is not None or any(water_material.is_far(child) for child in ocean.children)
     repeats = (0, 0) if goes_on else plan.render.repeats
     is_around = surface is not None and bool(sea.patches)
-    return Wanted(sea, plan.time, shown, _place(ocean, surface, plan, scene), is_around, repeats)
+    return Wanted(sea, _time(plan, scene), shown, _place(ocean, surface, plan, scene), is_around, repeats)
 
 
 def refresh(
@@ -162,24 +188,32 @@ def refresh(
         item.data = item.data.copy()
     baked = _baked(settings_of(ocean))
     held_sea.keep_out(item, baked is None)
-    _tell_nodes(ocean, item, asked.spray, plan, scene)
+    _tell_nodes(ocean, item, asked.spray, baked, plan, scene)
     if baked is not None:
         if len(item.data.vertices):
             item.data.clear_geometry()
             _shown.pop(item.data.session_uid, None)
         return True
-    content = (asked, plan.rate, plan.scale)
-    # between whole frames the nodes move it
-    if not plan.is_whole or _shown.get(item.data.session_uid) == content:
+    wanted_now = _Held((asked, plan.rate, plan.scale), plan.frame)
+    if _is_shown(_shown.get(item.data.session_uid), wanted_now):
         return True
-    if not patient and not asked.maker.is_near(plan.time):
+    if not patient and not asked.is_near:
         return False
     values = columns(asked.make())
     if not asked.is_around:
         _put_near(values, asked)
     _write(item.data, values, plan)
-    _shown[item.data.session_uid] = content
+    _shown[item.data.session_uid] = wanted_now
     return True
+
+
+def _is_shown(held: _Held | None, asked: _Held) -> bool:
+    """Whether a mesh holds what is asked for. Between two frames that of the nearest one is enough: the nodes
+    move it, and motion blur compares the same particles."""
+    if held is None:
+        return False
+    is_between = asked.frame.denominator != 1 and abs(asked.frame - held.frame) <= Fraction(1, 2)
+    return is_between or held.content == asked.content
 
 
 def too_few_bounces(ocean: bpy.types.Object, scene: bpy.types.Scene) -> str | None:
@@ -247,6 +281,12 @@ def _remove(item: bpy.types.Object) -> None:
             bpy.data.meshes.remove(mesh)
 
 
+def _time(plan: Plan, scene: bpy.types.Scene) -> Fraction:
+    """The ocean's time at the whole frame that is nearest: from there the nodes move spray."""
+    since = plan.frame - math.floor(plan.frame + Fraction(1, 2))
+    return plan.time - Fraction(plan.rate) * since / frame_rate(scene)
+
+
 def _place(
     ocean: bpy.types.Object, surface: bpy.types.Object | None, plan: Plan, scene: bpy.types.Scene
 ) -> Place:
@@ -281,16 +321,21 @@ def _new(ocean: bpy.types.Object) -> bpy.types.Object:
 
 
 def _tell_nodes(
-    ocean: bpy.types.Object, item: bpy.types.Object, spray: Spray, plan: Plan, scene: bpy.types.Scene
+    ocean: bpy.types.Object,
+    item: bpy.types.Object,
+    spray: Spray,
+    baked: _Baked | None,
+    plan: Plan,
+    scene: bpy.types.Scene,
 ) -> None:
     modifier = next(each for each in item.modifiers if is_of_kind(each.node_group, SPRAY))
     settings = settings_of(ocean)
-    baked = _baked(settings)
     inputs: dict[str, object] = {"Material": _material(ocean), "Life": spray.life}
     if baked is None:
-        seconds = float(time_stretch(scene) / frame_rate(scene))
+        # a file a frame of the scene, whatever its stretch of time
+        files, seconds = float(time_stretch(scene)), float(1 / frame_rate(scene))
         inputs |= {FILES: "", "Scale": 1.0, "Velocity Scale": 1.0, "Viewport Share": 1.0}
-        inputs |= frame_values((-_MOST, _MOST), 1.0, seconds) | {"Baked Frames": ""}
+        inputs |= frame_values((-_MOST, _MOST), files, seconds) | {"Baked Frames": ""}
     else:
         inputs |= {
             FILES: baked.start, "Scale": plan.scale, "Velocity Scale": velocity_scale(settings, plan, scene),
@@ -322,9 +367,20 @@ def _baked(settings: OceanSettings) -> _Baked | None:
     if found is None:
         return None
     stored, name, here = found
+    folder = here / SPRAY_FILES
+    try:
+        changed = folder.stat().st_mtime_ns
+    except OSError:
+        return None
+    return _baked_in(folder, name, stored, changed)
+
+
+@functools.lru_cache(maxsize=64)
+def _baked_in(folder: Path, name: str, stored: str, _changed: int) -> _Baked | None:
+    """The spray in a folder, which is read anew when it has changed."""
     start = files_start(name, SPRAY_FILES)
     files = {}
-    for path in (here / SPRAY_FILES).glob(f"{glob.escape(start)}*.ply"):
+    for path in folder.glob(f"{glob.escape(start)}*.ply"):
         number = path.name.removeprefix(start).removesuffix(".ply")
         if re.fullmatch(r"-?\d+", number):
             files[int(number)] = path

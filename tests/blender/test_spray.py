@@ -2,6 +2,7 @@
 """Spray of an ocean: points at the particles of the core, made anew with each frame, gone with the ocean."""
 
 import importlib
+import threading
 from types import SimpleNamespace
 
 import bpy
@@ -86,7 +87,9 @@ def test_a_switch_and_numbers_that_change_no_wave(ocean, empty_scene):
     assert ocean.ocean_tweak.to_parameters(empty_scene).spray is None
 
 
-def test_a_sea_of_patches_has_it_around_the_camera(extension, empty_scene):
+@pytest.fixture
+def around(extension, empty_scene):
+    """An ocean of patches with a surface around a camera at x = 100 m, y = 50 m."""
     sea = planned(OceanParameters(seed=2, layers=SEA.layers), Wish(finest=4.0, area=200.0))
     shown = sea.replace(spray=Spray(life=1.0, amount=0.2), patches=sea.patches).on_one_grid(64)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
@@ -97,9 +100,35 @@ def test_a_sea_of_patches_has_it_around_the_camera(extension, empty_scene):
     ocean = extension("scene.ocean_object").add(empty_scene, shown)
     extension("scene.camera_surface").add_camera_surface(ocean, empty_scene)
     empty_scene.frame_set(2)
-    expected = CameraSpray(FoamLevels(sea)).at(1 / 24.0, shown.spray, (100.0, 50.0))
+    return ocean, sea, shown.spray
+
+
+def test_a_sea_of_patches_has_it_around_the_camera(around):
+    ocean, sea, spray = around
+    expected = CameraSpray(FoamLevels(sea)).at(1 / 24.0, spray, (100.0, 50.0))
     assert len(expected.age) > 1000
     np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
+
+
+def test_what_a_camera_far_away_sees_is_not_quickly_made(extension, around, empty_scene):
+    ocean, _, _ = around
+    module = extension("scene.spray")
+    for x, is_near in ((99.5, True), (160.0, False)):
+        empty_scene.camera.location.x = x
+        bpy.context.view_layer.update()
+        plan = extension("scene.plan").plan_for(ocean, ocean.ocean_tweak, empty_scene)
+        assert module.refresh(ocean, plan, empty_scene, patient=False) is is_near
+
+
+def test_a_place_next_to_zero_is_no_option(extension, around, empty_scene):
+    ocean, _, _ = around
+    empty_scene.camera.location = (-1.25e-7, -2e-5, 4.0)
+    bpy.context.view_layer.update()
+    words = extension("scene.spray").spray_arguments(ocean, empty_scene)
+    bake = importlib.import_module("ocean_tweak.cli.arguments").make_parser(in_blender=False)
+    read = bake.parse_args(["bake", "--frames", "1", *words])
+    assert read.spray
+    assert read.spray_place == pytest.approx((-1.25e-7, -2e-5), rel=1e-3)
 
 
 def test_a_sea_without_spray_says_why(ocean, empty_scene, caplog):
@@ -210,3 +239,82 @@ def test_baked_spray_is_kept_in_the_file_and_needs_no_extension(extension, baked
         item = next(item for item in bpy.data.objects if item.name.endswith("Spray"))
         bpy.context.scene.frame_set(14)
         assert len(points(item)["radius"]) > 100
+
+
+@pytest.fixture
+def asked(extension, ocean, empty_scene):
+    """What a refresh is given at frame 13 of a sea that nobody has made yet."""
+    with extension("scene.handlers").asleep():
+        empty_scene.frame_set(13)
+    extension("core.numerics.memo").MEMO.drop("spray")
+    extension("scene.spray").forget_all()
+    plan = extension("scene.plan").plan_for(ocean, ocean.ocean_tweak, empty_scene)
+    return ocean, plan, empty_scene
+
+
+def test_a_window_does_not_wait_while_a_thread_looks_back(extension, asked, monkeypatch):
+    module, tile = extension("scene.spray"), extension("core.sea.spray").TileSpray
+    whole, begun, may_end = tile.at, threading.Event(), threading.Event()
+
+    def slow(self, *arguments):
+        begun.set()
+        may_end.wait(5.0)
+        return whole(self, *arguments)
+
+    monkeypatch.setattr(tile, "at", slow)
+    assert not module.refresh(*asked, patient=False)
+    worker = threading.Thread(target=module.wanted(*asked).make)
+    worker.start()
+    assert begun.wait(5.0)
+    assert not module.refresh(*asked, patient=False)
+    may_end.set()
+    worker.join()
+    assert module.refresh(*asked, patient=False)
+    assert len(points(spray_of(asked[0]))["radius"]) == len(made(0.5).age)
+
+
+def test_what_failed_is_not_near(extension, asked, monkeypatch):
+    module = extension("scene.spray")
+    monkeypatch.setattr(extension("core.sea.spray"), "usable_memory", lambda: 1_000)
+    with pytest.raises(extension("core.sea.spray").SprayError):
+        module.wanted(*asked).make()
+    monkeypatch.undo()
+    assert not module.refresh(*asked, patient=False)
+
+
+def test_a_first_look_at_a_frame_between_shows_the_nearest_one(extension, asked, empty_scene):
+    ocean, _, _ = asked
+    empty_scene.frame_set(12, subframe=0.75)
+    found, expected = points(spray_of(ocean)), made(0.5)
+    moved = expected.position - expected.velocity * 0.25 / 24.0
+    np.testing.assert_allclose(found["position"], moved, atol=1e-4)
+    empty_scene.frame_set(20, subframe=0.25)  # far away, nothing of the frame before is left
+    expected = made(19 / 24.0)
+    moved = expected.position + expected.velocity * 0.25 / 24.0
+    np.testing.assert_allclose(points(spray_of(ocean))["position"], moved, atol=1e-4)
+
+
+def test_a_stretched_frame_shows_its_own_particles(ocean, empty_scene):
+    empty_scene.render.frame_map_old, empty_scene.render.frame_map_new = 100, 200
+    empty_scene.frame_set(26)
+    expected = made(12 / 24.0)
+    np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-4)
+    empty_scene.frame_set(27, subframe=0.25)
+    expected = made(12.5 / 24.0)
+    moved = expected.position + expected.velocity * 0.5 * 0.25 / 24.0
+    np.testing.assert_allclose(points(spray_of(ocean))["position"], moved, atol=1e-4)
+
+
+def test_files_are_looked_at_when_they_change_and_not_a_frame(extension, baked, empty_scene, monkeypatch):
+    module, looks = extension("scene.spray"), []
+    whole = module.told_by_ply
+    monkeypatch.setattr(module, "told_by_ply", lambda *given: looks.append(given) or whole(*given))
+    for frame in (12, 14, 12):
+        empty_scene.frame_set(frame)
+    assert looks == []
+    (folder,) = extension("scene.patch_points").files_of(baked.ocean_tweak)[2].glob("spray")
+    for path in folder.iterdir():
+        path.unlink()
+    empty_scene.frame_set(14)
+    assert module.is_live(baked)
+    assert len(points(spray_of(baked))["radius"]) > 100
