@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Foam, Ocean, OceanParameters, Spray, WaveLayer
+from ocean_tweak.core import Foam, Ocean, OceanParameters, Patch, Spray, WaveLayer
 from ocean_tweak.core.foam.model import breaking_of
 from ocean_tweak.core.numerics import random
 from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
@@ -17,10 +18,19 @@ from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea import spray as sea_spray
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.patch_plan import Wish, planned
-from ocean_tweak.core.sea.spray import CameraSpray, SprayError, TileSpray, why_none
+from ocean_tweak.core.sea.spray import CameraSpray, SprayError, TileSpray, check_spray, why_none
+from ocean_tweak.core.sea.spray_squares import Square, outside, squares
 from ocean_tweak.core.spray import drops
 from ocean_tweak.core.spray.flight import Flight
-from ocean_tweak.core.spray.particles import Particles, friction_velocity
+from ocean_tweak.core.spray.particles import (
+    Crests,
+    Particles,
+    expected,
+    friction_velocity,
+    in_the_air,
+    mean_life,
+)
+from ocean_tweak.core.waves.contribution import Wind
 
 _TIME = 10.0
 
@@ -284,7 +294,7 @@ def test_around_a_camera_it_is_the_same_from_anywhere_near() -> None:
 
 def test_squares_around_a_camera_leave_no_cell_out_and_hold_none_twice() -> None:
     levels = FoamLevels(_patched())
-    found = sea_spray.squares(levels, (37.0, -81.0))
+    found = squares(levels, (37.0, -81.0))
     area = [(each.first[0] * 0.25 * 2.0**each.level, 176 * 0.25 * 2.0**each.level) for each in found]
     for (inner, size), (outer, outer_size) in pairwise(area):
         assert outer <= inner
@@ -292,3 +302,61 @@ def test_squares_around_a_camera_leave_no_cell_out_and_hold_none_twice() -> None
     for finer, coarser in pairwise(found):
         assert coarser.inner is not None
         assert [2 * number for number in coarser.inner] == list(finer.first)
+
+
+def test_a_square_looks_at_all_cells_that_a_step_of_the_finer_one_can_leave_to_it() -> None:
+    levels, own = FoamLevels(_patched()), 176**2 - 88**2
+    asides = set()
+    for x in np.arange(-40.0, 40.0, 1.7):
+        for square in squares(levels, (x, 0.3 * x))[1:]:
+            assert square.inner is not None
+            cells = square.cells()
+            assert np.count_nonzero(outside(*cells, square.inner)) == own
+            assert len(cells[0]) < 1.12 * own
+            asides.add(square.inner[0] - square.first[0])
+    assert asides == {36, 44, 52}  # in the middle, and a step of the finer one to both sides
+
+
+def test_a_step_of_the_finest_square_looks_at_no_coarser_one_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[int] = []
+    original = sea_spray._broken
+
+    def counted(sea: Ocean, square: Square, time: Fraction) -> object:
+        looked.append(square.level)
+        return original(sea, square, time)
+
+    monkeypatch.setattr(sea_spray, "_broken", counted)
+    levels, spray = FoamLevels(_patched()), Spray(life=0.5)
+    maker = CameraSpray(levels)
+    maker.at(_TIME, spray, (0.0, 0.0))
+    assert set(looked) == {0, 1, 2, 3, 4}
+    looked.clear()
+    moved = maker.at(_TIME, spray, (3.0, 0.0))  # of 16 cells of 0.25 m, more than half
+    assert set(looked) == {0}
+    assert _same(moved, CameraSpray(levels).at(_TIME, spray, (3.0, 0.0)))
+
+
+@pytest.mark.parametrize("life", [0.1, 4.0, 30.0])
+def test_as_many_are_in_the_air_as_the_mean_life_says(life: float) -> None:
+    """Of one moment's particles those that are left at each later one: their sum is how long they live."""
+    n, step, spray, wind = 2000, 0.125, Spray(life=life), Wind(25.0, 0.0)
+    key, gust = (random.hash_cells(np.arange(n), np.arange(n), 3, stream) for stream in (1, 2))
+    rest, ones = np.zeros((n, 3), np.float32), np.ones(n, np.float32)
+    crests = Crests(key, gust, 0.1 * ones, ones, rest, np.zeros((n, 2, 3), np.float32), rest)
+    after = np.arange(0.0, max(life, 2.0) + 2.0 * step, step)
+    left = [len(in_the_air(crests, spray, wind, step, float(since)).age) for since in after]
+    torn = float(expected(crests, spray, wind, step).sum())
+    assert mean_life(spray) == pytest.approx(sum(left) * step / torn, rel=0.15)
+
+
+def test_memory_is_asked_for_as_many_squares_as_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of short waves alone there are few levels, and around them no crests are looked for."""
+    patches = (Patch(40.0, 0.3, 1.5, 1e6, 128), Patch(11.0, 0.9, 0.5, 1.5, 128))
+    sea = OceanParameters(seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=3e3),), patches=patches)
+    counts: list[float] = []
+    monkeypatch.setattr(sea_spray, "_check_memory", lambda count, spray: counts.append(count))
+    assert len(squares(FoamLevels(sea), (0.0, 0.0))) < 5
+    check_spray(sea, Spray(life=0.5))
+    CameraSpray(FoamLevels(sea)).at(_TIME, Spray(life=0.5), (0.0, 0.0))
+    beforehand, found = counts
+    assert beforehand == pytest.approx(found, rel=0.5)

@@ -13,7 +13,7 @@ import math
 import threading
 from collections.abc import Callable, Hashable, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,20 +28,15 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.shot import Shot
 from ..parameters.spray import Spray
 from ..spray.drops import LEAST_WIND, torn_rate
-from ..spray.particles import BYTES, MEAN_LIFE, Crests, Particles, expected, in_the_air, joined, longest_life
-from .foam_levels import FINEST, FoamLevels
+from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
+from .foam_levels import FoamLevels
 from .ocean import Ocean
 from .regions import TILE, Places
+from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: cells along each side of a square around a place, of which the middle ones belong to the next finer, and
-#: cells by which squares follow the place
-_CELLS, _STEP = 176, 16
-#: squares around a place, at most, by how many particles one stands for there: beyond a few hundred metres
-#: nobody sees drops
-_STANDS_FOR = (1, 1, 2, 4, 8)
 #: m; a cell in which crests break is looked at in parts no larger than this
 _PART = 1.0
 #: strength of a breaking crest from which on all of it tears, and the area that tears over the mean strength
@@ -85,14 +80,9 @@ def check_spray(parameters: OceanParameters, spray: Spray) -> None:
         raise ParameterError("spray", "", why)
     wind, tears = foam_wind(parameters), _TEARS * Ocean(parameters).mean_breaking
     assert wind is not None
-    if parameters.is_cascade:
-        sides = [_CELLS * FINEST * 2.0**level for level in range(len(_STANDS_FOR))]
-        inner = [0.0, *sides]
-        rings = zip(sides, inner[:-1], _STANDS_FOR, strict=True)
-        area = sum((side**2 - less**2) / stands for side, less, stands in rings)
-    else:
-        area = parameters.domain_size**2
-    _check_memory(area * tears * torn_rate(wind.speed) * spray.amount * MEAN_LIFE, spray)
+    around = parameters.is_cascade
+    area = area_of_squares(FoamLevels(parameters)) if around else parameters.domain_size**2
+    _check_memory(area * tears * torn_rate(wind.speed) * spray.amount * mean_life(spray), spray)
 
 
 class TileSpray:
@@ -115,9 +105,9 @@ class TileSpray:
 
         Raises SprayError for more than the memory holds.
         """
-        return self._crests.in_the_air(self._foam.foam_model, time, spray, (None,), self._look)
+        return self._crests.in_the_air(self._foam.foam_model, time, spray, (_TILE,), self._look)
 
-    def _look(self, index: int, _regions: Sequence[None]) -> list[Crests]:
+    def _look(self, index: int, _squares: Sequence[Square]) -> list[_Looked]:
         foam = self._foam
         n, side, model = foam.parameters.resolution, foam.parameters.domain_size, foam.foam_model
         fields = foam.surface(model.reduced(index * model.step), {*_OF_WATER, "min_eigenvalue"}, TILE)
@@ -126,7 +116,8 @@ class TileSpray:
         water = _Water(*(fields[name][row, column].astype(np.float64) for name in _Water._fields))
         cells = _Cells(column, row, side / n, 0)
         rest = np.stack((column, row), axis=-1).astype(np.float64) * (side / n)
-        return [_crests(model, foam.parameters, index, cells, rest, water, strength[row, column])]
+        crests = _crests(model, foam.parameters, index, cells, rest, water, strength[row, column])
+        return [_Looked(cells, crests)]
 
 
 class CameraSpray:
@@ -149,21 +140,22 @@ class CameraSpray:
         model = self._levels.seas[0].foam_model
         return self._crests.in_the_air(model, time, spray, squares(self._levels, place), self._look)
 
-    def _look(self, index: int, regions: Sequence[Square]) -> list[Crests]:
+    def _look(self, index: int, missing: Sequence[Square]) -> list[_Looked]:
         """Crests that are seen in each square, on the water that is drawn: that of all waves."""
         finest = self._levels.seas[0]
         time = finest.foam_model.reduced(index * finest.foam_model.step)
-        found = [_broken(self._levels.seas[region.level], region, time) for region in regions]
+        found = [_broken(self._levels.seas[square.level], square, time) for square in missing]
         rest = [np.stack((cells.column + 0.5, cells.row + 0.5), axis=-1) * cells.size for cells, _ in found]
         x, y = np.concatenate(rest).T
         fields = finest.surface(time, _OF_WATER, Places(x, y))
         ends = np.cumsum([len(each) for each in rest])
         made = []
-        for region, (cells, strength), at, end in zip(regions, found, rest, ends, strict=True):
+        for square, (cells, strength), at, end in zip(missing, found, rest, ends, strict=True):
             part = slice(end - len(at), end)
             water = _Water(*(fields[name][part].astype(np.float64) for name in _Water._fields))
-            sea = self._levels.seas[region.level]
-            made.append(_crests(sea.foam_model, sea.parameters, index, cells, at, water, strength))
+            sea = self._levels.seas[square.level]
+            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, water, strength)
+            made.append(_Looked(cells, crests))
         return made
 
 
@@ -199,54 +191,57 @@ class ShotSpray:
         return lambda time: around.at(time, spray, place)
 
 
-class Square(NamedTuple):
-    """A square of cells around a place, of which those of the next finer one are not.
-
-    level : of the foam; its cells are FINEST·2ⁿ m large
-    first : column and row of its first cell
-    inner : those of the finer one's, counted in this one's cells; None for the finest
-    """
-
-    level: int
-    first: tuple[int, int]
-    inner: tuple[int, int] | None
+#: all of a sea's one tile
+_TILE = Square(0, (0, 0), None)
 
 
-def squares(levels: FoamLevels, place: tuple[float, float]) -> tuple[Square, ...]:
-    """Those around a place, in m."""
-    count = min(len(_STANDS_FOR), len(levels.seas))
-    first = [_first(place, FINEST * 2.0**level) for level in range(count)]
-    inner = [None, *((x // 2, y // 2) for x, y in first)]
-    return tuple(Square(level, first[level], inner[level]) for level in range(count))
+class _Looked(NamedTuple):
+    """Crests of a square at a moment, and the parts of its cells that they are in."""
+
+    cells: _Cells
+    crests: Crests
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        return self.cells.column.nbytes + self.cells.row.nbytes + self.crests.nbytes
+
+    def seen_in(self, square: Square) -> Crests:
+        """Those that are not in the next finer square."""
+        if square.inner is None:
+            return self.crests
+        cuts = round(square.size / self.cells.size)
+        own = outside(self.cells.column // cuts, self.cells.row // cuts, square.inner)
+        return Crests._make(part[own] for part in self.crests)
 
 
 class _Remembered:
-    """Crests by region and moment, as many as a frame looks back at.
+    """Crests by square and moment, as many as a frame looks back at.
 
     One thread at a time goes on with them, and others wait.
     """
 
     def __init__(self, parameters: OceanParameters) -> None:
         self._parameters = parameters
-        self._crests: dict[Hashable, dict[int, Crests]] = {}
+        self._looked: dict[Hashable, dict[int, _Looked]] = {}
         self._busy = threading.Lock()
 
     @property
     def nbytes(self) -> int:
         """Bytes of all crests."""
-        return sum(crests.nbytes for known in list(self._crests.values()) for crests in list(known.values()))
+        return sum(looked.nbytes for known in list(self._looked.values()) for looked in list(known.values()))
 
     def in_the_air(
         self,
         model: FoamModel,
         time: float | Fraction,
         spray: Spray,
-        regions: Sequence[Any],
-        look: Callable[[int, Sequence[Any]], list[Crests]],
+        around: Sequence[Square],
+        look: Callable[[int, Sequence[Square]], list[_Looked]],
     ) -> Particles:
-        """Particles at a time, region by region and moment by moment.
+        """Particles at a time, square by square and moment by moment.
 
-        look : gives the crests of a moment in each of some regions
+        look : gives the crests of a moment in each of some squares
         """
         wind = foam_wind(self._parameters)
         if wind is None or why_none(self._parameters) is not None:
@@ -255,9 +250,9 @@ class _Remembered:
         first = math.floor((now - Fraction(longest_life(spray))) / step - Fraction(1, 2))
         moments = range(first, math.floor(now / step + Fraction(1, 2)) + 1)
         with self._busy:
-            crests = self._looked_at(moments, regions, look)
+            crests = self._looked_at(moments, around, look)
         torn = sum(float(expected(each, spray, wind, float(step)).sum()) for _, each in crests)
-        _check_memory(torn / len(moments) / float(step) * MEAN_LIFE, spray)
+        _check_memory(torn / len(moments) / float(step) * mean_life(spray), spray)
         parts = (
             in_the_air(each, spray, wind, float(step), float(now - index * step)) for index, each in crests
         )
@@ -266,20 +261,23 @@ class _Remembered:
     def _looked_at(
         self,
         moments: range,
-        regions: Sequence[Any],
-        look: Callable[[int, Sequence[Any]], list[Crests]],
+        around: Sequence[Square],
+        look: Callable[[int, Sequence[Square]], list[_Looked]],
     ) -> list[tuple[int, Crests]]:
         """Crests with their moments; others are forgotten."""
-        before = self._crests
-        self._crests = {region: {} for region in regions}
-        for region in regions:
-            known = before.get(region, {})
-            self._crests[region] = {index: known[index] for index in moments if index in known}
+        before, self._looked = self._looked, {}
+        for square in around:
+            known = before.get(square.where, {})
+            self._looked[square.where] = {index: known[index] for index in moments if index in known}
         for index in moments:
-            missing = [region for region in regions if index not in self._crests[region]]
-            for region, made in zip(missing, look(index, missing) if missing else (), strict=True):
-                self._crests[region][index] = made
-        return [(index, self._crests[region][index]) for region in regions for index in moments]
+            missing = [square for square in around if index not in self._looked[square.where]]
+            for square, made in zip(missing, look(index, missing) if missing else (), strict=True):
+                self._looked[square.where][index] = made
+        return [
+            (index, self._looked[square.where][index].seen_in(square))
+            for square in around
+            for index in moments
+        ]
 
 
 class _Cells(NamedTuple):
@@ -300,22 +298,10 @@ class _Water(NamedTuple):
     strain: Array
 
 
-def _first(place: tuple[float, float], size: float) -> tuple[int, int]:
-    """The numbers of the first cell of a square around a place."""
-    x, y = (_STEP * round(along / size / _STEP) - _CELLS // 2 for along in place)
-    return x, y
-
-
 def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArray]:
     """The parts of a square's cells in which crests break, and how strongly."""
-    size = FINEST * 2.0**square.level
-    column, row = np.meshgrid(*(each + np.arange(_CELLS) for each in square.first))
-    if square.inner is not None:
-        within = [(number >= begin) & (number < begin + _CELLS // 2)
-                  for number, begin in zip((column, row), square.inner, strict=True)]  # fmt: skip
-        outside = ~(within[0] & within[1])
-        column, row = column[outside], row[outside]
-    column, row = column.ravel(), row.ravel()
+    size = square.size
+    column, row = square.cells()
     x, y = ((number.astype(np.float64) + 0.5) * size for number in (column, row))
     strength = breaking_of(sea.foam_model, sea.compression_at(x, y, time))
     broken = np.flatnonzero(strength)
@@ -362,7 +348,7 @@ def _crests(
         random.hash_cells(cells.column, cells.row, parameters.seed, moment, cells.level),
         gust,
         (area * np.minimum(strength / _ALL_TEARS, 1.0)).astype(np.float32),
-        np.full(len(rest), _STANDS_FOR[cells.level], np.float32),
+        np.full(len(rest), STANDS_FOR[cells.level], np.float32),
         place.astype(np.float32),
         along,
         water.velocity.astype(np.float32),

@@ -17,7 +17,7 @@ RealArray = NDArray[np.floating]
 SPUME, DROPLET, MIST = 0, 1, 2
 
 #: of all particles, and the radii in m between which they are
-_SHARE = {SPUME: 0.77, DROPLET: 0.2, MIST: 0.03}
+SHARE = {SPUME: 0.77, DROPLET: 0.2, MIST: 0.03}
 _RADII = {SPUME: (0.3e-3, 1.0e-3), DROPLET: (0.6e-3, 2.0e-3), MIST: (0.1e-3, 0.25e-3)}
 #: powers of the radius by which there are fewer of the larger ones: Andreas (1992) has r⁻⁸ from 0.1 to
 #: 0.25 mm; to larger ones, which his function lacks, Veron and others (2012) fit r⁻⁵
@@ -47,7 +47,7 @@ def torn_rate(wind_speed: float) -> float:
 
 def kinds(share: Array) -> NDArray[np.int8]:
     """SPUME, DROPLET or MIST for numbers evenly between 0 and 1."""
-    ends = np.cumsum([_SHARE[kind] for kind in (MIST, SPUME)])
+    ends = np.cumsum([SHARE[kind] for kind in (MIST, SPUME)])
     return np.asarray(np.array([MIST, SPUME, DROPLET], np.int8)[np.searchsorted(ends, share)])
 
 

@@ -40,8 +40,10 @@ _DROPS_FLY = 2.0
 #: the friction velocities by which mist spreads
 _DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 6.0, 60.0, 0.3
 
-#: s; mean time that a particle is in the air, and bytes of one while frames are made and shown
-MEAN_LIFE, BYTES = 0.5, 300
+#: mean time in s that drops are in the air, and mist, over its life: as 25 m/s of wind leave them
+_DROPS_STAY, _MIST_STAYS = 0.47, 0.35
+#: bytes of a particle while frames are made and shown
+BYTES = 300
 
 # what is drawn of a cell, of a gust and of a particle
 _COUNT, _GUST, _UP, _ALONG = range(4)
@@ -94,6 +96,12 @@ class Particles(NamedTuple):
 def longest_life(spray: Spray) -> float:
     """Seconds that any particle lives."""
     return max(spray.life, _DROPS_FLY)
+
+
+def mean_life(spray: Spray) -> float:
+    """Seconds that a particle is in the air, in the mean over all kinds."""
+    mist = drops.SHARE[drops.MIST]
+    return (1.0 - mist) * min(spray.life, _DROPS_STAY) + mist * _MIST_STAYS * spray.life
 
 
 def expected(crests: Crests, spray: Spray, wind: Wind, step: float) -> RealArray:
