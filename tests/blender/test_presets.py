@@ -5,6 +5,7 @@ import json
 import random
 
 import bpy
+import numpy as np
 import pytest
 
 from .conftest import sea_of
@@ -39,6 +40,25 @@ def test_a_preset_brings_its_layers(ocean, extension):
         assert bpy.ops.ocean.apply_preset(key=key) == {"FINISHED"}
         assert not ocean.ocean_tweak.error
         assert sea_of(ocean).layers == presets[key].parameters.layers
+
+
+def test_the_harbour_has_a_breakwater_that_leaves_a_fifth_of_the_waves(ocean, core, empty_scene):
+    """Its lines are drawn, and beside them the sea is lower than far away."""
+    assert bpy.ops.ocean.apply_preset(key="harbour") == {"FINISHED"}
+    assert not ocean.ocean_tweak.error
+    mask = ocean.ocean_tweak.mask
+    assert (mask.source, mask.measured_from, mask.object) == ("DISTANCE", "SHAPE", None)
+    sea = sea_of(ocean)
+    assert sea.mask.lines.values.size == 2 * 4
+    heights = np.stack(
+        [core.Ocean(sea).surface(time).displacement[..., 2] for time in np.arange(0.0, 60.0, 3.0)]
+    )
+    x0, y0, x1, y1 = sea.mask.lines.values.reshape(-1, 4)[0]
+    step = sea.domain_size / sea.resolution
+    beside = heights[:, round(0.5 * (y0 + y1) / step), round(0.5 * (x0 + x1) / step)]
+    # between the copies of the breakwater, as far from all as possible
+    far = heights[:, round(0.9 * sea.domain_size / step), round(0.05 * sea.domain_size / step)]
+    assert beside.std() == pytest.approx(0.2 * far.std(), rel=0.5)
 
 
 def test_undo_takes_a_preset_back(ocean, window):

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seas from a height and a period, from a Beaufort number, and from Blender's own Ocean modifier."""
 
+import math
+import re
+
 import bpy
 import numpy as np
 import pytest
 
 from .conftest import sea_of
+from .layouts import draw  # noqa: F401 - a fixture
 
 
 @pytest.mark.parametrize(("height", "period"), [(2.0, 7.0), (2.5, 14.0), (0.4, 2.5)])
@@ -25,6 +29,22 @@ def test_a_beaufort_number(ocean, core):
     state = core.Ocean(sea_of(ocean)).statistics()
     assert state.spectrum.significant_wave_height == pytest.approx(4.0, rel=0.03)
     assert sea_of(ocean).domain_size == 150.0
+
+
+def test_a_sea_state_that_no_wind_raises_is_told_with_the_nearest(ocean, draw):  # noqa: F811
+    """In deep water the wavelength is g T²/2π, of which 6 m are much more than any sea has."""
+    assert bpy.ops.ocean.match_sea_state(by="WAVES", height=6.0, period=4.0) == {"FINISHED"}
+    told = " ".join(draw(ocean))
+    steepness = 6.0 / (9.81 * 4.0**2 / (2.0 * math.pi))
+    assert f"Their steepness, height over wavelength, would be {steepness:.2f}" in told
+    found = re.search(r"Nearest: (\S+) m at 4 s, or 6 m at (\S+) s", told)
+    assert found is not None
+    lower, longer = map(float, found.groups())
+    assert lower < 6.0
+    assert longer > 4.0
+    for height, period in ((lower, 4.0), (6.0, longer)):
+        bpy.ops.ocean.match_sea_state(by="WAVES", height=height, period=period)
+        assert "Nearest" not in " ".join(draw(ocean))
 
 
 def test_match_wants_an_ocean(empty_scene):

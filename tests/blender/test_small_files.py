@@ -54,16 +54,8 @@ def assert_equal(found, expected):
         np.testing.assert_array_equal(found[name], value, err_msg=name)
 
 
-def test_a_sea_to_the_horizon_is_a_few_megabytes(
-    extension, core, ocean_object, empty_scene, camera, tmp_path
-):
-    sea = extension("core.parameters.presets").built_in()["horizon"].parameters
-    # of little history, which takes no room
-    sea = sea.on_one_grid(sea.resolution).replace(foam=core.Foam(resolution=64, half_life=0.2))
-    ocean = ocean_object.add(empty_scene, sea, viewport_resolution=256)
-    water = extension("scene.water_material")
-    water.assign(ocean, water.water_material())
-    extension("scene.camera_surface").add_camera_surface(ocean, empty_scene)
+def test_the_ready_scene_to_the_horizon_is_a_few_megabytes(empty_scene, tmp_path):
+    assert bpy.ops.ocean.add_scene(mood="HORIZON") == {"FINISHED"}
     path = tmp_path / "horizon.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
     assert 1e6 < path.stat().st_size < 5e6
