@@ -254,10 +254,7 @@ def _finished(
         SHORTEST_WAVE: (
             "FLOAT", build.switch("FLOAT", fade, 0.0, build.math("MULTIPLY", size, SHORTEST_CELLS))
         ),
-        **{
-            name: ("FLOAT_VECTOR", spaces.direction_of_asker(values[name]))
-            for name in (DISPLACEMENT, VELOCITY)
-        },
+        **{name: ("FLOAT_VECTOR", values[name]) for name in (DISPLACEMENT, VELOCITY)},
     }  # fmt: skip
     moved = {
         name: ("FLOAT_VECTOR", value)
@@ -269,11 +266,13 @@ def _finished(
         build.tree.links.new(value, node.inputs[name])
     grid = output(node, "Geometry")
     for name, (data_type, _) in shown.items():
-        grid = build.store(grid, name, node.outputs[name], data_type)
+        is_vector = data_type == "FLOAT_VECTOR"
+        own = spaces.direction_of_asker(node.outputs[name]) if is_vector else node.outputs[name]
+        grid = build.store(grid, name, own, data_type)
     inputs = {"Custom Normal": node.outputs["Normal"]}
     grid = build.change("GeometryNodeSetMeshNormal", grid, inputs, mode="FREE", domain="POINT")
     piled = _piled(build, grid, node)
-    raised = build.vector("SUBTRACT", position, node.outputs["Rest"])
+    raised = spaces.direction_of_asker(build.vector("SUBTRACT", position, node.outputs["Rest"]))
     return build.change(
         "GeometryNodeSetPosition", piled, {"Position": build.vector("ADD", node.outputs["Place"], raised)}
     )
@@ -297,7 +296,7 @@ def _piled(build: Builder, grid: Socket, captured: bpy.types.Node) -> Socket:
 
 
 def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Socket:
-    """Whether something is told: a budget that does not reach, a camera under water."""
+    """Whether something is told: a budget that does not reach, a camera under water, foam of another frame."""
     whole = [whole_number(build, value, "ROUND") for value in (reached, reach)]
     short = joined_text(
         build,
@@ -326,4 +325,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 11, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 12, _build)

@@ -265,3 +265,20 @@ def test_a_window_has_few_places_and_a_picture_from_it_all_of_them(
     close = np.abs(rest - place).max(axis=1) < 8.0
     expected = expected_foam(extension, parameters, parameters.timing.time(11), place, *rest[close].T)
     np.testing.assert_allclose(found[close, :2], expected[:, :2], atol=0.02)
+
+
+def test_fresh_foam_rises_along_the_ocean_s_axis_whatever_the_surface_s_own(shown, extension, empty_scene):
+    """Turned, tilted and scaled, the surface shows the same water in the world, with its foam on it."""
+    _, item = shown
+
+    def in_world(pile, turn, scale=1.0):
+        extension("nodes.modifier_inputs").set_inputs(item.modifiers[0], {"Foam Pile": pile})
+        item.rotation_euler, item.scale = turn, (scale,) * 3
+        empty_scene.frame_set(9)
+        places = numbers(evaluated_mesh(item), "position", 3)
+        return places @ np.array(item.matrix_world.to_3x3()).T + item.matrix_world.translation
+
+    water, upright = in_world(0.0, (0.0, 0.0, 0.0)), in_world(0.1, (0.0, 0.0, 0.0))
+    assert (upright - water)[:, 2].max() > 0.05
+    # floats of places 1500 m away
+    np.testing.assert_allclose(in_world(0.1, (0.5, -0.3, 0.8), 1.5), upright, rtol=0.0, atol=2e-3)
