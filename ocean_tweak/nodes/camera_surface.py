@@ -296,7 +296,7 @@ def _piled(build: Builder, grid: Socket, captured: bpy.types.Node) -> Socket:
 
 
 def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Socket:
-    """Whether something is told: a budget that does not reach, a camera under water, foam of another frame."""
+    """Whether something is told: a short budget, a camera under water, foam of another frame."""
     whole = [whole_number(build, value, "ROUND") for value in (reached, reach)]
     short = joined_text(
         build,

@@ -11,25 +11,27 @@ import bpy
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.horizon import HORIZON
 from ..nodes.versioned import is_of_kind
-from . import contact, float_carrier, floating, patch_objects, spray
+from . import contact, float_carrier, floating, mask_place, patch_objects, spray
 from .settings import was_ocean
 
 
 def clear() -> bool:
-    """Remove horizons, surfaces, patches and spray of deleted oceans, and let nothing float on or touch them.
+    """Remove horizons, surfaces, patches, spray and masks' places of deleted oceans, and let nothing float on
+    or touch them.
 
     Returns whether there are any.
     """
     deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
-    # nobody reads an ocean for its spray: it is freed, and its child has no parent any more
-    own = (item for item in bpy.data.objects if spray.is_ours(item) and item.library is None)
-    alone = [item for item in own if item.parent is None and item.users_collection]
+    # nobody reads an ocean for its spray or masks: it is freed, and its child has no parent any more
+    parted = [each for each in bpy.data.objects if each.parent is None and each.library is None]
+    own = (item for item in parted if spray.is_ours(item) or mask_place.is_unread(item))
+    alone = [item for item in own if item.users_collection]
     for item in alone:
         _take_away(item)
     if not deleted:
         return bool(alone)
     for item in [item for item in bpy.data.objects if item.library is None and item.users_collection]:
-        if item.parent in deleted and is_made_for_oceans(item):
+        if item.parent in deleted and (is_made_for_oceans(item) or mask_place.is_unread(item)):
             _take_away(item)
             continue
         carrier = float_carrier.carrier_of(item)

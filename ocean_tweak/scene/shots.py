@@ -14,9 +14,9 @@ from ..core.data.frames import Frame
 from ..core.data.raster import LARGEST_SIDE
 from ..core.data.validation import changing_fields
 from ..core.parameters.shot import OCEAN_TIME, Animation, Samples, Shot
-from . import handlers
+from . import handlers, mask_place
 from .animated import clock_of, has_own_time, is_animated, key_each_frame, set_keys, shown_settings
-from .settings import OceanObjectError, link_beside, settings_of
+from .settings import OceanObjectError, settings_of
 from .view_layers import evaluated, taking_part
 
 #: ends of paths of masks' places
@@ -90,21 +90,14 @@ def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
     set_keys(item, scene, first, {path: values[path] for path in values if not path.endswith(_PLACE)})
     for mask in masks:
         along = [values.get(f"{mask}.{axis}") for axis in ("x", "y")]
-        place = _place_over(item)
+        place = mask_place.new_over(item)
         settings.let_mask_follow(mask, place)
         for index, values_along in enumerate(along):
             if values_along is not None:
                 key_each_frame(place, "location", scene, first, values_along, index)
+    mask_place.remove_unread(item)  # those of a shot before
     if samples:
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-
-
-def _place_over(ocean: bpy.types.Object) -> bpy.types.Object:
-    """An empty in an ocean's axes."""
-    item = bpy.data.objects.new(f"{ocean.name} mask", None)
-    item.parent = ocean
-    link_beside(item, ocean)
-    return item
 
 
 def evaluations(

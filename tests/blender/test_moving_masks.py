@@ -217,3 +217,45 @@ def test_a_shot_that_is_taken_over_gets_a_keyed_place(ocean, core, empty_scene, 
     for frame in (1, 4, LAST):
         found, expected = (each.at(frame).parameters.layers[0].mask for each in (again, shot))
         assert (found.x, found.y) == pytest.approx((expected.x, expected.y), abs=1e-4)
+
+
+def test_a_second_import_leaves_no_place_of_the_first(
+    ocean, empty_scene, extension, tmp_path, make_parameters
+):
+    measured(ocean.ocean_tweak.layers[0].mask, moving(empty_scene, "keys"))
+    file, still = tmp_path / "shot.json", tmp_path / "still.json"
+    file.write_text(extension("scene.shots").shot_of(ocean, empty_scene).to_json(), encoding="utf-8")
+    still.write_text(make_parameters().to_json(), encoding="utf-8")
+    bpy.context.view_layer.objects.active = ocean
+    before = set(bpy.data.objects)
+    for _ in range(2):
+        assert bpy.ops.ocean.import_parameters(filepath=str(file)) == {"FINISHED"}
+        (place,) = set(bpy.data.objects) - before
+        assert ocean.ocean_tweak.layers[0].mask.object == place
+    bpy.ops.ocean.import_parameters(filepath=str(still))
+    assert set(bpy.data.objects) == before
+
+
+@pytest.mark.parametrize("is_read", [False, True])
+def test_its_place_goes_with_a_deleted_ocean(ocean, empty_scene, extension, is_read):
+    """Unless the mask of another ocean measures from it.
+
+    is_read : whether a horizon keeps the deleted ocean in the file
+    """
+    measured(ocean.ocean_tweak.layers[0].mask, moving(empty_scene, "keys"))
+    shots, surroundings = extension("scene.shots"), extension("scene.surroundings")
+    shot = shots.shot_of(ocean, empty_scene)
+    ocean.ocean_tweak.from_parameters(shot.parameters, empty_scene)
+    shots.animate(ocean, empty_scene, shot)
+    place = ocean.ocean_tweak.layers[0].mask.object
+    twin = ocean.copy()
+    empty_scene.collection.objects.link(twin)
+    if is_read:
+        for each in (ocean, twin):
+            surroundings.add_horizon(each, shot.parameters, empty_scene, empty_scene.collection, 2)
+    for item, is_kept in ((ocean, True), (twin, False)):
+        bpy.context.view_layer.update()
+        with bpy.context.temp_override(selected_objects=[item], selected_ids=[item]):
+            bpy.ops.object.delete()
+        bpy.context.view_layer.update()
+        assert (place.name in empty_scene.objects) == is_kept
