@@ -63,6 +63,7 @@ def bake_spray(arguments: argparse.Namespace, folder: Path, job: Job, wanted: Wa
         claimed(folder, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark),
     ):
         todo = [frame for frame in frames if not files.is_whole(frame)]
+        progress.say(f"{len(todo)} of {len(frames)} frames of spray to make", left=len(todo), phase="spray")
         progress.begin(len(todo))
         maker = ShotSpray(job.shot, wanted.spray, wanted.place)
         try:

@@ -26,7 +26,8 @@ class CommandProcess:
 
     command_line : how the command line is started: this layer knows none, registration says it
     name : of the ocean that it is about
-    left, done : frames that were to be made, and that have been
+    phase : what is being made, where that is no longer the sea itself: "spray"
+    left, done : frames that were to be made in this phase, and that have been
     error : the last line that told of a failure
     """
 
@@ -39,6 +40,7 @@ class CommandProcess:
         shot : the sea, for a command that takes one
         """
         self.name = name
+        self.phase = ""
         self.left, self.done = 0, 0
         self.error = ""
         self.is_stopped = False
@@ -101,7 +103,7 @@ class CommandProcess:
     def take(self, said: dict[str, Any]) -> None:
         """What a line of its output says."""
         if "left" in said:
-            self.left = said["left"]
+            self.phase, self.left, self.done = said.get("phase", ""), said["left"], 0
             self._began = time.monotonic()
         elif "seconds" in said:
             self.done += 1

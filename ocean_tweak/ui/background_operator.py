@@ -100,7 +100,8 @@ class BackgroundOperator(OfActiveOcean):
     def _tell(self, context: bpy.types.Context) -> None:
         process = self._process
         doing = "Finishing the frame" if process.is_stopped else f"{self.doing} {process.name}"
-        count = f": {process.done} of {process.left}" if process.left else "…"
+        phase = f", {process.phase}" if process.phase else ""
+        count = f"{phase}: {process.done} of {process.left}" if process.left else "…"
         context.workspace.status_text_set(f"{doing}{count}   |   Esc: stop")
         redraw_views()
 

@@ -57,13 +57,15 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
         settings.bake_total = len(bake.frames)
         settings.bake_done = len(bake.frames) - bake.left + bake.done if bake.left else len(bake.frames)
         if not bake.is_complete:
+            settings.bake_done = min(settings.bake_done, settings.bake_total - 1)
             if bake.is_stopped:
                 self.report(
                     {"INFO"},
-                    translated("Stopped after {done} frames: bake again to continue").format(done=bake.done),
+                    translated("Stopped after {done} frames{of}: bake again to continue").format(
+                        done=bake.done, of=f" of {bake.phase}" if bake.phase else ""
+                    ),
                 )
                 return {"CANCELLED"}
-            settings.bake_done = min(settings.bake_done, settings.bake_total - 1)
             return self.failed()
         if self.use_result and bake.folder is not None:
             try:

@@ -318,3 +318,24 @@ def test_files_are_looked_at_when_they_change_and_not_a_frame(extension, baked, 
     empty_scene.frame_set(14)
     assert module.is_live(baked)
     assert len(points(spray_of(baked))["radius"]) > 100
+
+
+def test_frames_of_spray_are_counted_by_themselves(extension, ocean, empty_scene, tmp_path, monkeypatch):
+    module, counts = extension("scene.bake_process"), []
+    whole = module.BakeProcess.take
+
+    def take(self, said):
+        whole(self, said)
+        counts.append((self.phase, self.done, self.left))
+
+    monkeypatch.setattr(module.BakeProcess, "take", take)
+    ocean.ocean_tweak.cache_folder = str(tmp_path)
+    shot = extension("scene.shots").shot_of(ocean, empty_scene, (12, 13))
+    bake = module.start(ocean, shot, (12, 13))
+    bake.wait()
+    module.forget(bake)
+    assert bake.is_complete, bake.error
+    each = [(0, 2), (1, 2), (2, 2)]
+    assert list(dict.fromkeys(counts)) == [("", *count) for count in each] + [
+        ("spray", *count) for count in each
+    ]

@@ -101,7 +101,8 @@ def progress_bar(layout: bpy.types.UILayout, process: CommandProcess, stop: str)
     """
     left = process.seconds_left
     time = "" if left is None else f", {int(left) // 60}:{int(left) % 60:02d}"
-    text = translated("Stopping…") if process.is_stopped else f"{process.done} / {process.left or '…'}{time}"
+    count = f"{process.phase.capitalize()} {process.done} / {process.left or '…'}{time}".lstrip()
+    text = translated("Stopping…") if process.is_stopped else count
     line = layout.row(align=True)
     line.progress(factor=process.factor, text=text, translate=False)
     line.operator(stop, text="", icon="CANCEL")
