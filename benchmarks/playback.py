@@ -32,7 +32,10 @@ _RESIDENT = Path("/proc/self/statm")
 
 
 def rows(make: Callable[[int], Contender], sea: OceanParameters, rounds: int, group: str) -> Iterator[Row]:
-    """Of a sea of so many samples, of which `make` gives live oceans without maps, and of To the Horizon."""
+    """Rows of one baked sea: its time against live, and the memory that playing it takes.
+
+    make : a live ocean without maps, of so many samples a side
+    """
     samples = sea.resolution
     with tempfile.TemporaryDirectory() as folder:
         live, baked = make(samples), make(samples)
@@ -53,7 +56,7 @@ def rows(make: Callable[[int], Contender], sea: OceanParameters, rounds: int, gr
 
 
 def horizon_row(rounds: int, group: str) -> Row:
-    """Bakes for some minutes."""
+    """To the Horizon, baked and played, against live. It bakes for some minutes."""
     sides: dict[str, Callable[[], None]] = {}
     with tempfile.TemporaryDirectory() as folder:
         for seed, name in enumerate((_LIVE, _BAKED), 1):
@@ -96,7 +99,7 @@ def _growth(scene: bpy.types.Scene, item: bpy.types.Object, last: int) -> float:
             item.evaluated_get(scene.view_layers[0].depsgraph)
             if frame == last // 3:
                 before = _resident()
-        return (_resident() - before) / 1e6
+        return max(0.0, _resident() - before) / 1e6
     finally:
         system.memory_cache_limit = limit
 

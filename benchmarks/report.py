@@ -72,6 +72,8 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, str, str, str, str]]:
         shown = _VERDICTS[met] or "not judged: fewer than two free cores"
         if met is False and target.what_limits:
             shown += f"; the limit: {target.what_limits}"
+            if target.tried:
+                shown += f". Tried: {target.tried}"
         result.append((target.work, str(target), _number(worst), str(len(judged)), shown))
     return result
 
@@ -122,7 +124,7 @@ def _about(report: dict[str, Any]) -> str:
     return (
         f"{machine['processor']}, {machine['cores']} cores ({caches}), {machine['memory in GB']} GB, "
         f"{machine['system']}. {packages}. {blenders}. Load average before the run {report['load before']}, "
-        f"{report['rounds']} rounds, {report['minutes']} minutes in all."
+        f"{report['rounds']} rounds (3 of foam of a frame by itself), {report['minutes']} minutes in all."
     )
 
 

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from ocean_tweak.core import Mask, Ocean, OceanParameters, ParameterError, Places, WaveLayer
-from ocean_tweak.core.masks.noise import SeaTime
+from ocean_tweak.core.masks import weights as module
+from ocean_tweak.core.masks.noise import SeaTime, normal_distribution
 from ocean_tweak.core.masks.weights import Weights, weights, weights_on_grid
 
 SIZE = 1200.0
@@ -121,6 +122,34 @@ def test_inverted_and_weaker_with_another() -> None:
     np.testing.assert_allclose(less.by_t, -0.5 * own.by_t, atol=1e-12)
     both = weights((still, GUSTS), SIZE, X, Y, SeaTime(2.0))
     np.testing.assert_allclose(both.by_t, own.by_t * other.value, atol=1e-12)
+
+
+def test_the_normal_distribution() -> None:
+    """Against erfc, as closely as Abramowitz & Stegun's eq. 26.2.17 says."""
+    x = np.linspace(-6.0, 6.0, 2001)
+    value, density = normal_distribution(x)
+    expected = [0.5 * math.erfc(-each / math.sqrt(2.0)) for each in x]
+    np.testing.assert_allclose(value, expected, atol=7.5e-8)
+    np.testing.assert_allclose(density, np.exp(-x * x / 2.0) / math.sqrt(2.0 * math.pi), rtol=1e-12)
+
+
+def test_masks_that_stand_still_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though gusts over the same waves are others at each time."""
+    still = Mask(inner_radius=1.0, outer_radius=2.9 * SIZE)
+    made: list[Mask] = []
+    by_distance = module.by_distance
+
+    def counted(mask: Mask, *where: object) -> object:
+        made.append(mask)
+        return by_distance(mask, *where)
+
+    monkeypatch.setattr(module, "by_distance", counted)
+    for time in (1.0, 2.0):
+        found = weights_on_grid((still, GUSTS), SIZE, 96, np.float64, SeaTime(time))
+        alone = [weights_on_grid((mask,), SIZE, 96, np.float64, SeaTime(time)) for mask in (still, GUSTS)]
+        np.testing.assert_allclose(found.value, alone[0].value * alone[1].value, atol=1e-14)
+        np.testing.assert_allclose(found.by_t, alone[0].value * alone[1].by_t, atol=1e-12)
+    assert made == [still]
 
 
 @pytest.mark.parametrize("owner", ["layer", "sea"])

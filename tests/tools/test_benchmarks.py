@@ -142,7 +142,8 @@ def test_summary_shows_the_worst_of_each_target():
     rows.append(row(name="worse", value=1.3))
     first = report.summary(rows)[0]
     assert first[:-1] == (TARGETS["3 fields"].work, "≤ 1.2 × three irfft2", "1.3", "2")
-    assert first[-1] == f"**not met**; the limit: {TARGETS['3 fields'].what_limits}"
+    target = TARGETS["3 fields"]
+    assert first[-1] == f"**not met**; the limit: {target.what_limits}. Tried: {target.tried}"
     assert {line[-1] for line in report.summary(rows)[1:]} == {"met"}
 
 
@@ -183,6 +184,14 @@ def test_published_run_is_whole(latest):
     assert timed
     # foam of a frame alone takes seconds a call: three rounds
     assert all(r.repeats >= (3 if r.group == foam_rows.GROUP else 7) for r in timed)
+
+
+def test_a_missed_target_says_what_limits_it_and_what_was_tried(latest):
+    rows = report.rows_of(latest)
+    names = {each.target for each in rows if each.target and each.met is False}
+    missed = [TARGETS[name] for name in names]
+    assert missed
+    assert not [target.work for target in missed if not (target.what_limits and target.tried)]
 
 
 def test_published_run_names_no_folder():

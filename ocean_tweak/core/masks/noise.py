@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics.grid import WaveVectorGrid
-from ..numerics.interpolation import spline_slopes, spline_weights
-from ..numerics.memo import remembered
+from ..numerics.interpolation import spline_read, spline_slopes, spline_weights
+from ..numerics.memo import MEMO, remembered
 from ..numerics.random import hash_wave_vectors, normal, uniform
 from .parameters import Mask
 
@@ -42,6 +42,10 @@ _P = 0.2316419
 _B = (0.319381530, -0.356563782, 1.781477937, -1.821255978, 1.330274429)
 
 
+# of another time they are others
+MEMO.limit("noises of masks at a time", 64)
+
+
 class SeaTime(NamedTuple):
     """A moment of a sea.
 
@@ -55,6 +59,17 @@ class SeaTime(NamedTuple):
 
 #: what is asked of masks that do not move
 ANY_TIME = SeaTime()
+
+
+class _Samples(NamedTuple):
+    """Of a noise at a time, (samples, samples): itself, and its change in 1/s."""
+
+    now: Array
+    rate: Array
+
+    @property
+    def nbytes(self) -> int:
+        return self.now.nbytes + self.rate.nbytes
 
 
 class _Waves(NamedTuple):
@@ -75,7 +90,9 @@ def by_noise(
     noise, by_x, by_y, by_t = _noise(mask, domain_size, x, y, when)
     contrast = mask.noise_contrast
     left = math.sqrt(1.0 - contrast * contrast)
-    value, density = _normal((contrast * noise + NormalDist().inv_cdf(mask.noise_coverage)) / left)
+    value, density = normal_distribution(
+        (contrast * noise + NormalDist().inv_cdf(mask.noise_coverage)) / left
+    )
     slope = density * (contrast / left)
     return value, slope * by_x, slope * by_y, slope * by_t
 
@@ -86,28 +103,18 @@ def _noise(
     """The noise and its derivatives: by the quadratic B-spline that goes through its samples."""
     gusts = domain_size / mask.noise_size
     samples = max(_FEWEST, 2 ** math.ceil(math.log2(_SAMPLES_A_GUST * gusts)))
-    waves = _waves(mask, domain_size, samples, when.loop_duration)
-    moved = waves.coefficients * np.exp(-1j * _turned(waves.rates, when))
-    now, rate = (np.fft.irfft2(each, norm="forward") for each in (moved, -1j * waves.rates * moved))
+    now, rate = _sampled(mask, domain_size, samples, when)
     column, row = (place / domain_size * samples for place in (x, y))
-    (j, along_x), (i, along_y) = spline_weights(column), spline_weights(row)
-    slope_x, slope_y = spline_slopes(column), spline_slopes(row)
     per_metre = samples / domain_size
     if x.ndim == 1 and y.ndim == 2:  # of a grid: row by row first, of which there are fewer samples
+        (j, along_x), (i, along_y) = spline_weights(column), spline_weights(row)
+        slope_x, slope_y = spline_slopes(column), spline_slopes(row)
         i, j = i[..., 0] % samples, j % samples
         rows = [_sum(part[i], weight) for part, weight in ((now, along_y), (now, slope_y), (rate, along_y))]
         value, by_y, by_t = (_sum_columns(part, j, along_x) for part in rows)
         by_x = _sum_columns(rows[0], j, slope_x)
     else:
-        shape = np.broadcast_shapes(x.shape, y.shape)
-        value, by_x, by_y, by_t = (np.zeros(shape) for _ in range(4))
-        for b in range(3):
-            for a in range(3):
-                at = i[b] % samples, j[a] % samples
-                value += now[at] * along_y[b] * along_x[a]
-                by_x += now[at] * along_y[b] * slope_x[a]
-                by_y += now[at] * slope_y[b] * along_x[a]
-                by_t += rate[at] * along_y[b] * along_x[a]
+        value, by_y, by_x, by_t = spline_read(now, row, column, rate)
     return value, by_x * per_metre, by_y * per_metre, by_t
 
 
@@ -122,6 +129,13 @@ def _sum_columns(rows: Array, j: NDArray[np.intp], weights: Array) -> Array:
     for a in (1, 2):
         total += rows[:, j[a]] * weights[a]
     return np.asarray(total)
+
+
+@remembered("noises of masks at a time")
+def _sampled(mask: Mask, domain_size: float, samples: int, when: SeaTime) -> _Samples:
+    waves = _waves(mask, domain_size, samples, when.loop_duration)
+    moved = waves.coefficients * np.exp(-1j * _turned(waves.rates, when))
+    return _Samples(*(np.fft.irfft2(each, norm="forward") for each in (moved, -1j * waves.rates * moved)))
 
 
 @remembered("noises of masks")
@@ -161,7 +175,7 @@ def _turned(rates: Array, when: SeaTime) -> Array:
     return 2.0 * np.pi * (turns * share % 1.0)
 
 
-def _normal(x: Array) -> tuple[Array, Array]:
+def normal_distribution(x: Array) -> tuple[Array, Array]:
     """The normal distribution Φ, and its density φ."""
     density = np.exp(-0.5 * x * x) / math.sqrt(2.0 * math.pi)
     t = 1.0 / (1.0 + _P * np.abs(x))

@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 
 #: rows of a square of weights that are made at once
 _ROWS = 128
-# those of a noise are others at each time
-MEMO.limit("weights of masks", 16)
+# of another time they are others
+MEMO.limit("moving weights of masks", 16)
 
 
 class Weights(NamedTuple):
@@ -39,6 +39,10 @@ class Weights(NamedTuple):
     def nbytes(self) -> int:
         """Bytes of all of them."""
         return total_bytes(self)
+
+    def rows(self, part: slice) -> Weights:
+        """Of some rows."""
+        return Weights._make(None if each is None else each[part] for each in self)
 
     def less(self, strength: float) -> Weights:
         """As a mask gives them that takes only a share of the waves."""
@@ -72,7 +76,11 @@ class Weights(NamedTuple):
 
 def move(masks: Sequence[Mask]) -> bool:
     """Whether the weights of some masks are others at another time."""
-    return any(mask.source == "NOISE" for mask in masks)
+    return any(_moves(mask) for mask in masks)
+
+
+def _moves(mask: Mask) -> bool:
+    return mask.source == "NOISE"
 
 
 def weights(
@@ -92,7 +100,7 @@ def weights(
 
 
 def _of(mask: Mask, domain_size: float, x: Array, y: Array, when: SeaTime) -> Weights:
-    if mask.source == "NOISE":
+    if _moves(mask):
         return Weights(*by_noise(mask, domain_size, x, y, when))
     by = by_image if mask.source == "IMAGE" else by_distance
     return Weights(*by(mask, domain_size, x, y))
@@ -106,18 +114,41 @@ def weights_on_grid(
     when: SeaTime = ANY_TIME,
 ) -> Weights:
     """The same on the (N, N) samples [y, x] of the domain, in float32 or float64."""
-    return _on_grid(masks, domain_size, resolution, dtype, when if move(masks) else ANY_TIME)
+    if move(masks):
+        return _moving(masks, domain_size, resolution, dtype, when)
+    return _still(masks, domain_size, resolution, dtype)
 
 
 @remembered("weights of masks")
-def _on_grid(
+def _still(masks: tuple[Mask, ...], domain_size: float, resolution: int, dtype: type) -> Weights:
+    return _on_grid(masks, domain_size, resolution, dtype)
+
+
+@remembered("moving weights of masks")
+def _moving(
     masks: tuple[Mask, ...], domain_size: float, resolution: int, dtype: type, when: SeaTime
 ) -> Weights:
+    still = tuple(mask for mask in masks if not _moves(mask))
+    moving = tuple(mask for mask in masks if _moves(mask))
+    by = _still(still, domain_size, resolution, np.float64) if still else None
+    return _on_grid(moving, domain_size, resolution, dtype, when, by)
+
+
+def _on_grid(
+    masks: tuple[Mask, ...],
+    domain_size: float,
+    resolution: int,
+    dtype: type,
+    when: SeaTime = ANY_TIME,
+    by: Weights | None = None,
+) -> Weights:
+    """The weights of some masks, and of others that are there already, on the samples of a domain."""
     along: Array = domain_size / resolution * np.arange(resolution, dtype=np.float64)
-    parts = [
-        weights(masks, domain_size, along, along[first : first + _ROWS, np.newaxis], when)
-        for first in range(0, resolution, _ROWS)
-    ]
+    parts = []
+    for first in range(0, resolution, _ROWS):
+        rows = slice(first, first + _ROWS)
+        own = weights(masks, domain_size, along, along[rows, np.newaxis], when)
+        parts.append(own if by is None else by.rows(rows).times(own))
 
     def joined(columns: Sequence[Array]) -> Array:
         return np.concatenate(columns).astype(dtype)

@@ -134,6 +134,27 @@ def stretched(field: RealArray, axis: int, samples: int) -> RealArray:
     return result
 
 
+def spline_read(field: Array, row: Array, column: Array, *others: Array) -> tuple[Array, ...]:
+    """A (rows, columns) field that repeats at places whose row and column broadcast: the spline's value, its
+    derivatives by the row and by the column, and the values of other fields of that shape."""
+    (i, up), (j, along) = spline_weights(row), spline_weights(column)
+    slope_up, slope_along = spline_slopes(row), spline_slopes(column)
+    rows, columns = field.shape
+    shape = np.broadcast_shapes(row.shape, column.shape)
+    value, by_row, by_column = (np.zeros(shape) for _ in range(3))
+    values = tuple(np.zeros(shape) for _ in others)
+    for b in range(3):
+        for a in range(3):
+            at = i[b] % rows, j[a] % columns
+            sample = field[at]
+            value += sample * up[b] * along[a]
+            by_row += sample * slope_up[b] * along[a]
+            by_column += sample * up[b] * slope_along[a]
+            for total, other in zip(values, others, strict=True):
+                total += other[at] * up[b] * along[a]
+    return value, by_row, by_column, *values
+
+
 def spline_weights(position: Array) -> tuple[NDArray[np.intp], Array]:
     """The three samples around each place, (3, …), and how much each counts there; they add up to 1."""
     nearest, off = _nearest(position)
