@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .export.sea_files import read_sea, write_sea
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 __all__ = ["read_sea", "write_sea"]
 
 

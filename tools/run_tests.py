@@ -32,9 +32,10 @@ INSTALLED = ("tests/extension",)
 
 #: of the suite for Blender, what depends on its version
 OF_EVERY_VERSION = (
-    "alembic", "animation", "assets", "every_operator", "files_of_0_1_0", "foreign_colours", "life_of_an_ocean",
-    "node_trees", "old_groups", "overrides", "registration", "rendering", "scripting_documentation", "shot_files",
-    "source_images", "stored_paths", "usd_import", "velocity_blur", "view_layers", "without_extension",
+    "alembic", "animation", "assets", "every_operator", "files_of_0_1_0", "foreign_colours",
+    "life_of_an_ocean", "node_trees", "old_groups", "overrides", "registration", "rendering",
+    "scripting_documentation", "shot_files", "source_images", "stored_paths", "usd_import", "velocity_blur",
+    "view_layers", "without_extension",
 )  # fmt: skip
 #: and what depends on whether the extension is installed, beside a Blender that is no module
 OF_THE_ZIP = (

@@ -77,8 +77,17 @@ def test_only_the_wheels_of_the_manifest_stay(monkeypatch, tmp_path):
     assert asked == wheels.wheel_names()[1:]
 
 
-def test_what_is_cited_has_the_version():
-    assert f"\nversion: {MANIFEST['version']}\n" in (ROOT / "CITATION.cff").read_text()
+def test_everything_has_that_version():
+    """What is cited, what `--version` prints, and the name of the zip on every page."""
+    version = MANIFEST["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert f'\n__version__ = "{version}"\n' in (ROOT / "ocean_tweak" / "__init__.py").read_text()
+    pages = {
+        page.name: page.read_text("utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
+    }
+    named = {name: set(re.findall(r"ocean_tweak-(\d[\w.]*)\.zip", text)) for name, text in pages.items()}
+    assert {name: found for name, found in named.items() if found - {version}} == {}
+    assert all(named[name] for name in ("README.md", "index.md", "first-sea.md"))
 
 
 def test_every_platform_has_as_many_wheels():
