@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sea itself: NumPy and the standard library, nothing else."""
+"""The sea itself. Depends on NumPy and the standard library only."""
 
 from .data.raster import Raster
 from .parameters.ocean_parameters import (

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parameters as data: checked fields with units, JSON, rasters, frames, versions of forms."""
+"""Parameters as data: validated fields with units, JSON, rasters, frame numbers, format versions."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of parameters that cannot be used."""
+"""The error raised for invalid parameters."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .printable import printable, shown
 
 
 class ParameterError(ValueError):
-    """A parameter that cannot be used: names the field, its value and what is allowed.
+    """An invalid parameter. The message names the field, its value and what is allowed.
 
     Examples
     --------
@@ -22,5 +22,5 @@ class ParameterError(ValueError):
         super().__init__(f"{printable(field, 120)} = {shown(value)}: {reason}")
 
     def inside(self, container: str) -> ParameterError:
-        """The same error with the field's path lengthened at the front."""
+        """The same error with a parent prepended to the field's path."""
         return ParameterError(f"{container}.{self.field}", self.value, self.reason)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frame numbers and ranges of them: whole, negative, beyond 9999, and between two frames."""
+"""Frame numbers and frame ranges, including negative frames, frames beyond 9999 and subframes."""
 
 from __future__ import annotations
 
@@ -11,21 +11,22 @@ from fractions import Fraction
 
 from .errors import ParameterError
 
-#: a whole frame is an int; a frame between two, for motion blur, is a Fraction that a decimal can write
+#: a whole frame is an int; a subframe, for motion blur, is a Fraction with a finite decimal form
 Frame = int | Fraction
 
 _NUMBER = r"-?\d{1,20}(?:\.\d{1,6})?"
 _RANGE = re.compile(rf"({_NUMBER})(?:-({_NUMBER})(?:[x:](\d{{1,20}}(?:\.\d{{1,6}})?))?)?")
-#: that one range, list or bake may hold
+#: the most that one range, list or bake may hold
 MOST_FRAMES = 1_000_000
 #: how far from 0 a frame may lie
 LARGEST_FRAME = 10**9
 
 
 def parse_frames(text: str) -> tuple[Frame, ...]:
-    """Frames of `1-48`, `1-100x2`, `1001,1005-1010`, `-5--1`, `1-2x0.25`, ascending and each once.
+    """The frames of text such as `1-48`, `1-100x2`, `1001,1005-1010`, `-5--1` or `1-2x0.25`, ascending, each
+    once.
 
-    A step may also stand behind a colon, `1-100:2`, as render farms write it.
+    A step may also follow a colon, `1-100:2`, as render farms write it.
 
     Raises ParameterError.
     """
@@ -47,11 +48,11 @@ def parse_frames(text: str) -> tuple[Frame, ...]:
         if max(abs(first), abs(last)) > LARGEST_FRAME:
             raise ParameterError("frames", text, f"must lie between -{LARGEST_FRAME} and {LARGEST_FRAME}")
         parts.append((first, step, count))
-    # only now: they are counted before they are made
+    # only now: count before creating them
     series = [_series(*part) for part in parts]
     if len(series) == 1:
         return tuple(series[0])
-    # as floats, in which frames of six decimals differ: fractions take seconds to compare
+    # compared as floats, which still distinguish six decimals: comparing fractions takes seconds
     return tuple(sorted({frame for part in series for frame in part}, key=float))
 
 
@@ -71,9 +72,9 @@ def as_frame(value: float | Fraction) -> Frame:
 
 
 def frame_label(frame: Frame) -> str:
-    """How a frame stands in a file name: `0007`, `-007`, `12345`, `1001.25`.
+    """A frame as it is written in a file name: `0007`, `-007`, `12345`, `1001.25`.
 
-    Raises ParameterError for a frame that six decimals cannot write.
+    Raises ParameterError for a frame that needs more than six decimals.
     """
     return _digits(frame, 4)
 
@@ -89,9 +90,10 @@ def _digits(frame: Frame, width: int) -> str:
 
 
 def format_frames(frames: Iterable[Frame], step_sign: str = "x") -> str:
-    """Ranges that `parse_frames` reads back: `1-48,60`, `1-99x2`.
+    """Frames as ranges that `parse_frames` can read: `1-48,60`, `1-99x2`.
 
-    step_sign : what stands before a step; "" for readers that know none, and get frame by frame
+    step_sign : what precedes a step; "" for readers without steps, for which such frames are listed one by
+    one
     """
     frames = set(frames)
     whole = sorted(frame for frame in frames if isinstance(frame, int))
@@ -101,12 +103,12 @@ def format_frames(frames: Iterable[Frame], step_sign: str = "x") -> str:
 
 
 def held_frame(frames: Sequence[int], frame: int) -> int:
-    """The one of some ascending frames that stands at a frame: the last one up to it, else the first."""
+    """The baked frame shown at a frame: the last of the ascending `frames` not after it, else the first."""
     return frames[max(bisect_right(frames, frame) - 1, 0)]
 
 
 def _runs(frames: Sequence[int], may_step: bool) -> Iterator[range]:
-    """Ascending frames in ranges; a step of more than 1 only over three frames and more."""
+    """Group ascending frames into ranges; a step other than 1 needs at least three frames."""
     start = 0
     while start < len(frames):
         step = frames[start + 1] - frames[start] if start + 1 < len(frames) else 1

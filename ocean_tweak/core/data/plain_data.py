@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dataclasses as plain data and back, with unknown keys refused by their path."""
+"""Converts dataclasses to plain data and back. Unknown keys are errors that give their path."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .validation import check_count, kind_of
 
 
 def parse_json(text: str) -> Any:
-    """JSON text as plain data, with duplicate keys refused. Raises ParameterError."""
+    """Parse JSON text; duplicate keys are refused. Raises ParameterError."""
     try:
         return json.loads(text, object_pairs_hook=_unique_keys)
     except json.JSONDecodeError as error:
@@ -25,7 +25,7 @@ def parse_json(text: str) -> Any:
         raise ParameterError("JSON", text[:40], "is nested too deeply") from None
     except ParameterError:
         raise
-    except ValueError as error:  # a number of more digits than Python reads
+    except ValueError as error:  # a number with more digits than Python accepts
         raise ParameterError("JSON", text[:40], f"is not valid JSON: {error}") from None
 
 
@@ -39,9 +39,9 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def to_plain(value: Any, brief: bool = False) -> Any:
-    """Dictionaries, lists and numbers of a dataclass; a fraction that is no short decimal is text.
+    """A dataclass as dictionaries, lists and numbers; a fraction without a short decimal form becomes text.
 
-    brief : of rasters only name, shape and hash, which cannot be read back
+    brief : reduce rasters to name, shape and hash, which cannot be read back
     """
     if dataclasses.is_dataclass(value):
         fields = [f for f in dataclasses.fields(value) if not _is_unused(f, getattr(value, f.name))]
@@ -65,18 +65,18 @@ def _field_to_plain(field: dataclasses.Field[Any], value: Any, brief: bool) -> A
 
 
 def _is_unused(field: dataclasses.Field[Any], value: object) -> bool:
-    """What is not there is left out, where its field says so: the JSON of a sea without it, and so the
-    fingerprint of its frames, stays what it was before there was such a thing."""
+    """Whether a value is the default of a field marked as left out. Omitting it keeps the JSON, and so the
+    fingerprints, of seas that do not use a newer feature unchanged."""
     is_empty = not value and not isinstance(value, float)
     return bool(field.metadata.get("left_out")) and (is_empty or value == field.default)
 
 
 def from_plain(cls: type, data: object) -> Any:
-    """An instance of a dataclass from plain data; what is missing keeps its default, an instance is itself.
+    """An instance of a dataclass from plain data. Missing keys keep their defaults; an instance is returned
+    as it is.
 
-    A field whose metadata has "nested" is a dataclass of its own, with "many" a list of them; one of the kind
-    Raster is what `Raster.from_plain` reads.
-    Raises ParameterError with the path of what is wrong.
+    A field with "nested" in its metadata holds a dataclass, with "many" a list of them; a Raster is read by
+    `Raster.from_plain`. Raises ParameterError with the path of the invalid value.
     """
     if isinstance(data, cls):
         return data
@@ -116,7 +116,7 @@ def _nested_value(field: dataclasses.Field[Any], value: object) -> object:
 
 
 def class_of(metadata: Any, entry: object) -> type:
-    """The class of an entry of a field of many, an instance or plain data. Raises ParameterError."""
+    """The class of one entry (an instance or plain data) of a list field. Raises ParameterError."""
     kinds = {kind.kind: kind for kind in metadata["kinds"]}
     if not kinds:
         nested: type = metadata["nested"]
@@ -132,7 +132,7 @@ def class_of(metadata: Any, entry: object) -> type:
 
 
 def without_kind(metadata: Any, entry: object) -> object:
-    """The plain data of an entry of a field of many without what tells its class."""
+    """The plain data of one entry of a list field, without the key that names its class."""
     if not metadata["kinds"] or not isinstance(entry, dict):
         return entry
     return {key: value for key, value in entry.items() if key != "kind"}

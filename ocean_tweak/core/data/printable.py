@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Words of strangers, such as keys and names out of files, as a message may repeat them; numbers in words."""
+"""Text from files, such as keys and names, made safe to repeat in messages; numbers formatted for reading."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ import reprlib
 
 import numpy as np
 
-#: characters of a whole message
+#: maximum length of a message, in characters
 LONGEST = 4000
 
 
 def printable(text: object, most: int = 80) -> str:
-    """The text in one line of at most so many characters, with an escape for each that is no print.
+    """The text on one line of at most `most` characters, with non-printable characters escaped.
 
-    Control characters would move a terminal's cursor or colour it, and others turn the direction of writing.
+    Control characters could move a terminal's cursor or change its colours, and others reverse the writing
+    direction.
     """
     whole = str(text)
-    # what is far too long is not looked at whole
+    # do not process all of a text that is far too long
     shown = "".join(
         letter if letter.isprintable() else letter.encode("unicode_escape").decode("ascii")
         for letter in whole[: most + 1]
@@ -26,12 +27,12 @@ def printable(text: object, most: int = 80) -> str:
 
 
 def shown(value: object) -> str:
-    """A value as Python writes it, in one line of at most 80 characters."""
+    """The `repr` of a value, on one line of at most 80 characters."""
     return printable(_WRITER.repr(value))
 
 
 class _Writer(reprlib.Repr):
-    """Writes values as Python does, but of many entries only some: what a file gives may be huge or deep."""
+    """A `repr` that abbreviates long containers: values from files may be huge or deeply nested."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -39,7 +40,7 @@ class _Writer(reprlib.Repr):
         self.maxstring = self.maxlong = self.maxother = 200
 
     def repr_int(self, x: int, level: int) -> str:
-        """Digits by the thousand are not written at all: Python refuses to."""
+        """Python refuses to convert integers with thousands of digits."""
         return super().repr_int(x, level) if x.bit_length() < 10_000 else f"({x.bit_length()} bits)"
 
 
@@ -47,7 +48,7 @@ _WRITER = _Writer()
 
 
 def readable_bytes(size: float) -> str:
-    """The size as an artist reads it: `1.5 GB`."""
+    """A size for display, such as `1.5 GB`."""
     for unit in ("bytes", "kB", "MB", "GB"):
         if size < 1000.0 or unit == "GB":
             return f"{size:.0f} {unit}" if unit == "bytes" else f"{size:.3g} {unit}"
@@ -56,5 +57,5 @@ def readable_bytes(size: float) -> str:
 
 
 def without_exponent(number: float) -> str:
-    """A number as the command line takes it: it would take -1e-05 for an option."""
+    """A number as the command line accepts it: argparse mistakes -1e-05 for an option."""
     return np.format_float_positional(number, trim="-")

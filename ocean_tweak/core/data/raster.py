@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Images and grids of vectors as values: immutable, compared by their numbers, and text in JSON.
+"""Images and vector grids as values: immutable, compared by content, and stored in JSON as text.
 
-Parameters that hold one stay what parameters are: equal where the sea is equal, and complete by themselves,
-so that a bake on another machine needs no file beside them.
+Parameters that contain one are still equal if and only if their seas are, and complete, so that a bake on
+another machine needs no further file.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import ParameterError
 from .printable import shown
 
-#: samples along a side, and channels of a sample
+#: largest number of samples along a side, and of channels
 LARGEST_SIDE, MOST_CHANNELS = 4096, 4
 
-#: numbers in all rasters of a sea together: half a gigabyte of them
+#: largest number of values in all rasters of a sea together: half a gigabyte
 MOST_NUMBERS = 8 * LARGEST_SIDE**2
 
-#: shares of red, green and blue in a grey that looks as bright (ITU-R BT.709)
+#: weights of red, green and blue in luminance (ITU-R BT.709)
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
-#: how numbers are written, smallest first, and the factor by which they are multiplied before
+#: encodings, smallest first, with the factor by which values are multiplied before encoding
 _ENCODINGS: dict[str, tuple[np.dtype[Any], float]] = {
     "uint8": (np.dtype("<u1"), 255.0),
     "uint16": (np.dtype("<u2"), 65535.0),
@@ -42,10 +42,10 @@ _ENCODINGS: dict[str, tuple[np.dtype[Any], float]] = {
 
 
 class Raster:
-    """Samples [row, column, channel] in float32 that cannot be changed; the first row has the smallest y.
+    """Read-only float32 samples [row, column, channel]; the first row has the smallest y.
 
     values : (rows, columns) or (rows, columns, channels), 1 to 4096 a side, 1 to 4 channels
-    name : what it is called in messages, such as its file's name; it does not make two rasters differ
+    name : used in messages, for example the file's name; not part of the comparison
 
     Raises ParameterError, naming it, for another shape or numbers that are not finite in float32.
 
@@ -67,12 +67,12 @@ class Raster:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of its numbers, and of their text where it was made."""
+        """Size of the values in bytes, plus that of their text form once it exists."""
         return self.values.nbytes + len(vars(self).get("_as_text", ("", ""))[1])
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of shape and numbers, 64 hexadecimal digits, the same on every platform."""
+        """Hash of shape and values, 64 hexadecimal digits, the same on every platform."""
         head = "x".join(map(str, self.shape)).encode()
         return hashlib.sha256(head + b":" + self.values.astype("<f4").tobytes()).hexdigest()
 
@@ -87,7 +87,7 @@ class Raster:
         return f"Raster({self.name!r}, {rows} x {columns} x {channels}, {self.sha256[:8]})"
 
     def grey(self) -> Raster:
-        """One channel: the luminance of a colour image; the fourth is transparency, which is left out.
+        """One channel: the luminance of a colour image; alpha is ignored.
 
         Rasters of one or two channels stay as they are.
         """
@@ -96,17 +96,17 @@ class Raster:
         return Raster(self.values[..., :3].astype(np.float64) @ LUMINANCE, self.name)
 
     def brief(self) -> dict[str, Any]:
-        """What tells it from others, without its numbers: for headers, where these would be too long."""
+        """Identifies the raster without its values, for headers, where these would be too long."""
         return {"name": self.name, "shape": list(self.shape), "sha256": self.sha256}
 
     def to_plain(self) -> dict[str, Any]:
-        """Its numbers as compressed text, exact, in the smallest encoding that holds them."""
+        """The values as compressed text, lossless, in the smallest encoding that can hold them."""
         encoding, text = self._as_text
         return {"name": self.name, "shape": list(self.shape), "encoding": encoding, "data": text}
 
     @cached_property
     def _as_text(self) -> tuple[str, str]:
-        """Made once: each frame's fingerprint asks for it."""
+        """Cached, as every frame's fingerprint needs it."""
         encoding, packed = self._smallest()
         return encoding, base64.b64encode(zlib.compress(packed.tobytes(), 9)).decode()
 
@@ -120,7 +120,7 @@ class Raster:
 
     @classmethod
     def from_plain(cls, data: object) -> Raster:
-        """From what `to_plain` gives, or {"values": rows of numbers or of lists of numbers, "name": …}.
+        """Read the output of `to_plain`, or {"values": rows of numbers or of lists of numbers, "name": …}.
 
         Raises ParameterError for anything else.
         """
@@ -144,7 +144,7 @@ class Raster:
 
 
 def raster_bytes(value: object) -> int:
-    """Bytes of the rasters in parameters, or in a tuple of such."""
+    """Total size in bytes of the rasters in parameters, or in a tuple of parameters."""
     if isinstance(value, Raster):
         return value.nbytes
     if isinstance(value, tuple):
@@ -155,7 +155,7 @@ def raster_bytes(value: object) -> int:
 
 
 def check_numbers(count: int) -> None:
-    """Raise ParameterError where rasters of so many numbers together are too many for one sea."""
+    """Raise ParameterError if this total number of raster values is more than one sea may hold."""
     if count > MOST_NUMBERS:
         raise ParameterError(
             "rasters", f"{count} numbers",
@@ -164,12 +164,12 @@ def check_numbers(count: int) -> None:
 
 
 def numbers_in(data: object) -> int:
-    """How many numbers the rasters hold that stand as text in plain data, without unpacking any."""
+    """Number of values of the rasters in plain data, without decoding them."""
     return sum(math.prod(item["shape"]) for item in _rasters_in(data) if "data" in item)
 
 
 def has_brief_rasters(data: object) -> bool:
-    """Whether plain data names rasters without holding their numbers."""
+    """Whether plain data refers to rasters without containing their values."""
     return any("sha256" in item for item in _rasters_in(data))
 
 
@@ -201,7 +201,7 @@ def _checked_values(values: ArrayLike, name: str) -> NDArray[np.float32]:
     try:
         with np.errstate(over="ignore"):
             array = np.array(values, dtype=np.float32, order="C")
-    except OverflowError:  # a whole number beyond every float
+    except OverflowError:  # an integer beyond the range of floats
         raise ParameterError(what, values, "must hold numbers that are finite in 32 bits") from None
     except (TypeError, ValueError):
         raise ParameterError(what, values, "must be rows of the same number of numbers") from None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dataclass fields that carry their unit, range and description, and are checked against them."""
+"""Dataclass fields with a unit, a range and a description, validated on construction."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class _Open:
         return "OPEN"
 
 
-#: stands in a field that nobody gave, until it is known what else tells it
+#: placeholder for a field that was not given, until its value can be derived from other fields
 OPEN: Any = _Open()
 
 
 class Off(NamedTuple):
-    """A number of a field that stands for none: files hold it, and the window has a switch in its place.
+    """A field value that means "off": files store this number, and the panel shows a switch instead.
 
     value : that number
-    first : what the field is when it is switched on for the first time
+    first : the field's value when it is first switched on
     means : what the number does, as in "0 keeps all short waves"
     """
 
@@ -50,13 +50,14 @@ def number(
     off: Off | None = None,
     left_out: bool = False,
 ) -> Any:
-    """A real-valued dataclass field with its range, unit, description and the reason for the range.
+    """A real-valued dataclass field with range, unit, description and the reason for the range.
 
-    useful : what a slider offers, where the range is much wider
-    changes : whether it can change during a shot; the rest sets which waves there are and how fast they run
-    may_be_told : whether other fields may tell it, so that it is open until all are known, see `default_of`
-    off : a number that stands for none
-    left_out : where it is the default, JSON has no such key
+    useful : the slider's soft range, where the full range is much wider
+    changes : whether it can be animated; all other fields determine which waves exist and how fast they
+        travel
+    may_be_told : whether its default may depend on other fields, see `default_of`
+    off : a value that means "off"
+    left_out : omit the key from JSON while the value is the default
     """
     return dataclasses.field(
         default=OPEN if may_be_told else default,
@@ -69,7 +70,7 @@ def number(
 
 
 def changing_fields(kind: type) -> tuple[str, ...]:
-    """The fields of a parameter class that can change during a shot."""
+    """The fields of a parameter class that can be animated."""
     return tuple(field.name for field in dataclasses.fields(kind) if field.metadata.get("changes"))
 
 
@@ -100,12 +101,12 @@ def integer(
 
 
 def default_of(field: dataclasses.Field[Any]) -> Any:
-    """What a field is where nothing is given and nothing else tells it."""
+    """The default of a field that is neither given nor derived from other fields."""
     return field.metadata["default"] if field.default is OPEN else field.default
 
 
 def choice(default: str, choices: tuple[str, ...], description: str, left_out: bool = False) -> Any:
-    """A dataclass field that is one of the given names.
+    """A dataclass field restricted to the given names.
 
     left_out : where it is the default, JSON has no such key
     """
@@ -119,7 +120,7 @@ def switch(default: bool, description: str) -> Any:
 
 
 def raster(description: str, channels: int, optional: bool = True, left_out: bool = False) -> Any:
-    """A dataclass field that is an image or a grid of vectors with so many channels.
+    """A dataclass field that holds an image or a vector grid with this many channels.
 
     left_out : where there is none, JSON has no such key
     """
@@ -140,7 +141,7 @@ def rational(
     optional: bool = False,
     left_out: bool = False,
 ) -> Any:
-    """A dataclass field that is kept as an exact fraction; None is allowed where it is optional.
+    """A dataclass field stored as an exact fraction; may be None if optional.
 
     left_out : where it is the default, JSON has no such key
     """
@@ -185,7 +186,7 @@ def _checked_integer(name: str, value: object, meta: Any) -> int:
     return int(result)
 
 
-#: no more digits than a fraction that is allowed has: 1e999999999 would be written out in full
+#: no more digits than an allowed fraction has: 1e999999999 would be expanded in full
 _FRACTION = re.compile(r"[+-]?[0-9.]{1,40}(e[+-]?[0-9]{1,3}|/[0-9]{1,40})?", re.IGNORECASE)
 
 
@@ -198,7 +199,7 @@ def _checked_fraction(name: str, value: object, meta: Any) -> Fraction:
         text = str(value).strip()
         if not _FRACTION.fullmatch(text):
             raise ValueError
-        result = Fraction(text)  # 23.976 is what its digits say, not the nearest binary number
+        result = Fraction(text)  # take 23.976 as the decimal number, not as the nearest binary float
     except (TypeError, ValueError, ZeroDivisionError):
         raise ParameterError(name, value, allowed) from None
     low, high = (Fraction(str(meta[end])) for end in ("minimum", "maximum"))
@@ -247,14 +248,14 @@ def nested(
     kinds: Sequence[type] = (),
     compared: bool = True,
 ) -> Any:
-    """A dataclass field that is a dataclass of its own, by default a default one, or a tuple of them.
+    """A dataclass field that holds another dataclass, by default a default instance, or a tuple of them.
 
     empty : the tuple may be empty, and is by default
-    most : how many it may hold, of each kind
-    optional : there may be none of it, which is the default
-    kinds : of which the entries may be, each of which says in JSON by its `kind` what it is. The first need
-        not say it; of that there is one by default, and at least
-    compared : whether what differs in it alone differs
+    most : maximum number of entries of each kind
+    optional : may be None, which is the default
+    kinds : classes that entries may have, identified in JSON by their `kind`. It may be omitted for the first
+        class, of which at least one entry is required and is there by default
+    compared : whether it takes part in comparisons
     """
     one = kinds[0] if kinds else kind
     default: object = None if optional else one() if not many else () if empty else (one(),)
@@ -283,7 +284,7 @@ def _checked_nested(field: dataclasses.Field[Any], value: object) -> object:
 
 
 def check_count(name: str, entries: Sequence[object], meta: Any) -> None:
-    """Raise ParameterError where a field of many cannot have so many entries; asked before they are made.
+    """Raise ParameterError if a list field has too many entries; checked before they are created.
 
     entries : instances, or their plain data
     """
@@ -301,12 +302,12 @@ def check_count(name: str, entries: Sequence[object], meta: Any) -> None:
 
 
 def kind_of(entry: object, usual: str) -> object:
-    """The kind of an entry, an instance or plain data; the usual one where it does not say so."""
+    """The kind of an entry (an instance or plain data); the usual kind if it does not name one."""
     return entry.get("kind", usual) if isinstance(entry, dict) else getattr(entry, "kind", usual)
 
 
 class Validated:
-    """Checks each field against its metadata when an instance is made."""
+    """Base class that checks each field against its metadata on construction."""
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):  # type: ignore[arg-type]

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Grids, random numbers, interpolation, and the memory that keeps arrays."""
+"""Grids, random numbers, interpolation, and the cache for arrays."""

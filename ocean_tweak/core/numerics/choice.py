@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A choice between two arrays without branches."""
+"""Branch-free selection between two arrays."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ RealArray = NDArray[np.floating]
 
 
 def chosen(there: NDArray[np.bool_], these: RealArray, others: RealArray) -> RealArray:
-    """`these` where it is so, `others` elsewhere, all of one shape and to the bit: `np.where` for float32.
+    """Select `these` where the condition holds and `others` elsewhere, bit for bit: `np.where` for float32
+    arrays of one shape.
 
-    What it branches on changes from number to number at the edges of foam, so that processors guess wrong,
-    and that takes five times as long as all of this.
+    At the edges of foam the condition changes from one element to the next, and the branch mispredictions of
+    `np.where` take five times as long as this.
     """
     if these.dtype != np.float32 or others.dtype != np.float32:
         return np.where(there, these, others)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wave vectors that a periodic square patch can hold, in the layout of a real FFT."""
+"""The wave vectors of a periodic square patch, in the layout of a real FFT."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: modes in a block of columns: with a few arrays of it, the second-level cache is full
+#: modes in a block of columns: a few such arrays fill the level-2 cache
 _BLOCK_MODES = 2**17
 
 
@@ -57,12 +57,12 @@ class WaveVectorGrid:
 
     @property
     def k(self) -> Array:
-        """(N, N//2+1) rad/m, the wave numbers; made each time: a grid is kept with much that is small."""
+        """(N, N//2+1) rad/m, the wave numbers; recomputed on each access, so that cached grids stay small."""
         return np.hypot(self.kx, self.ky)
 
     @property
     def usable(self) -> NDArray[np.bool_]:
-        """(N, N//2+1) bool: all modes but the mean and those at Nyquist; made each time."""
+        """(N, N//2+1) bool: all modes except the mean and those at Nyquist; recomputed on each access."""
         mask = np.ones(self.shape, bool)
         mask[0, 0] = False
         mask[:, -1] = False
@@ -71,19 +71,20 @@ class WaveVectorGrid:
 
     @cached_property
     def multiplicity(self) -> Array:
-        """(1, N//2+1): how many modes of the full plane each column stands for, 1 or 2."""
+        """(1, N//2+1): number of modes of the full plane that each column represents, 1 or 2."""
         weight = np.full(self.resolution // 2 + 1, 2.0)
         weight[0] = weight[-1] = 1.0
         return weight[np.newaxis, :]
 
     def column_blocks(self) -> Iterator[slice]:
-        """The columns in blocks that stay in a processor's cache while they are worked on."""
+        """The columns in blocks that fit into the processor's cache."""
         width = max(1, _BLOCK_MODES // self.resolution)
         for first in range(0, self.resolution // 2 + 1, width):
             yield slice(first, min(first + width, self.resolution // 2 + 1))
 
     def mirror(self, half: NDArray[Any]) -> NDArray[Any]:
-        """(…, N) values of all ky in FFT order, from those of 0 … N/2, (…, N//2+1), of an even function."""
+        """(…, N) values of an even function at all ky in FFT order, from its (…, N//2+1) values at 0 …
+        N/2."""
         n = self.resolution
         full = np.empty((*half.shape[:-1], n), half.dtype)
         full[..., : n // 2 + 1] = half

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Averages of a field that repeats, over larger and larger cells (Williams 1983).
+"""Averages of a periodic field over larger and larger cells: a mip map (Williams 1983).
 
-The averages that follow are those of two by two: sample j of n stands for the place (j + ½)/n of the period,
-and lies between two samples of the averages before. Numbers that cannot be halved are rounded up, and what
-lies between two samples is interpolated.
+Each level averages 2 × 2 samples of the level before: sample j of n lies at (j + ½)/n of the period, between
+two samples of that level. Odd counts are halved and rounded up, with interpolation between samples.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ RealArray = NDArray[np.float32]
 
 
 def averages(field: RealArray) -> Iterator[RealArray]:
-    """Averages of a (rows, columns, …) field that repeats, from those over four samples to that over all.
+    """Averages of a periodic (rows, columns, …) field, from those over four samples to the mean of all.
 
     Yields (⌈rows/2⌉, ⌈columns/2⌉, …), and so on, to (1, 1, …).
     """
@@ -27,7 +26,7 @@ def averages(field: RealArray) -> Iterator[RealArray]:
 
 
 def _halved(field: RealArray, axis: int) -> RealArray:
-    """Half as many samples along an axis, in the middle between those before."""
+    """Half as many samples along an axis, midway between the present ones."""
     count = field.shape[axis]
     if count % 2 == 0:
         before = field.reshape(*field.shape[:axis], count // 2, 2, *field.shape[axis + 1 :])

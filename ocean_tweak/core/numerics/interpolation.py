@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values between samples.
+"""Interpolation between samples.
 
-Of fields [y, x], bilinear, as meshes, renderers and nodes show them. `between` looks places up in fields of
-any number of rows and columns, in double precision; a `Reader` reads many fields of one grid at the same
-places, in the fields' own precision. Both are of fields that repeat. `stretched` puts more or fewer samples
-along an axis.
+Fields [y, x] are interpolated bilinearly, as meshes, renderers and nodes do. `between` samples periodic
+fields of any shape, in double precision; a `Reader` samples many periodic fields of one grid at the same
+places, in their own precision. `stretched` resamples a field along one axis.
 
-Of samples at whole numbers, by the quadratic B-spline: smooth, and never beyond the samples' own range.
+Samples at integers can also be interpolated by a quadratic B-spline, which is smooth and never leaves the
+range of the samples.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
 
-#: places whose cells are found together
+#: places processed together
 _PLACES = 2**14
 
 
 class Between(NamedTuple):
-    """Where places lie in a field that repeats.
+    """Positions of places in a periodic field.
 
     corners : indices of the samples around each: here, next column, next row, both
-    u, v : how far each is from the column and the row before it, 0…1
+    u, v : offset of each from the column and the row before it, 0…1
     """
 
     corners: tuple[tuple[NDArray[np.intp], NDArray[np.intp]], ...]
@@ -36,30 +36,30 @@ class Between(NamedTuple):
     v: Array
 
     def read(self, field: RealArray) -> RealArray:
-        """The values of a (rows, columns) field there."""
+        """The values of a (rows, columns) field at the places."""
         here, beside, above, across = (field[corner] for corner in self.corners)
         low, high = here + self.u * (beside - here), above + self.u * (across - above)
         return np.asarray(low + self.v * (high - low))
 
 
 def between(row: Array, column: Array, shape: tuple[int, ...]) -> Between:
-    """Places by row and column, of one shape, in fields of (rows, columns, …)."""
+    """Locate places, given by row and column in arrays of one shape, in fields of (rows, columns, …)."""
     i, j = np.floor(row).astype(np.intp), np.floor(column).astype(np.intp)
     corners = tuple((y % shape[0], x % shape[1]) for y in (i, i + 1) for x in (j, j + 1))
     return Between(corners, column - j, row - i)
 
 
 class Reader:
-    """Reads square fields, [y, x] from the origin, at places in their own axes.
+    """Samples square fields, [y, x] from the origin, at places given along the fields' own axes.
 
-    The fields are `wrapped` and flat, so that no neighbour of a sample is looked for at the other side.
+    The fields are `wrapped` and flat, so that neighbouring samples never need wrapping.
     """
 
     def __init__(self, x: Array, y: Array, size: float, resolution: int) -> None:
         self._row = resolution + 1
         self._first = np.empty(x.size, np.int32)
         self._u, self._v = np.empty(x.size, np.float32), np.empty(x.size, np.float32)
-        for start in range(0, x.size, _PLACES):  # what is in between stays in a cache
+        for start in range(0, x.size, _PLACES):  # intermediate arrays stay in the processor's cache
             part = slice(start, start + _PLACES)
             (j, self._u[part]), (i, self._v[part]) = (
                 _cells(place[part], size, resolution) for place in (x, y)
@@ -70,13 +70,13 @@ class Reader:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of what is kept of the places."""
+        """Bytes used by the stored positions."""
         return self._first.nbytes + self._u.nbytes + self._v.nbytes
 
     def read(self, field: RealArray) -> RealArray:
-        """One number a place, of the field's precision, from (N+1)² numbers."""
+        """One value per place, in the field's precision, from a field of (N+1)² values."""
         first = self._first.astype(np.intp)
-        # all places are there; to let them wrap is quicker than to have them checked
+        # all indices are valid; mode "wrap" is faster than bounds checking
         p00, p01, p10, p11 = (
             np.take(field[offset:], first, mode="wrap") for offset in (0, 1, self._row, self._row + 1)
         )
@@ -93,20 +93,20 @@ class Reader:
 
 
 def _cells(place: Array, size: float, resolution: int) -> tuple[NDArray[np.intp], NDArray[np.float32]]:
-    """The cell of each place along an axis, and how far in it the place is, 0…1."""
+    """The cell of each place along an axis, and the place's offset in it, 0…1."""
     part = place / size
     part -= np.floor(part)
     part *= resolution
     cell = part.astype(np.intp)
-    np.minimum(cell, resolution - 1, out=cell)  # of a place that was rounded up to the far side
+    np.minimum(cell, resolution - 1, out=cell)  # for a place that was rounded up to the far edge
     part -= cell
     return cell, part.astype(np.float32)
 
 
 def wrapped(field: RealArray, dtype: type | None = None) -> RealArray:
-    """(N+1, N+1, …) of an (N, N, …) field that repeats: last row and column are the first ones again.
+    """(N+1, N+1, …) copy of a periodic (N, N, …) field, with the first row and column repeated at the end.
 
-    dtype : of the result; by default the field's own
+    dtype : of the result, by default that of the field
     """
     n = len(field)
     result = np.empty((n + 1, n + 1, *field.shape[2:]), dtype or field.dtype)
@@ -116,13 +116,13 @@ def wrapped(field: RealArray, dtype: type | None = None) -> RealArray:
 
 
 def close(field: RealArray) -> None:
-    """Make the last row and column of an (N+1, N+1, …) field the first ones again."""
+    """Copy the first row and column of an (N+1, N+1, …) field to its last ones."""
     field[-1, :-1] = field[0, :-1]
     field[:, -1] = field[:, 0]
 
 
 def stretched(field: RealArray, axis: int, samples: int) -> RealArray:
-    """The field at samples + 1 places along an axis, evenly from its first sample to its last."""
+    """The field at samples + 1 places along an axis, evenly spaced from its first sample to its last."""
     last = field.shape[axis] - 1
     place = np.arange(samples + 1) * (last / samples)
     before = np.minimum(place.astype(np.intp), last - 1)
@@ -135,8 +135,8 @@ def stretched(field: RealArray, axis: int, samples: int) -> RealArray:
 
 
 def spline_read(field: Array, row: Array, column: Array, *others: Array) -> tuple[Array, ...]:
-    """A (rows, columns) field that repeats at places whose row and column broadcast: the spline's value, its
-    derivatives by the row and by the column, and the values of other fields of that shape."""
+    """Sample a periodic (rows, columns) field at places whose row and column broadcast. Returns the spline's
+    value, its derivatives by row and by column, and the values of further fields of that shape."""
     (i, up), (j, along) = spline_weights(row), spline_weights(column)
     slope_up, slope_along = spline_slopes(row), spline_slopes(column)
     rows, columns = field.shape
@@ -156,14 +156,14 @@ def spline_read(field: Array, row: Array, column: Array, *others: Array) -> tupl
 
 
 def spline_weights(position: Array) -> tuple[NDArray[np.intp], Array]:
-    """The three samples around each place, (3, …), and how much each counts there; they add up to 1."""
+    """The three samples around each place, (3, …), and their weights, which add up to 1."""
     nearest, off = _nearest(position)
     samples = nearest.astype(np.intp) + np.arange(-1, 2).reshape(3, *(1,) * position.ndim)
     return samples, np.stack((0.5 * (0.5 - off) ** 2, 0.75 - off * off, 0.5 * (0.5 + off) ** 2))
 
 
 def spline_slopes(position: Array) -> Array:
-    """(3, …) derivatives of those weights by the position."""
+    """(3, …) derivatives of those weights with respect to the position."""
     _, off = _nearest(position)
     return np.stack((off - 0.5, -2.0 * off, off + 0.5))
 

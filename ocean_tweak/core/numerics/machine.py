@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the machine, or a container on it, lets this process have: memory and cores."""
+"""Memory and cores available to this process, within the limits of a container."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ _ROOT = Path("/")
 
 
 def usable_memory() -> int | None:
-    """Bytes of memory: the machine's or, where a container may have less, those; None where nobody tells."""
+    """Available memory in bytes: the machine's, or a container's limit if that is lower; None if unknown."""
     limits = [] if sys.platform == "win32" else list(_memory_limits(_ROOT))
     physical = _physical_memory()
     return min([*limits, *([] if physical is None else [physical])], default=None)
 
 
 def usable_cores() -> int:
-    """Cores that this process may use: a farm gives a part of a machine, a container a part of the time."""
+    """Number of cores this process may use: farms restrict it to some cores, containers to a share of the
+    time."""
     # not everywhere
     affinity = getattr(os, "sched_getaffinity", None)
     cores = len(affinity(0)) if affinity is not None else os.cpu_count() or 1
@@ -29,14 +30,14 @@ def usable_cores() -> int:
 
 
 def _memory_limits(root: Path) -> Iterator[int]:
-    """Bytes that the control groups of this process allow; none of those without a limit."""
+    """Memory limits in bytes of this process's control groups; those without a limit are omitted."""
     for group in _groups(root, "memory"):
         for name in ("memory.max", "memory.limit_in_bytes"):
             yield from _numbers(group / name)
 
 
 def _core_limits(root: Path) -> Iterator[float]:
-    """Seconds of work a second that the control groups of this process allow."""
+    """CPU limits of this process's control groups, in seconds of CPU time per second."""
     for group in _groups(root, "cpu"):
         pair = list(_numbers(group / "cpu.max"))
         pair = pair or [*_numbers(group / "cpu.cfs_quota_us"), *_numbers(group / "cpu.cfs_period_us")]
@@ -45,9 +46,9 @@ def _core_limits(root: Path) -> Iterator[float]:
 
 
 def _groups(root: Path, controller: str) -> Iterator[Path]:
-    """Folders of the control groups that hold this process, of both versions, up to the whole machine's.
+    """Folders of the control groups (v1 and v2) that contain this process, up to the root group.
 
-    A container sees its own group as the whole, while the name that it is told may be the machine's.
+    A container sees its own group as the root, while the name it is given may be that on the host.
     """
     try:
         lines = (root / "proc/self/cgroup").read_text(encoding="utf-8").splitlines()
@@ -63,7 +64,7 @@ def _groups(root: Path, controller: str) -> Iterator[Path]:
 
 
 def _numbers(path: Path) -> Iterator[int]:
-    """The numbers in a file; none where one of them is no limit."""
+    """The numbers in a file; an empty list if one of them means "no limit"."""
     try:
         words = path.read_text(encoding="ascii").split()
     except (OSError, UnicodeDecodeError):
@@ -73,7 +74,7 @@ def _numbers(path: Path) -> Iterator[int]:
 
 
 def _physical_memory() -> int | None:
-    """The machine's memory in bytes; None where the system does not tell."""
+    """The machine's memory in bytes; None if the system does not report it."""
     if sys.platform == "win32":
         return _windows_memory()
     try:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One memory for all arrays that outlive a call, with a budget in bytes.
+"""One cache for all arrays that outlive a call, with a budget in bytes.
 
-What is in it can be made again. It counts as long as anybody has it: an ocean that is in use holds its waves
-itself, so that a small budget makes other seas be forgotten, and not this one be made again for each frame.
+Its contents can be recomputed. A value counts for as long as anything refers to it: an ocean in use holds its
+own waves, so a small budget evicts other seas instead of recomputing this one for every frame.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ VARIABLE = "OCEAN_TWEAK_MEMORY"
 #: bytes in a unit of memory, by its name in small letters
 UNITS = {"b": 1, "kb": 10**3, "mb": 10**6, "gb": 10**9, "tb": 10**12}
 
-#: bytes that a machine has which does not tell
+#: memory assumed for a machine that does not report it, bytes
 _UNKNOWN_MACHINE = 8 * 10**9
 
-#: bytes of the least budget
+#: smallest budget, bytes
 _LEAST = 10**6
 
-#: bytes that a value counts at least: those of the parameters that are its key
+#: smallest size counted for a value, bytes: that of the parameters that are its key
 _SMALL = 10**4
 
 _Parameters = ParamSpec("_Parameters")
@@ -44,13 +44,13 @@ _Name = tuple[str, Hashable]
 
 
 class Memo:
-    """Values by their kind and key; those that were used last, as many as the budget holds, and in any case
-    the last of each kind: it is in use.
+    """Values by kind and key: the most recently used ones that fit the budget, and always the latest of each
+    kind, as that is in use.
 
-    A value's `nbytes` are the bytes of its own arrays, without those of other values that it holds.
+    A value's `nbytes` is the size of its own arrays, without those of other values that it refers to.
 
-    budget : bytes, all kinds together; None for OCEAN_TWEAK_MEMORY or else a quarter of the memory that the
-        machine, or the container, has
+    budget : bytes, all kinds together; None for OCEAN_TWEAK_MEMORY or, if that is not set, a quarter of the
+        memory of the machine or container
     """
 
     def __init__(self, budget: int | None = None) -> None:
@@ -58,8 +58,8 @@ class Memo:
         self._parts: dict[str, int] = {}
         self._lock = threading.Lock()
         self._clock = itertools.count()
-        # those that are kept, by kind and key, the one used last at the end; bytes of each kind; and those
-        # that others may still have
+        # cached values by kind and key, the most recently used last; bytes of each kind; and evicted values
+        # that may still be in use elsewhere
         self._kept: dict[str, OrderedDict[Hashable, _Entry]] = {}
         self._bytes: dict[str, int] = {}
         self._dropped: dict[_Name, weakref.ref[Any]] = {}
@@ -67,7 +67,7 @@ class Memo:
 
     @property
     def budget(self) -> int:
-        """Bytes. Raises ParameterError for an OCEAN_TWEAK_MEMORY that is no size."""
+        """The budget in bytes. Raises ParameterError if OCEAN_TWEAK_MEMORY is not a size."""
         if self._budget is None:
             self._budget = automatic_budget()
         return self._budget
@@ -80,7 +80,7 @@ class Memo:
 
     @contextlib.contextmanager
     def at_most(self, size: int) -> Iterator[None]:
-        """While this is open, the budget is no larger than some bytes."""
+        """Context manager that caps the budget at some number of bytes."""
         before, self.budget = self._budget, min(self.budget, size)
         try:
             yield
@@ -88,15 +88,15 @@ class Memo:
             self._budget = before
 
     def limit(self, kind: str, part: int) -> None:
-        """Let what is quickly made again have no more than one of so many parts of the budget."""
+        """Limit a kind that is quick to recompute to a fraction 1/parts of the budget."""
         self._parts[kind] = part
 
     def get(self, kind: str, key: Hashable, make: Callable[[], _Value]) -> _Value:
-        """The value of a key, which is made where it is not there.
+        """The value of a key, created if it is missing.
 
-        Of several threads that want the same one makes it, and the others wait; `make` may ask for other
-        values. What is larger than half the budget is not kept, but found as long as somebody has it. Where
-        `make` fails nothing is kept.
+        If several threads ask for the same key, one creates it and the others wait; `make` may ask for other
+        values. A value larger than half the budget is not kept, but is found for as long as something else
+        refers to it. If `make` fails, nothing is kept.
         """
         name = (kind, key)
         while True:
@@ -119,7 +119,8 @@ class Memo:
             making.done.set()
 
     def put(self, kind: str, key: Hashable, value: object) -> None:
-        """Keep a value whatever its size, instead of that which the key had; or count one that has grown."""
+        """Store a value whatever its size, replacing any earlier one of the key; also updates the size of one
+        that has grown."""
         self._keep((kind, key), value)
 
     def _keep(self, name: _Name, value: object, most: float = math.inf) -> None:
@@ -134,28 +135,28 @@ class Memo:
             self._trim(budget)
 
     def find(self, kind: str, key: Hashable) -> Any:
-        """The value of a key; None where there is none."""
+        """The value of a key, or None."""
         with self._lock:
             return self._found((kind, key))
 
     def take(self, kind: str, key: Hashable) -> Any:
-        """The value of a key, for the caller alone until it is put back; None where there is none."""
+        """Remove and return the value of a key, or None; `put` returns it to the cache."""
         with self._lock:
             return self._remove((kind, key))
 
     def watch(self, kind: str, value: object) -> None:
-        """Count a value that somebody else keeps, for as long as that is."""
+        """Count a value that is kept elsewhere, for as long as it exists."""
         with self._lock:
             self._dropped[kind, id(value)] = weakref.ref(value)
 
     def trim(self) -> None:
-        """Drop what was used least lately until the rest fits: a value that is watched has grown."""
+        """Evict the least recently used values until the rest fits; called when a watched value has grown."""
         budget = self.budget
         with self._lock:
             self._trim(budget)
 
     def drop(self, kind: str | None = None) -> None:
-        """Forget all values, or those of a kind."""
+        """Drop all values, or those of one kind."""
         with self._lock:
             for each in [kind] if kind is not None else [*self._kept]:
                 self._kept.pop(each, None)
@@ -181,7 +182,7 @@ class Memo:
         return None if dropped is None else dropped()
 
     def _held(self) -> dict[str, int]:
-        """Bytes by kind of what is not kept, but others have."""
+        """Bytes by kind of evicted values that are still in use elsewhere."""
         total: dict[str, int] = {}
         for name, dropped in list(self._dropped.items()):
             value = dropped()
@@ -197,7 +198,7 @@ class Memo:
         self._fit(budget)
 
     def _fit(self, most: int, kind: str | None = None) -> None:
-        """Drop what was used least lately, of a kind or of all, until what is alive of it takes no more."""
+        """Evict the least recently used values, of one kind or of all, until those alive fit the limit."""
         while self._total(kind) > most:
             kinds = [each for each in self._kept if kind in (None, each) and len(self._kept[each]) > 1]
             if not kinds:
@@ -211,11 +212,11 @@ class Memo:
 
     def _drop(self, name: _Name) -> None:
         value = self._remove(name)
-        with contextlib.suppress(TypeError):  # numbers cannot be referred to weakly
+        with contextlib.suppress(TypeError):  # there are no weak references to numbers
             self._dropped[name] = weakref.ref(value)
 
     def _remove(self, name: _Name) -> Any:
-        """Forget a value; returns it."""
+        """Remove a value and return it."""
         self._dropped.pop(name, None)
         entry = self._kept.get(name[0], OrderedDict()).pop(name[1], None)
         if entry is None:
@@ -226,7 +227,7 @@ class Memo:
 
 @dataclass
 class _Entry:
-    """A value that is kept, its bytes, and when it was used last."""
+    """A cached value, its size in bytes, and when it was last used."""
 
     value: Any
     size: int
@@ -234,30 +235,31 @@ class _Entry:
 
 
 def _size(value: Any) -> int:
-    # whether it tells, its class says: to ask the value itself would take an error in telling for a no
+    # ask the class whether there is such an attribute: asking the value would hide errors raised by the
+    # property
     return max(int(value.nbytes), _SMALL) if hasattr(type(value), "nbytes") else _SMALL
 
 
 class _Making:
-    """That a thread makes a value."""
+    """Marks a value that a thread is creating."""
 
     def __init__(self) -> None:
         self.done = threading.Event()
         self._thread = threading.get_ident()
 
     def wait(self, kind: str) -> None:
-        """Until it is made, or has failed."""
+        """Wait until it has been created or has failed."""
         if self._thread == threading.get_ident():
             raise RuntimeError(f"{kind}: to make one asks for the same one")
         self.done.wait()
 
 
-#: the memory of this process
+#: the cache of this process
 MEMO = Memo()
 
 
 def remembered(kind: str) -> Callable[[Callable[_Parameters, _Value]], Callable[_Parameters, _Value]]:
-    """A function whose results are in the memory of this process, by its arguments."""
+    """Decorator that caches a function's results in `MEMO` by its arguments."""
 
     def with_memory(function: Callable[_Parameters, _Value]) -> Callable[_Parameters, _Value]:
         @functools.wraps(function)
@@ -271,7 +273,8 @@ def remembered(kind: str) -> Callable[[Callable[_Parameters, _Value]], Callable[
 
 
 def automatic_budget() -> int:
-    """Bytes: OCEAN_TWEAK_MEMORY, or else a quarter of the machine. Raises ParameterError for no size."""
+    """The default budget in bytes: OCEAN_TWEAK_MEMORY, or a quarter of the machine's memory. Raises
+    ParameterError for an invalid size."""
     text = os.environ.get(VARIABLE, "").strip()
     if not text:
         return (usable_memory() or _UNKNOWN_MACHINE) // 4
@@ -286,7 +289,7 @@ def automatic_budget() -> int:
 
 
 def bytes_in(text: str) -> int | None:
-    """Bytes that a text such as 8GB or 1.5 MB tells; None where it tells none."""
+    """Bytes of a size given as text, such as 8GB or 1.5 MB; None if it is not a size."""
     match = re.fullmatch(r"(\d+(?:\.\d*)?|\.\d+)\s*([a-z]+)", text.strip(), re.IGNORECASE)
     if match is None or match[2].lower() not in UNITS:
         return None
@@ -294,5 +297,5 @@ def bytes_in(text: str) -> int | None:
 
 
 def total_bytes(arrays: Iterable[Any]) -> int:
-    """Bytes of some arrays, or of what says how many its arrays take; those that are None have none."""
+    """Total bytes of arrays, or of values with `nbytes`; None counts as 0."""
     return sum(array.nbytes for array in arrays if array is not None)

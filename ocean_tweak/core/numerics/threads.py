@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Work on blocks of an array that threads share; NumPy lets others run while it computes."""
+"""Blocks of an array processed by several threads; NumPy releases the GIL while it computes."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from typing import TypeVar
 
 _Block = TypeVar("_Block")
 
-#: numbers to be transformed from which on threads save more than they cost: six fields of 512²
+#: number of values to transform from which threads pay off: six fields of 512²
 _WORTH_SHARING = 6 * 512**2
 
-#: numbers of one array in a block of rows: so many that calls of NumPy cost little beside them
+#: values of one array in a block of rows: enough that the overhead of NumPy calls is small
 _BLOCK = 2**16
 
 
 def default_workers(numbers: int) -> int:
-    """Threads that help to transform so many numbers, or with what takes as long: one a core, or only one."""
+    """Number of threads for transforming this many values, or for equal work: one per core, or one."""
     return (os.cpu_count() or 1) if numbers >= _WORTH_SHARING else 1
 
 
 def run_blocks(work: Callable[[_Block], None], blocks: Iterable[_Block], workers: int) -> None:
-    """Do the work for each block, on as many threads as asked for; an error in any stops all."""
+    """Run the work for each block on the given number of threads; an error in any of them stops all."""
     if workers == 1:
         for block in blocks:
             work(block)
@@ -39,7 +39,7 @@ def run_blocks(work: Callable[[_Block], None], blocks: Iterable[_Block], workers
                 return
             work(block)
 
-    # this thread is one of them: to start another takes as long as some blocks
+    # this thread takes part: starting another takes as long as some blocks
     with ThreadPoolExecutor(workers - 1) as pool:
         others = [pool.submit(pull) for _ in range(workers - 1)]
         pull()
@@ -48,6 +48,6 @@ def run_blocks(work: Callable[[_Block], None], blocks: Iterable[_Block], workers
 
 
 def row_blocks(rows: int, columns: int) -> Iterator[slice]:
-    """Blocks of rows of a (rows, columns) array, for work on each number."""
+    """Blocks of rows of a (rows, columns) array, for elementwise work."""
     count = max(1, _BLOCK // columns)
     return (slice(first, min(first + count, rows)) for first in range(0, rows, count))
