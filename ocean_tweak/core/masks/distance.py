@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights by the distance from a place or from lines."""
+"""Mask weights by the distance from a place or from lines."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from .parameters import Mask
 
 Array = NDArray[np.float64]
 
-#: places along each side of a block of a grid for which the lines are looked through
+#: samples along each side of a grid block that share one search for nearby lines
 _BLOCK = 64
 
 
 def by_distance(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """A smooth step over the distance from the nearest of places, or lines, that repeat with the domain."""
+    """A smoothstep over the distance from the place, or from the nearest line, both repeated with the
+    domain."""
     dx, dy = (_from_place if mask.lines is None else _from_lines)(mask, domain_size, x, y)
     distance = np.hypot(dx, dy)
     part = np.clip((distance - mask.inner_radius) / (mask.outer_radius - mask.inner_radius), 0.0, 1.0)
@@ -28,7 +29,7 @@ def by_distance(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Arr
 
 
 def _from_place(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array]:
-    """x and y away from the nearest of its places, m."""
+    """Offset (x, y) from the nearest repetition of its place, m."""
     dx, dy = (
         (p - at + 0.5 * domain_size) % domain_size - 0.5 * domain_size for p, at in ((x, mask.x), (y, mask.y))
     )
@@ -36,7 +37,8 @@ def _from_place(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Arr
 
 
 def _from_lines(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array]:
-    """x and y away from the nearest point of its lines, m; from no line where all are out of reach."""
+    """Offset (x, y) from the nearest point of its lines, m; arbitrary beyond the outer radius of all
+    lines."""
     shape = np.broadcast_shapes(x.shape, y.shape)
     x, y = (np.broadcast_to(place % domain_size, shape) for place in (x, y))
     lines = _lines_in_reach(mask, domain_size)
@@ -47,17 +49,18 @@ def _from_lines(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Arr
 
 
 def _blocks(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
-    """Places that lie together, if they are a grid's."""
+    """Split the places of a grid into blocks of neighbours."""
     side = _BLOCK if len(shape) > 1 else _BLOCK**2
     firsts = itertools.product(*(range(0, count, side) for count in shape))
     yield from (tuple(slice(first, first + side) for first in each) for each in firsts)
 
 
 def _away(lines: Array, x: Array, y: Array, reach: float) -> tuple[Array, Array]:
-    """x and y away from the nearest of (lines, 2, 2) begins and extents, m, or `reach` where that is farther.
+    """Offset (x, y) from the nearest of the lines, (lines, 2, 2) start points and extents, m; `reach` where
+    all are farther away.
 
-    Only lines that may be the nearest of a place are looked at. They are at most twice as far from the middle
-    of all as the places are, beyond the one that is nearest to that middle.
+    Only lines that can be the nearest for some place are examined: those whose distance from the middle of
+    the places exceeds that of the line nearest to it by at most twice the radius of the places.
     """
     nearest = np.full(x.shape, reach * reach)
     away_x, away_y = np.full(x.shape, reach), np.zeros(x.shape)
@@ -75,17 +78,18 @@ def _away(lines: Array, x: Array, y: Array, reach: float) -> tuple[Array, Array]
 
 
 def _to_lines(begin: Array, extent: Array, x: Array | float, y: Array | float) -> tuple[Array, Array]:
-    """x and y of places from the nearest points of lines; one line and any places, or the other way round."""
+    """Offsets (x, y) of places from the nearest points of lines: one line and many places, or many lines and
+    one place."""
     (ax, ay), (ux, uy) = begin, extent
     along = np.clip(((x - ax) * ux + (y - ay) * uy) / np.maximum(ux * ux + uy * uy, 1e-12), 0.0, 1.0)
     return x - ax - along * ux, y - ay - along * uy
 
 
 def _lines_in_reach(mask: Mask, domain_size: float) -> Array:
-    """(lines, 2, 2) begin and extent of those lines, repeated with the domain, that may be the nearest of a
-    place in it.
+    """(lines, 2, 2) start points and extents of the repeated lines that can be the nearest for a place in the
+    domain.
 
-    No place is farther than half a diagonal from the nearest repetition of a point.
+    No place is farther than half a diagonal from the nearest repetition of any point.
     """
     assert mask.lines is not None
     reach = min(mask.outer_radius, math.sqrt(0.5) * domain_size)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights by the brightness of an image."""
+"""Mask weights by the brightness of an image."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def by_image(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """A quadratic B-spline through the texels, whose centres are half a texel in; it stays in 0…1."""
+    """A quadratic B-spline over the texels, whose centres are half a texel in; its values stay in 0…1."""
     assert mask.image is not None
     texels = np.clip(mask.image.values[..., 0].astype(np.float64), 0.0, 1.0)
     rows, columns = texels.shape

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights by a noise that moves and changes: gusts.
+"""Mask weights by a noise that moves and evolves: gusts.
 
-The noise g is a sum of waves that the domain holds, with random phases: normal, of mean 0 and variance 1. Its
-energy Ψ(k) ∝ (k/k₀)² exp(−(k/k₀)²) is largest at k₀ = 2π/size. It moves with U, as k·U turns each wave, and
-each turns by a random rate besides, normal with σ = √2/T: what has moved along resembles itself by
-exp(−(t/T)²) after a time t. In a loop all rates are whole numbers of turns.
+The noise g is a sum of the domain's Fourier modes with random phases: Gaussian, with mean 0 and variance 1.
+Its energy Ψ(k) ∝ (k/k₀)² exp(−(k/k₀)²) is largest at k₀ = 2π/size. It travels at the velocity U, by the rate
+k·U of each mode's phase, to which a random rate is added, Gaussian with σ = √2/T: in the moving frame the
+autocorrelation after a time t is exp(−(t/T)²). In a loop all rates are integer numbers of turns.
 
-The weight is w = Φ((c g + Φ⁻¹(p)) / √(1 − c²)), Φ being the normal distribution, c the contrast and p the
-coverage: its mean is p, for it is the chance that c g and √(1 − c²) times another normal number are together
-above −Φ⁻¹(p), and their sum has variance 1.
+The weight is w = Φ((c g + Φ⁻¹(p)) / √(1 − c²)), with Φ the normal distribution function, c the contrast and p
+the coverage. Its mean is p: w is the probability that c g plus √(1 − c²) times an independent normal number
+exceeds −Φ⁻¹(p), and that sum has variance 1.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from .parameters import Mask
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-#: samples of a noise between one gust and the next; waves up to three times k₀ have 4 each, and those beyond
-#: a thousandth of the energy
+#: samples from one gust to the next; modes up to three times k₀ have at least 4, and those beyond hold a
+# thousandth of the energy
 _SAMPLES_A_GUST = 12.0
 _HIGHEST = 3.0
 _FEWEST = 16
@@ -42,7 +42,7 @@ _P = 0.2316419
 _B = (0.319381530, -0.356563782, 1.781477937, -1.821255978, 1.330274429)
 
 
-# of another time they are others
+# at another time the weights differ
 MEMO.limit("noises of masks at a time", 64)
 
 
@@ -50,19 +50,19 @@ class SeaTime(NamedTuple):
     """A moment of a sea.
 
     time : s
-    loop_duration : s after which all is as before; None for never
+    loop_duration : period of the loop, s; None without a loop
     """
 
     time: float | Fraction = 0.0
     loop_duration: Fraction | None = None
 
 
-#: what is asked of masks that do not move
+#: used for masks that do not move
 ANY_TIME = SeaTime()
 
 
 class _Samples(NamedTuple):
-    """Of a noise at a time, (samples, samples): itself, and its change in 1/s."""
+    """Samples of a noise at one time, (samples, samples): its value and its time derivative in 1/s."""
 
     now: Array
     rate: Array
@@ -73,7 +73,8 @@ class _Samples(NamedTuple):
 
 
 class _Waves(NamedTuple):
-    """Of a noise at time 0, over the half plane of a grid: coefficients, and rad/s at which each turns."""
+    """Modes of a noise over the half plane of a grid: coefficients at time 0, and angular frequencies in
+    rad/s."""
 
     coefficients: ComplexArray
     rates: Array
@@ -86,7 +87,7 @@ class _Waves(NamedTuple):
 def by_noise(
     mask: Mask, domain_size: float, x: Array, y: Array, when: SeaTime
 ) -> tuple[Array, Array, Array, Array]:
-    """Weights at rest positions in m, and their derivatives by x, y and time."""
+    """Weights at rest positions in m, and their derivatives with respect to x, y and time."""
     noise, by_x, by_y, by_t = _noise(mask, domain_size, x, y, when)
     contrast = mask.noise_contrast
     left = math.sqrt(1.0 - contrast * contrast)
@@ -100,13 +101,13 @@ def by_noise(
 def _noise(
     mask: Mask, domain_size: float, x: Array, y: Array, when: SeaTime
 ) -> tuple[Array, Array, Array, Array]:
-    """The noise and its derivatives: by the quadratic B-spline that goes through its samples."""
+    """The noise and its derivatives, by an interpolating quadratic B-spline."""
     gusts = domain_size / mask.noise_size
     samples = max(_FEWEST, 2 ** math.ceil(math.log2(_SAMPLES_A_GUST * gusts)))
     now, rate = _sampled(mask, domain_size, samples, when)
     column, row = (place / domain_size * samples for place in (x, y))
     per_metre = samples / domain_size
-    if x.ndim == 1 and y.ndim == 2:  # of a grid: row by row first, of which there are fewer samples
+    if x.ndim == 1 and y.ndim == 2:  # for a grid, interpolate across rows first, of which there are fewer
         (j, along_x), (i, along_y) = spline_weights(column), spline_weights(row)
         slope_x, slope_y = spline_slopes(column), spline_slopes(row)
         i, j = i[..., 0] % samples, j % samples
@@ -119,12 +120,12 @@ def _noise(
 
 
 def _sum(rows: Array, weights: Array) -> Array:
-    """(rows, samples) of (3, rows, samples) with (3, rows, 1) weights."""
+    """Weighted sum (rows, samples) of (3, rows, samples) with (3, rows, 1) weights."""
     return np.asarray(rows[0] * weights[0] + rows[1] * weights[1] + rows[2] * weights[2])
 
 
 def _sum_columns(rows: Array, j: NDArray[np.intp], weights: Array) -> Array:
-    """(rows, columns) of (rows, samples), with the (3, columns) samples around each and their weights."""
+    """Weighted sum (rows, columns) of (rows, samples), from the (3, columns) neighbours and their weights."""
     total = rows[:, j[0]] * weights[0]
     for a in (1, 2):
         total += rows[:, j[a]] * weights[a]
@@ -143,17 +144,17 @@ def _waves(mask: Mask, domain_size: float, samples: int, loop: Fraction | None) 
     grid = WaveVectorGrid(samples, domain_size)
     kx, ky, k = grid.kx, grid.ky, grid.k
     ratio = k * (mask.noise_size / (2.0 * np.pi))
-    # of two waves that are each other's mirror image along the axis the half plane holds both: one is enough
+    # on the axis, the half plane holds both of each pair of conjugate modes: one is enough
     held = grid.usable & (ratio <= _HIGHEST) & ((kx > 0.0) | (ky > 0.0))
-    # relative to the largest, or a gust as large as the domain would have none
+    # relative to the largest, as otherwise a gust as large as the domain would have no energy
     exponent = np.log(np.maximum(ratio, 1e-12) ** 2) - ratio**2
     energy = np.where(held, np.exp(exponent - float(np.max(exponent[held]))), 0.0)
     amplitude = np.sqrt(2.0 * energy / energy.sum())
-    # the halves of a wave at k and −k; the column without a mirror image has both in one
+    # amplitudes are halved for k and −k, except in the column that has no mirror image
     amplitude = amplitude * np.where(kx > 0.0, 0.5, 1.0)
     key = hash_wave_vectors(kx, ky, mask.noise_seed)
     coefficients = amplitude * np.exp(2j * np.pi * uniform(key, 0))
-    # a quadratic B-spline through samples: at each it counts 3/4 of that and 1/8 of its neighbours
+    # prefilter, so that the B-spline interpolates: it weights a sample by 3/4 and either neighbour by 1/8
     step = domain_size / samples
     coefficients /= (0.75 + 0.25 * np.cos(kx * step)) * (0.75 + 0.25 * np.cos(ky * step))
     along = kx * math.cos(mask.noise_direction) + ky * math.sin(mask.noise_direction)
@@ -167,7 +168,7 @@ def _waves(mask: Mask, domain_size: float, samples: int, loop: Fraction | None) 
 
 
 def _turned(rates: Array, when: SeaTime) -> Array:
-    """By how much each wave has turned, rad; after a loop exactly by nothing."""
+    """Phase of each mode at a time, rad; exactly 0 after a loop."""
     if when.loop_duration is None:
         return rates * float(when.time)
     turns = np.rint(rates * (float(when.loop_duration) / (2.0 * np.pi)))
@@ -176,7 +177,7 @@ def _turned(rates: Array, when: SeaTime) -> Array:
 
 
 def normal_distribution(x: Array) -> tuple[Array, Array]:
-    """The normal distribution Φ, and its density φ."""
+    """The normal distribution function Φ, and its density φ."""
     density = np.exp(-0.5 * x * x) / math.sqrt(2.0 * math.pi)
     t = 1.0 / (1.0 + _P * np.abs(x))
     tail = np.zeros_like(x)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a mask is."""
+"""The parameters of a mask."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from ..data.raster import Raster
 from ..data.validation import Off, Validated, choice, integer, number, raster, switch
 
 MASK_SOURCES = ("IMAGE", "DISTANCE", "NOISE")
-#: what changes of a mask whose object moves
+#: fields that change for a mask whose object moves
 MOVING = ("x", "y", "lines")
-#: gusts of a noise along each side of a domain
+#: largest number of gusts along a side of the domain
 MOST_GUSTS = 40
-#: lines of a mask, each as much work as a mask's place, and how many domains each may be long
+#: largest number of lines of a mask, each of which costs as much as a place, and their largest length in
+# domains
 MOST_LINES, MOST_DOMAINS = 500, 4.0
 
 
@@ -98,8 +99,8 @@ class Mask(Validated):
 
 
 def check_mask(mask: Mask, domain_size: float) -> None:
-    """Raise ParameterError for a mask that does not fit a domain: for a noise too coarse or too fine, and for
-    lines that would be repeated with it too often.
+    """Raise ParameterError for a mask that does not fit a domain: a noise too coarse or too fine for it, or
+    lines that would repeat in it too often.
     """
     if mask.source == "NOISE":
         _check_noise(mask, domain_size)
@@ -117,7 +118,7 @@ def _check_noise(mask: Mask, domain_size: float) -> None:
 
 
 def check_lines(lines: Raster, domain_size: float) -> None:
-    """Raise ParameterError for lines that would be repeated with the domain too often."""
+    """Raise ParameterError for lines that would repeat too often within the domain."""
     x0, y0, x1, y1 = np.moveaxis(lines.values, -1, 0)
     longest = float(max(np.abs(x1 - x0).max(), np.abs(y1 - y0).max()))
     if longest > MOST_DOMAINS * domain_size:

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 #: rows of a square of weights that are made at once
 _ROWS = 128
-# of another time they are others
+# each moment has its own
 MEMO.limit("moving weights of masks", 16)
 
 

@@ -18,8 +18,8 @@ JONSWAP_ALPHA_EXPONENT = 0.22
 JONSWAP_PEAK = 22.0  # ω_p U / g at g F / U² = 1
 JONSWAP_SIGMA_BELOW = 0.07  # relative peak width at and below the peak frequency
 JONSWAP_SIGMA_ABOVE = 0.09  # and above it
-PEAK_ENHANCEMENT = 3.3  # γ, the mean of the JONSWAP records
-DEVELOPMENT = 1.25  # exponent factor of exp(-5/4 (ω_p/ω)⁴), which puts the peak at ω_p
+PEAK_ENHANCEMENT = 3.3  # γ, the mean of the JONSWAP measurements
+DEVELOPMENT = 1.25  # factor in exp(-5/4 (ω_p/ω)⁴), which places the peak at ω_p
 
 # Wind over height, Horvath (2015), § 5.1.3, corrected to 10⁻³ and the log law's 1/κ
 DRAG_OFFSET = 0.8e-3
@@ -57,17 +57,17 @@ SWELL_SHAPE = 16.0
 # Trough damping: the long waves are those below this multiple of the peak wave number
 TROUGH_FILTER = 3.0
 
-# Height over length at which waves break in deep water, Miche (1944)
+# Ratio of height to length at which waves break in deep water, Miche (1944)
 BREAKING_STEEPNESS = 0.142
 
-# Wind in m/s, or fetch in m, that raises no waves: those of weaker ones are smaller than an atom
+# Wind in m/s, or fetch in m, at or below which there are no waves: they would be smaller than an atom
 CALM = 1e-12
 
-# Whitecaps, Monahan & O'Muircheartaigh (1980): share of the sea, wind at 10 m in m/s
+# Whitecap coverage, Monahan & O'Muircheartaigh (1980): fraction of the sea, wind at 10 m in m/s
 WHITECAP_FACTOR = 3.84e-6
 WHITECAP_EXPONENT = 3.41
 
-# Whitecaps, Callaghan, de Leeuw, Cohen & O'Dowd (2008): share of the sea, wind at 10 m in m/s
+# Whitecap coverage, Callaghan, de Leeuw, Cohen & O'Dowd (2008): fraction of the sea, wind at 10 m in m/s
 CALLAGHAN_LEAST = 3.70
 CALLAGHAN_SLOW_FACTOR = 3.18e-5
 CALLAGHAN_FAST_FROM = 10.18
@@ -79,4 +79,6 @@ MASTIN_PEAK = 0.13  # f_m U / g, U at 10 m
 MASTIN_SHAPE = 9.77
 MASTIN_BELOW_EXPONENT = 4.06
 MASTIN_ABOVE_EXPONENT = -2.34
-DOMINANT_SHARE = 0.6666666666666666  # of the peak's energy: from there on waves belong to the dominant band
+DOMINANT_SHARE = (
+    0.6666666666666666  # fraction of the peak's energy above which waves belong to the dominant band
+)

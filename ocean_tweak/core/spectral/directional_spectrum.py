@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: nodes per unit of ln k: JONSWAP's peak, the narrowest feature, is met to 1e-5 of its value
+#: nodes per unit of ln k: resolves JONSWAP's peak, the narrowest feature, to 1e-5 of its value
 _NODES_PER_LOG = 1024
 
 _LEAST_ENERGY = 1e-300
 
-#: cells nearer to the origin than this many cells are averaged over sub-cells: at radius r over
-#: n x n with n the power of two that is at least _FINEST_RADIUS / r
+#: cells within this radius, in cells, of the origin are averaged over sub-cells: n x n at radius r, with n
+# the smallest power of two that is at least _FINEST_RADIUS / r
 _FINEST_RADIUS = 32.0
 
-#: sub-cells along a side where the end of a band cuts a cell
+#: sub-cells along a side of a cell that is cut by the end of a band
 _BAND_SUBCELLS = 8
 
 
@@ -41,8 +41,8 @@ class DirectionalSpectrum:
 
     Horvath (2015), eq. 16 and 61.
 
-    patch_band : shortest and longest wavelength in m of the patch that holds it, sharp, beside the layer's
-        own band; None for all waves
+    patch_band : shortest and longest wavelength in m of the patch, with sharp ends, in addition to the
+        layer's own band; None for all waves
     """
 
     layer: WaveLayer
@@ -52,17 +52,17 @@ class DirectionalSpectrum:
 
     @cached_property
     def scales(self) -> LayerScales:
-        """α, ω_p, γ and the fetch that acts."""
+        """α, ω_p, γ and the effective fetch."""
         return layer_scales(self.layer, self.water)
 
     @property
     def fetch_is_limited(self) -> bool:
-        """Whether the sea is fully developed before its fetch ends."""
+        """Whether the sea is fully developed within its fetch."""
         return self.scales.fetch < self.layer.fetch
 
     @property
     def peak_frequency(self) -> float:
-        """ω_p in rad/s, the peak frequency that wind and fetch set before the depth acts."""
+        """ω_p in rad/s, the peak frequency for wind and fetch before the depth factor."""
         return self.scales.peak_frequency
 
     @cached_property
@@ -77,18 +77,19 @@ class DirectionalSpectrum:
             exponent=layer.spreading_exponent,
         )
         if WIND_MODELS.isdisjoint((model.model, model.second)):
-            return model  # its tables serve every wind
+            return model  # its tables apply to every wind
         return replace(model, wind_frequency=self.scales.wind_frequency)
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:
-        """S(ω) in m²·s/rad, any shape, with the layer's amplitude scale, band and short-wave cut-off."""
+        """S(ω) in m²·s/rad, of any shape, with the layer's amplitude scale, band and short-wave cut-off
+        applied."""
         spectrum = self.layer.amplitude_scale**2 * scaled_spectrum(omega, self.layer, self.scales, self.water)
         if not (self.has_band or self.layer.short_wave_cutoff > 0.0):
             return spectrum
         return self.energy_weight(dispersion.wave_number(omega, self.dispersion, self.water)) * spectrum
 
     def energy_weight(self, k: Array) -> Array:
-        """Share of the energy that the band and the short-wave cut-off leave, 0…1, over k in rad/m.
+        """Fraction of the energy kept by the band and the short-wave cut-off, 0…1, over k in rad/m.
 
         The cut-off is Tessendorf's exp(-k²l²) (Horvath 2015, § 5.1.3). A band and its inverse add to 1.
         """
@@ -104,7 +105,7 @@ class DirectionalSpectrum:
 
     @property
     def has_band(self) -> bool:
-        """Whether the layer or its patch leaves wavelengths out."""
+        """Whether the layer or its patch excludes wavelengths."""
         return self._layer_has_band or self.patch_band is not None
 
     @property
@@ -113,7 +114,7 @@ class DirectionalSpectrum:
 
     @property
     def sharp_ends(self) -> Array:
-        """Wave numbers in rad/m at which energy begins or ends at once."""
+        """Wave numbers in rad/m of sharp band ends."""
         of_layer = self.band_ends if self.layer.band_softness == 0.0 else self.band_ends[:0]
         ends = [end for end in self.patch_band or () if 0.0 < end < 1e6]
         return np.concatenate([of_layer, 2.0 * np.pi / np.array(ends)]) if ends else of_layer
@@ -157,14 +158,14 @@ class DirectionalSpectrum:
     def cell_means(self, grid: WaveVectorGrid) -> tuple[Array, Array]:
         """Ψ averaged over each wave-vector cell, in m⁴, for k and for -k.
 
-        Returns two (N, N//2+1) arrays; modes that are no waves hold 0. Sampling at the cell's centre
-        instead (Horvath 2015, eq. 46; Chen 2014, eq. 17) loses or doubles the energy of a narrow peak.
+        Returns two (N, N//2+1) arrays, 0 at the mean and at Nyquist. Sampling at the cell's centre instead
+        (Horvath 2015, eq. 46; Chen 2014, eq. 17) can lose or double the energy of a narrow peak.
         """
         return CellMeans(self, grid).both()
 
 
 class Nodes(NamedTuple):
-    """Where wave numbers lie between the nodes of a table."""
+    """Positions of wave numbers between the nodes of a table."""
 
     below: NDArray[np.int64]
     fraction: Array
@@ -173,9 +174,9 @@ class Nodes(NamedTuple):
 class RadialTable:
     """Energy and spreading shape over k, interpolated linearly in ln k (the energy in its logarithm).
 
-    But for the angle, everything in Ψ(kx, ky) depends on k alone. The nodes are whole multiples of a step in
-    ln k, the same for every grid, so that a wave vector has the same value on all of them. A table is made
-    for wave numbers from `lowest` to `highest` in rad/m.
+    Apart from the angle, everything in Ψ(kx, ky) depends on k alone. The nodes are integer multiples of a
+    fixed step in ln k, so a wave vector has the same value on every grid. A table covers wave numbers from
+    `lowest` to `highest` in rad/m.
     """
 
     def __init__(self, lowest: float, highest: float) -> None:
@@ -184,7 +185,7 @@ class RadialTable:
         self.k: Array = np.exp(np.arange(self._first, last + 1) / _NODES_PER_LOG)
 
     def fill(self, energy: Array, shape: Shape) -> None:
-        """Keep the values at the nodes `k`: energy in m⁴ per unit of D, and the shape of D."""
+        """Store the values at the nodes `k`: energy in m⁴ per unit of D, and the shape of D."""
         first, second = shape.first_weight, shape.second_weight
         self._values = shape._replace(
             first_weight=np.log(np.maximum(energy * first, _LEAST_ENERGY)),
@@ -192,7 +193,7 @@ class RadialTable:
         )
 
     def nodes(self, k: Array) -> Nodes:
-        """Where wave numbers lie; k in rad/m within the table's range."""
+        """Positions of wave numbers k, in rad/m, within the table's range."""
         position = np.log(k)
         position *= _NODES_PER_LOG
         position -= self._first
@@ -201,7 +202,7 @@ class RadialTable:
         return Nodes(index, position)
 
     def shape(self, at: Nodes) -> Shape:
-        """The shape of D at some nodes, its weights multiplied by the energy."""
+        """The shape of D at these nodes, its weights multiplied by the energy."""
         values = _each(self._values, lambda table: _interpolated(table, at))
         second = values.second_weight
         return values._replace(
@@ -216,20 +217,20 @@ def _interpolated(values: Array, at: Nodes) -> Array:
 
 
 def _each(shape: Shape, function: Callable[[Array], Array]) -> Shape:
-    """A shape with each of the arrays that it has changed by a function."""
+    """A shape with a function applied to each of its arrays."""
     return Shape._make(None if array is None else function(array) for array in shape)
 
 
 class CellMeans:
     """Means of a spectrum over the cells of a grid.
 
-    Arrays inside are [kx, ky], as the transforms want them in memory.
+    Internally, arrays are [kx, ky], the memory order of the transforms.
     """
 
     def __init__(self, spectrum: DirectionalSpectrum, grid: WaveVectorGrid) -> None:
         self._spectrum = spectrum
         self._grid = grid
-        # sub-cells reach half a cell inside of the first mode and beyond the last
+        # sub-cells extend half a cell below the first mode and beyond the last
         self._table = RadialTable(0.25 * grid.spacing, 0.75 * grid.resolution * grid.spacing)
         k = self._table.k
         omega = dispersion.angular_frequency(k, spectrum.dispersion, spectrum.water)
@@ -248,7 +249,7 @@ class CellMeans:
         return forward.T, backward.T
 
     def _samples(self, columns: slice) -> tuple[Array, Array]:
-        """Ψ at the centres of some columns' cells, (columns, N) each. The radial part is even in ky."""
+        """Ψ at the cell centres of some columns, (columns, N) each. The radial part is even in ky."""
         grid = self._grid
         kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
         half = np.maximum(np.hypot(kx, ky[: grid.resolution // 2 + 1]), 0.5 * grid.spacing)
@@ -262,7 +263,7 @@ class CellMeans:
         return shape._replace(first_weight=weight * shape.first_weight, second_weight=second)
 
     def _both_ways(self, shape: Shape, kx: Array, ky: Array) -> tuple[Array, Array]:
-        """Ψ at k and at -k. All spreadings are even in θ, and -k lies at π - |θ|."""
+        """Ψ at k and at -k. All spreading models are even in θ, and -k lies at π - |θ|."""
         layer, spreading = self._spectrum.layer, self._spectrum.spreading
         theta = np.abs(wrap_angle(np.arctan2(ky, kx) - layer.wind_direction))
         return shape.density(theta, spreading), shape.density(np.pi - theta, spreading)
@@ -279,15 +280,16 @@ class CellMeans:
             backward[column, row] = against.mean(axis=(1, 2))
 
     def _cells_to_divide(self) -> Iterator[tuple[int, NDArray[np.intp], NDArray[np.intp]]]:
-        """Numbers n of sub-cells along a side, with the columns and rows of the cells that want n x n."""
+        """Numbers n of sub-cells along a side, each with the columns and rows of the cells that need n x
+        n."""
         subdivisions = self._subdivisions()
         for n in np.unique(subdivisions[subdivisions > 1]):
             column, row = np.nonzero(subdivisions == n)
             yield int(n), column, row
 
     def _subdivisions(self) -> NDArray[np.int8]:
-        """(N//2+1, N) sub-cells along a side: more towards the origin, where cells are wide against their
-        wave number, and where the sharp end of a band cuts a cell."""
+        """(N//2+1, N) numbers of sub-cells along a side: more towards the origin, where cells are wide
+        relative to their wave number, and where a sharp end of a band cuts a cell."""
         grid = self._grid
         result = np.zeros(grid.shape[::-1], np.int8)
         near = int(min(_FINEST_RADIUS, grid.resolution // 2))
@@ -305,9 +307,9 @@ class CellMeans:
 
 
 def _rise(octaves: Array, width: float) -> Array:
-    """0 below, 1 above 0 octaves, with a smooth step of the given width between; a half at 0."""
+    """Smoothstep of the given width in octaves: 0 below 0, ½ at 0, 1 above."""
     if width == 0.0:
         return (octaves >= 0.0).astype(np.float64)
-    # held before the division: a width may be as small as a float can be
+    # clipped before the division: the width may be the smallest float
     x = np.clip(np.clip(octaves, -width, width) / width + 0.5, 0.0, 1.0)
     return x * x * (3.0 - 2.0 * x)

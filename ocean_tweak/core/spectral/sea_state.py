@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Heights, periods and directions of a sea, from the energies of its modes or from a field.
+"""Wave height, periods and directions of a sea, from the energies of its modes or from an elevation field.
 
-Moments: m0 is the variance of the elevation, m2 that of its rate; Hs = 4√m0 is the significant wave height,
-Tp the period at the peak of the frequency spectrum, Tz = 2π√(m0/m2) the mean one between zero up-crossings.
+m0 is the variance of the elevation, m2 that of its rate of change; Hs = 4√m0 is the significant wave height,
+Tp the period at the peak of the frequency spectrum, Tz = 2π√(m0/m2) the mean period between zero
+up-crossings.
 """
 
 from __future__ import annotations
@@ -25,15 +26,15 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: width in ln k of the kernel that turns the energies of single modes into a frequency spectrum
+#: width in ln k of the kernel that smooths the energies of single modes into a frequency spectrum
 _KERNEL_WIDTH = 0.1
 _BINS_PER_LOG = 400
 
 
 class Modes(NamedTuple):
-    """Energies of modes and how fast they turn.
+    """Energies and angular frequencies of modes.
 
-    grid : which they are
+    grid : their wave vectors
     along, against : (N, N//2+1) m², of waves along k and against it
     omega : (N, N//2+1) rad/s
     """
@@ -46,11 +47,11 @@ class Modes(NamedTuple):
 
 @dataclass(frozen=True)
 class SeaState:
-    """Energy, periods and directions of a sea. What a flat sea does not have is NaN.
+    """Energy, periods and directions of a sea. Quantities undefined for a flat sea are NaN.
 
     m0 : m²
     peak_period, zero_crossing_period : Tp and Tz, s
-    peak_wavelength : of waves with the peak period, m
+    peak_wavelength : wavelength at the peak period, m
     mean_square_slope : ∫k²S dω, for the continuous spectrum up to 100 times the peak frequency
     mean_direction : rad, counter-clockwise from +x, weighted by energy
     directional_spread : √(2 - 2r) in rad, with r the length of the mean direction vector
@@ -72,16 +73,16 @@ class SeaState:
 
     @property
     def peak_wave_number(self) -> float:
-        """Of waves with the peak wavelength, rad/m."""
+        """Wave number at the peak wavelength, rad/m."""
         return 2.0 * np.pi / self.peak_wavelength
 
     @property
     def steepness(self) -> float:
-        """Hs over the peak wavelength."""
+        """Hs divided by the peak wavelength."""
         return self.significant_wave_height / self.peak_wavelength
 
     def to_dict(self) -> dict[str, float | None]:
-        """Plain numbers for JSON; what does not exist is None."""
+        """Plain numbers for JSON; undefined ones are None."""
         values = {"significant_wave_height": self.significant_wave_height, "steepness": self.steepness}
         values |= {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         return {name: value if np.isfinite(value) else None for name, value in values.items()}
@@ -90,7 +91,7 @@ class SeaState:
 def mode_state(
     along: RealArray, against: RealArray, grid: WaveVectorGrid, parameters: OceanParameters
 ) -> SeaState:
-    """State of single modes.
+    """State of modes with the sea's dispersion relation.
 
     along, against : (N, N//2+1) m², |h_plus|² and |h_minus|²: energies of the waves along +k and -k
     """
@@ -102,7 +103,8 @@ def mode_state(
 
 
 def modes_state(parts: Sequence[Modes], parameters: OceanParameters) -> SeaState:
-    """State of waves of one grid that turn as they like: their periods are those that a place sees."""
+    """State of modes of one grid with arbitrary angular frequencies; periods are those seen by a fixed
+    observer."""
     if not parameters.has_states:
         (part,) = parts
         return mode_state(part.along, part.against, part.grid, parameters)
@@ -125,12 +127,12 @@ def modes_state(parts: Sequence[Modes], parameters: OceanParameters) -> SeaState
 
 
 def _mean_period(m0: float, m2: float) -> float:
-    """2π√(m0/m2), s; endless for waves that stand still."""
+    """2π√(m0/m2), s; infinite for waves that stand still."""
     return float(2.0 * np.pi * np.sqrt(m0 / m2)) if m2 > 0.0 else float("inf")
 
 
 def together(states: Sequence[SeaState]) -> SeaState:
-    """State of several wave systems at once; its peak is that of the one with most energy."""
+    """Combined state of several wave systems; the peak is that of the system with the most energy."""
     moving = [state for state in states if state.m0 > 0.0]
     if not moving:
         return states[0]
@@ -154,10 +156,10 @@ def together(states: Sequence[SeaState]) -> SeaState:
 
 
 def field_state(elevation: NDArray[np.floating], parameters: OceanParameters) -> SeaState:
-    """State measured on one (N, N) elevation field in m.
+    """State measured from one (N, N) elevation field in m.
 
-    One field does not tell a wave from the one that runs against it: the mean direction is that of the
-    axis, in (-π/2, π/2], and the spread is the one around this axis.
+    A single field cannot distinguish a wave from the one travelling the opposite way: the mean direction is
+    an axis, in (-π/2, π/2], and the spread is around this axis.
     """
     grid = WaveVectorGrid(elevation.shape[0], parameters.domain_size)
     coefficients = np.fft.rfft2(elevation.astype(np.float64)) / elevation.size
@@ -165,7 +167,7 @@ def field_state(elevation: NDArray[np.floating], parameters: OceanParameters) ->
     energy = np.abs(coefficients) ** 2 * grid.multiplicity
     m0 = np.sum(energy)
     axis = np.sum(energy * np.exp(2j * np.arctan2(grid.ky, grid.kx)))
-    # of a narrow sea, angles that are doubled have four times the variance: 1 - r is a quarter of theirs
+    # for narrow spreading, doubled angles have four times the variance, so 1 - r is a quarter of theirs
     length = m0 - 0.25 * (m0 - np.abs(axis))
     vector = length * np.exp(0.5j * np.angle(axis))
     return _state_of_modes(energy, vector, grid, parameters)
@@ -184,7 +186,8 @@ def _state_of_modes(
 def state_of_moments(
     m0: float, m2: float, slope: float, vector: complex, peak: float, parameters: OceanParameters
 ) -> SeaState:
-    """State from m0, m2, slope variance, energies times their directions x + iy, and ω at the peak."""
+    """State from m0, m2, the slope variance, the sum of energies times unit directions x + iy, and ω at the
+    peak."""
     if not (m0 > 0.0 and np.isfinite(peak)):
         nan = float("nan")
         return SeaState(float(m0), nan, nan, nan, float(slope), nan, nan)
@@ -204,10 +207,10 @@ def _mode_peak(energy: Array, grid: WaveVectorGrid, parameters: OceanParameters)
     """ω in rad/s at the peak of the frequency spectrum of single modes; NaN for a flat sea.
 
     The spectrum is the mean energy of the modes around a frequency (Gaussian kernel in ln k) times the
-    density of modes there, 2πk (dk/dω) / Δk²: a plain sum would show the lattice.
+    density of modes there, 2πk (dk/dω) / Δk²: a plain histogram would show the lattice.
     """
     usable = grid.usable
-    if not np.any(usable):  # an image of two samples
+    if not np.any(usable):  # for an image of two samples
         return float("nan")
     position = np.log(grid.k[usable]) * _BINS_PER_LOG
     first = int(np.floor(np.min(position))) - _BINS_PER_LOG // 2

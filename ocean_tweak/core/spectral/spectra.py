@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Non-directional wave spectra S(ω) in m²·s/rad over the angular frequency ω in rad/s, and those of layers.
+"""Frequency spectra S(ω) in m²·s/rad over the angular frequency ω in rad/s, and those of wave layers.
 
-Symbols as in Horvath (2015): U wind speed in m/s (at 10 m unless said otherwise), F fetch in m, h depth
-in m, g in m/s². Functions of ω take arrays of any shape and return float64 arrays of that shape, with
-S(0) = 0. In a calm, U = 0 or F = 0, peaks are at infinity and S is 0 at every frequency, as it is in the
-limit.
+Symbols as in Horvath (2015): U wind speed in m/s (at 10 m unless said otherwise), F fetch in m, h depth in m,
+g in m/s². Functions of ω take arrays of any shape and return float64 arrays of that shape, with S(0) = 0. In
+a calm, U = 0 or F = 0, the peak is at infinity and S is 0 at every frequency, which is the limit for weak
+winds.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ def wind_at(wind_speed_10: float, height: float) -> float:
 
 
 def _over(a: float, b: float) -> float:
-    """a/b for b ≥ 0; endless where b is 0: a calm's waves have no length, so their frequency has no end."""
+    """a/b for b ≥ 0; infinite where b is 0: in a calm, wavelengths tend to 0 and frequencies to infinity."""
     return a / b if b > 0.0 else math.inf
 
 
 def _fourth(omega: float) -> float:
-    """ω⁴; endless where no float holds it."""
+    """ω⁴; infinite on overflow."""
     return omega**4 if omega < 1e77 else math.inf
 
 
@@ -88,7 +88,7 @@ def generalized_ab(omega: ArrayLike, A: float, B: float) -> Array:
     array([0.   , 0.372])
     """
     omega = np.asarray(omega, np.float64)
-    if not math.isfinite(A * B):  # the peak lies beyond all waves
+    if not math.isfinite(A * B):  # the peak lies beyond all representable waves
         return np.zeros_like(omega)
     # the exponential is zero in double precision where B/ω⁴ > 745: the floor keeps the quotient finite
     w = np.maximum(omega, (B / 1e4) ** 0.25)
@@ -122,8 +122,8 @@ def phillips_peak(U: float, g: float = constants.GRAVITY) -> float:
 
 
 def full_development_fetch(U: float, g: float = constants.GRAVITY) -> float:
-    """Fetch in m beyond which a sea grows no more: where JONSWAP's peak frequency (eq. 28) falls to
-    Pierson and Moskowitz's (eq. 19 of Horvath 2015), g F / U² ≈ 17 036.
+    """Fetch in m beyond which a sea no longer grows: where JONSWAP's peak frequency (eq. 28) falls to that of
+    Pierson and Moskowitz (eq. 19 of Horvath 2015), g F / U² ≈ 17 036.
 
     Examples
     --------
@@ -239,13 +239,14 @@ def tma(
 
 @dataclass(frozen=True)
 class LayerScales:
-    """Numbers of a layer's spectrum: all are α g²/ω⁵ exp(-5/4 (ω_p/ω)⁴) γ^r, and TMA's depth factor.
+    """Parameters of a layer's spectrum. All spectra are α g²/ω⁵ exp(-5/4 (ω_p/ω)⁴) γ^r, TMA times its depth
+    factor.
 
     alpha : α, dimensionless
-    peak_frequency : ω_p in rad/s, before the depth acts; infinite in a calm, which has no energy
-    peak_enhancement : γ, 1 but for JONSWAP and TMA
-    wind_frequency : U_10 ω_p / g, for the spreading models that know the wind
-    fetch : the fetch in m that acts, after its limit; NaN where none does
+    peak_frequency : ω_p in rad/s, before the depth factor; infinite in a calm, which has no energy
+    peak_enhancement : γ; 1 except for JONSWAP and TMA
+    wind_frequency : U_10 ω_p / g, for the spreading models that depend on the wind
+    fetch : the effective fetch in m, limited to full development; NaN for spectra without a fetch
     """
 
     alpha: float
@@ -286,7 +287,7 @@ def generalized_ab_scales(layer: WaveLayer, U: float, g: float) -> LayerScales:
     return LayerScales(layer.generalized_a / g**2, omega_p, 1.0, U * omega_p / g)
 
 
-#: by the name of a spectrum, from a layer, U in m/s at 10 m and g in m/s²
+#: spectrum name → function of a layer, U in m/s at 10 m and g in m/s²
 FROM_WIND: dict[str, Callable[[WaveLayer, float, float], LayerScales]] = {
     "TMA": jonswap_scales,
     "JONSWAP": jonswap_scales,
@@ -297,7 +298,7 @@ FROM_WIND: dict[str, Callable[[WaveLayer, float, float], LayerScales]] = {
 
 
 def layer_scales(layer: WaveLayer, water: Water) -> LayerScales:
-    """The numbers of a layer's spectrum, from its wind or from its sea state."""
+    """Parameters of a layer's spectrum, from its wind or from its sea state."""
     if layer.definition == "SEA_STATE":
         return _from_sea_state(layer, water)
     if layer.is_calm:
@@ -307,7 +308,7 @@ def layer_scales(layer: WaveLayer, water: Water) -> LayerScales:
 
 
 def scaled_spectrum(omega: ArrayLike, layer: WaveLayer, scales: LayerScales, water: Water) -> Array:
-    """S(ω) in m²·s/rad of a layer's spectrum, before its amplitude scale and its band; any shape."""
+    """S(ω) in m²·s/rad of a layer's spectrum, of any shape, before amplitude scale and band."""
     alpha, omega_p, gamma = scales.alpha, scales.peak_frequency, scales.peak_enhancement
     if layer.spectrum == "TMA":
         return tma(omega, alpha, omega_p, water, gamma, layer.depth_factor)
@@ -316,10 +317,10 @@ def scaled_spectrum(omega: ArrayLike, layer: WaveLayer, scales: LayerScales, wat
 
 @remembered("scales of layers")
 def _from_sea_state(layer: WaveLayer, water: Water) -> LayerScales:
-    """Scales with which the layer has its Hs and its spectrum the peak at its Tp, in this depth.
+    """Parameters that give the layer its Hs and its spectrum a peak at its Tp, at this depth.
 
-    The depth factor moves the peak up a little, so ω_p is found by iteration. The spreading models take the
-    wind that has fully developed these waves.
+    The depth factor shifts the peak up a little, so ω_p is found by iteration. The spreading models use the
+    wind for which this sea is fully developed.
     """
     gamma = layer.peak_enhancement if layer.spectrum in ("TMA", "JONSWAP") else 1.0
     target = 2.0 * np.pi / layer.peak_period
@@ -344,7 +345,7 @@ def _around_peak(layer: WaveLayer, scales: LayerScales, water: Water) -> tuple[A
 
 
 def total_energy(spectrum: Callable[[Array], Array], lowest_peak: float, highest_peak: float) -> float:
-    """m0 = ∫S dω in m², for spectra with their peaks in between, up to 100 times the highest.
+    """m0 = ∫S dω in m², for spectra with peaks between `lowest` and `highest`, up to 100 times the latter.
 
     Beyond, an ω⁻⁵ tail holds 1e-8 of the energy; below a fifth of the lowest peak there is none.
     """
@@ -353,14 +354,16 @@ def total_energy(spectrum: Callable[[Array], Array], lowest_peak: float, highest
 
 
 def frequency_rule(lowest_peak: float, highest_peak: float, size: int = 8193) -> tuple[Array, Array]:
-    """ω in rad/s and weights in rad/s of a quadrature over ω for spectra with their peaks in between."""
+    """Nodes ω and weights, both in rad/s, of a quadrature for spectra with peaks between `lowest` and
+    `highest`."""
     log_omega = np.linspace(np.log(0.2 * lowest_peak), np.log(100.0 * highest_peak), size)
     omega = np.exp(log_omega)
     return omega, omega * (log_omega[1] - log_omega[0])
 
 
 def refined_peak(omega: Array, spectrum: Array) -> float:
-    """ω at the maximum, refined by the parabola through the three highest samples; NaN if all are 0."""
+    """ω at the maximum, refined by a parabola through the largest sample and its neighbours; NaN if all are
+    0."""
     index = int(np.argmax(spectrum))
     if not spectrum[index] > 0.0:
         return float("nan")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Directional spreading D(ω, θ) in 1/rad: how the energy at a frequency is shared among directions.
+"""Directional spreading D(ω, θ) in 1/rad: how the energy at a frequency is distributed over directions.
 
-θ is the angle in rad between a wave and its wind. Every model has a shape that is 1 along the wind;
-its normalisation is tabulated over ω/ω_p, so that ∫D dθ = 1.
+θ is the angle in rad between a wave and its wind. Every model has a shape that is 1 along the wind; a
+normalisation tabulated over ω/ω_p makes ∫D dθ = 1.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from . import constants
 
 Array = NDArray[np.float64]
 
-#: ω/ω_p at which normalisations are tabulated; outside, the shape at the nearer end holds
+#: range of ω/ω_p of the tables; beyond it, the shape is that at the nearer end
 _TABLE_FROM, _TABLE_TO, _TABLE_SIZE = 0.03, 300.0, 6144
 
-#: ω/ω_p at which the shape of a model jumps or bends
+#: ω/ω_p at which the shape of a model has a jump or a kink
 _BREAKS = (
     constants.DONELAN_MIDDLE_FROM,
     1.0,
@@ -32,7 +32,7 @@ _BREAKS = (
 )
 
 
-#: s of waves within half a degree of the wind: no wind of a known sea comes near it
+#: largest s, at which waves are within half a degree of the wind: far beyond any real sea
 _LARGEST_S = 1e4
 
 
@@ -40,10 +40,10 @@ _LARGEST_S = 1e4
 class Spreading:
     """A spreading model with its parameters.
 
-    model, second : names in `MODELS`; `mix` is the share of the second
+    model, second : names in `MODELS`; `mix` is the fraction of the second
     swell : ξ of Horvath (2015), eq. 45
     exponent : s of COSINE_2S
-    wind_frequency : U ω_p / g, which Mitsuyasu's and Hasselmann's models know
+    wind_frequency : U ω_p / g, on which Mitsuyasu's and Hasselmann's models depend
 
     Examples
     --------
@@ -111,7 +111,7 @@ def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
     array([ 3.77, 11.5 ,  4.17])
     """
     x = np.maximum(np.asarray(ratio, np.float64), 1e-6)
-    # s grows without end as the wind falls
+    # s grows without bound as the wind falls
     slow = max(wind_frequency, 1e-30)
     s_p = constants.MITSUYASU_PEAK * slow**constants.MITSUYASU_WIND_EXPONENT
     below, above = constants.MITSUYASU_BELOW_EXPONENT, constants.MITSUYASU_ABOVE_EXPONENT
@@ -119,8 +119,8 @@ def mitsuyasu_s(ratio: ArrayLike, wind_frequency: float) -> Array:
 
 
 def hasselmann_s(ratio: ArrayLike, wind_frequency: float) -> Array:
-    """s of Hasselmann's model over ω/ω_p. Horvath (2015), eq. 37, corrected: the second branch begins at
-    1.05 ω_p, as Hasselmann, Dunckel & Ewing (1980) have it.
+    """s of Hasselmann's model over ω/ω_p. Horvath (2015), eq. 37, corrected: the second branch begins at 1.05
+    ω_p, as in Hasselmann, Dunckel & Ewing (1980).
 
     Examples
     --------
@@ -150,7 +150,7 @@ def swell_s(ratio: ArrayLike, swell: float) -> Array:
 
 @dataclass(frozen=True)
 class Model:
-    """A family of shapes over θ, one for each value of a parameter that depends on the frequency.
+    """A family of shapes over θ with one parameter that depends on the frequency.
 
     parameter : of (ω/ω_p, spreading)
     shape : of (|θ| in 0…π, parameter), 1 at θ = 0
@@ -172,7 +172,7 @@ def _half_cosine_squared(theta: Array, unused: Array) -> Array:
 
 
 def _flat(theta: Array, unused: Array) -> Array:
-    """The same for all directions. Horvath (2015), eq. 39."""
+    """Equal for all directions. Horvath (2015), eq. 39."""
     return np.ones_like(theta)
 
 
@@ -187,7 +187,7 @@ MODELS: dict[str, Model] = {
 
 
 class Shape(NamedTuple):
-    """All that D needs to know of a frequency: D = (w₁·shape₁ + w₂·shape₂) · |cos(θ/2)|^2s.
+    """All that D depends on at a frequency: D = (w₁·shape₁ + w₂·shape₂) · |cos(θ/2)|^2s.
 
     All arrays have the shape of the frequencies; `second_weight` is None without a mixture, `swell` without
     swell. Horvath (2015), eq. 40, 42 and 44.
@@ -211,8 +211,8 @@ class Shape(NamedTuple):
 
 @cache
 def direction_rule() -> tuple[Array, Array]:
-    """Nodes and weights on [0, π], in panels that halve towards 0, where narrow peaks stand, and towards π,
-    where a small power of cos(θ/2) falls steeply."""
+    """Nodes and weights of a quadrature on [0, π], in panels that halve in width towards 0, where narrow
+    peaks are, and towards π, where a small power of cos(θ/2) falls steeply."""
     towards_zero = np.pi * 2.0 ** np.arange(-10.0, 0.0)
     towards_pi = np.pi * (1.0 - 2.0 ** np.arange(-2.0, -19.0, -1.0))
     edges = np.concatenate(([0.0], towards_zero, towards_pi, [np.pi]))
@@ -223,7 +223,8 @@ def direction_rule() -> tuple[Array, Array]:
 
 @cache
 def _table_ratios() -> Array:
-    """The tabulated ω/ω_p, with a node on either side of each jump: nothing is interpolated across it."""
+    """The tabulated ω/ω_p, with a node on either side of each jump, so that nothing is interpolated across
+    it."""
     even = np.geomspace(_TABLE_FROM, _TABLE_TO, _TABLE_SIZE)
     return np.unique(np.concatenate((even, _BREAKS, np.nextafter(_BREAKS, 0.0))))
 
@@ -237,7 +238,7 @@ def _final_table(spreading: Spreading) -> Array:
 
 
 def _alone(spreading: Spreading, model: str) -> Spreading:
-    """One of the models without swell, as the key of its table."""
+    """A model without swell, as the key of its table."""
     wind_frequency = spreading.wind_frequency if model in WIND_MODELS else constants.PM_PEAK
     return Spreading(model, exponent=spreading.exponent, wind_frequency=wind_frequency)
 
@@ -247,7 +248,7 @@ def _normalisation(ratio: Array, spreading: Spreading) -> Array:
 
 
 def _not_normalised(ratio: Array, spreading: Spreading) -> Shape:
-    """The shape with the weights of D_base, each of its models normalised; eq. 34 for cosine powers."""
+    """The shape with the weights of D_base, with each of its models normalised; eq. 34 for cosine powers."""
     first = MODELS[spreading.model].parameter(ratio, spreading)
     first_weight, second_weight, second = np.ones_like(ratio), None, None
     if spreading.mix > 0.0:
@@ -282,7 +283,7 @@ def directional_spreading(omega_ratio: ArrayLike, theta: ArrayLike, spreading: S
 
 
 def mean_cosine(omega_ratio: ArrayLike, spreading: Spreading) -> Array:
-    """∫D cos θ dθ over ω/ω_p: how strongly the waves keep to the wind's direction, -1…1.
+    """∫D cos θ dθ over ω/ω_p: how closely the waves follow the wind's direction, -1…1.
 
     Examples
     --------

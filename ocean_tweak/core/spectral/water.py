@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The body of water in which all waves run."""
+"""The body of water shared by all waves."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from . import constants
 
 @dataclass(frozen=True)
 class Water(Validated):
-    """The body of water: the same for every wave layer.
+    """Depth, gravity, density and surface tension, the same for every wave layer.
 
     Examples
     --------

@@ -55,10 +55,11 @@ def jonswap(
 
 
 def tessendorf_constant(domain_size: float) -> float:
-    """The A in m² with which Tessendorf's amplitudes are right on a domain of this size in m: ½ΔkxΔky A_Ψ.
+    """The constant A in m² for which Tessendorf's amplitudes are correct on a domain of this size in m:
+    ½ΔkxΔky A_Ψ.
 
-    His Fourier coefficients leave out the area of the spectral cell; any constant that does not hold it is
-    right for one domain only. Chen (2014), eq. 25.
+    His Fourier coefficients omit the area of the spectral cell; a constant without it is correct for one
+    domain size only. Chen (2014), eq. 25.
     """
     A = constants.PM_ALPHA / (np.pi * constants.PM_BETA)
     return float(0.5 * (2.0 * np.pi / domain_size) ** 2 * A)
