@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights of masks: from 0 to 1 over the sea, by which displacement and velocity are multiplied.
+"""Mask weights: 0 to 1 over the sea, by which displacement and velocity are multiplied.
 
-A weight belongs to the water at rest, lies over the domain and repeats with it. It is continuous and has
-continuous derivatives, which the slopes, strains and velocities of a masked sea need: ∂(w d) = w ∂d + d ∂w.
+A weight is a function of the rest position, covers the domain and repeats with it. Weights have continuous
+derivatives, which the slopes, strains and velocities of a masked sea need: ∂(w d) = w ∂d + d ∂w.
 """
 
 from __future__ import annotations
@@ -21,14 +21,15 @@ from .parameters import Mask
 
 Array = NDArray[np.float64]
 
-#: rows of a square of weights that are made at once
+#: rows of a square of weights computed at a time
 _ROWS = 128
 # each moment has its own
 MEMO.limit("moving weights of masks", 16)
 
 
 class Weights(NamedTuple):
-    """Of places: w, its derivatives by x and y in 1/m, and by time in 1/s where it moves; one shape."""
+    """w at places, its derivatives by x and y in 1/m and, for a moving mask, by time in 1/s; all of one
+    shape."""
 
     value: Array
     by_x: Array
@@ -41,17 +42,17 @@ class Weights(NamedTuple):
         return total_bytes(self)
 
     def rows(self, part: slice) -> Weights:
-        """Of some rows."""
+        """The weights of some rows."""
         return Weights._make(None if each is None else each[part] for each in self)
 
     def less(self, strength: float) -> Weights:
-        """As a mask gives them that takes only a share of the waves."""
+        """The weights of a mask that removes only the fraction `strength` of the waves."""
         left = 1.0 - strength
         by_t = None if self.by_t is None else strength * self.by_t
         return Weights(left + strength * self.value, strength * self.by_x, strength * self.by_y, by_t)
 
     def times(self, other: Weights) -> Weights:
-        """The product of both, with its derivatives."""
+        """The product of two weights, with its derivatives."""
         return Weights(
             self.value * other.value,
             self.by_x * other.value + self.value * other.by_x,
@@ -69,13 +70,13 @@ class Weights(NamedTuple):
 
     @property
     def inverted(self) -> Weights:
-        """1 where they are 0."""
+        """The complement, 1 - w."""
         by_t = None if self.by_t is None else -self.by_t
         return Weights(1.0 - self.value, -self.by_x, -self.by_y, by_t)
 
 
 def move(masks: Sequence[Mask]) -> bool:
-    """Whether the weights of some masks are others at another time."""
+    """Whether the weights of some masks change over time."""
     return any(_moves(mask) for mask in masks)
 
 
@@ -86,7 +87,7 @@ def _moves(mask: Mask) -> bool:
 def weights(
     masks: Sequence[Mask], domain_size: float, x: Array, y: Array, when: SeaTime = ANY_TIME
 ) -> Weights:
-    """The product of some masks at rest positions x and y in m, of shapes that broadcast."""
+    """The product of the weights of some masks at rest positions x and y in m, of shapes that broadcast."""
     shape = np.broadcast_shapes(x.shape, y.shape)
     total = Weights(np.ones(shape), np.zeros(shape), np.zeros(shape))
     for mask in masks:
@@ -113,7 +114,7 @@ def weights_on_grid(
     dtype: type = np.float64,
     when: SeaTime = ANY_TIME,
 ) -> Weights:
-    """The same on the (N, N) samples [y, x] of the domain, in float32 or float64."""
+    """The same product on the (N, N) samples [y, x] of the domain, in float32 or float64."""
     if move(masks):
         return _moving(masks, domain_size, resolution, dtype, when)
     return _still(masks, domain_size, resolution, dtype)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sea is: parameters, patches, shots and presets, without any waves."""
+"""The description of a sea: parameters, patches, shots and presets."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fingerprints: equal where a frame would be made of the same numbers.
+"""Fingerprints: equal if and only if frames are computed from the same parameters.
 
-They are SHA-256 of canonical JSON: sorted keys, no spaces, the shortest decimals. NumPy and the processor,
-which change the last bits only, do not enter.
+A fingerprint is the SHA-256 of canonical JSON: sorted keys, no spaces, shortest decimals. NumPy's version and
+the processor, which change only the last bits of fields, are not included.
 """
 
 from __future__ import annotations
@@ -20,28 +20,29 @@ from .shot import Shot, time_text
 
 
 def fingerprint(data: object) -> str:
-    """SHA-256, 64 hexadecimal digits, of plain data. Raises ValueError for numbers that are not finite."""
+    """SHA-256 of plain data, as 64 hexadecimal digits. Raises ValueError for numbers that are not finite."""
     text = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def hashed(sea: Shot | OceanParameters) -> dict[str, Any]:
-    """The plain data of which fingerprints are made: as they stood in JSON from the first on.
+    """The plain data that fingerprints are computed from, in the form of format version 1.
 
-    Spray is not among them: it changes no field.
+    Spray is not included, as it changes no field.
     """
     return {name: value for name, value in former(sea.to_dict()).items() if name != "spray"}
 
 
 def shot_fingerprint(shot: Shot) -> str:
-    """That of a whole shot, whichever of its frames are made."""
+    """The fingerprint of a whole shot, whichever of its frames are baked."""
     return fingerprint({"synthesis": formats.SYNTHESIS, "shot": hashed(shot)})
 
 
 def frame_fingerprint(shot: Shot, frame: Frame, area: Mapping[str, Any] | None = None) -> str:
-    """That of a frame: of its own parameters and time. Raises ParameterError where there is no such frame.
+    """The fingerprint of one frame, from its parameters and time. Raises ParameterError for a frame outside
+    the animation.
 
-    area : plain data of the square where it is made; None for the sea's own tile
+    area : plain data of the square that is sampled; None for the sea's own tile
     """
     moment = shot.at(frame)
     return fingerprint(

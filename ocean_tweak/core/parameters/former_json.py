@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""JSON of a sea as it was when each kind of layers but waves by a spectrum had a list of its own.
+"""JSON of format version 1, in which each kind of layer other than spectral waves had a list of its own.
 
-Many fields had other names then. It is still read; and fingerprints are still made of it, so that what was
-baked from it is known as the same.
+Many fields had other names. Such files are still read, and fingerprints are still computed from this form, so
+that existing bakes keep theirs.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from ..waves.kinds import KINDS, shown
 from ..waves.spectral import WaveLayer
 from ..waves.wind_field.parameters import WindFieldLayer
 
-#: former names of fields by today's: of the sea itself,
+#: present → former names of fields: of the sea itself,
 SEA_NAMES = {"orbital_motion": "orbits", "merged_resolution": "joined"}
 #: of a mask,
 MASK_NAMES = {"inner_radius": "near", "outer_radius": "far"}
-#: and of a kind of layers
+#: and of each kind of layer
 LAYER_NAMES: dict[str, dict[str, str]] = {
     WaveLayer.kind: {"amplitude_scale": "gain"},
     ImageLayer.kind: {"amplitude_scale": "gain", "image": "picture"},
@@ -36,7 +36,7 @@ LAYER_NAMES: dict[str, dict[str, str]] = {
     },
     HeroWave.kind: {},
 }
-#: former values by today's, of the one choice that has others
+#: present → former values of the one choice whose values were renamed
 _AMPLITUDES = {"RANDOM": "GAUSSIAN", "DETERMINISTIC": "FIXED"}
 
 _Names = Mapping[str, str]
@@ -44,14 +44,14 @@ _LAYER = re.compile(r"layers\.([0-9]+)\.(.+)")
 
 
 def _with_lists() -> dict[str, type[Contribution]]:
-    """The kinds that had a list of their own, by its name."""
+    """The kinds that had a list of their own, by the name of the list."""
     return {kind.former_list: kind for kind in shown() if kind.former_list}
 
 
 def modern(data: Any) -> Any:
-    """Plain data of a sea of any version with one list of layers, and without the number of the version.
+    """Convert plain data of a sea of any version to one list of layers, without the format version.
 
-    Raises NewerFormatError for one that is newer than this program, ParameterError for a list that is none.
+    Raises NewerFormatError for data of a newer version, ParameterError if a list is not a list.
     """
     data = checked_sea(data)
     return _renamed(_in_one_list(data), _reversed) if isinstance(data, dict) else data
@@ -74,7 +74,7 @@ def _in_one_list(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def former(data: dict[str, Any]) -> dict[str, Any]:
-    """Plain data of a sea or of a shot with a list for each kind that had one, and the names of then."""
+    """Convert plain data of a sea or shot to the form of version 1: its lists and its names."""
     data = _renamed(data, dict)
     lists = {kind.kind: name for name, kind in _with_lists().items()}
     result: dict[str, Any] = {**data, "layers": []}
@@ -98,9 +98,9 @@ def _reversed(names: _Names) -> dict[str, str]:
 
 
 def _renamed(data: dict[str, Any], direction: Callable[[_Names], dict[str, str]]) -> dict[str, Any]:
-    """The same data with other names.
+    """The same data with fields renamed.
 
-    direction : of a table of former names by today's: itself, or reversed
+    direction : applied to each table of names: identity, or reversal
     """
     layers = data.get("layers", [])
     names = [_names_of(layer) for layer in layers] if isinstance(layers, list) else []
@@ -125,7 +125,7 @@ def _names_of(layer: Any) -> _Names:
 
 
 def _entry(entry: Any, names: _Names, of_mask: _Names) -> Any:
-    """A layer or a patch, and its mask."""
+    """Rename the fields of a layer or patch, and of its mask."""
     if not isinstance(entry, dict):
         return entry
     result = _with_names(entry, names)
@@ -135,14 +135,14 @@ def _entry(entry: Any, names: _Names, of_mask: _Names) -> Any:
 
 
 def _with_names(data: dict[str, Any], names: _Names) -> dict[str, Any]:
-    """The entries of one that has both names stay as they are: the former is told as unknown."""
+    """If both names are present, keep both, so that the former one is reported as unknown."""
     return {
         names[key] if key in names and names[key] not in data else key: value for key, value in data.items()
     }
 
 
 def _path(path: str, names: list[_Names], direction: Callable[[_Names], dict[str, str]]) -> str:
-    """The path of samples, of a layer's field or of the sea's."""
+    """Rename the path of an animated value, of a layer or of the sea."""
     found = _LAYER.fullmatch(path)
     if found is None:
         return direction(SEA_NAMES).get(path, path)

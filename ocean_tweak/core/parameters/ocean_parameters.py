@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sea is: frozen, validated, hashable parameters in SI units and radians, JSON both ways.
+"""The parameters of a sea: frozen, validated and hashable, in SI units and radians, with conversion to and
+from JSON.
 
-Every field carries its unit, its range and its description in the field's metadata, which is the one
-table that validation, tooltips, the command line and the documentation read.
+Each field's metadata holds its unit, range and description, which validation, tooltips, the command line and
+the documentation all use.
 """
 
 from __future__ import annotations
@@ -62,10 +63,10 @@ __all__ = [
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
 AMPLITUDES = ("RANDOM", "DETERMINISTIC")
 ORBITS = ("DEEP", "FINITE_DEPTH")
-#: by whose measurements foam covers the sea
+#: laws for the whitecap coverage
 FOAM_LAWS = ("CALLAGHAN_2008", "MONAHAN_1980")
 
-#: fields that patches tell, where there are any
+#: fields derived from the patches, if there are any
 _TILE = ("resolution", "domain_size")
 
 _Layer = TypeVar("_Layer", bound=Contribution)
@@ -73,7 +74,7 @@ _Layer = TypeVar("_Layer", bound=Contribution)
 
 @dataclass(frozen=True)
 class Foam(Validated):
-    """How whitecaps cover the sea and how long they last.
+    """How much of the sea is covered by foam, and how long it lasts.
 
     Examples
     --------
@@ -112,9 +113,9 @@ class Foam(Validated):
 
 @dataclass(frozen=True)
 class Timing(Validated):
-    """How frames of the shot become seconds: ocean time 0 is at ``start_frame``.
+    """The relation of frames to ocean time, which is 0 at ``start_frame``.
 
-    ``fps`` is kept as an exact fraction, so that 24000/1001 is what it says.
+    ``fps`` is stored as an exact fraction, such as 24000/1001.
 
     Examples
     --------
@@ -140,7 +141,7 @@ class Timing(Validated):
     )  # fmt: skip
 
     def time(self, frame: float | Fraction) -> Fraction:
-        """Ocean time in seconds at a frame, which may hold a sub-frame; exact.
+        """Ocean time in seconds at a frame or subframe; exact.
 
         Examples
         --------
@@ -253,8 +254,8 @@ class OceanParameters(Validated):
             )  # fmt: skip
 
     def _settle_tile(self) -> None:
-        """Fill in size and samples of the tile where they are left open: patches tell those of the first, on
-        which images and wind fields are. Raises ParameterError where others are given too.
+        """Fill in the domain size and resolution if they were not given: with patches they are those of the
+        first one, which holds images and wind fields. Raises ParameterError for conflicting values.
         """
         told: dict[str, float] = {}
         if self.patches:
@@ -278,29 +279,29 @@ class OceanParameters(Validated):
 
     @property
     def is_cascade(self) -> bool:
-        """Whether it has several grids: more than one patch, or one that is turned, and not merged."""
+        """Whether it has separate grids: several patches, or one that is rotated, and not merged."""
         return not self.merged_resolution and (
             len(self.patches) > 1 or any(patch.rotation for patch in self.patches)
         )
 
     @property
     def is_masked(self) -> bool:
-        """Whether a mask lies over some of its waves."""
+        """Whether any of its waves are masked."""
         own: tuple[Contribution | Patch, ...] = (*self.active(), *self.patches)
         return self.mask is not None or any(layer.mask is not None for layer in own)
 
     @property
     def needs_summation(self) -> bool:
-        """Whether its waves are added up in places, not as coefficients: those of patches, or under masks."""
+        """Whether its waves are summed in space instead of as Fourier coefficients: with patches or masks."""
         return bool(self.merged_resolution) or self.is_cascade or self.is_masked
 
     @property
     def band(self) -> tuple[float, float] | None:
-        """Shortest and longest wavelength in m of a sea that is one patch of several; None for all waves."""
+        """Shortest and longest wavelength in m if this sea is one patch of several; None for all waves."""
         return self.patches[0].band if len(self.patches) == 1 else None
 
     def of(self, kind: type[_Layer]) -> tuple[_Layer, ...]:
-        """The layers of a kind, muted ones too."""
+        """The layers of one kind, including muted ones."""
         return tuple(layer for layer in self.layers if isinstance(layer, kind))
 
     @overload
@@ -308,24 +309,25 @@ class OceanParameters(Validated):
     @overload
     def active(self, kind: type[_Layer]) -> tuple[_Layer, ...]: ...
     def active(self, kind: type[Contribution] | None = None) -> tuple[Contribution, ...]:
-        """The layers, or those of a kind, that are not muted, in the order in which their waves are added."""
+        """The layers that are not muted, optionally of one kind, in the order in which their waves are
+        added."""
         kinds = KINDS if kind is None else (kind,)
         return tuple(layer for known in kinds for layer in self.of(known) if not layer.muted)
 
     @property
     def has_states(self) -> bool:
-        """Whether it is told how high waves are that are no spectrum's."""
+        """Whether layers other than spectral ones report the height of their waves."""
         return any(Gives.STATE in layer.gives for layer in self.active())
 
     def alone(self, layer: Contribution) -> OceanParameters:
-        """What of the sea acts on the state of one layer, with that layer."""
+        """A copy reduced to one layer and to the settings that affect its sea state."""
         return OceanParameters(
             resolution=16, domain_size=self.domain_size, seed=self.seed, water=self.water,
             dispersion=self.dispersion, layers=(WaveLayer(muted=True), layer),
         )  # fmt: skip
 
     def _check_layers(self) -> None:
-        """What is not as the sea needs it; what repeats in no time fits into no loop."""
+        """Check the layers against the sea; layers that cannot loop are refused in a looping sea."""
         for index, layer in enumerate(self.layers):
             if layer.muted:
                 continue
@@ -339,10 +341,10 @@ class OceanParameters(Validated):
             kind.check_together(self)
 
     def replace(self, **changes: Any) -> OceanParameters:
-        """A copy with some fields changed, validated anew.
+        """A copy with some fields changed, validated again.
 
-        Of a sea of patches, another resolution is that of the first, and the others keep their ratio to it;
-        of merged ones, it is that of their one grid.
+        For a sea of patches, a new resolution applies to the first patch and the others are scaled in
+        proportion; for merged patches it applies to their one grid.
 
         Examples
         --------
@@ -360,12 +362,12 @@ class OceanParameters(Validated):
                     changes["domain_size"],
                     "is set by the first patch: change it there",
                 )
-        if changes.get("patches", self.patches):  # they tell it anew
+        if changes.get("patches", self.patches):  # derived again from the patches
             changes = {**dict.fromkeys(_TILE, OPEN), **changes}
         return dataclasses.replace(self, **changes)
 
     def at_resolution(self, resolution: int) -> OceanParameters:
-        """The same sea on other samples; layers that these do not hold, short hero waves, are muted.
+        """The same sea at another resolution; layers too short for it, such as short hero waves, are muted.
 
         Examples
         --------
@@ -375,7 +377,7 @@ class OceanParameters(Validated):
         return self.replace(resolution=resolution, layers=self._held_by(resolution))
 
     def on_one_grid(self, resolution: int) -> OceanParameters:
-        """The same sea on the samples of one grid over the domain, also of several patches."""
+        """The same sea on one grid over the domain; several patches are merged."""
         if not self.is_cascade:
             return self.at_resolution(resolution)
         return self.replace(
@@ -389,18 +391,18 @@ class OceanParameters(Validated):
 
     @property
     def separate(self) -> OceanParameters:
-        """The sea with its patches on grids of their own, where they are merged."""
+        """The same sea with merged patches separated again."""
         return self.replace(merged_resolution=0, patches=self.patches) if self.merged_resolution else self
 
     @property
     def without_patches(self) -> OceanParameters:
-        """The sea of one patch, as large and with as many samples, that has the same spectrum."""
+        """The sea with the same spectrum, domain size and resolution on a single patch."""
         return self.replace(patches=(), merged_resolution=0)
 
     def to_dict(self, brief: bool = False) -> dict[str, Any]:
-        """Plain dictionaries, lists and numbers, as they stand in a JSON file.
+        """Plain dictionaries, lists and numbers, as in a JSON file.
 
-        brief : of images only name, shape and hash: for headers; they cannot be read back
+        brief : reduce images to name, shape and hash, for headers; such data cannot be read back
 
         Examples
         --------
@@ -410,7 +412,7 @@ class OceanParameters(Validated):
         return to_plain(self, brief)
 
     def to_json(self, indent: int | None = 2) -> str:
-        """JSON text that `from_json` reads back to equal parameters.
+        """JSON text from which `from_json` restores equal parameters.
 
         Examples
         --------
@@ -421,7 +423,7 @@ class OceanParameters(Validated):
 
     @classmethod
     def from_dict(cls, data: object) -> OceanParameters:
-        """Parameters from plain dictionaries; what is missing keeps its default, unknown keys are refused.
+        """Parameters from plain dictionaries. Missing keys keep their defaults, unknown keys are refused.
 
         Examples
         --------
@@ -434,13 +436,13 @@ class OceanParameters(Validated):
         """
         check_numbers(numbers_in(data))
         data = modern(data)
-        if isinstance(data, dict) and data.get("patches"):  # one place tells the size of the first patch
+        if isinstance(data, dict) and data.get("patches"):  # the size of the first patch is stored only once
             data = {key: value for key, value in data.items() if key not in _TILE}
         return from_plain(cls, data)
 
     @classmethod
     def from_json(cls, text: str) -> OceanParameters:
-        """Parameters from JSON text. Raises ParameterError for what is not valid JSON or not valid.
+        """Parameters from JSON text. Raises ParameterError for invalid JSON or invalid parameters.
 
         Examples
         --------
@@ -451,7 +453,7 @@ class OceanParameters(Validated):
 
 
 def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
-    """Layers with ids that are distinct within a kind; those without one take the first that are free."""
+    """Layers with ids that are unique within each kind; layers without an id get the first free ones."""
     taken: dict[str, set[int]] = {kind.kind: set() for kind in KINDS}
     for index, layer in enumerate(layers):
         if layer.id >= 0 and layer.id in taken[layer.kind]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A patch of a sea of several: how large, how turned, and which wavelengths it holds."""
+"""One of several patches of a sea: its size, rotation and band of wavelengths."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from ..data.errors import ParameterError
 from ..data.validation import Off, Validated, integer, nested, number
 from ..masks.parameters import Mask
 
-#: of a sea
+#: largest number of patches of a sea
 MOST_PATCHES = 4
 
-#: the ends of a band that ends nowhere, m
+#: ends of an unlimited band, m
 NO_SHORTEST, NO_LONGEST = 0.0, 1e6
 
-#: a patch samples its shortest wave at least so often, and its longest goes at least so often into a side
+#: least number of samples along a patch's shortest wave, and of its longest waves along a side
 LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
 
-#: share of the variance that patches which repeat within the wanted area may hold: as much as the
-#: autocorrelation of the sea has a domain away
+#: largest fraction of the variance in patches that repeat within the wanted area: the sea's autocorrelation
+# at one domain's distance
 REPEATING_SHARE = 0.1
 
 
 @dataclass(frozen=True)
 class Patch(Validated):
-    """One of a sea's patches, which repeats in its own axes. Its band's ends are sharp.
+    """One of a sea's patches, periodic along its own axes. Its band has sharp ends.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class Patch(Validated):
 
     @property
     def spacing(self) -> float:
-        """Between samples, m."""
+        """Distance between samples, m."""
         return self.domain_size / self.resolution
 
     @property
@@ -84,12 +84,12 @@ class Patch(Validated):
 
     @property
     def longest_waves_a_side(self) -> float:
-        """How often the longest wave of the band goes into a side."""
+        """Number of the band's longest waves along a side."""
         return self.domain_size / self.longest_wavelength
 
 
 def check_bands(patches: Sequence[Patch]) -> None:
-    """Raise ParameterError unless each patch's waves begin where those of the patch before end."""
+    """Raise ParameterError unless each band begins where that of the previous patch ends."""
     for index, (longer, shorter) in enumerate(pairwise(patches)):
         end, begin = longer.shortest_wavelength, shorter.longest_wavelength
         if end == begin:
@@ -108,7 +108,7 @@ def check_bands(patches: Sequence[Patch]) -> None:
 
 
 def check_merged_resolution(merged_resolution: int, patches: Sequence[Patch]) -> None:
-    """Raise ParameterError for samples of one grid that are not those of a sum of patches."""
+    """Raise ParameterError if `merged_resolution` does not fit the patches."""
     if merged_resolution % 2 or 0 < merged_resolution < 16:
         raise ParameterError(
             "merged_resolution", merged_resolution, "must be 0 or an even number from 16 to 8192"
@@ -119,9 +119,9 @@ def check_merged_resolution(merged_resolution: int, patches: Sequence[Patch]) ->
 
 
 def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first: Sequence[str]) -> None:
-    """Raise ParameterError for bands that do not join, and for what patches cannot have.
+    """Raise ParameterError for bands that do not join, and for settings that patches do not support.
 
-    on_the_first : what else the sea has that is on the first patch
+    on_the_first : names of the sea's other layers, which are on the first patch
     """
     if not patches:
         return
@@ -140,7 +140,7 @@ def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first:
 
 
 def resampled(patches: Sequence[Patch], resolution: int) -> tuple[Patch, ...]:
-    """The patches with so many samples in the first, and in the others in proportion, 16 at least."""
+    """The patches with this many samples in the first, and in proportion in the others, at least 16."""
     ratio = resolution / patches[0].resolution
     others = (
         replace(patch, resolution=max(16, 2 * round(0.5 * patch.resolution * ratio))) for patch in patches[1:]

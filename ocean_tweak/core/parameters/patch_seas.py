@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sea of patches as seas of one patch each, in their own axes: their sum is the sea."""
+"""Splits a sea of patches into seas of one patch each, along their own axes; their sum is the sea."""
 
 from __future__ import annotations
 
@@ -10,26 +10,27 @@ from dataclasses import dataclass, replace
 from ..waves.contribution import Contribution, Gives
 from .ocean_parameters import Mask, OceanParameters, Patch
 
-#: samples along the shortest wave of a patch that is read between its samples for a grid: bilinear, a tenth
-#: of that wave's variance is lost, and less of longer ones
+#: samples along the shortest wave of a patch that is interpolated onto a grid: bilinear interpolation then
+# loses a tenth of that wave's variance, and less of longer waves
 _SAMPLES_A_WAVE = 8.0
 _FEWEST, _MOST = 16, 8192
 
 
-#: among outputs: those of each part of the sea, which add up, behind the sea's own
+#: additional outputs: the summable fields of each part of the sea, besides those of the sum
 PARTS = "parts"
 
 
 def rotations(parameters: OceanParameters) -> tuple[float, ...]:
-    """By how much each patch is turned, rad counter-clockwise."""
+    """Rotation of each patch, rad counter-clockwise."""
     return tuple(patch.rotation for patch in parameters.patches) or (0.0,)
 
 
 def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
-    """The parameters of each patch, in axes that lie along its sides; a sea without patches is its only one.
+    """The parameters of each patch, in axes along its sides; a sea without patches is returned as the only
+    one.
 
-    Masks are left out, and patches are separate even where they are merged. What a patch holds of a layer is
-    for the layer to say; the first keeps the random numbers of a sea of one patch.
+    Masks are omitted, and merged patches are separated. Each layer determines what a patch holds of it; the
+    first patch has the random numbers of a sea without patches.
     """
     return tuple(_without_masks(sea) for sea in _patch_seas(parameters.separate))
 
@@ -48,12 +49,12 @@ def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanPar
 
 @dataclass(frozen=True)
 class Part:
-    """Some waves of a sea, which have a grid and a weight of their own. The sea is the sum of its parts.
+    """A part of a sea's waves with its own grid and weight. The sea is the sum of its parts.
 
-    parameters : of a sea of one patch, in axes along the patch's sides
-    rotation : by which those are turned, rad counter-clockwise
-    masks : whose product is the weight, in the sea's axes
-    patch : the number of the patch
+    parameters : those of a sea of one patch, in axes along the patch's sides
+    rotation : of these axes, rad counter-clockwise
+    masks : their product is the weight, in the sea's axes
+    patch : index of the patch
     """
 
     parameters: OceanParameters
@@ -63,17 +64,17 @@ class Part:
 
     @property
     def spacing(self) -> float:
-        """Between its samples, m."""
+        """Distance between its samples, m."""
         return self.parameters.domain_size / self.parameters.resolution
 
 
 def parts(parameters: OceanParameters) -> tuple[Part, ...]:
-    """The parts of a sea: of each patch, the waves under each mask."""
+    """The parts of a sea: for each patch, the waves under each mask."""
     found = []
     patches = parameters.patches or (None,)
     seas = _patch_seas(parameters.separate)
     masks = list(dict.fromkeys(layer.mask for layer in parameters.active() if _is_on_grid(layer)))
-    if None in masks:  # first come the waves that are everywhere
+    if None in masks:  # unmasked waves come first
         masks.insert(0, masks.pop(masks.index(None)))
     for index, (sea, patch, rotation) in enumerate(zip(seas, patches, rotations(parameters), strict=True)):
         over_all = (parameters.mask, None if patch is None else patch.mask)
@@ -86,9 +87,9 @@ def parts(parameters: OceanParameters) -> tuple[Part, ...]:
 
 
 def merged_bands(parameters: OceanParameters) -> OceanParameters:
-    """A merged sea's patches on separate grids, without the waves shorter than two samples of its one grid.
+    """A merged sea's patches on separate grids, without waves shorter than two samples of the merged grid.
 
-    The first has the grid's samples, the others as many as reading between them takes.
+    The first has the merged grid's resolution, the others as many samples as interpolation needs.
     """
     first = parameters.patches[0]
     bands = list(_bands_above(parameters.patches, 2.0 * parameters.domain_size / parameters.resolution))
@@ -98,8 +99,8 @@ def merged_bands(parameters: OceanParameters) -> OceanParameters:
 
 
 def waves_above(parameters: OceanParameters, shortest: float, samples_a_wave: float) -> OceanParameters:
-    """A sea's patches on separate grids, without the waves shorter than so many m, each with about so many
-    samples along the shortest that it holds: a number that is quickly transformed.
+    """A sea's patches on separate grids, without waves shorter than a length in m, each with about a given
+    number of samples along its shortest wave, rounded to sizes with fast transforms.
     """
     bands = _bands_above(parameters.patches, shortest, samples_a_wave)
     patches = tuple(replace(patch, resolution=_quickest(patch.resolution)) for patch in bands)
@@ -107,7 +108,7 @@ def waves_above(parameters: OceanParameters, shortest: float, samples_a_wave: fl
 
 
 def _quickest(samples: int) -> int:
-    """The even number nearest to that whose only factors are 2, 3 and 5."""
+    """The nearest even number whose only prime factors are 2, 3 and 5."""
     twos, threes, fives = (range(1, 14), range(9), range(6))
     products = (2**a * 3**b * 5**c for a in twos for b in threes for c in fives)
     return min((each for each in products if _FEWEST <= each <= _MOST), key=lambda each: abs(each - samples))
@@ -116,10 +117,10 @@ def _quickest(samples: int) -> int:
 def _bands_above(
     patches: Sequence[Patch], shortest: float, samples_a_wave: float = _SAMPLES_A_WAVE
 ) -> Iterator[Patch]:
-    """The patches that hold waves longer than that, and no shorter ones.
+    """The patches with waves longer than a length, without the shorter ones.
 
-    The last that is left holds no waves shorter than two of its own samples either; where another follows,
-    bands must meet.
+    The last remaining patch also loses waves shorter than two of its own samples; the others must keep
+    meeting the next band.
     """
     first, *others = patches
     kept = [first, *(patch for patch in others if patch.longest_wavelength > shortest)]
@@ -138,7 +139,7 @@ def _readable(patch: Patch, end: float, samples_a_wave: float) -> Patch:
 def _by_mask(
     sea: OceanParameters, masks: Sequence[Mask | None]
 ) -> Iterator[tuple[Mask | None, OceanParameters]]:
-    """Some masks, and with each a patch of the sea whose other layers are muted."""
+    """Masks, each with the sea of one patch in which all layers with other masks are muted."""
     if len(masks) < 2:
         yield (masks[0] if masks else None), sea
         return
@@ -151,7 +152,8 @@ def _by_mask(
 
 
 def _is_on_grid(layer: Contribution) -> bool:
-    """Whether a layer's waves are on a grid; the rest goes with the first part, which does not make them."""
+    """Whether a layer's waves are on a grid; other layers are kept in the first part, which does not compute
+    them."""
     return Gives.FIELDS not in layer.gives
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A shot: a sea, and what of it changes from frame to frame.
+"""A shot: a sea and its animation.
 
-Each frame is the sea of that frame's parameters at that frame's ocean time, made from its number alone.
-The samples are given a frame apart; between them values are linear. The lines of a mask are a raster whose
-rows are the frames.
+Each frame is the sea with that frame's parameters at that frame's ocean time, and depends on the frame number
+alone. Animated values are sampled once per frame and interpolated linearly in between. The lines of a mask
+are a raster with one row per frame.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from ..masks.parameters import MOVING, Mask
 from ..waves.kinds import KINDS
 from .ocean_parameters import OceanParameters, parse_json
 
-#: seconds on the waves' own clock, where it does not simply follow the frames
+#: path of the ocean time in seconds, if it does not simply follow the frames
 OCEAN_TIME = "ocean_time"
 
-#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer or patch
+#: values that can be animated, by their path in the parameters' JSON; * is the index of a layer or patch
 ANIMATED = (
     *dict.fromkeys(f"layers.*.{name}" for kind in KINDS for name in changing_fields(kind)),
     *changing_fields(OceanParameters),
@@ -39,11 +39,11 @@ ANIMATED = (
     OCEAN_TIME,
 )
 
-#: samples of a value, one a frame; a raster has a row for each
+#: samples of a value, one per frame; a raster has one row per frame
 Samples = tuple[float, ...] | Raster
 
 _ONE_SEA = "later frames would show other waves"
-#: why the rest cannot: first part of the path → reason
+#: why other values cannot be animated: first part of the path → reason
 _CONSTANT = {
     "water": "depth, gravity and the liquid set the speed of every wave: " + _ONE_SEA,
     "dispersion": "it sets the speed of every wave: " + _ONE_SEA,
@@ -58,17 +58,17 @@ _CONSTANT = {
 }
 _NUMBERED = re.compile(r"(layers|patches)\.[0-9]{1,6}\.")
 _MOST_SAMPLES = 1_000_000
-#: numbers of a line of a mask
+#: numbers that describe one line of a mask
 _ENDS = 4
 _KEY = "animation"
 
 
 class Moment(NamedTuple):
-    """What determines one frame.
+    """Everything that determines one frame.
 
     parameters : the sea of this frame
     time : ocean time, s, exact
-    rate : seconds of ocean time in a second of the shot
+    rate : seconds of ocean time per second of the shot
     """
 
     parameters: OceanParameters
@@ -78,13 +78,13 @@ class Moment(NamedTuple):
 
 @dataclass(frozen=True)
 class Animation:
-    """Samples a frame apart.
+    """Animated values, one sample per frame.
 
-    first_frame : that of the first sample
-    samples : path (see ANIMATED) and values, all of one length, SI units and radians; of lines of a mask a
-        raster, a row a frame
+    first_frame : frame of the first sample
+    samples : path (see ANIMATED) and values, all of one length, in SI units and radians; for the lines of a
+        mask, a raster with one row per frame
 
-    Raises ParameterError for a path that cannot be animated and for values that are no finite numbers.
+    Raises ParameterError for a path that cannot be animated and for values that are not finite numbers.
     """
 
     first_frame: int
@@ -108,11 +108,11 @@ class Animation:
 
     @property
     def last_frame(self) -> int:
-        """That of the last sample."""
+        """Frame of the last sample."""
         return self.first_frame + _length(self.samples[0][1]) - 1
 
     def at(self, frame: Frame) -> dict[str, float | Raster]:
-        """Values by path at a frame, linear between samples. Raises ParameterError where there are none."""
+        """Values by path at a frame, linear between samples. Raises ParameterError outside the samples."""
         if not self.first_frame <= frame <= self.last_frame:
             raise ParameterError(
                 "frame", float(frame),
@@ -124,7 +124,8 @@ class Animation:
         return {path: _between(values, index, share) for path, values in self.samples}
 
     def rate(self, path: str, frame: Frame) -> float | None:
-        """Change a frame of a value: that of the line between samples, at a sample the mean of both sides."""
+        """Rate of change of a value per frame: the slope between samples; at a sample, the mean of both
+        sides."""
         values = dict(self.samples).get(path)
         if values is None or isinstance(values, Raster):
             return None
@@ -135,7 +136,7 @@ class Animation:
         return sum(slopes) / len(slopes) if slopes else 0.0
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as it stands in a JSON file."""
+        """Plain data, as in a JSON file."""
         return {
             "first_frame": self.first_frame,
             "samples": {
@@ -162,7 +163,7 @@ class Animation:
 
 @dataclass(frozen=True)
 class Shot:
-    """A sea, and what of it changes.
+    """A sea and its animation.
 
     Raises ParameterError for an animation that does not fit the sea.
     """
@@ -178,7 +179,8 @@ class Shot:
                 raise error.inside(_KEY) from None
 
     def _extremes(self) -> Iterator[dict[str, float | Raster]]:
-        """The least and the greatest of each value, and the longest lines: allowed ranges have no holes."""
+        """The minimum and maximum of each value, and the longest lines; it suffices to check these, as
+        allowed ranges have no gaps."""
         if self.animation is not None:
             for choose in (min, max):
                 yield {
@@ -206,14 +208,14 @@ class Shot:
                 if index >= len(own):
                     raise ParameterError(path, value, f"the sea has only {len(own)} {known}")
                 own[index] = _changed(own[index], path, value, bool(mask))
-        # without patches there are no entries to say anew
+        # without patches there are no entries to update
         patches = {"patches": tuple(entries["patches"])} if self.parameters.patches else {}
         return self.parameters.replace(layers=tuple(entries["layers"]), **patches, **changes)
 
     def at(self, frame: Frame) -> Moment:
-        """What determines a frame, which may lie between two.
+        """The moment of a frame or subframe.
 
-        Raises ParameterError for a frame beyond an animation's samples.
+        Raises ParameterError for a frame outside the animation's samples.
         """
         timing = self.parameters.timing
         if self.animation is None:
@@ -226,24 +228,24 @@ class Shot:
         return Moment(self._with(values), time, rate)
 
     def check(self, frames: tuple[Frame, ...]) -> None:
-        """Raise ParameterError where a frame cannot be made."""
+        """Raise ParameterError if a frame is outside the animation or its parameters are invalid."""
         for frame in (frames[0], frames[-1]):
             self.at(frame)
 
     @property
     def without_spray(self) -> Shot:
-        """The shot of the sea alone."""
+        """The same shot without spray."""
         if self.parameters.spray is None:
             return self
         return Shot(self.parameters.replace(spray=None), self.animation)
 
     def to_dict(self) -> dict[str, Any]:
-        """The parameters' plain data, with the animation where there is one."""
+        """The parameters' plain data, with the animation if there is one."""
         animated = {_KEY: self.animation.to_dict()} if self.animation is not None else {}
         return {**self.parameters.to_dict(), **animated}
 
     def to_json(self, indent: int | None = 2) -> str:
-        """JSON text that `from_json` reads back to an equal shot."""
+        """JSON text from which `from_json` restores an equal shot."""
         return json.dumps({"format": formats.SEA, **self.to_dict()}, indent=indent, ensure_ascii=False)
 
     @classmethod
@@ -256,12 +258,12 @@ class Shot:
 
     @classmethod
     def from_json(cls, text: str) -> Shot:
-        """A shot from JSON text. Raises ParameterError for what is not valid JSON or not valid."""
+        """A shot from JSON text. Raises ParameterError for invalid JSON or an invalid shot."""
         return cls.from_dict(parse_json(text))
 
 
 def time_text(time: Fraction) -> Any:
-    """An exact time as it stands in JSON."""
+    """An exact time as text for JSON."""
     return to_plain(time)
 
 
@@ -273,7 +275,7 @@ def _check_path(path: str) -> None:
 
 
 def _changed(entry: Any, path: str, value: float | Raster, of_mask: bool) -> Any:
-    """A layer or a patch with another value, of its own or of its mask."""
+    """A layer or patch with one value of it or of its mask replaced."""
     if of_mask:
         return replace(entry, mask=_moved(getattr(entry, "mask", None), path, value))
     owner, _, name = path.rpartition(".")
@@ -308,7 +310,7 @@ def _settled(values: Samples) -> Samples:
 
 
 def _between(values: Samples, index: int, share: float) -> float | Raster:
-    """The value after a sample, linear to the next one."""
+    """Linear interpolation between a sample and the next one."""
     if isinstance(values, Raster):
         rows = values.values[index : index + 2].astype(np.float64)
         return Raster(rows[:1] + share * (rows[1:] - rows[:1]) if share else rows[:1], values.name)
@@ -316,7 +318,7 @@ def _between(values: Samples, index: int, share: float) -> float | Raster:
 
 
 def _longest(lines: Raster) -> Raster:
-    """The row with the longest line along an axis."""
+    """The row that contains the longest line along an axis."""
     x0, y0, x1, y1 = np.moveaxis(lines.values, -1, 0)
     longest = np.maximum(np.abs(x1 - x0), np.abs(y1 - y0)).max(axis=1)
     return Raster(lines.values[int(np.argmax(longest))][np.newaxis], lines.name)
@@ -348,5 +350,5 @@ def _is_finite(value: object) -> bool:
         return False
     try:
         return math.isfinite(value)
-    except OverflowError:  # a whole number beyond every float
+    except OverflowError:  # an integer beyond the range of floats
         return False

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that describe a sea: heights, periods, slopes, curves."""
+"""Statistics of a sea: wave heights, periods, slopes, spectrum curves."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scales by which sailors and forecasters name wind and sea, both ways."""
+"""Beaufort, Douglas and WMO scales, in both directions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 #: WMO-No. 306, code table 1100: mean wind speeds in m/s at which Beaufort numbers 1…12 begin
 BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
 
-#: what sailors call them, 0…12
+#: names of Beaufort numbers 0…12
 BEAUFORT_NAMES = (
     "Calm", "Light air", "Light breeze", "Gentle breeze", "Moderate breeze", "Fresh breeze", "Strong breeze",
     "Near gale", "Gale", "Strong gale", "Storm", "Violent storm", "Hurricane",
@@ -31,12 +31,12 @@ SEA_STATE_NAMES = (
     "Phenomenal",
 )
 
-#: Douglas sea scale: the same ten degrees of wind sea by height, with names of its own for two of them
+#: Douglas sea scale: the same ten degrees by height, two of them with different names
 DOUGLAS_NAMES = ("No wave", "Calm (rippled)", *SEA_STATE_NAMES[2:])
 
 
 class Span(NamedTuple):
-    """Values of one degree of a scale: from `low` up to `high`, which is infinite for the last."""
+    """Range of one degree of a scale: from `low` up to `high`, which is infinite for the last degree."""
 
     low: float
     high: float
@@ -59,12 +59,12 @@ def sea_state(significant_wave_height: float) -> int:
 
 
 def sea_state_heights(code: int) -> Span:
-    """Significant wave heights in m of a WMO sea state code; its upper end belongs to it."""
+    """Significant wave heights in m of a WMO sea state code, upper end included."""
     return _span("sea state", code, SEA_STATE_FROM)
 
 
 def douglas_degree(significant_wave_height: float) -> int:
-    """Degree 0…9 of the Douglas sea scale, which has the WMO's heights."""
+    """Degree 0…9 of the Douglas sea scale, which uses the WMO's heights."""
     return sea_state(significant_wave_height)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The continuous spectrum of all layers of a sea, and its curves: over frequency and over direction."""
+"""The continuous spectrum of all layers of a sea, and its curves over frequency and direction."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..spectral.spectra import frequency_rule, refined_peak
 
 Array = NDArray[np.float64]
 
-#: how far around the peaks is shown, in units of the lowest and of the highest peak frequency
+#: plotted range, in units of the lowest and of the highest peak frequency
 _SHOWN = (0.45, 4.0)
 
 
 class SeaSpectrum:
-    """Frequency spectrum and peak of a sea's layers, but for those in a calm."""
+    """Frequency spectrum and peak of a sea's layers, except those in a calm."""
 
     def __init__(self, parameters: OceanParameters) -> None:
         self.parameters = parameters
@@ -34,7 +34,7 @@ class SeaSpectrum:
 
     @cached_property
     def rule(self) -> tuple[Array, Array]:
-        """ω in rad/s and weights in rad/s of a quadrature that holds all of the energy."""
+        """Nodes ω and weights, both in rad/s, of a quadrature that covers all of the energy."""
         peaks = [layer.peak_frequency for layer in self.layers] or [1.0]
         return frequency_rule(min(peaks), max(peaks))
 
@@ -56,7 +56,7 @@ class SeaSpectrum:
 class FrequencyCurves(NamedTuple):
     """S over ω.
 
-    omega : (size,) rad/s, ascending, evenly in log ω
+    omega : (size,) rad/s, ascending, evenly spaced in log ω
     layers : (layers, size) m²·s/rad, the active layers that have waves
     resolved : lowest and highest ω in rad/s of the waves that the grid holds
     """
@@ -80,7 +80,7 @@ class PolarDensity(NamedTuple):
 
 
 def frequency_curves(parameters: OceanParameters, size: int = 256) -> FrequencyCurves:
-    """The curves of a sea's active layers; those of a sea without any, or in a calm, have zero rows."""
+    """The curves of a sea's active layers; zero rows for a sea without any, or in a calm."""
     sea = SeaSpectrum(parameters)
     omega = shown_frequencies(sea, size)
     layers = [layer.frequency_spectrum(omega) for layer in sea.layers]
@@ -88,7 +88,7 @@ def frequency_curves(parameters: OceanParameters, size: int = 256) -> FrequencyC
 
 
 def polar_density(parameters: OceanParameters, rings: int = 48, directions: int = 144) -> PolarDensity:
-    """Energy of all active layers together."""
+    """Energy density of all active layers together."""
     sea = SeaSpectrum(parameters)
     omega = shown_frequencies(sea, rings)
     theta: Array = np.linspace(0.0, 2.0 * np.pi, directions, endpoint=False)
@@ -100,7 +100,7 @@ def polar_density(parameters: OceanParameters, rings: int = 48, directions: int 
 
 
 def shown_frequencies(sea: SeaSpectrum, size: int) -> Array:
-    """ω in rad/s around all peaks, evenly in log ω."""
+    """ω in rad/s around all peaks, evenly spaced in log ω."""
     peaks = [layer.peak_frequency for layer in sea.layers] or [1.0]
     return np.geomspace(_SHOWN[0] * min(peaks), _SHOWN[1] * max(peaks), size)
 

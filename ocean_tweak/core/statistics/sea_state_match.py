@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A wave layer for a wanted wave height and period."""
+"""Finds a wave layer for a given wave height and period."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from ..spectral.spectra import layer_scales, wind_at
 from ..spectral.water import Water
 from ..waves.spectral import WaveLayer
 
-#: below this dimensionless fetch g F / U² nobody has measured JONSWAP's growth
+#: dimensionless fetch g F / U² below which JONSWAP's growth has not been measured
 LEAST_DIMENSIONLESS_FETCH = 1.0
-#: α of the steepest sea that a wind raises: JONSWAP's at that fetch
+#: α of the steepest wind sea: JONSWAP's at that fetch
 LARGEST_ALPHA = constants.JONSWAP_ALPHA * LEAST_DIMENSIONLESS_FETCH**-constants.JONSWAP_ALPHA_EXPONENT
 
-#: steps towards the least period, and the change of one that is none
+#: iterations for the shortest period, and the relative change at which to stop
 _TRIES, _NEAR = 20, 1e-3
 
 
 class TooSteep(NamedTuple):
-    """A sea state that is steeper than any wind sea, and the two nearest that are not.
+    """Describes a sea state steeper than any wind sea, with the two nearest possible ones.
 
-    steepness, limit : Hs over the wavelength at the peak, and the most that this can be at the same period
-    height : m, the most at the same period
-    period : s, the least at the same height; infinite where none is long enough
+    steepness, limit : Hs divided by the peak wavelength, and its maximum at the same period
+    height : m, the maximum at the same period
+    period : s, the minimum at the same height; infinite if none is long enough
     """
 
     steepness: float
@@ -37,10 +37,10 @@ class TooSteep(NamedTuple):
 
 
 class Match(NamedTuple):
-    """A layer with the wanted sea state, and whether a wind over a fetch makes it.
+    """A layer with the given sea state, and whether a wind over a fetch can produce it.
 
-    layer : defined by WIND where such a wind exists, else by SEA_STATE
-    from_wind : which of the two
+    layer : defined by WIND if such a wind exists, else by SEA_STATE
+    from_wind : whether it is defined by WIND
     explanation : one sentence for the artist
     """
 
@@ -57,11 +57,11 @@ def layer_for_sea_state(
 ) -> Match:
     """A layer with a significant wave height in m and a peak period in s, in this water.
 
-    JONSWAP's α and ω_p (Horvath 2015, eq. 28) give the dimensionless fetch X = (α/0.076)^(-1/0.22), then
-    U = 22 g X^(-1/3) / ω_p and F = X U²/g. Where this wind or fetch is beyond what is allowed or beyond
-    full development, the layer is defined by its sea state instead: swell, mostly.
+    JONSWAP's α and ω_p (Horvath 2015, eq. 28) give the dimensionless fetch X = (α/0.076)^(-1/0.22), then U =
+    22 g X^(-1/3) / ω_p and F = X U²/g. If this wind or fetch is out of range or beyond full development, the
+    layer is defined by its sea state instead; such seas are mostly swell.
 
-    template : gives everything else, its spectrum included; TMA by default
+    template : provides all other settings, including the spectrum; TMA by default
 
     Raises ParameterError for a height or period out of range.
 
@@ -104,9 +104,10 @@ def layer_for_sea_state(
 
 
 def too_steep(layer: WaveLayer, water: Water) -> TooSteep | None:
-    """What is wrong with a layer's sea state, and what would be possible; None where a wind can raise it.
+    """Why a layer's sea state is too steep, and what would be possible; None if a wind can produce it.
 
-    Energy is in proportion to α, so Hs is to √α; in deep water α is to Hs² / Tp⁴, elsewhere nearly so.
+    Energy is proportional to α and Hs to √α; in deep water α is proportional to Hs² / Tp⁴, elsewhere nearly
+    so.
     """
     if layer.definition != "SEA_STATE" or layer.significant_wave_height == 0.0:
         return None

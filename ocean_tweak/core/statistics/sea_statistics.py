@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that describe a sea: of its spectrum, as the grid resolves it, of one seed, of a field.
+"""Statistics of a sea: of its spectrum, as resolved by the grid, and of one seed.
 
 Moments: m0 = ∫S dω is the variance of the elevation, m2 = ∫ω²S dω; Hs = 4√m0 is the significant wave
 height, Tp the period at the peak of the frequency spectrum, Tz = 2π√(m0/m2) the mean period between
@@ -39,7 +39,7 @@ Array = NDArray[np.float64]
 
 __all__ = ["SeaState", "Statistics", "field_state", "mode_state", "sea_statistics", "spectrum_state"]
 
-#: said of a sea without waves
+#: warning for a sea without waves
 FLAT = "The sea is flat: no layer has energy. Unmute one, or raise its wind, amplitude scale or wave height"
 
 _LEAST_WAVELENGTHS = 3.0
@@ -50,9 +50,9 @@ _LARGEST_SPEED_CHANGE = 0.1
 
 @dataclass(frozen=True)
 class PatchStatistics:
-    """A patch of a sea, and the statistics of its band in the sea's axes.
+    """A patch of a sea, with the statistics of its band in the sea's axes.
 
-    share : of the sum's variance on the grids, 0…1
+    share : fraction of the resolved variance of the sum, 0…1
     """
 
     patch: Patch
@@ -74,17 +74,16 @@ class PatchStatistics:
 
 @dataclass(frozen=True)
 class Statistics:
-    """What a sea will be.
+    """Statistics of a sea.
 
     spectrum : the continuous spectrum, all wavelengths
-    resolved : the mean over all seeds of what the grid holds
-    seed : this seed, averaged over time; hero waves are in it, and in none of the above
-    wavelengths_per_domain : peak wavelengths along a side
+    resolved : mean over all seeds of the waves on the grid
+    seed : this seed, averaged over time; includes hero waves, unlike the two above
+    wavelengths_per_domain : number of peak wavelengths along a side
     sample_spacing : m
-    loop_speed_change : largest relative change of a wave's phase speed by the loop, or None without one
-    warnings : one sentence each, with the remedy
-    patches : of a sea of patches, from long waves to short; the rest is then of their sum, its spectrum that
-        of all waves and its grid all grids together
+    loop_speed_change : largest relative change of a phase speed due to the loop, or None without a loop
+    warnings : one sentence each, with a remedy
+    patches : for a sea of patches, from long waves to short; all other fields then describe their sum
     """
 
     spectrum: SeaState
@@ -118,11 +117,11 @@ class Statistics:
 
     @property
     def resolved_share(self) -> float:
-        """Share of the spectrum's energy that the grid resolves, 0…1."""
+        """Fraction of the spectrum's energy that the grid resolves, 0…1."""
         return self.resolved.m0 / self.spectrum.m0 if self.spectrum.m0 > 0.0 else 1.0
 
     def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON; what does not exist (the period of a flat sea) is None."""
+        """Plain data for JSON; undefined values, such as the period of a flat sea, are None."""
         per_domain = self.wavelengths_per_domain
         return {
             "spectrum": self.spectrum.to_dict(),
@@ -159,7 +158,7 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
 
 
 def _modes(state: InitialState, expected: bool) -> list[Modes]:
-    """Energies of all of a sea's states: expected over all seeds, or of this seed."""
+    """Energies of all of a sea's states: expected ones, or those of this seed."""
     return [
         Modes(part.grid, part.expected_plus, part.expected_minus, part.omega)
         if expected
@@ -169,7 +168,7 @@ def _modes(state: InitialState, expected: bool) -> list[Modes]:
 
 
 def continuous_state(sea: SeaSpectrum) -> SeaState:
-    """State of all waves of a sea of which it is told, whether a grid resolves them or not."""
+    """State of all waves with known heights, whether a grid resolves them or not."""
     others = (layer.state(sea.parameters) for layer in sea.parameters.active())
     return together([spectrum_state(sea), *(state for state in others if state is not None)])
 
@@ -193,7 +192,7 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
 
 
 def _without_loop(parameters: OceanParameters, part: InitialState) -> Array:
-    """ω in rad/s of a state's waves as it would be without a loop."""
+    """ω in rad/s that a state's waves would have without a loop."""
     own = None if part.layer is None else part.layer.frequencies(parameters, part.grid)
     if own is not None:
         return own
@@ -214,12 +213,13 @@ def _warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statist
 
 
 def is_told_apart(parameters: OceanParameters) -> bool:
-    """Whether some waves are in no statistics, so that a sea whose statistics are flat need not be."""
+    """Whether some waves are not included in the statistics, so that a sea may have waves although these say
+    it is flat."""
     return any(not layer.gives & (Gives.SPECTRUM | Gives.STATE) for layer in parameters.active())
 
 
 def layer_warnings(parameters: OceanParameters) -> Iterator[str]:
-    """What layers say themselves, and of which waves nobody says anything."""
+    """Warnings of the layers, and a note on waves that are not included."""
     for layer in parameters.active():
         yield from layer.warnings(parameters)
         is_told = layer.gives & (Gives.SPECTRUM | Gives.STATE) or type(layer).outlook(parameters) is not None
@@ -231,7 +231,7 @@ def layer_warnings(parameters: OceanParameters) -> Iterator[str]:
 
 
 def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Statistics) -> list[str]:
-    """Of a grid that is too small or too coarse for its waves."""
+    """Warnings for a grid too small or too coarse for its waves."""
     warnings = []
     wavelength = statistics.peak_wavelength
     if parameters.has_states:
@@ -253,25 +253,25 @@ def grid_warnings(parameters: OceanParameters, sea: SeaSpectrum, statistics: Sta
 
 
 def _longest_random_wave(parameters: OceanParameters, of_spectra: float) -> float:
-    """Wavelength in m of the longest peak among what differs in height from seed to seed; NaN for none."""
+    """Longest peak wavelength in m of the layers whose height varies with the seed; NaN for none."""
     peaks = (of_spectra, *(layer.longest_random_wave(parameters) for layer in parameters.active()))
     return max((peak for peak in peaks if np.isfinite(peak)), default=float("nan"))
 
 
 def _round_up(length: float) -> str:
-    """A length rounded up to two digits."""
+    """A length rounded up to two significant digits."""
     unit = 10.0 ** (np.floor(np.log10(length)) - 1.0)
     return f"{np.ceil(length / unit) * unit:.10g}"
 
 
 def _round_down(length: float) -> str:
-    """A length rounded down to two digits."""
+    """A length rounded down to two significant digits."""
     unit = 10.0 ** (np.floor(np.log10(length)) - 1.0)
     return f"{np.floor(length / unit) * unit:.10g}"
 
 
 def loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[str]:
-    """Of a loop that is too short."""
+    """Warnings for a loop that is too short."""
     if parameters.loop_duration is None or statistics.loop_speed_change is None:
         return []
     duration, shortest = float(parameters.loop_duration), _LEAST_LOOP_PERIODS * statistics.peak_period
@@ -290,7 +290,7 @@ def loop_warnings(parameters: OceanParameters, statistics: Statistics) -> list[s
 
 
 def fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
-    """Of fetches that the sea is done growing before."""
+    """Warnings for fetches beyond full development."""
     numbers = {(layer.kind, layer.id): number for number, layer in enumerate(parameters.layers, 1)}
     return [
         f"Layer {numbers[spectrum.layer.kind, spectrum.layer.id]}: the sea is fully developed "
@@ -302,7 +302,7 @@ def fetch_warnings(parameters: OceanParameters, sea: SeaSpectrum) -> list[str]:
 
 
 def steepness_warnings(parameters: OceanParameters) -> list[str]:
-    """Of layers whose wave height and period no wind can raise, with the nearest that one can."""
+    """Warnings for layers steeper than any wind sea, with the nearest possible sea states."""
     warnings = []
     for number, layer in enumerate(parameters.layers, 1):
         if not isinstance(layer, WaveLayer) or layer.muted:
@@ -322,14 +322,14 @@ def steepness_warnings(parameters: OceanParameters) -> list[str]:
 
 
 def spectrum_state(sea: SeaSpectrum) -> SeaState:
-    """State of the layers' continuous spectra together, by quadrature over ln ω."""
+    """Combined state of the layers' continuous spectra, by quadrature over ln ω."""
     omega, weight = sea.rule
     parameters = sea.parameters
     k = dispersion.wave_number(omega, parameters.dispersion, parameters.water)
     spectrum, vector = np.zeros_like(omega), 0.0j
     for layer in sea.layers:
         energy = layer.frequency_spectrum(omega)
-        # directions change slowly over ω: every eighth frequency will do
+        # directions vary slowly with ω: every eighth frequency is enough
         cosine = mean_cosine(omega[::8] / layer.peak_frequency, layer.spreading)
         towards = np.exp(1j * layer.layer.wind_direction)
         vector += towards * np.sum(energy * np.interp(omega, omega[::8], cosine) * weight)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slope variance of the waves that a grid cannot hold: what a renderer must show as roughness.
+"""Slope variance of waves too short for a grid, which renderers show as roughness.
 
-The mean square slope of some waves is ∬k²Ψ dkx dky over their wave vectors. A renderer's microfacets have
-the same meaning: alpha² of a Beckmann or GGX distribution is the mean square slope of both axes together
-(Walter et al. 2007; its Gaussian slopes are those of Cox & Munk 1954).
+The mean square slope of waves is ∬k²Ψ dkx dky over their wave vectors. Microfacet roughness has the same
+meaning: alpha² of a Beckmann or GGX distribution is the mean square slope of both axes together (Walter et
+al. 2007; its Gaussian slopes are those of Cox & Munk 1954).
 
-The integral ends where capillary waves begin, at k = √(ρg/σ), the slowest wave (Lamb 1932, § 267): 1.7 cm
-in water. There the gravity waves of these spectra end (Elfouhaily et al. 1997 take 370 rad/m).
+The integral ends where capillary waves begin, at the slowest wave, k = √(ρg/σ) (Lamb 1932, § 267): 1.7 cm in
+water. The spectra describe gravity waves only up to there (Elfouhaily et al. 1997 use 370 rad/m).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _ARC_NODES = 16
 
 
 def capillary_limit(water: Water) -> float:
-    """Wave number in rad/m of the slowest wave; that of clean water for a liquid without surface tension."""
+    """Wave number in rad/m of the slowest wave; without surface tension, that of clean water."""
     tension = water.surface_tension or constants.SURFACE_TENSION
     return float(np.sqrt(water.density * water.gravity / tension))
 
@@ -44,17 +44,17 @@ def total_slope_variance(parameters: OceanParameters) -> float:
     if not np.isfinite(sea.peak_frequency):
         return others
     limit = capillary_limit(parameters.water)
-    lowest = 0.01 * min(sea.peak_wave_number, limit)  # below, S is 0 to the last digit
+    lowest = 0.01 * min(sea.peak_wave_number, limit)  # below this, S underflows to 0
     return sum((_rings(layer, lowest, limit) for layer in sea.layers), others)
 
 
 @remembered("unresolved slopes")
 def unresolved_slope_variance(parameters: OceanParameters) -> float:
-    """Mean square slope of the waves shorter than the grid can hold, dimensionless.
+    """Mean square slope of the waves too short for the grid, dimensionless.
 
-    The grid holds a square of wave vectors: its modes and half a cell around them. Of waves that are no
-    spectrum's, what the layers hold and the grid does not. Of a sea of patches, the waves shorter than the
-    last one holds, or than the one grid on which they are merged.
+    The grid covers a square of wave vectors: its modes and half a cell around them. For waves without a
+    spectrum, the difference between all waves of the layers and those on the grid. For a sea of patches, the
+    waves too short for the last patch, or for the merged grid.
     """
     if parameters.merged_resolution:
         return unresolved_slope_variance(parameters.without_patches)
@@ -62,7 +62,7 @@ def unresolved_slope_variance(parameters: OceanParameters) -> float:
         *longer, last = patch_parameters(parameters)
         sharp = last.patches[0].shortest_wavelength
         whole = last.replace(patches=())
-        # the end of the last band, if it comes before that of its grid
+        # the end of the last band, if it lies below that of its grid
         if sharp > 2.0 * last.domain_size / last.resolution:
             limit = capillary_limit(last.water)
             rings = (_rings(layer, 2.0 * np.pi / sharp, limit) for layer in SeaSpectrum(whole).layers)
@@ -84,12 +84,12 @@ def _missing_from_others(parameters: OceanParameters) -> float:
 
 
 def _of_others(parameters: OceanParameters, resolution: int | None) -> float:
-    """Mean square slope of the waves that are no spectrum's: of all, or of those on a grid."""
+    """Mean square slope of waves without a spectrum: of all of them, or of those on a grid."""
     return sum((layer.slope_variance(parameters, resolution) for layer in parameters.active()), 0.0)
 
 
 def _rings(layer: DirectionalSpectrum, lowest: float, highest: float) -> float:
-    """∫k²S dω over whole circles of wave vectors, between two wave numbers in rad/m."""
+    """∫k²S dω over full circles of wave vectors, between two wave numbers in rad/m."""
     if lowest >= highest:
         return 0.0
     step = np.log(highest / lowest) / _RADIAL_NODES
@@ -100,9 +100,9 @@ def _rings(layer: DirectionalSpectrum, lowest: float, highest: float) -> float:
 
 
 def _sides(layer: DirectionalSpectrum, edge: float, corner: float) -> float:
-    """∬k²Ψ over what lies outside of a square of wave vectors, up to the circle through its corners."""
+    """∬k²Ψ outside a square of wave vectors, up to the circle through its corners."""
     nodes, weights = np.polynomial.legendre.leggauss(_RING_NODES)
-    # the arcs open as √(k - edge): in its square root the integrand is smooth
+    # the arcs open as √(k - edge), so the integrand is smooth in the square root
     root = 0.5 * np.sqrt(corner - edge) * (nodes + 1.0)
     k = edge + root**2
     radial_weight = weights * 0.5 * np.sqrt(corner - edge) * 2.0 * root

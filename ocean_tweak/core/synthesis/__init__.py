@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves: coefficients, their motion, transforms, and the channels made of them."""
+"""Wave synthesis: coefficients, their propagation in time, transforms, and the channels derived from them."""

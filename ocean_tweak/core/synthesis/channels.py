@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All that a shot reads of a sea: one table, from which whatever leaves the core is made.
+"""The table of all fields and maps of a sea.
 
-Fields over the patch, maps of images, attributes of meshes, primvars, columns of points, what the command
-line knows and the table of docs/channels.md follow from CHANNELS and MAPS. Formulas stand above their rows.
+Fields over the patch, image maps, mesh attributes, primvars, point columns, the command line's choices and
+docs/channels.md all follow from CHANNELS and MAPS. The formulas are defined above the table.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ RealArray = NDArray[np.floating]
 
 
 def displacement(rows: PositionRows, out: RealArray) -> None:
-    """(N, N, 3) m: what is added to the rest position (x, y, 0), choppiness applied."""
+    """(N, N, 3) m: offset from the rest position (x, y, 0), with choppiness applied."""
     for component in (X, Y, Z):
         rows.position(component, out=out[..., component])
 
 
 def slope(rows: PositionRows, out: RealArray) -> None:
-    """(N, N, 2) m/m: derivatives of the elevation by the rest position's x and y."""
+    """(N, N, 2) m/m: derivatives of the elevation with respect to the rest position's x and y."""
     for index, along in enumerate("xy"):
         rows.position(Z, along, out=out[..., index])
 
 
 def velocity(rows: PositionRows, out: RealArray) -> None:
-    """(N, N, 3) m/s: derivative of the displacement in ocean time."""
+    """(N, N, 3) m/s: derivative of the displacement with respect to ocean time."""
     for component in (X, Y, Z):
         rows.position(component, "t", out=out[..., component])
 
@@ -50,7 +50,7 @@ def _gradient(rows: PositionRows) -> tuple[RealArray, RealArray, RealArray, Real
 def strain(rows: PositionRows, out: RealArray) -> None:
     """(N, N, 3): of the horizontal displacement, Dx by x, Dy by y, and the mean of Dx by y and Dy by x.
 
-    Those of several patches add, once turned; normals, Jacobians and eigenvalues do not.
+    Rotated strains of several patches add up; normals, Jacobians and eigenvalues do not.
     """
     rows.position(X, "x", out=out[..., 0])
     rows.position(Y, "y", out=out[..., 1])
@@ -66,11 +66,11 @@ def jacobian(rows: PositionRows, out: RealArray) -> None:
 def min_eigenvalue(rows: PositionRows, out: RealArray) -> None:
     """(N, N): smaller eigenvalue of the gradient of x ↦ x + λD, < 0 where the surface folds.
 
-    The crest field of Horvath (2015), § 8. The gradient is symmetric but where troughs are damped; there
-    its symmetric part counts.
+    The crest field of Horvath (2015), § 8. With trough damping the gradient is not symmetric, and its
+    symmetric part is used.
     """
     half_sum, half_difference, shear = _symmetric_part(rows)
-    # a square root of squares: strains are near 1, and hypot's care for overflow costs as much as a field
+    # plain square root: strains are near 1, and hypot's overflow protection costs as much as a field
     np.multiply(half_difference, half_difference, out=half_difference)
     half_difference += shear * shear
     np.subtract(half_sum, np.sqrt(half_difference, out=half_difference), out=out)
@@ -84,7 +84,7 @@ def cusp(rows: PositionRows, out: RealArray) -> None:
 
 
 def min_eigenvector(rows: PositionRows, out: RealArray) -> None:
-    """(N, N, 2): unit vector along which the surface is compressed most, its x ≥ 0."""
+    """(N, N, 2): unit vector of strongest compression, with x ≥ 0."""
     _, half_difference, shear = _symmetric_part(rows)
     angle = 0.5 * np.arctan2(-shear, -half_difference)
     np.cos(angle, out=out[..., 0])
@@ -92,7 +92,7 @@ def min_eigenvector(rows: PositionRows, out: RealArray) -> None:
 
 
 def _symmetric_part(rows: PositionRows) -> tuple[RealArray, RealArray, RealArray]:
-    """Half the sum and half the difference of the diagonal, and the mean of the others."""
+    """Half the sum and half the difference of the diagonal, and the mean of the off-diagonal elements."""
     along_x, along_y = rows.position(X, "x"), rows.position(Y, "y")
     across, also_across = rows.position(X, "y"), rows.position(Y, "x")
     shear = across if across is also_across else 0.5 * (across + also_across)
@@ -112,10 +112,11 @@ def normal(rows: PositionRows, out: RealArray) -> None:
     for part, (first, second) in zip(parts, ((zx, yy), (xx, zy), (xy, yx)), strict=True):
         part -= first * second
     largest = max(max(float(np.max(part)), -float(np.min(part))) for part in parts)
-    if largest > 1e18:  # whose square is no float32
+    if largest > 1e18:  # whose square underflows float32
         for part in parts:
             part /= largest
-    # each component in an array of its own: sums along an axis of three numbers take longer than all else
+    # each component in its own array: reductions over an axis of length 3 would take longer than everything
+    # else
     length = np.multiply(parts[X], parts[X], out=xx)
     for part in parts[Y:]:
         length += np.multiply(part, part, out=yy)
@@ -125,9 +126,9 @@ def normal(rows: PositionRows, out: RealArray) -> None:
 
 
 class UsdAttribute(NamedTuple):
-    """How a channel stands in a layer of USD.
+    """How a channel is stored in a USD layer.
 
-    name, type : of the attribute, the type a name of `Sdf.ValueTypeNames`
+    name, type : of the attribute; the type is a name in `Sdf.ValueTypeNames`
     halved : whether it may be stored in 16 bits
     """
 
@@ -136,11 +137,11 @@ class UsdAttribute(NamedTuple):
     halved: bool = False
 
 
-#: how numbers turn with the axes: as themselves, as x, y (, z), or as xx, yy, xy of a symmetric tensor
+#: how values transform under rotation: not at all, as x, y (, z), or as xx, yy, xy of a symmetric tensor
 SCALAR, VECTOR, TENSOR = "scalar", "vector", "tensor"
 _SUFFIXES = {SCALAR: ("",), VECTOR: ("_x", "_y", "_z"), TENSOR: ("_xx", "_yy", "_xy")}
 
-#: what a channel is made from: the waves of one instant, or the foam's memory
+#: what a channel is computed from: the waves at one instant, or the history of the foam
 WAVES, MEMORY = "waves", "foam"
 
 _PLACE = frozenset({(X, ""), (Y, ""), (Z, "")})
@@ -151,22 +152,22 @@ _SLOPES = frozenset({(Z, "x"), (Z, "y")})
 
 @dataclass(frozen=True)
 class Channel:
-    """What is known of a field, wherever it goes.
+    """The properties of a field.
 
     name : of the output; an attribute of `SurfaceFields`
-    text : what it is, for readers of the documentation
-    unit : of its numbers, m or m/s where they scale with the scene's units, s, or 1
-    components : numbers a sample; 0 for a plain (N, N) array
+    text : description, for the documentation
+    unit : m or m/s for values that scale with the scene's units, s, or 1
+    components : values per sample; 0 for a plain (N, N) array
     turns : SCALAR, VECTOR or TENSOR
-    make : fills its rows; None where its source is another than WAVES
-    needs : components of the position and their derivatives that it is made of
-    source : WAVES, or MEMORY for what is made from earlier moments too
-    adds : whether those of a sea's patches, turned, add up to that of the sea
-    rest : its numbers on a flat sea
-    attribute : of meshes in Blender; "" where they have none
-    switch : the ocean's setting that asks for it on the ocean's own mesh; "" where it is always there, None
-        where only meshes of patches have it
-    usd : None where layers have none
+    make : function that fills its rows; None unless its source is WAVES
+    needs : components of the position and their derivatives that it is computed from
+    source : WAVES, or MEMORY for fields that depend on earlier times
+    adds : whether the rotated fields of the patches add up to that of the sea
+    rest : its values on a flat sea
+    attribute : of meshes in Blender; "" for none
+    switch : the ocean's setting that enables it on the ocean's own mesh; "" if it is always there, None if
+        only meshes of patches have it
+    usd : None if USD layers do not have it
     """
 
     name: str
@@ -184,7 +185,7 @@ class Channel:
     usd: UsdAttribute | None = None
 
     def write(self, rows: PositionRows, out: RealArray) -> None:
-        """Fill the rows of a field of WAVES."""
+        """Fill the rows of a field whose source is WAVES."""
         assert self.make is not None
         self.make(rows, out)
 
@@ -194,17 +195,17 @@ class Channel:
 
     @property
     def scales(self) -> bool:
-        """Whether its numbers are metres, or metres per second."""
+        """Whether its values are in metres or metres per second."""
         return self.unit.startswith("m")
 
     @property
     def is_rate(self) -> bool:
-        """Whether its numbers are per second."""
+        """Whether its values are per second."""
         return self.unit.endswith("/s")
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """A name for each of its numbers."""
+        """A name for each of its values."""
         return tuple(self.name + suffix for suffix in _SUFFIXES[self.turns][: max(self.components, 1)])
 
 
@@ -269,8 +270,8 @@ _ROWS = (
 #: by name
 CHANNELS: dict[str, Channel] = {row.name: row for row in _ROWS}
 
-#: a map's name in files, in the order in which jobs list them → the channels whose numbers are its red, green
-#: and blue; what is left is 0
+#: a map's name in files, in the order used in jobs → the channels that fill its red, green and blue; the rest
+# is 0
 MAPS: dict[str, tuple[str, ...]] = {
     "disp": ("displacement",),
     "foam": ("foam", "cusp", "breaking"),
@@ -281,41 +282,42 @@ MAPS: dict[str, tuple[str, ...]] = {
     "foam_age": ("foam_age",),
 }
 
-#: maps of which 2^-11 of the largest number is enough; places need more, and so does what normals are made of
+#: maps for which a precision of 2^-11 of the largest value is enough; positions and inputs of normals need
+# more
 HALVED_MAPS = frozenset({"foam", "normal", "vel", "foam_age"})
 
-#: the map that moves a surface: a sequence has it in every frame
+#: the map that displaces a surface: a sequence has it in every frame
 MOVING_MAP = "disp"
 
-#: what surfaces of one instant are made of
+#: outputs that depend on one instant only
 OF_WAVES = {name: channel for name, channel in CHANNELS.items() if channel.source == WAVES}
 
-#: what is made from earlier moments too, and so in the order of frames
+#: outputs that depend on earlier times too, and are therefore computed in the order of frames
 OF_MEMORY = frozenset(CHANNELS) - OF_WAVES.keys()
 
-#: those of a patch that, turned, add up to those of the sea; normals and eigenvalues are made of the sums
+#: outputs of patches that add up, once rotated; normals and eigenvalues are computed from the sums
 ADDING = frozenset(name for name, channel in CHANNELS.items() if channel.adds)
 
 
 class Fields(Protocol):
-    """Fields by their channel's name."""
+    """Fields by channel name."""
 
     def __getitem__(self, name: str, /) -> RealArray:
         """The field of a channel."""
 
 
 def channels_of(maps: Iterable[str]) -> frozenset[str]:
-    """The channels that maps are made of."""
+    """The channels that some maps contain."""
     return frozenset(name for each in maps for name in MAPS[each])
 
 
 def unit_of(map_name: str) -> str:
-    """Of a map's numbers."""
+    """The unit of a map's values."""
     return CHANNELS[MAPS[map_name][0]].unit
 
 
 def is_put_together(map_name: str) -> bool:
-    """Whether a map's image is another array than its channel."""
+    """Whether a map's image has to be assembled from several channels."""
     return CHANNELS[MAPS[map_name][0]].components != 3
 
 
@@ -330,7 +332,7 @@ def image_of(map_name: str, fields: Fields) -> RealArray:
 
 
 class SurfaceFields:
-    """Fields of one instant on the (N, N) samples [y, x]; only those asked for exist.
+    """Fields at one instant on the (N, N) samples [y, x]; those not requested are None.
 
     The names, shapes and units are those of CHANNELS.
     """
@@ -347,7 +349,7 @@ class SurfaceFields:
         return self._fields[name]
 
     def including(self, others: SurfaceFields) -> SurfaceFields:
-        """The same fields and others."""
+        """A copy with further fields."""
         return SurfaceFields(self.time, {**self._fields, **others._fields})
 
     def __getattr__(self, name: str) -> RealArray:
@@ -363,7 +365,7 @@ class SurfaceFields:
 
 
 def checked_outputs(outputs: Iterable[str]) -> frozenset[str]:
-    """The wanted outputs as a set. Raises ValueError for a name that is not known."""
+    """The requested outputs as a set. Raises ValueError for an unknown name."""
     wanted = frozenset((outputs,) if isinstance(outputs, str) else outputs)
     unknown = sorted(wanted - CHANNELS.keys())
     if unknown:
@@ -372,8 +374,8 @@ def checked_outputs(outputs: Iterable[str]) -> frozenset[str]:
 
 
 def memory_groups(wanted: Iterable[str]) -> list[list[str]]:
-    """The outputs in groups that are made one after the other, so that the arrays between the two passes
-    serve them in turn: at most five of those, 20 bytes a sample. Velocity shares none with the others."""
+    """Split the outputs into groups that are computed one after another, so that they can share the arrays
+    between the two passes: at most five, 20 bytes per sample. Velocity shares none with the others."""
     moving = sorted(
         name for name in wanted if any(derivative == "t" for _, derivative in CHANNELS[name].needs)
     )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sea's Fourier coefficients: before time enters, random, with the spectrum's energy; and at a time, from
-those alone: any frame, in any order."""
+"""The sea's Fourier coefficients: random initial ones with the spectrum's energy, and those at any time,
+computed from these alone, so that frames can be made in any order."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ComplexArray = NDArray[np.complexfloating]
 
 _ALL = slice(None)
 
-_NORMAL, _PHASE = 0, 2  # streams of a wave vector's random numbers; a normal number takes two
+_NORMAL, _PHASE = 0, 2  # random streams of a wave vector; a normal number uses two
 
 
 @dataclass(frozen=True)
@@ -38,13 +38,13 @@ class InitialState:
     h_plus, h_minus : complex, m. The elevation's coefficient at time t is
         h_plus·exp(-iωt) + h_minus·exp(+iωt); h_minus(k) is the conjugate of h_plus(-k).
     omega : float64, rad/s; in a loop a multiple of 2π/T
-    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²,
-        without the hero waves, which no seed changes
+    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|², without hero
+        waves, which do not depend on the seed
     loop_duration : T in s, or None
-    orbit_depth : depth in m that widens the water's orbits; infinite for those of deep water
-    mirrored : whether ω is even in ky, which halves the work; where it is not, it still is even in k
-    others : states on the same grid whose waves add to these, with frequencies of their own
-    layer : whose waves they are, where they are one of the others
+    orbit_depth : depth in m for the horizontal orbital motion; infinite for deep water
+    mirrored : whether ω is even in ky, which halves the work; it is always even in k
+    others : states on the same grid with frequencies of their own, whose waves are added to these
+    layer : the layer whose waves these are, for one of the others
     """
 
     grid: WaveVectorGrid
@@ -61,12 +61,12 @@ class InitialState:
 
     @property
     def parts(self) -> tuple[InitialState, ...]:
-        """All of a sea's states, each with frequencies of its own."""
+        """The state itself and the others."""
         return self, *self.others
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all arrays, with those of the other states."""
+        """Bytes of all arrays, including those of the other states."""
         own = (self.h_plus, self.h_minus, self.omega, self.expected_plus, self.expected_minus)
         factor = vars(self).get("potential_factor")
         return total_bytes((*own, factor, *self.others))
@@ -75,13 +75,15 @@ class InitialState:
     def potential_factor(self) -> ComplexArray:
         """1/k, (N, N//2+1) m, complex: from the elevation to the potential of the horizontal displacement.
 
-        In finite depth orbits are wider by coth kh (linear theory, Airy).
+        In finite depth, horizontal orbits are wider by coth kh (linear theory, Airy).
         """
         grid = self.grid
-        result = np.empty(grid.shape[::-1], self.h_plus.dtype)  # complex, or each product would convert it
+        result = np.empty(
+            grid.shape[::-1], self.h_plus.dtype
+        )  # complex, as each product would otherwise convert it
         for columns in grid.column_blocks():
             k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
-            k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is no wave
+            k = np.maximum(k, 0.5 * grid.spacing)  # the mean, which is not a wave
             result[columns] = grid.mirror(1.0 / (k * np.tanh(k * self.orbit_depth)))
         return result.T
 
@@ -112,10 +114,10 @@ def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
 
 
 class Coefficients:
-    """What layers add their waves to; arrays (N, N//2+1), transposed in memory.
+    """Accumulates the waves of all layers; arrays (N, N//2+1), transposed in memory.
 
     grid, omega : of the sea
-    h_plus, h_minus, expected_plus, expected_minus : of its state, as `InitialState` has them
+    h_plus, h_minus, expected_plus, expected_minus : as in `InitialState`
     dtype : of the coefficients
     """
 
@@ -140,7 +142,7 @@ class Coefficients:
         expected_minus: RealArray,
         mirrored: bool,
     ) -> None:
-        """Add a layer's waves with frequencies of their own; the arguments are as `InitialState` has them."""
+        """Add a layer's waves that have their own frequencies; for the arguments see `InitialState`."""
         self._others.append(
             InitialState(
                 self.grid, h_plus, h_minus, omega, expected_plus, expected_minus,
@@ -149,7 +151,7 @@ class Coefficients:
         )  # fmt: skip
 
     def state(self) -> InitialState:
-        """The sea's state with all that was added."""
+        """The sea's state with everything that was added."""
         state = InitialState(
             self.grid,
             self.h_plus,
@@ -166,7 +168,7 @@ class Coefficients:
 
 
 def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> InitialState:
-    """Coefficients of all layers together: layers add in the spectrum, and so do those of other kinds."""
+    """Coefficients of all layers together, summed per wave vector."""
     made = Coefficients(parameters, dtype)
     for layer in parameters.active():
         spectrum = layer.directional_spectrum(parameters)
@@ -181,7 +183,7 @@ def initial_state(parameters: OceanParameters, dtype: type = np.complex128) -> I
 
 
 def _add_random_waves(spectrum: DirectionalSpectrum, sea: OceanParameters, to: Coefficients) -> None:
-    """Draw waves from a spectrum.
+    """Draw random waves from a spectrum.
 
     The amplitude of a cosine is ν√(2ΨΔkxΔky), so its coefficient is half of that (Horvath 2015, eq. 47,
     corrected by this half; Chen 2014, eq. 10 and 18), and the elevation's variance is ΣΨΔkxΔky = m0.
@@ -203,7 +205,7 @@ def _orbit_depth(parameters: OceanParameters) -> float:
 
 
 def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexArray, mean: RealArray) -> None:
-    """Scale a seed's coefficients so that its energy is the expected one."""
+    """Scale a seed's coefficients to the expected energy."""
     energy = np.sum((np.abs(h_plus) ** 2 + np.abs(h_minus) ** 2) * grid.multiplicity)
     if energy > 0.0:
         factor = h_plus.real.dtype.type(np.sqrt(np.sum(mean * grid.multiplicity) / energy))
@@ -229,7 +231,7 @@ class PropagatedState:
     """Coefficients at one time, of all columns or of a block of them, indexed [ky, kx].
 
     elevation : complex64 or complex128, m
-    rate : its derivative in time, m/s, or None where it was not asked for
+    rate : its time derivative, m/s, or None if not requested
     """
 
     elevation: ComplexArray
@@ -237,11 +239,11 @@ class PropagatedState:
 
 
 def turns(state: InitialState, time: float | Fraction, columns: slice = _ALL) -> Array:
-    """ωt/2π for ky from 0 to N/2, (columns, N//2+1), reduced to [-½, ½] in float64, so that single
-    precision loses nothing afterwards; for all ky, (columns, N), where ω is not even in ky.
+    """ωt/2π for ky from 0 to N/2, (columns, N//2+1), reduced to [-½, ½] in float64, so that single precision
+    suffices afterwards; for all ky, (columns, N), if ω is not even in ky.
 
-    In a loop, ω is a whole number of turns a loop and the time is reduced exactly: the end of the loop
-    has the phases of its start to the bit.
+    In a loop, ω is an integer number of turns per loop and the time is reduced exactly, so the end of the
+    loop has bit for bit the phases of its start.
     """
     rows = state.grid.resolution // 2 + 1 if state.mirrored else state.grid.resolution
     omega = state.omega.T[columns, :rows]
@@ -263,14 +265,14 @@ def propagate(
     columns: slice = _ALL,
     scale: float = 1.0,
 ) -> PropagatedState:
-    """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its derivative in time, times `scale`, for some columns kx.
+    """ĥ(k, t) = h₊·exp(-iωt) + h₋·exp(+iωt), and its time derivative, times `scale`, for some columns kx.
 
-    The state's others are in the sum. Horvath (2015), § 7.1.2: waves along +k and along -k are separate;
+    The sum includes the state's others. Horvath (2015), § 7.1.2: waves along +k and along -k are separate;
     Chen (2014), eq. 9.
     """
     real = np.float32 if dtype is np.complex64 else np.float64
     angle = np.asarray(2.0 * np.pi * turns(state, time, columns), real)
-    half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is mostly even in ky
+    half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is usually even in ky
     np.cos(angle, out=half.real)
     np.sin(angle, out=half.imag)
     if scale != 1.0:
@@ -282,7 +284,7 @@ def propagate(
     rate = None
     if with_rate:
         rate = ((dtype(-1j) * state.omega.T[columns].astype(real)) * (along - against)).T
-    # adding complex numbers as pairs of real ones takes half the time
+    # adding complex arrays as real pairs takes half the time
     np.add(along.view(real), against.view(real), out=along.view(real))
     for other in state.others:
         moved = propagate(other, time, dtype, with_rate, columns, scale)

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From Fourier coefficients to fields over the patch, by inverse transforms in two passes.
+"""Inverse transforms in two passes, from Fourier coefficients to fields over the patch.
 
-The position of the sample that rests at (x, y, 0) is (x, y, 0) + P with P = (λDx, λDy, h). Two scalar fields
-and their derivatives give everything: the elevation h, and the potential Φ with Φ(k) = ĥ/|k|, whose gradient
-is D. So D(k) = +i (k/|k|) ĥ, the transform of Chen (2014), eq. 11, with which points move towards the crests
-and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
+The position of the sample that rests at (x, y, 0) is (x, y, 0) + P with P = (λDx, λDy, h). Everything follows
+from two scalar fields and their derivatives: the elevation h, and the potential Φ with Φ(k) = ĥ/|k|, whose
+gradient is D. So D(k) = +i (k/|k|) ĥ, the transform of Chen (2014), eq. 11, with which points move towards
+the crests and sharpen them for λ > 0 (Tessendorf's and Lantz's -i flattens them).
 
-The first pass goes over blocks of columns kx: it moves the coefficients to their time, multiplies by
-(i ky)ⁿ and transforms along y. The second goes over blocks of rows y: it multiplies by (i kx)ᵐ, which
-commutes with the first transform, and transforms along x. Fields that differ only in m share a first pass.
+The first pass works on blocks of columns kx: it propagates the coefficients in time, multiplies by (i ky)ⁿ
+and transforms along y. The second works on blocks of rows y: it multiplies by (i kx)ᵐ, which commutes with
+the first transform, and transforms along x. Fields that differ only in m share a first pass.
 
-Waves of a wind field are not the gradient of a potential: where there are such, λDx and λDy, each with a
-first pass of its own, take the potential's place, and all three hold the sum of both kinds of waves.
+The horizontal displacement of waves from a wind field is not a gradient. With such waves, λDx and λDy, each
+with its own first pass, replace the potential, and h, λDx and λDy each hold the sum of both kinds of waves.
 """
 
 from __future__ import annotations
@@ -40,29 +40,30 @@ ComplexArray = NDArray[np.complexfloating]
 
 X, Y, Z = 0, 1, 2
 
-#: complex numbers in the blocks of either pass that are worked on at once, by all workers together: the
-#: wider, the quicker, up to the size of a cache
+#: complex numbers in the blocks processed at once in either pass, by all workers together: larger is faster,
+# up to the size of a cache
 _BLOCK = 2**17
-#: the same at least, of grids so small that little memory is no matter
+#: lower limit of that, for grids so small that memory does not matter
 _LEAST = 2**14
 
-#: bytes a sample that a surface may take beyond its outputs, those of a column, and those of the
-#: temporaries that live for each number of a block
+#: bytes per sample that a surface may use beyond its outputs, that a column uses, and of the temporaries for
+# each number of a block
 _MEMORY, _COLUMN, _TEMPORARIES = 24, 4, 50
 
-#: rows of a block lie this much further apart than they are long, or the columns that are to become rows
-#: would all fall into the same few lines of the caches
+#: padding between the rows of a block: without it, the elements of a column would compete for the same few
+# cache lines during transposition
 _PADDING = 8
 
 _NUMPY_TRANSFORMS_IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 
 
-#: what a column may hold: h, Φ, λDx or λDy
+#: contents of a column: h, Φ, λDx or λDy
 ELEVATION, POTENTIAL, ALONG_X, ALONG_Y = range(4)
 
 
 class Column(NamedTuple):
-    """What a first pass transforms: h, Φ, λDx or λDy, or a rate, of all or of long waves, times (i ky)ⁿ."""
+    """The input of a first pass: h, Φ, λDx or λDy, or a rate, of all or only the long waves, times (i
+    ky)ⁿ."""
 
     source: int
     rate: bool
@@ -92,12 +93,12 @@ def term(component: int, derivative: str = "", long: bool = False, gradient: boo
 
 @dataclass(frozen=True)
 class Synthesis:
-    """How a sea's fields are made.
+    """Computes a sea's fields.
 
     state, parameters, damping : the sea
     dtype : complex64 or complex128
-    workers : threads, None for as many as help; the result does not depend on their number
-    sharing : waves that are no gradient of a potential
+    workers : threads, None for a suitable number; the result does not depend on it
+    sharing : waves whose horizontal displacement is not a gradient
     """
 
     state: InitialState
@@ -109,19 +110,19 @@ class Synthesis:
 
     @cached_property
     def terms(self) -> dict[tuple[int, str, bool], Term]:
-        """The field of each of this sea's P[component] or of its derivative by "x", "y" or "t", of all waves
-        or of the long ones.
+        """The field of this sea's P[component] or of its derivative by "x", "y" or "t", of all waves or of
+        the long ones.
         """
         keys = itertools.product((X, Y, Z), ("", "x", "y", "t"), (False, True))
         return {key: term(*key, gradient=not self.sharing) for key in keys}
 
     def x_factor(self, wanted: Term) -> ComplexArray | None:
-        """(i kx)ᵐ of a field, (N//2+1,), and the choppiness λ where its column has none; None for 1."""
+        """(i kx)ᵐ of a field, (N//2+1,), times the choppiness λ if its column lacks it; None for 1."""
         is_of_potential = wanted.column.source == POTENTIAL and wanted.column.y_order == 0
         return self._factor(self.state.grid.kx[0], wanted.x_order, is_of_potential)
 
     def y_factor(self, column: Column) -> ComplexArray | None:
-        """(i ky)ⁿ of a column, (N,), and the choppiness λ if it is one of the potential's derivatives."""
+        """(i ky)ⁿ of a column, (N,), times the choppiness λ for derivatives of the potential."""
         return self._factor(self.state.grid.ky[:, 0], column.y_order, column.source == POTENTIAL)
 
     def _factor(self, wave_numbers: Array, order: int, is_of_potential: bool) -> ComplexArray | None:
@@ -137,11 +138,11 @@ class Synthesis:
 
     @cached_property
     def _factors(self) -> dict[tuple[int, int, bool], ComplexArray]:
-        """Those that were made: each block of a surface takes them."""
+        """Factors computed so far, shared by all blocks of a surface."""
         return {}
 
     def columns(self, wanted: Iterable[tuple[int, str]]) -> list[Column]:
-        """What the first pass must make for some components and derivatives."""
+        """The columns needed for some components and derivatives."""
         return sorted({self.terms[key].column for key in self._with_long_waves(wanted)})
 
     def fill(
@@ -152,16 +153,16 @@ class Synthesis:
         most: int = 0,
         count: int = 0,
     ) -> None:
-        """Make the components and derivatives wanted, and hand them to `write`, block of rows by block.
+        """Compute components and derivatives, and pass them to `write`, one block of rows at a time.
 
-        most : columns that other parts of the same surface take, whose arrays are there meanwhile
-        count : of the fields of the whole surface: threads help with many
+        most : columns of other parts of the same surface whose arrays are in memory meanwhile
+        count : number of fields of the whole surface, from which the number of threads follows
         """
         wanted = frozenset(wanted)
         needed = self.columns(wanted)
         workers = self._threads(max(count, len(wanted)))
         shape = self.state.grid.shape
-        # fresh memory takes time: each thread has arrays that it fills again and again
+        # allocating memory takes time: each thread reuses its arrays
         own = (shape, self.dtype, threading.get_ident())
         arrays: ComplexArray | None = MEMO.take("workspaces", own)
         if arrays is None or len(arrays) < len(needed):
@@ -182,7 +183,7 @@ class Synthesis:
         MEMO.put("workspaces", own, arrays)
 
     def coefficients(self, time: float | Fraction, columns: Sequence[Column]) -> dict[Column, ComplexArray]:
-        """Coefficients (N, N//2+1) of some columns at a time, before any transform and in true size."""
+        """Coefficients (N, N//2+1) of some columns at a time, before any transform, not scaled."""
         with_rate = any(column.rate for column in columns)
         shares = self._shares(time, columns, self._threads(len(columns)))
         added = [share.of_block(slice(None)) for share in shares]
@@ -193,7 +194,7 @@ class Synthesis:
         return self.workers or default_workers(fields * self.state.grid.resolution**2)
 
     def _shares(self, time: float | Fraction, columns: Iterable[Column], workers: int) -> list[Shares]:
-        """What is added to some columns that is no gradient."""
+        """The contributions to some columns that are not a gradient."""
         rates = {column.rate for column in columns}
         return [
             waves.shares(float(time), False in rates, True in rates, self.dtype, workers)
@@ -204,17 +205,17 @@ class Synthesis:
         wanted = set(wanted)
         if self.damping is None:
             return {(*key, False) for key in wanted}
-        # a damped derivative needs the components themselves and the derivative of the long elevation
+        # a damped derivative also needs the components and the derivative of the long waves' elevation
         wanted |= {(component, "") for component, _ in wanted} | {(Z, "")}
         wanted |= {(Z, derivative) for _, derivative in wanted}
         return {(*key, long) for key in wanted for long in (False, True)}
 
     def _blocks(self, count: int, columns: int, workers: int) -> Iterator[slice]:
-        """Blocks of `count` rows or columns, beside a workspace of so many columns."""
+        """Blocks of `count` rows or columns, for a workspace of this many columns."""
         n = self.state.grid.resolution
         spare = max(1, _MEMORY - _COLUMN * columns)
         numbers = min(_BLOCK, max(_LEAST, n * n * spare // _TEMPORARIES))
-        if self.sharing:  # what they take is told apart, and small blocks are slow
+        if self.sharing:  # their memory is accounted for separately, and small blocks are slow
             numbers = _BLOCK
         size = max(1, numbers // workers // n)
         return (slice(first, min(first + size, count)) for first in range(0, count, size))
@@ -226,9 +227,9 @@ class Synthesis:
         first_pass: Mapping[Column, ComplexArray],
         shares: Sequence[Shares],
     ) -> None:
-        """The first pass for some columns: to y, into the arrays (N, N//2+1) of the first pass."""
+        """The first pass for some columns: transform to y, into the (N, N//2+1) arrays of the first pass."""
         with_rate = any(column.rate for column in first_pass)
-        # the inverse transforms divide by N each: what they are given is larger by N²
+        # each inverse transform divides by N, so the input is multiplied by N²
         scale = float(self.state.grid.resolution) ** 2
         moved = propagate(self.state, time, self.dtype, with_rate, block, scale)
         added = [share.of_block(block, scale) for share in shares]
@@ -239,7 +240,7 @@ class Synthesis:
 
 
 class _Sources:
-    """Coefficients of a block of columns, (columns, N), each made once."""
+    """Coefficients of a block of columns, (columns, N), each computed once."""
 
     def __init__(
         self, synthesis: Synthesis, moved: PropagatedState, block: slice, added: Sequence[BlockShares]
@@ -264,7 +265,7 @@ class _Sources:
         return self._bases[column]
 
     def _spectral(self, column: Column) -> ComplexArray:
-        """h or Φ of the spectrum's waves alone."""
+        """h or Φ of spectral waves only."""
         base = self._elevations[column.rate]
         if column.source != ELEVATION:
             factor = self._synthesis.state.potential_factor.T[self._block]
@@ -275,9 +276,9 @@ class _Sources:
         return base
 
     def _with_shares(self, column: Column) -> ComplexArray:
-        """h, λDx or λDy of the spectrum's waves and of those that are no gradient.
+        """h, λDx or λDy of spectral waves plus those that are not a gradient.
 
-        The latter count among the long waves: it is not them that troughs are rid of.
+        The latter count as long waves, which trough damping leaves unchanged.
         """
         if column.source == ELEVATION:
             result = self._spectral(column).copy()
@@ -298,14 +299,14 @@ class _Sources:
 
 
 class PositionRows(Protocol):
-    """Whatever gives components of the displacement and their derivatives, each as one array."""
+    """Provides components of the displacement and their derivatives, each as one array."""
 
     def position(self, component: int, derivative: str = "", out: RealArray | None = None) -> RealArray:
         """P[component] in m or its derivative by "x", "y" (m/m) or "t" (m/s); in `out` if given."""
 
 
 class Rows:
-    """Real fields on a block of rows, each transformed once, when it is first needed."""
+    """Real fields on a block of rows, each transformed once, on first use."""
 
     def __init__(self, synthesis: Synthesis, first_pass: Mapping[Column, ComplexArray], block: slice) -> None:
         self._synthesis = synthesis
@@ -346,7 +347,7 @@ class Rows:
 def _inverse(coefficients: ComplexArray) -> ComplexArray:
     """Inverse transform along the last axis, divided by N, in the precision of the coefficients.
 
-    NumPy before 2.0 transforms in double precision only; the result is rounded back where it is stored.
+    NumPy before 2.0 transforms in double precision only; the result is rounded when it is stored.
     """
     if not _NUMPY_TRANSFORMS_IN_PLACE:
         return np.fft.ifft(coefficients, axis=-1)

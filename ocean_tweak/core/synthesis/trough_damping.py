@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Short waves taken out of the troughs of the long ones (named as future work by Horvath 2015, § 10).
+"""Trough damping: removes short waves from the troughs of long ones (future work in Horvath 2015, § 10).
 
-With P_L and P_H the displacement of the long and of the short waves and h_L the elevation of the long
-ones, P = P_L + w P_H, w = 1 - δ·S(-h_L / 2s): S is the smoothstep on 0…1 and s the standard deviation of
-h_L, from the spectrum, so that no frame needs the statistics of another.
+With P_L and P_H the displacement of the long and of the short waves and h_L the elevation of the long ones, P
+= P_L + w P_H, w = 1 - δ·S(-h_L / 2s): S is the smoothstep on 0…1 and s the standard deviation of h_L, from
+the spectrum, so that no frame depends on another's statistics.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from .coefficients import InitialState
 Array = NDArray[np.floating]
 
 
-#: m; below it the sea is flat, and single precision could not hold the inverse
+#: smallest deviation, m; below it the sea is flat, and the inverse would overflow single precision
 _FLAT = 1e-30
 
 
 @dataclass(frozen=True)
 class TroughDamping:
-    """A filter for the long waves and the weight of the short ones.
+    """A low-pass filter for the long waves, and the weight of the short ones.
 
     strength : δ, 0…1
     long_waves : (N, N//2+1) float64, G(k) = exp(-(k/3k_p)⁴)
@@ -52,7 +52,7 @@ class TroughDamping:
 
 
 def trough_damping(strength: float, state: InitialState, peak_wave_number: float) -> TroughDamping | None:
-    """The damping of a sea, or None where there is nothing to damp."""
+    """The damping of a sea, or None if there is nothing to damp."""
     if strength == 0.0 or not np.isfinite(peak_wave_number):
         return None
     grid = state.grid

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets: named seas, as JSON that is data only.
+"""Presets: named seas, stored as JSON.
 
-Those in this folder come along. The number before a file's name is its place in a list; what follows is the
-preset's key.
+The files in this folder are the built-in presets. The number in front of a file's name is its position in
+lists; the rest is the preset's key.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ...data import formats
 from ...data.errors import ParameterError
 from ..ocean_parameters import OceanParameters, parse_json
 
-#: bytes; far beyond any preset, so that a file chosen by mistake does not fill the memory
+#: largest size of a preset file in bytes, so that a file chosen by mistake does not fill the memory
 LARGEST = 200_000
 _LONGEST = {"title": 60, "description": 400}
 _FOLDER = Path(__file__).parent
@@ -25,9 +25,9 @@ _FOLDER = Path(__file__).parent
 
 @dataclass(frozen=True)
 class Preset:
-    """A named sea. When somebody takes it, the shot keeps its own timing.
+    """A named sea. A shot to which it is applied keeps its own timing.
 
-    Raises ParameterError for texts that are empty, too long or not printable.
+    Raises ParameterError for an empty, overlong or unprintable title or description.
     """
 
     title: str
@@ -43,11 +43,11 @@ class Preset:
             raise ParameterError("title", self.title, "must not be empty")
 
     def for_shot(self, parameters: OceanParameters) -> OceanParameters:
-        """The preset's sea with the timing of a shot that has other parameters."""
+        """The preset's sea with the timing of a shot's present parameters."""
         return self.parameters.replace(timing=parameters.timing)
 
     def to_json(self) -> str:
-        """JSON text that `from_json` reads back to an equal preset."""
+        """JSON text from which `from_json` restores an equal preset."""
         data = {
             "format": formats.SEA,
             "title": self.title,
@@ -58,7 +58,7 @@ class Preset:
 
     @classmethod
     def from_json(cls, text: str) -> Preset:
-        """A preset from JSON text. Raises ParameterError for what is not valid; nothing in it is executed."""
+        """A preset from JSON text. Raises ParameterError for invalid text."""
         if len(text) > LARGEST:
             raise ParameterError("preset", text[:20], f"is larger than {LARGEST // 1000} kB: not a preset")
         data: Any = formats.checked_sea(parse_json(text))
@@ -73,6 +73,6 @@ class Preset:
 
 @cache
 def built_in() -> dict[str, Preset]:
-    """The presets that come along, by key, in their order."""
+    """The built-in presets by key, in order."""
     files = sorted(_FOLDER.glob("*.json"))
     return {path.stem[3:]: Preset.from_json(path.read_text(encoding="utf-8")) for path in files}
