@@ -29,6 +29,7 @@ PUBLIC = {
     "core.spectral.wave_number_spectra.phillips": "Chen's forms; a test ties them to a layer's spectrum",
     "core.spectral.wave_number_spectra.pierson_moskowitz": "Chen's closed forms, as above",
     "core.spectral.wave_number_spectra.tessendorf_constant": "mends Tessendorf's amplitudes (make papers)",
+    "core.waves.wake.elevation.wake_elevation": "a wake by itself, for scripts (docs/wakes.md)",
     "core.waves.wind_field.wind.sampled_wind": "a wind given as a function (docs/wind-fields.md)",
     "registration.register": "the extension's door, __init__.py at the top, calls it",
 }

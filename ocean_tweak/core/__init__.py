@@ -10,8 +10,10 @@ from .parameters.ocean_parameters import (
     OceanParameters,
     ParameterError,
     Patch,
+    PathSample,
     Spray,
     Timing,
+    WakeLayer,
     Water,
     WaveLayer,
     WindFieldLayer,
@@ -20,6 +22,7 @@ from .parameters.ocean_parameters import (
 from .sea.ocean import Ocean
 from .sea.regions import Area, Places, Tile
 from .statistics.sea_state_match import layer_for_sea_state
+from .waves.wake.elevation import wake_elevation
 
 __all__ = [
     "Area",
@@ -31,14 +34,17 @@ __all__ = [
     "OceanParameters",
     "ParameterError",
     "Patch",
+    "PathSample",
     "Places",
     "Raster",
     "Spray",
     "Tile",
     "Timing",
+    "WakeLayer",
     "Water",
     "WaveLayer",
     "WindFieldLayer",
     "WindKey",
     "layer_for_sea_state",
+    "wake_elevation",
 ]

@@ -24,6 +24,7 @@ from ..core import (
     ImageLayer,
     OceanParameters,
     ParameterError,
+    WakeLayer,
     WaveLayer,
     WindFieldLayer,
     WindKey,
@@ -32,7 +33,7 @@ from ..core.data.plain_data import to_plain
 from ..core.data.raster import Raster
 from ..core.waves.contribution import Contribution
 from ..core.waves.kinds import shown
-from ..scene import source_images, wind_recording
+from ..scene import source_images, wake_paths, wind_recording
 from ..scene.source_images import ImageSource
 from ..scene.units import shortest_decimal
 from . import mask_properties, parameter_properties
@@ -51,7 +52,7 @@ SOURCES = {
 
 
 #: properties of kinds besides those of their parameters: of a wind field where its wind comes from, with the
-#: recorded keys as JSON and what tells them from others, of an image its image
+#: recorded keys as JSON and what tells them from others, of an image its image, of a wake its path
 _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
     "WIND_FIELD": {
         "source": EnumProperty(
@@ -92,6 +93,7 @@ _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
         ),
         "image_channels": channels_property(),
     },
+    "WAKE": {"recording": StringProperty(**_HIDDEN)},
 }  # fmt: skip
 
 
@@ -209,6 +211,8 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
                 item.image_waves.image = None
             else:
                 _choose_image(item.image_waves, layer.image, known_images)
+        elif isinstance(layer, WakeLayer):
+            item.wake.recording = wake_paths.to_text(layer)
 
 
 def set_recording(group: bpy.types.PropertyGroup, keys: tuple[WindKey, ...]) -> None:
@@ -231,8 +235,13 @@ def _image(group: bpy.types.PropertyGroup) -> dict[str, Any]:
     return {} if source is None else {"image": source_images.raster_of(source, 1)}
 
 
-#: what kinds with rasters read besides their parameters
-_RASTERS = {"IMAGE": _image, "WIND_FIELD": lambda group: {"keys": _keys(group)}}
+def _path(group: bpy.types.PropertyGroup) -> dict[str, Any]:
+    path, footprint = wake_paths.from_text(group.recording)
+    return {"path": path, "footprint": footprint}
+
+
+#: what kinds with rasters or paths read besides their parameters
+_RASTERS = {"IMAGE": _image, "WIND_FIELD": lambda group: {"keys": _keys(group)}, "WAKE": _path}
 
 
 def _keys(group: bpy.types.PropertyGroup) -> tuple[WindKey, ...]:

@@ -30,6 +30,7 @@ PAPERS = {
     "Mastin, Watterberg and Mareda (1987)": 10,
     "Li and Wang (2016)": 25,
     "Hero waves": 0,
+    "Wakes": 0,
     "Foam": 0,
     "Masks": 0,
     "Spray": 0,

@@ -70,7 +70,7 @@ def test_what_is_no_kind_names_the_nearest() -> None:
         with pytest.raises(ParameterError) as caught:
             OceanParameters.from_dict({"layers": [{}, {"kind": kind}]})
         assert caught.value.field == "layers.1.kind"
-        assert "Known kinds: WAVES, HERO_WAVE, IMAGE, WIND_FIELD, RIPPLE, HUMP" in str(caught.value)
+        assert "Known kinds: WAVES, HERO_WAVE, IMAGE, WIND_FIELD, WAKE, RIPPLE, HUMP" in str(caught.value)
         assert near == "WAVES" or f"did you mean {near}?" in str(caught.value)
         assert "\n" not in str(caught.value)
     with pytest.raises(ParameterError, match=r"layers\.1\.waves = 0: must be from 1 to 1000"):
@@ -199,8 +199,8 @@ def test_what_does_not_change_during_a_shot_says_why() -> None:
 
 
 def test_kinds_have_numbers_and_names_of_their_own() -> None:
-    assert [kind.names.number for kind in shown()] == [0, 1, 2, 3, 90, 91]  # what files of Blender hold
-    assert [kind.kind for kind in shown()[:4]] == ["WAVES", "WIND_FIELD", "IMAGE", "HERO_WAVE"]
+    assert [kind.names.number for kind in shown()] == [0, 1, 2, 3, 4, 90, 91]  # what files of Blender hold
+    assert [kind.kind for kind in shown()[:5]] == ["WAVES", "WIND_FIELD", "IMAGE", "HERO_WAVE", "WAKE"]
     for name in ("kind", "former_list"):
         told = [getattr(kind, name) for kind in KINDS if getattr(kind, name)]
         assert len(set(told)) == len(told)

@@ -7,7 +7,7 @@ derivatives, which the slopes, strains and velocities of a masked sea need: ∂(
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from .noise import ANY_TIME, SeaTime, by_noise
 from .parameters import Mask
 
 Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
 
 #: rows of a square of weights computed at a time
 _ROWS = 128
@@ -161,3 +162,28 @@ def _on_grid(
         joined([part.by_y for part in parts]),
         joined(rates) if rates else None,
     )
+
+
+def unweighted(wanted: Iterable[tuple[int, str]], moves: bool = False) -> frozenset[tuple[int, str]]:
+    """The components wanted and those of which a weight's own change makes a part: ∂(w d) = w ∂d + d ∂w.
+
+    moves : whether the weight changes with time too
+    """
+    keys, changing = frozenset(wanted), ("x", "y", "t") if moves else ("x", "y")
+    return keys | {(component, "") for component, derivative in keys if derivative in changing}
+
+
+def weighted(
+    values: Mapping[tuple[int, str], RealArray], weights: Weights | None
+) -> dict[tuple[int, str], RealArray]:
+    """Components times weights of the same shape, in the axes of the weights' derivatives."""
+    if weights is None:
+        return dict(values)
+    result: dict[tuple[int, str], RealArray] = {
+        key: weights.value.astype(field.dtype) * field for key, field in values.items()
+    }
+    for (component, derivative), field in result.items():
+        change = {"x": weights.by_x, "y": weights.by_y, "t": weights.by_t}.get(derivative)
+        if change is not None:
+            field += change.astype(field.dtype) * values[component, ""]
+    return result

@@ -38,6 +38,7 @@ from ..waves.hero.parameters import HeroWave
 from ..waves.image.parameters import ImageLayer
 from ..waves.kinds import KINDS
 from ..waves.spectral import WaveLayer
+from ..waves.wake.parameters import PathSample, WakeLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
 from .former_json import modern
 from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, resampled
@@ -51,8 +52,10 @@ __all__ = [
     "OceanParameters",
     "ParameterError",
     "Patch",
+    "PathSample",
     "Spray",
     "Timing",
+    "WakeLayer",
     "Water",
     "WaveLayer",
     "WindFieldLayer",

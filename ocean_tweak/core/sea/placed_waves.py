@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
 from ..masks.noise import SeaTime
-from ..masks.weights import Weights, move, weights
+from ..masks.weights import Weights, move, unweighted, weighted, weights
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
 from ..waves.contribution import Contribution, Gives
 from .regions import Area
-from .sampling import Key, Summed, unweighted, weighted
+from .sampling import Key, Summed
 from .surfaces import Field, Values
 
 Array = NDArray[np.float64]

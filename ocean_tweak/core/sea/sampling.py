@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks.weights import Weights
+from ..masks.weights import Weights, weighted
 from ..numerics.interpolation import Reader
 from ..numerics.memo import total_bytes
 from ..synthesis.transforms import X, Y, Z
@@ -35,29 +35,6 @@ def closed(wanted: Iterable[Key]) -> frozenset[Key]:
         if not keys.isdisjoint(group):
             keys.update(group)
     return frozenset(keys)
-
-
-def unweighted(wanted: Iterable[Key], moves: bool = False) -> frozenset[Key]:
-    """The components wanted and those of which a weight's own change makes a part: ∂(w d) = w ∂d + d ∂w.
-
-    moves : whether the weight changes with time too
-    """
-    keys, changing = frozenset(wanted), ("x", "y", "t") if moves else ("x", "y")
-    return keys | {(component, "") for component, derivative in keys if derivative in changing}
-
-
-def weighted(values: Mapping[Key, RealArray], weights: Weights | None) -> dict[Key, RealArray]:
-    """Components times weights of the same shape, in the axes of the weights' derivatives."""
-    if weights is None:
-        return dict(values)
-    result: dict[Key, RealArray] = {
-        key: weights.value.astype(field.dtype) * field for key, field in values.items()
-    }
-    for (component, derivative), field in result.items():
-        change = {"x": weights.by_x, "y": weights.by_y, "t": weights.by_t}.get(derivative)
-        if change is not None:
-            field += change.astype(field.dtype) * values[component, ""]
-    return result
 
 
 def into_patch(x: Array, y: Array, rotation: float) -> tuple[Array, Array]:

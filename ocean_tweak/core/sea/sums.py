@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..masks.noise import SeaTime
 from ..masks.parameters import Mask
-from ..masks.weights import Weights, move, weights, weights_on_grid
+from ..masks.weights import Weights, move, unweighted, weighted, weights, weights_on_grid
 from ..numerics.interpolation import Reader
 from ..numerics.memo import MEMO, total_bytes
 from ..numerics.threads import default_workers, row_blocks, run_blocks
@@ -42,8 +42,6 @@ from .sampling import (
     Strains,
     Summed,
     closed,
-    unweighted,
-    weighted,
 )
 from .surfaces import Field, summed_field
 

@@ -7,11 +7,12 @@ from .contribution import Contribution
 from .hero.parameters import HeroWave
 from .image.parameters import ImageLayer
 from .spectral import WaveLayer
+from .wake.parameters import WakeLayer
 from .wind_field.parameters import WindFieldLayer
 
 #: in the order in which their waves are added, on which sums of floats depend; a layer of which JSON does not
 #: say its kind is of the first
-KINDS: list[type[Contribution]] = [WaveLayer, HeroWave, ImageLayer, WindFieldLayer]
+KINDS: list[type[Contribution]] = [WaveLayer, HeroWave, ImageLayer, WindFieldLayer, WakeLayer]
 
 
 def shown() -> list[type[Contribution]]:

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Layers of all kinds: their list, and the active one in full."""
 
+import math
+from typing import Any
+
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core import HeroWave
+from ...core import HeroWave, WakeLayer
+from ...core.waves.contribution import Contribution
 from ...scene import source_images
 from ...scene.refresh import sea_of_settings
 from ...scene.units import metres_per_unit
@@ -59,11 +63,16 @@ def _hero_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
     return f"Hero wave, {height}, {group.time:.4g} s"
 
 
+def _wake_title(group: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
+    return f"Wake, {length_text(scene, group.length * float(metres_per_unit(scene)))}"
+
+
 _TITLES = {
     "WAVES": _waves_title,
     "WIND_FIELD": _wind_title,
     "IMAGE": _image_title,
     "HERO_WAVE": _hero_title,
+    "WAKE": _wake_title,
 }
 
 
@@ -176,15 +185,7 @@ def _draw_hero_wave(
     draw_fields(layout, group, "direction", "wavelength", "crest_height")
     draw_fields(layout.column(align=True), group, "group_length", "group_width")
     draw_fields(layout, group, "phase")
-    settings, scene = active_settings(context), context.scene
-    if group.muted or settings.error:
-        return
-    before = settings.layers[: nearest(settings.active_layer, settings.layers)]
-    number = [layer.kind for layer in before].count("HERO_WAVE")
-    sea = sea_of_settings(shown_ocean(context), scene)
-    outlook = None if sea is None else HeroWave.outlook(sea)
-    waves = () if outlook is None else outlook.waves
-    wave = next((found for found in waves if found.number == number), None)
+    wave, scene = _told(context, group, HeroWave), context.scene
     if wave is None:
         return
     column = layout.column(align=True)
@@ -195,11 +196,46 @@ def _draw_hero_wave(
         message(layout, context, warning)
 
 
+def _draw_wake(
+    layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
+) -> None:
+    draw_fields(layout.column(align=True), group, "length", "beam", "draught")
+    draw_fields(layout, group, "amplitude_scale", "decay")
+    area = layout.column(align=True)
+    draw_fields(area, group, "area_size", "area_resolution", "area_follows")
+    if not group.area_follows:
+        draw_fields(area, group, "area_x", "area_y")
+    wake, scene = _told(context, group, WakeLayer), context.scene
+    if wake is None:
+        return
+    column = layout.column(align=True)
+    row(column, "Fastest", f"{length_text(scene, wake.speed)}/s")
+    row(column, "Froude Number", f"{wake.froude:.2f}")
+    row(column, "Highest Waves", f"{math.degrees(wake.angle):.1f}°")
+    wavelength = length_text(scene, wake.wavelength) if math.isfinite(wake.wavelength) else "–"
+    row(column, "Transverse Waves", wavelength)
+    for warning in wake.warnings:
+        message(layout, context, warning)
+
+
+def _told(context: bpy.types.Context, group: bpy.types.PropertyGroup, kind: type[Contribution]) -> Any:
+    """What the outlook of a kind tells of the active layer; None where it tells nothing."""
+    settings = active_settings(context)
+    if group.muted or settings.error:
+        return None
+    before = settings.layers[: nearest(settings.active_layer, settings.layers)]
+    number = [layer.kind for layer in before].count(kind.kind)
+    sea = sea_of_settings(shown_ocean(context), context.scene)
+    outlook: Any = None if sea is None else kind.outlook(sea)
+    return next((found for found in (outlook[0] if outlook else ()) if found.number == number), None)
+
+
 _DRAWERS = {
     "WAVES": _draw_waves,
     "WIND_FIELD": _draw_wind_field,
     "IMAGE": _draw_image,
     "HERO_WAVE": _draw_hero_wave,
+    "WAKE": _draw_wake,
 }
 _ANIMATION = {
     "DISPERSION": (),

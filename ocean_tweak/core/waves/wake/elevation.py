@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Linear waves of a pressure that moves over the water, summed over its past.
+
+A pressure p(x, t) = ρ g d(x - X(t)), d being a draught in m, makes of each wave vector k (Havelock 1908)
+
+    ĥ'' + ω² ĥ = -ω² d̂ e^(-ik·X),    ĥ(k, t) = -ω d̂(k) ∫ e^(-ik·X(τ)) sin ω(t-τ) e^(-γ(t-τ)) dτ
+
+with ω² = (g k + σ k³/ρ) tanh kh, and a decay γ. Of a straight piece of the path the integral is elementary.
+With its two exponentials apart, what all pieces so far have left is two numbers a wave vector, which turn and
+fade from the end of a piece to that of the next.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...numerics.threads import row_blocks, run_blocks
+from ...spectral import constants
+from .footprint import Footprint
+from .track import Piece, Track
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.float32]
+ComplexArray = NDArray[np.complex64]
+
+#: below this |z|, e^z - 1 is taken from its series
+_SMALL = 1e-2
+
+
+def wake_elevation(
+    times: ArrayLike,
+    positions: ArrayLike,
+    time: float,
+    *,
+    area: float,
+    resolution: int,
+    footprint: ArrayLike,
+    spacing: float,
+    headings: ArrayLike | None = None,
+    depth: float = math.inf,
+    gravity: float = constants.GRAVITY,
+    surface_tension: float = 0.0,
+    decay: float = 0.01,
+) -> Array:
+    """Elevation in m of the waves of an object, (N, N) [y, x] over the square [-area/2, area/2)².
+
+    times, positions : (T,) s and (T, 2) m of its path; before the first sample it has moved for ever at its
+        first velocity, after the last it moves on
+    time : s
+    area, resolution : side in m and N, an even number
+    footprint, spacing : (n, n) m of draught [y, x] in the object's frame, x forward, centred; its cell in m
+    headings : (T,) rad, by default along the path
+    depth : m
+    surface_tension : N/m, on fresh water
+    decay : γ in 1/s, by which waves fade
+
+    Raises ValueError for what is out of range, naming it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> y, x = np.mgrid[-2.0:2.25:0.25, -2.0:2.25:0.25]
+    >>> bump = 0.2 * np.exp(-(x**2 + y**2))
+    >>> h = wake_elevation([0.0, 60.0], [[-120.0, 0.0], [120.0, 0.0]], 60.0, area=512.0, resolution=128,
+    ...                    footprint=bump, spacing=0.25)
+    >>> h.shape
+    (128, 128)
+    """
+    track = Track.of(times, positions, headings)
+    basin = Basin(area, resolution, depth, gravity, surface_tension, decay)
+    if not math.isfinite(time):
+        raise ValueError(f"time = {time!r}: must be a finite number of seconds")
+    past = Past.until(basin, _fitting(Footprint.of(footprint, spacing), area), track, time)
+    shape = np.fft.irfft2(past.elevation(), basin.shape) * basin.scale
+    return np.fft.fftshift(shape)
+
+
+def _fitting(footprint: Footprint, area: float) -> Footprint:
+    """Raises ValueError where an area is smaller than the object."""
+    wide, long = (footprint.spacing * samples for samples in footprint.draught.shape)
+    if max(wide, long) > area:
+        raise ValueError(
+            f"footprint: is {long:g} by {wide:g} m in an area of {area:g} m: make the area larger, or the "
+            "spacing smaller"
+        )
+    return footprint
+
+
+@dataclass(frozen=True)
+class Basin:
+    """The wave vectors of a square of water, and how waves run and fade there; see `wake_elevation`.
+
+    density : kg/m³
+    """
+
+    area: float
+    resolution: int
+    depth: float = math.inf
+    gravity: float = constants.GRAVITY
+    surface_tension: float = 0.0
+    decay: float = 0.01
+    density: float = constants.WATER_DENSITY
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.area) and self.area > 0.0):
+            raise ValueError(f"area = {self.area!r}: must be a length above 0 m")
+        if self.resolution < 4 or self.resolution % 2:
+            raise ValueError(f"resolution = {self.resolution!r}: must be an even number from 4")
+        for name in ("depth", "gravity", "decay", "density"):
+            if not getattr(self, name) > 0.0:
+                raise ValueError(f"{name} = {getattr(self, name)!r}: must be above 0")
+        if not self.surface_tension >= 0.0:
+            raise ValueError(f"surface_tension = {self.surface_tension!r}: must be 0 or more")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(N, N) samples."""
+        return self.resolution, self.resolution
+
+    @property
+    def scale(self) -> float:
+        """By which transforms of NumPy are multiplied to be those of waves in m."""
+        return (self.resolution / self.area) ** 2
+
+    @cached_property
+    def ky(self) -> Array:
+        """(N, 1) rad/m."""
+        return 2.0 * np.pi * np.fft.fftfreq(self.resolution, self.area / self.resolution)[:, np.newaxis]
+
+    @cached_property
+    def kx(self) -> Array:
+        """(1, N/2 + 1) rad/m."""
+        return 2.0 * np.pi * np.fft.rfftfreq(self.resolution, self.area / self.resolution)[np.newaxis]
+
+    @cached_property
+    def omega(self) -> Array:
+        """(N, N/2 + 1) rad/s; 0 for wave vectors that the samples cannot tell apart."""
+        k = np.hypot(self.kx, self.ky)
+        tension = self.surface_tension / self.density
+        slope = np.tanh(k * self.depth) if math.isfinite(self.depth) else 1.0
+        omega = np.sqrt((self.gravity * k + tension * k**3) * slope)
+        half = self.resolution // 2
+        omega[half] = omega[:, half] = 0.0
+        return omega
+
+
+class Past:
+    """What the waves of an object have become by the end of its latest piece: two numbers a wave vector.
+
+    In float32, as the sea's own; phases are of float64, along each axis.
+    """
+
+    @classmethod
+    def until(cls, basin: Basin, footprint: Footprint, track: Track, time: float) -> Past:
+        """That of a track by a time in s."""
+        done, way = track.until(time)
+        first = track.first
+        past = cls(basin, footprint, first.ending(time) if time < first.end else first)
+        past.go_on((*done, *(() if way is None else (way,))))
+        return past
+
+    def __init__(self, basin: Basin, footprint: Footprint, first: Piece) -> None:
+        self._basin, self._footprint = basin, footprint
+        self._omega = basin.omega.astype(np.float32)
+        self._left = np.zeros((2, *basin.omega.shape), np.complex64)
+        for rows in row_blocks(*basin.omega.shape):
+            kv = self._along(first, rows)
+            source = self._source(first, rows)
+            for sign, left in zip((1.0, -1.0), self._left, strict=True):
+                left[rows] = source * self._inverse(kv + np.float32(sign) * self._omega[rows])
+                np.negative(left[rows], out=left[rows])
+
+    def go_on(self, pieces: Sequence[Piece], workers: int = 1) -> None:
+        """Go along pieces, of which each begins where the one before ended."""
+
+        def work(rows: slice) -> None:
+            span, turns = -1.0, self._turns(rows, 0.0)
+            for piece in pieces:
+                if piece.end - piece.begin != span:
+                    span = piece.end - piece.begin
+                    turns = self._turns(rows, span)
+                self._add(piece, rows, turns)
+
+        run_blocks(work, row_blocks(*self._omega.shape), workers)
+
+    def elevation(self) -> ComplexArray:
+        """ĥ in m³, (N, N/2 + 1)."""
+        return (0.5j * self._omega) * (self._left[0] - self._left[1])
+
+    def rate(self) -> ComplexArray:
+        """∂ĥ/∂t in m³/s: what the object adds at this moment is in both, and not in their difference."""
+        turned = (-0.5 * self._omega**2) * (self._left[0] + self._left[1])
+        return turned - np.float32(self._basin.decay) * self.elevation()
+
+    def _add(self, piece: Piece, rows: slice, turns: Sequence[ComplexArray]) -> None:
+        """left becomes left e^z + d̂ e^(-ik·x) (e^z' - 1)/z', z' = i(k·v ± ω) - γ over the span."""
+        basin, (vx, vy), span = self._basin, piece.velocity, piece.end - piece.begin
+        passed = _wave(vy * span * basin.ky[rows], vx * span * basin.kx)
+        source, kv = self._source(piece, rows), self._along(piece, rows)
+        for sign, left, turn in zip((1.0, -1.0), self._left, turns, strict=True):
+            integral = passed * turn
+            integral -= np.float32(1.0)
+            rate = kv + np.float32(sign) * self._omega[rows]
+            integral *= self._inverse(rate)
+            if basin.decay * span < _SMALL:
+                _mend(integral, rate, basin.decay, span)
+            integral *= source
+            left[rows] *= turn
+            left[rows] += integral
+
+    def copy(self) -> Past:
+        """One that can go on by itself."""
+        other = copy(self)
+        other._left = self._left.copy()
+        return other
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the two numbers."""
+        return self._left.nbytes
+
+    def _turns(self, rows: slice, span: float) -> tuple[ComplexArray, ComplexArray]:
+        """e^((±iω - γ) span)."""
+        turn = np.exp((1j * self._basin.omega[rows] - self._basin.decay) * span).astype(np.complex64)
+        return turn, turn.conj()
+
+    def _source(self, piece: Piece, rows: slice) -> ComplexArray:
+        basin, (x, y) = self._basin, piece.place
+        place = _wave(-y * basin.ky[rows], -x * basin.kx)
+        place *= self._footprint.transform(basin.kx, basin.ky[rows], piece.heading)
+        if piece.immersion != 1.0:
+            place *= np.float32(piece.immersion)
+        return place
+
+    def _along(self, piece: Piece, rows: slice) -> RealArray:
+        """k·v."""
+        vx, vy = piece.velocity
+        return (vx * self._basin.kx + vy * self._basin.ky[rows]).astype(np.float32)
+
+    def _inverse(self, rate: RealArray) -> ComplexArray:
+        """1/(i rate - γ)."""
+        decay = np.float32(self._basin.decay)
+        size = rate * rate
+        size += decay * decay
+        found = np.empty(rate.shape, np.complex64)
+        np.divide(-decay, size, out=found.real)
+        np.divide(rate, size, out=found.imag)
+        np.negative(found.imag, out=found.imag)
+        return found
+
+
+def _wave(down: Array, along: Array) -> ComplexArray:
+    """e^(i(down + along)), (Y, 1) and (1, X)."""
+    return np.exp(1j * down).astype(np.complex64) * np.exp(1j * along).astype(np.complex64)
+
+
+def _mend(integral: ComplexArray, rate: RealArray, decay: float, span: float) -> None:
+    """Replace (e^z - 1)/z · span by its series where z is so small that the difference lost its digits."""
+    small = np.abs(rate) * span < _SMALL
+    z = (1j * rate[small] - decay) * span
+    integral[small] = span * (1.0 + z * (0.5 + z / 6.0))

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What to expect of wakes, told without making any: how long their waves are, and how wide they spread."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .elevation import Basin
+from .track import Track
+
+if TYPE_CHECKING:
+    from ...parameters.ocean_parameters import OceanParameters
+
+#: rad: asin(1/3), half the angle of the wake of what is small (Kelvin 1887)
+KELVIN_ANGLE = math.asin(1.0 / 3.0)
+#: hull's Froude number from which on a wake is narrower
+NARROWS = 0.5
+#: samples of a transverse wave, at least, and share of waves that come around an area, at most
+_SAMPLES, _AROUND = 4.0, 0.03
+#: m/s, below which there is no wake
+_SLOW = 0.05
+
+
+def froude_number(speed: float, length: float, gravity: float) -> float:
+    """U/√(gL) of a hull of some m at a speed in m/s.
+
+    Examples
+    --------
+    >>> round(froude_number(8.0, 60.0, 9.81), 2)
+    0.33
+    """
+    return speed / math.sqrt(gravity * length)
+
+
+def wake_angle(froude: float) -> float:
+    """Half the angle in rad at which the highest waves stand, of a hull of some Froude number.
+
+    Up to 0.5 it is Kelvin's. A faster hull makes no waves much longer than itself, and those that it makes
+    run less far aside: tan α = √(2π F² - 1)/(4π F² - 1) (Rabaud & Moisy 2013), about 1/(√(8π) F).
+
+    Examples
+    --------
+    >>> [round(math.degrees(wake_angle(froude)), 1) for froude in (0.3, 1.0, 2.0)]
+    [19.5, 11.2, 5.7]
+    """
+    if froude < NARROWS:
+        return KELVIN_ANGLE
+    square = math.pi * froude**2
+    return math.atan2(math.sqrt(2.0 * square - 1.0), 4.0 * square - 1.0)
+
+
+def transverse_wavelength(speed: float, sea: OceanParameters) -> float:
+    """Length in m of the waves that run along with an object; infinite where none is as fast.
+
+    In deep water 2π U²/g; shallow water has none above √(gh).
+    """
+    gravity, depth = sea.water.gravity, sea.water.depth
+    if sea.dispersion == "DEEP":
+        return 2.0 * math.pi * speed**2 / gravity
+    if speed**2 >= gravity * depth:
+        return math.inf
+    long, short = 1e-9 / depth, gravity / speed**2 if speed > 0.0 else math.inf
+    if not math.isfinite(short):
+        return 0.0
+    for _ in range(100):  # g tanh(kh)/k falls with k
+        k = math.sqrt(long * short)
+        long, short = (k, short) if gravity * math.tanh(k * depth) / k > speed**2 else (long, k)
+    return 2.0 * math.pi / math.sqrt(long * short)
+
+
+class WakeOutlook(NamedTuple):
+    """What to expect of the waves of one object, where it is fastest.
+
+    number : which of the sea's wakes it is
+    speed : m/s
+    froude : of its hull
+    angle : at which its highest waves stand on either side, rad
+    wavelength : of its transverse waves, m; infinite where it is too fast for the depth
+    spacing : between the samples of its area, m
+    around : what is left of waves that have come around the area while the object crossed it, 0 to 1
+    pieces : straight ones of its path
+    """
+
+    number: int
+    speed: float
+    froude: float
+    angle: float
+    wavelength: float
+    spacing: float
+    around: float
+    pieces: int
+
+    def line(self) -> str:
+        """What `info` says."""
+        if self.speed < _SLOW:
+            return f"wake {self.number}: the object rests, and makes no waves but where it dips"
+        waves = (
+            f"transverse waves {self.wavelength:.3g} m"
+            if math.isfinite(self.wavelength)
+            else "no transverse waves, which are slower in this depth"
+        )
+        return (
+            f"wake {self.number}: up to {self.speed:.3g} m/s, Froude number {self.froude:.2g}; {waves}, "
+            f"highest waves {math.degrees(self.angle):.1f}° to either side; {self.spacing:.3g} m between "
+            f"samples, {self.pieces} pieces of path"
+        )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence each, with the remedy."""
+        found = []
+        if self.speed >= _SLOW and self.wavelength < _SAMPLES * self.spacing:
+            found.append(
+                f"Wake {self.number}: its waves are {self.wavelength:.3g} m long and its samples "
+                f"{self.spacing:.3g} m apart, too coarse. Raise area_resolution, or make area_size smaller"
+            )
+        if self.speed >= _SLOW and self.around > _AROUND:
+            found.append(
+                f"Wake {self.number}: {100.0 * self.around:.0f} % of its waves come around the area and show "
+                "ahead of it. Make area_size or decay larger"
+            )
+        return tuple(found)
+
+
+class WakeOutlooks(NamedTuple):
+    """What to expect of all wakes of a sea that are not muted."""
+
+    wakes: tuple[WakeOutlook, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence each, with the remedy."""
+        return tuple(warning for wake in self.wakes for warning in wake.warnings)
+
+    def lines(self) -> list[str]:
+        """What `info` says."""
+        return [*(wake.line() for wake in self.wakes), "wakes belong to no spectrum: no height counts them"]
+
+    def to_plain(self) -> list[dict[str, Any]]:
+        """Plain data for JSON."""
+        found = []
+        for wake in self.wakes:
+            length = wake.wavelength if math.isfinite(wake.wavelength) else None
+            found.append({**wake._asdict(), "wavelength": length, "warnings": list(wake.warnings)})
+        return found
+
+
+def wake_outlooks(
+    sea: OceanParameters, wakes: Iterable[tuple[int, Track, float, Basin]]
+) -> WakeOutlooks | None:
+    """Of objects by number, on tracks, so many m long, in some water; None where there are none."""
+    found = []
+    for number, track, length, basin in wakes:
+        speed, _ = track.fastest
+        froude = froude_number(speed, length, sea.water.gravity)
+        wave = transverse_wavelength(speed, sea)
+        around = math.exp(-basin.decay * basin.area / speed) if speed > 0.0 else 0.0
+        found.append(
+            WakeOutlook(
+                number,
+                speed,
+                froude,
+                wake_angle(froude),
+                wave,
+                basin.area / basin.resolution,
+                around,
+                len(track.pieces),
+            )
+        )
+    return WakeOutlooks(tuple(found)) if found else None
