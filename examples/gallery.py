@@ -45,7 +45,6 @@ class Shot(NamedTuple):
     is_afloat : whether something floats before the camera
     away : how far that is, at least and at most, in m; None for where the mood has it
     shadows : of clouds on the water
-    spray : its amount; 0 for none
     """
 
     mood: str
@@ -55,13 +54,12 @@ class Shot(NamedTuple):
     is_afloat: bool = True
     away: tuple[float, float] | None = None
     shadows: CloudShadows | None = None
-    spray: float = 0.0
 
 
 SHOTS = {
     "calm": Shot("CALM"),
     "fresh-breeze": Shot("FRESH_BREEZE"),
-    "storm": Shot("STORM", spray=0.06),
+    "storm": Shot("STORM"),
     "backlit-crest": Shot(
         "FRESH_BREEZE", (14.0, 80e3), is_afloat=False,
         changes={
@@ -136,11 +134,7 @@ def build(extension: Extension, shot: Shot, engine: str) -> None:
         mood = dataclasses.replace(mood, floats="SHOT")
     moods.MOODS["SHOT"] = mood
     scene = bpy.context.scene
-    made = surroundings.build(scene, "SHOT", surroundings.Wishes(engine=engine, afloat=shot.is_afloat))
-    if shot.spray > 0.0:
-        made.ocean.ocean_tweak.spray.amount = shot.spray
-        made.ocean.ocean_tweak.use_spray = True
-        scene.cycles.transparent_max_bounces = extension.module("scene.spray").TRANSPARENT_BOUNCES
+    surroundings.build(scene, "SHOT", surroundings.Wishes(engine=engine, afloat=shot.is_afloat))
     if shot.shadows is not None:
         add_cloud_shadows(extension, scene, shot.shadows)
 

@@ -11,8 +11,9 @@ from __future__ import annotations
 import bpy
 
 from ..core.spray.columns import COLUMNS, NUMBERS
+from ..core.spray.drops import MIST
 from .building import Builder, Plug, Socket, output
-from .fields import combined, named_attribute
+from .fields import alone, combined, named_attribute
 from .names import VELOCITY
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
@@ -36,6 +37,11 @@ INPUTS = (
     Plug("Viewport Share", "NodeSocketFloat", 1.0, "Of all particles, those that a window shows, the larger"),
     Plug("Material", "NodeSocketMaterial", None, "Of the points"),
 )
+#: of their distance to the camera, the radii of drops and of puffs of mist at most: a drop at the lens is no
+#: ball that covers the picture, and no camera is inside a puff
+_LARGEST_DROP, _LARGEST_MIST = 0.003, 0.25
+#: a radius that no point has
+_ANY = 1e9
 #: point attributes that the material reads: what a particle is, and how much of its life is left, 0 to 1
 KIND, LEFT = "kind", "left"
 
@@ -59,6 +65,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     )
     larger = build.math("DIVIDE", 1.0, build.math("SQRT", share, None))
     radius = build.math("MULTIPLY", build.math("MULTIPLY", _number(build, "radius"), scale), larger)
+    radius = build.math("MINIMUM", radius, _largest(build, moved))
     left = build.math("SUBTRACT", 1.0, build.math("DIVIDE", _number(build, "age"), build.given("Life")))
     shown = build.store(shown, VELOCITY, velocity, "FLOAT_VECTOR")
     shown = build.store(shown, LEFT, left, "FLOAT")
@@ -89,8 +96,20 @@ def _thinned(build: Builder, particles: Socket, share: Socket) -> Socket:
     return build.change("GeometryNodeDeleteGeometry", particles, {"Selection": more}, domain="POINT")
 
 
+def _largest(build: Builder, place: Socket) -> Socket:
+    """The radius of a point, at most, as the scene's camera sees it; without one, any."""
+    active = output(build.add("GeometryNodeInputActiveCamera"), "Active Camera")
+    camera = build.add("GeometryNodeObjectInfo", {"Object": active}, transform_space="RELATIVE")
+    # there is no node for it, but an object that is not there has no scale
+    is_there = build.compare("GREATER_THAN", alone(build, "LENGTH", output(camera, "Scale")), 0.0, "FLOAT")
+    away = alone(build, "LENGTH", build.vector("SUBTRACT", place, output(camera, "Location")))
+    is_mist = build.compare("GREATER_THAN", _number(build, "kind"), MIST - 0.5, "FLOAT")
+    share = build.switch("FLOAT", is_mist, _LARGEST_DROP, _LARGEST_MIST)
+    return build.switch("FLOAT", is_there, _ANY, build.math("MULTIPLY", away, share))
+
+
 def _number(build: Builder, name: str) -> Socket:
     return output(named_attribute(build, name, "FLOAT"), "Attribute")
 
 
-SPRAY = GroupKind("Ocean Tweak Spray", 1, _build)
+SPRAY = GroupKind("Ocean Tweak Spray", 2, _build)

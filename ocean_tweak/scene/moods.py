@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from ..core import Foam, OceanParameters, Timing, WaveLayer
+from ..core import Foam, OceanParameters, Spray, Timing, WaveLayer
 from ..core.parameters.presets import built_in
 from ..core.sea.patch_plan import Wish, planned
 from .sky import Sky
@@ -80,7 +80,7 @@ def _storm() -> OceanParameters:
     layer = WaveLayer(wind_speed=25.0, fetch=800e3, wind_direction=VIEW + _degrees(160.0), swell=0.2)
     # crests just fold, and foam lives as long as the bubbles of such seas let it
     foam = Foam(coverage=3.0, half_life=6.0)
-    sea = OceanParameters(seed=_STORM_SEED, layers=(layer,), choppiness=1.25, foam=foam)
+    sea = OceanParameters(seed=_STORM_SEED, layers=(layer,), choppiness=1.25, foam=foam, spray=Spray())
     return planned(sea, Wish(finest=0.5, area=2000.0))
 
 
@@ -106,7 +106,7 @@ MOODS = {
         visibility=30e3, exposure=0.0, eye=3.0, crest_distance=14.0, lens=40.0, tilt=_degrees(2.0), rings=5,
     ),
     "STORM": Mood(
-        "Storm", "25 m/s over 800 km: waves of 15 m, breaking crests and streaks of foam",
+        "Storm", "25 m/s over 800 km: waves of 15 m, breaking crests, streaks of foam and spray",
         waves=_storm, water="STORM",
         sun=_degrees(-85.0), sun_elevation=_degrees(16.0), clouds=0.6, overcast=0.95, sunlight=1.0,
         visibility=6e3, exposure=-0.4, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,

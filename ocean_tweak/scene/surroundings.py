@@ -29,6 +29,7 @@ from .settings import VIEWPORT_RESOLUTION, settings_of
 from .sky import new_sun, new_world
 from .spray import TRANSPARENT_BOUNCES
 from .units import frame_rate, metres_per_unit
+from .view_layers import evaluated
 
 #: how far beside the middle of the picture the highest wave may be, rad
 _ASIDE = math.radians(4.0)
@@ -88,7 +89,9 @@ def build(
     is_empty = len(left) == len(scene.objects)
     parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
     parameters = parameters.on_one_grid(parameters.resolution)  # as an ocean object shows patches
-    ocean = ocean_object.add(scene, parameters, collection=target, viewport_resolution=VIEWPORT_RESOLUTION)
+    ocean = ocean_object.add(
+        scene, parameters.replace(spray=None), collection=target, viewport_resolution=VIEWPORT_RESOLUTION
+    )
     place, metres = camera_place(chosen, parameters), float(metres_per_unit(scene))
     x, y = clear_place(chosen, place, parameters)
     middle.put(ocean, scene.cursor.location, (x / metres, y / metres))
@@ -106,14 +109,21 @@ def build(
     if chosen.eye < _BOAT:
         ride(camera, place, parameters, scene)
     kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
-    if parameters.spray is not None:
-        bounces = scene.cycles.transparent_max_bounces
-        scene.cycles.transparent_max_bounces = max(bounces, TRANSPARENT_BOUNCES)
     if not chosen.rings:
         add_camera_surface(ocean, scene, budget=chosen.vertices)
+    if parameters.spray is not None:  # of patches it is around the camera, once these are seen from there
+        _add_spray(ocean, parameters, scene)
     if wishes.afloat:
         add_afloat(chosen.floats, place, camera, parameters, ocean, scene, target)
     return Made(ocean, camera, kept, replaced)
+
+
+def _add_spray(ocean: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
+    """Let a sea have its spray, and Cycles let light through all of its mist."""
+    bounces = scene.cycles.transparent_max_bounces
+    scene.cycles.transparent_max_bounces = max(bounces, TRANSPARENT_BOUNCES)
+    evaluated(scene)  # or the camera is at the world's origin still
+    settings_of(ocean).from_parameters(parameters, scene)
 
 
 def add_horizon(

@@ -176,12 +176,13 @@ def rendering(empty_scene):
 
 @pytest.fixture
 def quick(extension, monkeypatch):
-    """Moods with few samples and vertices: the sea itself is tested elsewhere."""
+    """Moods with few samples and vertices, without spray: the sea itself is tested elsewhere."""
     moods = extension("scene.moods")
     original = moods.Mood.sea
 
     def small(self, timing):
-        return original(self, timing).replace(resolution=64, foam=extension("core").Foam(resolution=32))
+        foam = extension("core").Foam(resolution=32)
+        return original(self, timing).replace(resolution=64, foam=foam, spray=None)
 
     monkeypatch.setattr(moods.Mood, "sea", small)
     for name, mood in moods.MOODS.items():

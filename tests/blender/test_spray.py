@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Spray of an ocean: points at the particles of the core, made anew with each frame, gone with the ocean."""
 
+import dataclasses
 import importlib
 import threading
 from types import SimpleNamespace
@@ -13,6 +14,7 @@ from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.patch_plan import Wish, planned
 from ocean_tweak.core.sea.spray import CameraSpray, TileSpray
+from ocean_tweak.core.spray import drops
 
 SEA = OceanParameters(
     resolution=64, domain_size=100.0, seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=300e3),), spray=Spray()
@@ -67,13 +69,36 @@ def test_between_frames_points_go_on_by_their_velocity(ocean, empty_scene):
     assert len(points(spray_of(ocean))["radius"]) == len(before["radius"])
 
 
+def test_what_is_close_to_the_lens_is_no_ball_that_covers_the_picture(ocean, empty_scene):
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.frame_set(13)
+    expected = made(0.5)
+    is_mist = expected.kind == drops.MIST
+    assert np.count_nonzero(is_mist) > 3
+    for kind in (drops.SPUME, drops.MIST):
+        nearest = expected.position[expected.kind == kind][5]
+        ocean.location = (30.0, -20.0, 5.0)  # the nodes count in the space of the spray
+        camera.location = nearest + np.array([30.0, -20.0, 5.1])
+        empty_scene.camera = camera
+        bpy.context.view_layer.update()
+        away = np.linalg.norm(expected.position - nearest - (0.0, 0.0, 0.1), axis=1)
+        seen = points(spray_of(ocean))["radius"]
+        largest = np.where(is_mist, 0.25, 0.003) * away
+        np.testing.assert_allclose(seen, np.minimum(expected.radius, largest), rtol=1e-2, atol=1e-5)
+        assert 0.0 < np.mean(seen < 0.99 * expected.radius) < 0.5
+    empty_scene.camera = None
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(points(spray_of(ocean))["radius"], expected.radius, rtol=1e-5)
+
+
 def test_a_window_shows_an_eighth_as_much_larger(extension, ocean, empty_scene, monkeypatch):
     module = extension("scene.spray")
     plan = extension("scene.plan").plan_for(ocean, ocean.ocean_tweak, empty_scene)
     monkeypatch.setattr(module.bpy, "app", SimpleNamespace(background=False))
     shown = module.wanted(ocean, plan, empty_scene).spray
     assert shown.amount == 0.125
-    assert shown.size == pytest.approx(0.008 * 8**0.5)
+    assert shown.size == pytest.approx(0.002 * 8**0.5)
     assert module.wanted(ocean, plan, empty_scene, is_rendered=True).spray.amount == 1.0
 
 
@@ -108,6 +133,24 @@ def test_a_sea_of_patches_has_it_around_the_camera(around):
     expected = CameraSpray(FoamLevels(sea)).at(1 / 24.0, spray, (100.0, 50.0))
     assert len(expected.age) > 1000
     np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
+
+
+def test_the_storm_has_it_by_itself(extension, empty_scene, monkeypatch):
+    moods, spray = extension("scene.moods"), extension("core").Spray
+    original, few = moods.MOODS["STORM"], spray(amount=0.1, life=0.5)
+    assert original.waves().spray == spray()  # as it is at sea
+    assert all(mood.waves().spray is None for mood in moods.MOODS.values() if mood != original)
+    storm = dataclasses.replace(original, waves=lambda: original.waves().replace(spray=few), vertices=20_000)
+    monkeypatch.setitem(moods.MOODS, "STORM", storm)
+    assert bpy.ops.ocean.add_scene(mood="STORM", engine="CYCLES", use_buoy=False) == {"FINISHED"}
+    ocean = next(item for item in empty_scene.objects if item.ocean_tweak.is_ocean)
+    assert ocean.ocean_tweak.error == ""
+    assert ocean.ocean_tweak.to_parameters(empty_scene).spray == few
+    assert empty_scene.cycles.transparent_max_bounces >= 64
+    at, camera = points(spray_of(ocean))["position"], empty_scene.camera.location - ocean.location
+    away = np.hypot(*(at[:, :2] - camera[:2]).T)
+    assert len(away) > 1000
+    assert away.max() < 600.0  # around it, and not on the whole tile
 
 
 def test_what_a_camera_far_away_sees_is_not_quickly_made(extension, around, empty_scene):

@@ -27,7 +27,7 @@ SYNTHESIS = 1
 #: the foam: raised whenever the same waves get different foam. Only files that hold foam carry it
 FOAM = 4
 #: the spray: raised whenever the same sea and settings give different particles
-SPRAY = 1
+SPRAY = 2
 
 #: the encoding of a bake's maps: raised whenever the same fields give a different file. In 1 all had 32 bits
 ENCODING = 2

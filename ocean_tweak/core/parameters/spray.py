@@ -23,7 +23,7 @@ class Spray(Validated):
         "from none to what no machine holds",
     )  # fmt: skip
     size: float = number(
-        0.008, 1e-4, 1.0, "m", "Radius with which a drop of half a millimetre is drawn: each stands for many."
+        0.002, 1e-4, 1.0, "m", "Radius with which a drop of half a millimetre is drawn: each stands for many."
         " Sheets of spume, mist and larger drops grow with it", "from true drops to handfuls of water",
     )  # fmt: skip
     wind: float = number(

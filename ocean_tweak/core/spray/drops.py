@@ -17,7 +17,7 @@ RealArray = NDArray[np.floating]
 SPUME, DROPLET, MIST = 0, 1, 2
 
 #: of all particles, and the radii in m between which they are
-SHARE = {SPUME: 0.77, DROPLET: 0.2, MIST: 0.03}
+SHARE = {SPUME: 0.798, DROPLET: 0.2, MIST: 0.002}
 _RADII = {SPUME: (0.3e-3, 1.0e-3), DROPLET: (0.6e-3, 2.0e-3), MIST: (0.1e-3, 0.25e-3)}
 #: powers of the radius by which there are fewer of the larger ones: Andreas (1992) has r⁻⁸ from 0.1 to
 #: 0.25 mm; to larger ones, which his function lacks, Veron and others (2012) fit r⁻⁵

@@ -38,7 +38,7 @@ _DIFFERENCE = 0.35
 _DROPS_FLY = 2.0
 #: drawn radii: the drop that has that of the settings, m; a piece of a sheet of spume, and mist, over it; and
 #: the friction velocities by which mist spreads
-_DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 6.0, 60.0, 0.3
+_DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 6.0, 240.0, 0.3
 
 #: mean time in s that drops are in the air, and mist, over its life: as 25 m/s of wind leave them
 _DROPS_STAY, _MIST_STAYS = 0.47, 0.35
