@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam: where it is born, how it lives, and from what compression on."""
+"""Foam: thresholds, birth, drift and decay."""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam at places on no grid, which drift with it: so the foam of a sum repeats with none of its patches."""
+"""Foam at arbitrary places that drift with it, so that the foam of a sum of patches does not repeat with any
+of them."""
 
 from __future__ import annotations
 
@@ -18,15 +19,15 @@ from .model import Births, FoamModel, Whitecaps, breaking_of, seen
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: gives the compression of the sea at places in m, at a time in s
+#: function that returns the compression of the sea at places in m and a time in s
 CompressionAt = Callable[[Array, Array, Fraction], RealArray]
 
 
 class _Past:
-    """Births at some places, which drift along.
+    """Births at places that drift along.
 
     model : of the foam
-    x, y : (places,) where they are at time 0, at rest, m
+    x, y : (places,) rest positions at time 0, m
     """
 
     def __init__(self, model: FoamModel, compression_at: CompressionAt, x: Array, y: Array) -> None:
@@ -48,13 +49,13 @@ class _Past:
         self._births.add(self._looks.at(index), index)
 
     def left(self, now: Fraction) -> tuple[RealArray, RealArray]:
-        """What is left of the births by now, and its age in s."""
+        """Remaining foam of the births at present, and its age in s."""
         assert self._births is not None
         self._births.settle()
         return self._births.left(now)
 
     def put(self, where: NDArray[np.intp], other: _Past) -> None:
-        """Have other places instead of some, whose births are known up to the same lattice time."""
+        """Replace some places by others whose births are known up to the same lattice time."""
         assert self._births is not None
         assert other._births is not None
         self._x[where], self._y[where] = other._x, other._y
@@ -62,33 +63,33 @@ class _Past:
         self._looks.put(where, other._looks)
 
     def _look(self, index: int) -> RealArray:
-        """The compression at a lattice time."""
+        """Sample the compression at a lattice time."""
         then = index * self._model.step
         places = moved(self._model, self._x, self._y, then)
         return self._compression_at(*places, self._model.reduced(then))
 
 
 class DriftingFoam:
-    """Births of foam at some places; where it lies in windrows, also at the places that it is drawn from.
+    """Births of foam at some places; with windrows, also at the source places of drawn-out foam.
 
-    Whoever wants the foam of a time first lets what is `missing` be remembered. Times ascend, or it begins
-    anew; in a loop, where windrows stand still and foam drifts past them, it always does.
+    Before the foam of a time is requested, everything `missing` must be remembered. Times must ascend, or the
+    history restarts; in a loop it always restarts, as windrows stand still and foam drifts past them.
     """
 
     def __init__(self, model: FoamModel, compression_at: CompressionAt, x: Array, y: Array) -> None:
-        """`x` and `y` are where the (places,) are at time 0, at rest, in m."""
+        """`x` and `y` are the rest positions of the (places,) at time 0, in m."""
         self._model = model
         self._compression_at = compression_at
         self._x, self._y = x, y
         rows = model.windrows
-        # of the foam that stays where it was born
+        # for foam that stays where it was born
         self._staying = model if rows is None else replace(model, half_life=rows.stays(model.half_life))
         self._own: _Past | None = None
         self._drawn: _Past | None = None
         self._share = np.empty(0, np.float32)
-        # the lattice times up to which all is remembered, and from which on it counts what stays
+        # the lattice time up to which everything is remembered, and that from which staying foam is counted
         self._last = self._counts_from = 0
-        # x and y in m by which windrows have moved past the foam
+        # offset (x, y) in m by which windrows have moved relative to the foam
         self._past = (0.0, 0.0)
 
     @property
@@ -97,7 +98,7 @@ class DriftingFoam:
         return total_bytes((self._own, self._drawn, self._share))
 
     def missing(self, time: float | Fraction) -> range:
-        """Lattice times that are to be remembered, in this order, before the foam of a time is known."""
+        """Lattice times that must be remembered, in this order, before the foam of a time is known."""
         model = self._model
         now = model.reduced(time)
         index = math.floor(now / model.step)
@@ -107,7 +108,7 @@ class DriftingFoam:
             self._past = self._past_at(now)
             self._counts_from = index - self._staying.memory + 1
             return range(first, index + 1)
-        # births of lattice times that are forgotten by now fade below the faintest: they may stay
+        # older births have faded below the faintest foam and may stay
         return range(max(first, self._last + 1), index + 1)
 
     def remember(self, index: int) -> None:
@@ -125,7 +126,7 @@ class DriftingFoam:
         self._last = index
 
     def put(self, where: NDArray[np.intp], other: DriftingFoam) -> None:
-        """Have other places instead of some, whose foam is remembered up to the same lattice time."""
+        """Replace some places by others whose foam is remembered up to the same lattice time."""
         self._x[where], self._y[where] = other._x, other._y
         if self._own is not None and other._own is not None:
             self._own.put(where, other._own)
@@ -134,7 +135,7 @@ class DriftingFoam:
             self._share[where] = other._share
 
     def whitecaps(self, time: float | Fraction) -> Whitecaps:
-        """(places,) foam where they are at a time: what breaks, and what is left of what is remembered."""
+        """(places,) foam at the places at a time: breaking crests, and what remains of remembered births."""
         model = self._model
         now = model.reduced(time)
         places = moved(model, self._x, self._y, now)
@@ -148,14 +149,14 @@ class DriftingFoam:
         return seen(breaking, foam, age)
 
     def _past_at(self, now: Fraction) -> tuple[float, float]:
-        """x and y in m by which windrows have moved more than foam by now."""
+        """Offset (x, y) in m by which windrows have moved farther than the foam."""
         windrows_x, windrows_y = self._model.drifted(now)
         foam_x, foam_y = (float(now) * drift for drift in self._model.drift)
         return windrows_x - foam_x, windrows_y - foam_y
 
 
 def moved(model: FoamModel, x: Array, y: Array, time: Fraction) -> tuple[Array, Array]:
-    """Where places are at a time that are at x and y in m at time 0."""
+    """Positions at a time of places that are at (x, y) in m at time 0."""
     drift_x, drift_y = model.drift
     return x + float(time) * drift_x, y + float(time) * drift_y
 
@@ -163,7 +164,8 @@ def moved(model: FoamModel, x: Array, y: Array, time: Fraction) -> tuple[Array, 
 def whitecaps_at(
     model: FoamModel, compression_at: CompressionAt, x: Array, y: Array, time: float | Fraction
 ) -> Whitecaps:
-    """(places,) foam at rest positions x and y in m at a time alone: each looks back along its own drift."""
+    """(places,) foam at rest positions x and y in m at a single time; each place looks back along its own
+    drift."""
     now = float(model.reduced(time))
     foam = DriftingFoam(model, compression_at, x - now * model.drift[0], y - now * model.drift[1])
     for index in foam.missing(time):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Old foam of a tile, laid where it is by now: drawn out into windrows, moved, put on more or fewer samples.
+"""Old foam of a tile at its present position: drawn out into windrows, shifted, and resampled.
 
-Foam between samples is linear; its age is that of the one which gives more of it, since a mean of a new and
-an old birth would be the age of neither.
+Foam is interpolated linearly between samples; its age is taken from the sample that contributes more, as a
+mean of a new and an old birth would be the age of neither.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Drawing:
     def __init__(self, windrows: Windrows, samples: int, spacing: float) -> None:
         self._windrows = windrows
         by_x, by_y, self._share = windrows.on_grid(spacing * np.arange(samples, dtype=np.float64))
-        # samples from each sample to its source
+        # offset in samples from each sample to its source
         for by in (by_x, by_y):
             by *= np.float32(-1.0 / spacing)
         whole_x, whole_y = np.floor(by_x), np.floor(by_y)
@@ -41,20 +41,20 @@ class Drawing:
         column += at
         for along in (row, column):
             along -= samples * (along // samples)
-        # of the sample before each source, where rows have one more, the first again
+        # index of the sample before each source, in rows with the first sample repeated at the end
         self._first: NDArray[np.int32] = row * np.int32(samples + 1) + column
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all that is kept."""
+        """Bytes of the stored arrays."""
         return total_bytes((self._share, self._u, self._v, self._first))
 
     def rows(self, left: Foam, first: int, count: int) -> Foam:
-        """(count, M) old foam and its age as they lie in the windrows, from a row on; see `laid`."""
+        """(count, M) old foam and its age in the windrows, starting at a row; see `laid`."""
         foam, age = (rows_of(field[:-1, :-1], first, count) for field in left)
         at = rows_of(self._first, first, count).astype(np.intp)
         u, v = rows_of(self._u, first, count), rows_of(self._v, first, count)
-        # all places are there; to let them wrap is quicker than to have them checked
+        # all indices are valid; mode "wrap" is faster than bounds checking
         flat, below = [field.reshape(-1) for field in left], foam.shape[1] + 1
         here, beside, above, across = (
             [np.take(field[offset:], at, mode="wrap") for field in flat]
@@ -66,9 +66,10 @@ class Drawing:
 
 
 def laid(left: Foam, shift: Sequence[float], drawing: Drawing | None, first: int, count: int) -> Foam:
-    """(count, M) rows of foam that is left, from one on, drawn out and then read `shift` rows and columns on.
+    """(count, M) rows of remaining foam, starting at a row, drawn out and then read with an offset of `shift`
+    rows and columns.
 
-    left : (M+1, M+1), whose last row and column are the first ones again
+    left : (M+1, M+1), with the first row and column repeated at the end
     """
     (down, by_rows), (across, by_columns) = map(_whole_and_share, shift)
     at = first + down, count + (1 if by_rows else 0)
@@ -91,7 +92,7 @@ def _whole_and_share(shift: float) -> tuple[int, np.float32]:
 
 
 def rows_of(field: NDArray[_Number], first: int, count: int) -> NDArray[_Number]:
-    """So many rows of a field that repeats, from any row on."""
+    """`count` rows of a periodic field, starting at any row."""
     n = len(field)
     first %= n
     if first + count <= n:
@@ -99,12 +100,12 @@ def rows_of(field: NDArray[_Number], first: int, count: int) -> NDArray[_Number]
     return np.take(field, range(first, first + count), 0, mode="wrap")
 
 
-#: some fields a share of the way from samples to the next ones
+#: interpolates fields at a fraction of the way to the next sample
 Mix = Callable[[Sequence[RealArray], Sequence[RealArray], RealArray | np.float32], Sequence[RealArray]]
 
 
 class Finer:
-    """(M, M) fields that repeat, put on more or fewer samples, (N, N): the first one is the same."""
+    """Resamples periodic (M, M) fields to (N, N); the first samples coincide."""
 
     def __init__(self, own: int, samples: int) -> None:
         place = np.arange(samples) * (own / samples)
@@ -118,7 +119,7 @@ class Finer:
         """(rows, N) fields.
 
         block : the rows of N
-        given : so many rows of M, from one on, which may be beyond the last
+        given : function that returns rows of M, starting at one that may be beyond the last
         """
         if self._own == self._samples:
             return given(block.start, block.stop - block.start)
@@ -134,7 +135,8 @@ class Finer:
                 [np.take(field, (self._before + step) % self._own, 1) for field in fields] for step in (0, 1)
             )
             return mix(near, far, self._share)
-        # so many to a sample: each of them has one share, and whole rows are read, not places
+        # with an integer ratio, each output phase has a single weight, and whole rows are read instead of
+        # places
         times = self._samples // self._own
         result = [np.empty((len(field), self._samples), np.float32) for field in fields]
         after = [np.roll(field, -1, 1) for field in fields]
@@ -148,12 +150,12 @@ class Finer:
 def linear(
     near: Sequence[RealArray], far: Sequence[RealArray], share: RealArray | np.float32
 ) -> Sequence[RealArray]:
-    """Plain fields a share of the way from one sample to the next."""
+    """Plain fields at a fraction of the way from one sample to the next."""
     return [field + share * (other - field) for field, other in zip(near, far, strict=True)]
 
 
 def between(near: Sequence[RealArray], far: Sequence[RealArray], share: RealArray | np.float32) -> Foam:
-    """Foam a share of the way from one sample to the next, and its age."""
+    """Foam at a fraction of the way from one sample to the next, and its age."""
     (foam, age), (other_foam, other_age) = near, far
     other = share * other_foam
     own = share * foam

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sea's past as foam needs it: how compressed it was where crests may have broken, at any moment.
+"""The sea's history as foam needs it: the compression, at any moment, where crests may have broken.
 
-Moments are the lattice times at which foam may be born. The sea is looked at in every few of them, as the
-frequency of its strains allows. Between looks each place is interpolated by itself: the compression of a
-place is nearly band-limited in time. Only places that are near the threshold in the look before or after are
+Moments are the lattice times at which foam may be born. The sea is computed only at every few of them
+("looks"), as the bandwidth of its strains allows. In between, each place is interpolated by itself, as the
+compression of a place is nearly band-limited in time. Only places near the threshold in an adjacent look are
 followed: foam is rare, so this costs a fraction of a look.
 """
 
@@ -22,23 +22,23 @@ from ..numerics.memo import total_bytes
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: looks before a moment, and after it, that tell of it
+#: number of looks before a moment, and after it, that it is interpolated from
 _SIDE = 3
-#: phase in rad by which the highest frequency that is kept may turn from a look to the next: a tenth more
-#: takes a ninth less looks, and a storm's foam is no longer like that of all moments
+#: largest phase change in rad of the highest frequency between looks: a tenth more saves a ninth of the
+# looks, but visibly changes a storm's foam
 _REACH = 2.25
-#: moments from a look to the next, at the most
+#: largest number of moments from one look to the next
 _MOST = 8
-#: power that is not within the band, over that which is
+#: power outside the band, relative to that inside
 _NOISE = 4e-3
-#: a place is followed that has this share of the threshold in a look
+#: a place is followed if its compression reaches this fraction of the threshold in a look
 _NEAR = 0.9
 
 
 def stride_of(frequency: float, step: float) -> int:
-    """Moments from a look to the next.
+    """Number of moments from one look to the next.
 
-    frequency : up to which the strains at a place are to be known, rad/s
+    frequency : highest frequency of the strains to be resolved, rad/s
     step : between moments, s
     """
     turn = frequency * step
@@ -46,18 +46,18 @@ def stride_of(frequency: float, step: float) -> int:
 
 
 class Compressed(NamedTuple):
-    """Places as numbers of a flat array, the same array while they are the same, and their compression."""
+    """Indices of places in a flat array (the same object while they do not change), and their compression."""
 
     places: NDArray[np.intp]
     compression: RealArray
 
 
 class Looks:
-    """Looks at a sea whose moments are asked for in ascending order.
+    """The looks at a sea, for moments requested in ascending order.
 
-    compression_at : gives the compression of all places at a moment, an array of any shape
-    stride : moments from a look to the next
-    threshold : of the compression, from which on places are wanted
+    compression_at : function that returns the compression of all places at a moment, an array of any shape
+    stride : moments from one look to the next
+    threshold : compression above which places are needed
     """
 
     def __init__(self, compression_at: Callable[[int], RealArray], stride: int, threshold: float) -> None:
@@ -65,7 +65,7 @@ class Looks:
         self._stride = stride
         self._threshold = threshold
         self._looks: dict[int, RealArray] = {}
-        # the look after which places are followed, those places, and the looks around it there
+        # the look after which places are followed, these places, and the adjacent looks at them
         self._after: int | None = None
         self._followed: NDArray[np.intp] = np.empty(0, np.intp)
         self._around: list[RealArray] = []
@@ -76,7 +76,7 @@ class Looks:
         return total_bytes((*self._looks.values(), self._followed, *self._around))
 
     def at(self, moment: int) -> Compressed:
-        """Places among which are all that are compressed by more than the threshold."""
+        """Places that include all those compressed by more than the threshold."""
         since = moment % self._stride
         if self._after != moment - since:
             self._follow(moment - since)
@@ -85,12 +85,12 @@ class Looks:
         compression = np.zeros(self._followed.shape, np.float32)
         share = np.empty_like(compression)
         for weight, values in zip(_weights(since, self._stride), self._around, strict=True):
-            # no product of matrices: how that adds up differs by machine
+            # no matrix product: its order of summation differs between machines
             compression += np.multiply(values, weight, out=share)
         return Compressed(self._followed, compression)
 
     def put(self, where: NDArray[np.intp], other: Looks) -> None:
-        """Have other places instead of some, which were looked at up to the same moment."""
+        """Replace some places by others that were computed up to the same moment."""
         for moment, values in self._looks.items():
             values[where] = other._looks[moment]
         stay = np.isin(self._followed, where, invert=True)
@@ -99,7 +99,7 @@ class Looks:
         self._around = [np.concatenate((values[stay], others)) for values, others in pairs]
 
     def _follow(self, look: int) -> None:
-        """Follow places from a look to the next that may be compressed by more than the threshold."""
+        """Choose the places to follow until the next look: those that may exceed the threshold."""
         if self._stride == 1:
             values = self._compression_at(look).ravel()
             self._after, self._followed = look, np.flatnonzero(values > self._threshold)
@@ -123,10 +123,10 @@ class Looks:
 
 @lru_cache(maxsize=64)
 def _weights(since: int, stride: int) -> tuple[np.float32, ...]:
-    """Of the looks around a moment, so many moments after the middle one.
+    """Weights of the looks around a moment, a number of moments after the middle one.
 
-    Those with the least mean square error for a signal with the same power at all frequencies up to the
-    band's end (Wiener 1949): its correlation with itself is sin θ/θ.
+    They minimise the mean square error for a signal with a flat spectrum up to the end of the band (Wiener
+    1949), whose autocorrelation is sin θ/θ.
     """
     at = np.arange(1 - _SIDE, _SIDE + 1)
     correlation = np.sinc(_REACH / math.pi * (at[:, np.newaxis] - at)) + _NOISE * np.eye(len(at))

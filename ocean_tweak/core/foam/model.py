@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam: whitecaps that are born where the surface is compressed, drift and fade. The one thing with a memory.
+"""Foam: whitecaps that are born where the surface is compressed, drift and fade. The only field with a
+history.
 
-F(x, t) is the largest of 2^(-age/T)·c(x - v·age, t - age) over the present and over a fixed lattice of times
-before it: c is 1 where the compression exceeds a threshold, T the half-life, v the drift. Terms below 1/64
-are dropped, so the memory is finite and any frame can be made alone. The present's c is the crest that breaks
-now; the age of what is seen is that of the largest term.
+F(x, t) is the maximum of 2^(-age/T)·c(x - v·age, t - age) over the present and a fixed lattice of earlier
+times: c rises from 0 to 1 where the compression exceeds a threshold, T is the half-life, v the drift. Terms
+below 1/64 are dropped, so the history is finite and any frame can be computed alone. The c of the present is
+the crest breaking now; the age of the visible foam is that of the largest term.
 
-Instead of F, a grid that drifts along keeps the latest birth B = t + T·log₂c of foam at each point, and the
-lattice time of that birth: F is 2^((B - t)/T), and B of several times is their maximum, which neither rounds
-nor depends on the order. So a sequence, a chunk of it and a single frame have the same bytes. The sea is not
-made at each lattice time: see `looks`.
+Instead of F, a grid that drifts along stores at each point B = t + T·log₂c of the strongest remaining birth,
+and its lattice time: F is 2^((B - t)/T), and the B of several times is their maximum, which is exact and
+independent of the order. So a sequence, a chunk of it and a single frame have the same bytes. The sea is not
+computed at every lattice time: see `looks`.
 """
 
 from __future__ import annotations
@@ -35,38 +36,38 @@ from .windrows import Windrows
 RealArray = NDArray[np.floating]
 Array = NDArray[np.float64]
 
-#: lattice times in a second, at the most
+#: largest number of lattice times per second
 LATTICE_RATE = 8
 
-#: foam thinner than this is none
+#: foam below this counts as none
 FAINTEST = 2.0**-6
 
-#: half-lives since the birth of foam after which it certainly is none, with the sign of an exponent
+#: minus the number of half-lives after which foam has certainly vanished
 _LONG_GONE = np.float32(math.log2(FAINTEST) - 1.0)
 
-#: what it takes to fade and lay old foam on a sample, in numbers to be transformed
+#: cost of fading and laying old foam per sample, in numbers to be transformed
 _WORK_OF_OLD_FOAM = 6
 
-#: from no foam to full foam the compression rises by this share of the threshold
+#: rise of the compression from no foam to full foam, as a fraction of the threshold
 _SOFTNESS = 0.25
 
-#: strength of what is as good as no foam
+#: strength that is indistinguishable from no foam
 _NO_FOAM = 2.0**-10
 
 
 @dataclass(frozen=True)
 class FoamModel:
-    """How foam is born and how it lives.
+    """Parameters of the birth and decay of a sea's foam.
 
     threshold : compression at which c begins to rise from 0
-    breaking_threshold : the same for a crest that is seen to break, where that is more: on coarse samples
-        crests are compressed for long, and all but their tops is foam that spreads
+    breaking_threshold : the same for visibly breaking crests, if that is higher: on coarse samples crests
+        stay compressed for long, and all but their tops is spreading foam
     half_life : T in s
     drift : x and y in m/s
     spacing : between samples, m
     loop_duration : of the sea, s
-    windrows : in which old foam lies; None where there are none
-    frequency : up to which the strains that it is born of must be known, rad/s
+    windrows : of the old foam; None for none
+    frequency : highest frequency of the strains that must be resolved, rad/s
     """
 
     threshold: float
@@ -80,12 +81,12 @@ class FoamModel:
 
     @property
     def stride(self) -> int:
-        """Lattice times from one at which the sea is looked at to the next."""
+        """Number of lattice times from one look at the sea to the next."""
         return stride_of(self.frequency, 1.0 / LATTICE_RATE)
 
     @property
     def step(self) -> Fraction:
-        """Seconds between lattice times; in a loop, a whole number of looks fits."""
+        """Seconds between lattice times; a loop contains an integer number of looks."""
         if self.loop_duration is None:
             return Fraction(1, LATTICE_RATE)
         looks = max(1, math.floor(self.loop_duration * LATTICE_RATE / self.stride))
@@ -93,23 +94,23 @@ class FoamModel:
 
     @property
     def memory(self) -> int:
-        """Lattice times that a frame depends on."""
+        """Number of lattice times that a frame depends on."""
         if self.half_life == 0.0 or math.isinf(self.threshold):
             return 0
         return math.floor(-math.log2(FAINTEST) * self.half_life / self.step) + 1
 
     def reduced(self, time: float | Fraction) -> Fraction:
-        """The time of the sea's first loop that looks alike."""
+        """The equivalent time in the first loop."""
         exact = Fraction(time)
         return exact if self.loop_duration is None else exact % self.loop_duration
 
     def drifted(self, now: Fraction) -> tuple[float, float]:
-        """x and y in m by which windrows have moved since 0 s; in a loop they stand still."""
+        """Offset (x, y) in m by which windrows have moved since time 0; in a loop they stand still."""
         time = float(now) if self.loop_duration is None else 0.0
         return self.drift[0] * time, self.drift[1] * time
 
     def strength(self, compression: RealArray, least: float = 0.0) -> RealArray:
-        """c in 0…1, in the precision of the compression; nowhere less than `least`."""
+        """c in 0…1, in the precision of the compression; at least `least` everywhere."""
         x = compression * compression.dtype.type(1.0 / (_SOFTNESS * self.threshold))
         x -= compression.dtype.type(1.0 / _SOFTNESS)
         np.clip(x, _rise_of(least) if least else 0.0, 1.0, out=x)
@@ -121,24 +122,24 @@ class FoamModel:
 
 
 def _rise_of(strength: float) -> float:
-    """Share of the way from no foam to full foam at which it is born so strong: the smoothstep's inverse."""
+    """Inverse of the smoothstep: the fraction of the rise at which foam of this strength is born."""
     return 0.5 - math.sin(math.asin(1.0 - 2.0 * strength) / 3.0)
 
 
 def births(count: int = 8) -> tuple[Array, Array]:
-    """Strengths c from the faintest to 1, so many to a halving, and the compressions over the threshold at
-    which foam is born with each."""
+    """Strengths c from the faintest to 1, a given number per factor of 2, and the compressions, relative to
+    the threshold, at which each is born."""
     halvings = round(-math.log2(FAINTEST))
     strength = 2.0 ** ((np.arange(halvings * count) + 0.5) / count - halvings)
     return strength, 1.0 + _SOFTNESS * np.array([_rise_of(each) for each in strength])
 
 
 class Whitecaps(NamedTuple):
-    """Foam on samples or at places, float32 arrays of one shape, named as the channels that they are.
+    """Foam on samples or at places, float32 arrays of one shape, named like their channels.
 
     foam : F in 0…1, new and old foam together
-    breaking : c of the present in 0…1, nowhere more than the foam
-    foam_age : s since the birth of the foam that is seen; 0 where a crest breaks, and where there is no foam
+    breaking : c of the present in 0…1, at most `foam`
+    foam_age : age in s of the visible foam; 0 where a crest breaks, and where there is no foam
     """
 
     foam: RealArray
@@ -146,7 +147,7 @@ class Whitecaps(NamedTuple):
     foam_age: RealArray
 
     def at(self, x: Array, y: Array, side: float) -> Whitecaps:
-        """Those of a tile, (N, N) samples that repeat after `side` m, read at places in m."""
+        """Foam of a periodic tile of (N, N) samples and `side` m, interpolated at places in m."""
         n = len(self.foam)
         where = between(y * (n / side), x * (n / side), (n, n))
         here, beside, above, across = ((self.foam[at], self.foam_age[at]) for at in where.corners)
@@ -156,10 +157,11 @@ class Whitecaps(NamedTuple):
 
 
 class _Followed(NamedTuple):
-    """Births at places that are the same for some lattice times.
+    """Births at a set of places that stays the same for several lattice times.
 
-    places, moved : as they are added
-    most, since : of each place, B in units after the lattice time `zero`, and lattice times from there to it
+    places, moved : the arguments of `add`
+    most, since : for each place, B in units after the lattice time `zero`, and lattice times from there to
+        the birth
     """
 
     places: NDArray[np.intp]
@@ -170,14 +172,14 @@ class _Followed(NamedTuple):
 
 
 class Births:
-    """At each place the birth of which there is most left, by now and at any later time.
+    """At each place, the birth of which most remains, now and at any later time.
 
-    B counts in lattice times from one that follows the newest, in multiples of a power of two so small that
-    float32 holds them all: so it does not matter from where they are counted.
+    B is counted in lattice times relative to a recent one, in multiples of a power of two that float32
+    represents exactly, so the choice of origin does not matter.
     """
 
     def __init__(self, model: FoamModel, shape: tuple[int, ...], first: int) -> None:
-        """No births yet; `first` is the first lattice time of which there may be some."""
+        """Start without births; `first` is the first lattice time that may have any."""
         self._model = model
         self._first = self._zero = first
         self._halving = model.half_life / float(model.step)
@@ -188,15 +190,16 @@ class Births:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the births and their times, and of those that are followed."""
+        """Bytes of the births, their times, and the followed places."""
         followed = self._followed
         own = () if followed is None else (followed.most, followed.since)
         return total_bytes((self._latest, self._moments, *own))
 
     def add(self, compressed: Compressed, index: int, moved: tuple[int, ...] = (0,)) -> None:
-        """Those of a lattice time, moved by whole samples along each axis; of equal ones the later counts.
+        """Add the births of a lattice time, shifted by whole samples along each axis; of equal births the
+        later one counts.
 
-        They are with all others from when these are `settled`.
+        They are merged with the others by `settle`.
         """
         places, compression = compressed
         followed = self._followed
@@ -211,13 +214,13 @@ class Births:
         births += np.float32((index - followed.zero) / self._unit)
         newer = births >= followed.most
         np.maximum(followed.most, births, out=followed.most)
-        # a twentieth of the time that copying where something is true takes
+        # takes a twentieth of the time of a masked copy
         later = np.int8(index - followed.zero) - followed.since
         later *= newer.view(np.int8)
         np.add(followed.since, later, out=followed.since)
 
     def settle(self) -> None:
-        """Put what was born at places that are followed with what was born before."""
+        """Merge births at the followed places into the earlier ones."""
         followed, self._followed = self._followed, None
         if followed is None:
             return
@@ -240,24 +243,24 @@ class Births:
         self._moments.put(places, since.astype(np.int32) + np.int32(followed.zero - self._first))
 
     def put(self, where: NDArray[np.intp], other: Births) -> None:
-        """Have the births of other places instead of those of some, all settled."""
+        """Replace the births of some places by those of others, all settled."""
         self.settle()
         other.settle()
         self._latest[where] = other._latest + np.float32(other._zero - self._zero)
         self._moments[where] = other._moments + np.int32(other._first - self._first)
 
     def left(self, now: Fraction, part: slice = slice(None)) -> tuple[RealArray, RealArray]:
-        """F of what is left by now, and its age in s; what is remembered beyond the faintest is none.
+        """Remaining F at present, and its age in s; foam fainter than the limit counts as none.
 
         part : of the places, along their first axis
         """
         model = self._model
         last = math.floor(now / model.step)
-        # what is rounded is counted from the present: it does not depend on where the history began
+        # rounding is relative to the present, so it does not depend on where the history began
         foam = self._latest[part] - np.float32(last - self._zero)
         foam -= np.float32(now / model.step - last)
         foam *= np.float32(1.0 / self._halving)
-        # a power that is no normal number takes twenty times as long
+        # a subnormal result takes twenty times as long
         np.clip(foam, _LONG_GONE, np.float32(1.0), out=foam)
         np.exp2(foam, out=foam)
         foam *= foam >= FAINTEST
@@ -269,10 +272,10 @@ class Births:
 
 
 class FoamHistory:
-    """Births of foam up to a lattice time, on the grid that drifts along.
+    """Births of foam up to a lattice time, on a grid that drifts along.
 
-    It is what a sequence keeps between its frames; without it, a frame makes its own. One thread at a time
-    goes on with it, and others wait.
+    A sequence keeps it between frames; a single frame creates its own. One thread at a time extends it while
+    others wait.
     """
 
     def __init__(
@@ -282,9 +285,9 @@ class FoamHistory:
         resolution: int,
         workers: int | None = None,
     ) -> None:
-        """`compression_at` gives the (M, M) compression at a time; `resolution` is that of the sea, N.
+        """`compression_at` returns the (M, M) compression at a time; `resolution` is that of the sea, N.
 
-        workers : threads that draw foam out, by default as many as help
+        workers : threads for drawing out foam, by default a suitable number
         """
         self._model = model
         self._compression_at = compression_at
@@ -296,12 +299,12 @@ class FoamHistory:
         self._last = 0
         self._busy = threading.Lock()
         MEMO.watch("foam", self)
-        #: is told of each moment that was looked at, and of how many
+        #: called after each look, with the number of looks so far and in total
         self.tell: Callable[[int, int], None] = lambda done, count: None
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the births, of the looks that they are from, and of what draws them out."""
+        """Bytes of the births, of the looks, and of the windrow arrays."""
         return total_bytes((self._births, self._looks, self._drawing))
 
     def whitecaps(
@@ -312,7 +315,7 @@ class FoamHistory:
     ) -> Whitecaps:
         """(N, N) foam at a time.
 
-        compression : (M, M) of that time, where it is known already
+        compression : (M, M) at that time, if already known
         out : arrays to fill
         """
         now, n = self._model.reduced(time), self._resolution
@@ -334,12 +337,13 @@ class FoamHistory:
                 for whole, part in zip(made, seen(new, *foam), strict=True):
                     whole[rows] = part
 
-            # as many rows of the foam's own samples in a block, however many are made of them
+            # a fixed number of rows of the foam's own samples per block, whatever the resolution of the
+            # result
             run_blocks(lay, row_blocks(n, max(1, len(breaking) ** 2 // n)), workers)
         return made
 
     def _old_foam(self, now: Fraction, n: int, workers: int) -> Callable[[int, int], laying.Foam]:
-        """Gives so many rows, from one on, of what is left of earlier foam where it lies now, and its age."""
+        """A function that returns rows of the remaining older foam at its present position, and its age."""
         model = self._model
         births = self._births_until(math.floor(now / model.step), n)
         left = np.empty((n + 1, n + 1), np.float32), np.empty((n + 1, n + 1), np.float32)
@@ -358,7 +362,7 @@ class FoamHistory:
         return partial(laying.laid, left, self._samples(drifted), self._drawing)
 
     def _samples(self, by: Sequence[float]) -> list[float]:
-        """Rows and columns on from which foam is read that has moved by x and y in m."""
+        """Offset in rows and columns at which foam is read that has moved by (x, y) in m."""
         return [-metres / self._model.spacing for metres in reversed(by)]
 
     def _new_looks(self) -> Looks:
@@ -392,7 +396,7 @@ class FoamHistory:
         return births
 
     def _moved(self, index: int) -> tuple[int, int]:
-        """Whole samples by which rows and columns of a lattice time are moved onto the drifting grid."""
+        """Shift in whole samples from the rows and columns of a lattice time to the drifting grid."""
         time, spacing = float(index * self._model.step), self._model.spacing
         x, y = (round(-time * v / spacing) for v in self._model.drift)
         return y, x
@@ -409,7 +413,7 @@ def breaking_of(model: FoamModel, compression: RealArray) -> RealArray:
 
 
 def seen(breaking: RealArray, old: RealArray, age: RealArray) -> Whitecaps:
-    """What breaks now over what is left."""
+    """Combine breaking crests with remaining older foam."""
     foam = np.maximum(old, breaking)
     foam *= foam >= FAINTEST
     breaking = breaking * (foam > 0.0)

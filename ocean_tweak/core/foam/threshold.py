@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much foam a sea has, and where whitecaps begin: the compression of the surface beyond which it is foam.
+"""How much foam a sea has, and the threshold of the compression above which whitecaps form.
 
-With true wave heights hardly anything folds, so foam cannot wait for folding. Instead the threshold follows
-from the sea's own strains, so that the share of the surface under foam is the one that winds leave at sea.
+At physical wave heights hardly any crest folds over, so folding cannot trigger foam. Instead the threshold is
+derived from the statistics of the sea's strains, such that the covered fraction of the surface is the
+whitecap coverage measured for the wind.
 """
 
 from __future__ import annotations
@@ -24,35 +25,35 @@ from .windrows import windrows
 
 Array = NDArray[np.float64]
 
-#: compression from which foam may be born: below it are roundings of float32 fields, and of a sea without any
+#: smallest compression at which foam may be born: values below are rounding noise of float32 fields
 LEAST_COMPRESSION = 1e-6
 
-#: directions of the gradient over which means are taken; levels of compression, and how far they reach in
-#: standard deviations of the direction that is compressed most
+#: number of directions of the gradient to average over; number of levels of compression, and their range in
+# standard deviations of the most compressed direction
 _DIRECTIONS, _LEVELS, _REACH = 2048, 160, 9.0
-#: the lowest level over the highest
+#: ratio of the lowest level to the highest
 _LOWEST = 1e-5
-#: what is taken for none where logarithms are
+#: stands for 0 in logarithms
 _NONE = 1e-300
-#: the strains' highest frequency over the root mean square, and the standard deviations at which a threshold
-#: becomes rare
+#: highest frequency of the strains over their root mean square frequency, and the threshold, in standard
+# deviations, at which exceedances become rare
 _BAND, _RARE = 2.0, 3.7
-#: s; mean time for which a crest breaks at a place, at the most
+#: largest mean duration for which a crest breaks at a place, s
 _BREAKS_FOR = 0.35
-#: of the range in which the threshold is looked for
+#: iterations of the search for the threshold
 _HALVINGS = 40
 
 
 def foam_wind(parameters: OceanParameters) -> Wind | None:
-    """The strongest of the winds that the layers are given by; None without one: swell does not break."""
+    """The strongest wind of the layers; None if there is none, as swell does not break."""
     winds = [wind for layer in parameters.active() if (wind := layer.wind(parameters)) is not None]
     return max(winds, key=lambda wind: wind.speed) if winds else None
 
 
 def callaghan_2008(wind_speed: float) -> float:
-    """Share of the sea under whitecaps, Callaghan, de Leeuw, Cohen & O'Dowd (2008), eq. 1 and 2.
+    """Whitecap coverage, a fraction, by Callaghan, de Leeuw, Cohen & O'Dowd (2008), eq. 1 and 2.
 
-    wind_speed : m/s at 10 m. It was measured from 3.7 to 23 m/s; beyond, it is the upper curve.
+    wind_speed : m/s at 10 m. Measured from 3.7 to 23 m/s; the upper curve is used beyond.
     """
     slow = constants.CALLAGHAN_SLOW_FACTOR * max(0.0, wind_speed - constants.CALLAGHAN_LEAST) ** 3
     fast = constants.CALLAGHAN_FAST_FACTOR * (wind_speed + constants.CALLAGHAN_FAST_OFFSET) ** 3
@@ -60,9 +61,10 @@ def callaghan_2008(wind_speed: float) -> float:
 
 
 def monahan_1980(wind_speed: float) -> float:
-    """Share of the sea under whitecaps, Monahan & O'Muircheartaigh (1980): 3.84·10⁻⁶ U^3.41.
+    """Whitecap coverage, a fraction, by Monahan & O'Muircheartaigh (1980): 3.84·10⁻⁶ U^3.41.
 
-    wind_speed : m/s at 10 m. It was measured up to 20 m/s; beyond, it gives twice what others saw.
+    wind_speed : m/s at 10 m. Measured up to 20 m/s; beyond, it gives twice the coverage of later
+        measurements.
     """
     return constants.WHITECAP_FACTOR * wind_speed**constants.WHITECAP_EXPONENT
 
@@ -72,15 +74,15 @@ _LAWS = dict(zip(FOAM_LAWS, (callaghan_2008, monahan_1980), strict=True))
 
 
 def whitecap_coverage(wind_speed: float, law: str = FOAM_LAWS[0]) -> float:
-    """Share of the sea under whitecaps, 0…1, for a wind in m/s at 10 m, by one of FOAM_LAWS."""
+    """Whitecap coverage, 0…1, for a wind in m/s at 10 m, by one of FOAM_LAWS."""
     return min(1.0, _LAWS[law](wind_speed))
 
 
 class FoamOutlook(NamedTuple):
-    """What foam a sea will have, and what it costs.
+    """The amount and the cost of a sea's foam.
 
-    coverage : share of the sea under foam, 0…1
-    memory : earlier surfaces that a frame alone must look at
+    coverage : fraction of the sea under foam, 0…1
+    memory : number of earlier surfaces needed for a single frame
     """
 
     coverage: float
@@ -88,7 +90,7 @@ class FoamOutlook(NamedTuple):
 
 
 def foam_outlook(parameters: OceanParameters) -> FoamOutlook:
-    """Coverage and cost of the foam, without making any."""
+    """Coverage and cost of the foam, without computing any."""
     coverage = _coverage(parameters)
     model = FoamModel(1.0 if coverage > 0.0 else math.inf, parameters.foam.half_life, (0.0, 0.0), 1.0)
     return FoamOutlook(coverage, model.memory)
@@ -102,13 +104,13 @@ def _coverage(parameters: OceanParameters) -> float:
 
 @dataclass(frozen=True)
 class Strains:
-    """How often a random sea is compressed by how much; arrays by level.
+    """Statistics of the compression of a random sea; arrays over levels of compression.
 
     level : compression (1 - minimum eigenvalue), ascending
-    share : of the places at rest that are compressed by more
-    area : of the horizontal plane that these cover; compressed places cover less
-    crossings : how often in a second a place comes to be compressed by more
-    frequency : root mean square of that of the gradient, rad/s
+    share : fraction of rest positions with a greater compression
+    area : fraction of the horizontal plane that these cover; compressed places cover less
+    crossings : up-crossings of the level per second at a place
+    frequency : root mean square frequency of the gradient, rad/s
     """
 
     level: Array
@@ -118,17 +120,18 @@ class Strains:
     frequency: float
 
     def at(self, compression: Array, name: str) -> Array:
-        """One of the other arrays between its levels: what falls by orders of magnitude, by its logarithm."""
+        """Interpolate one of the arrays between levels, in its logarithm, as it falls by orders of
+        magnitude."""
         of_levels = np.log(np.maximum(getattr(self, name), _NONE))
         return np.asarray(np.exp(np.interp(np.log(compression), np.log(self.level), of_levels)))
 
     def covered(self, threshold: float, half_life: float) -> float:
-        """The mean of the foam over the horizontal plane, new and old, with this threshold.
+        """Mean foam, new and old, over the horizontal plane for a threshold.
 
-        The share of the plane where F > f is that where the present c is, and of the rest where a birth has
-        left as much: one of strength c does for T log₂(c/f) seconds. Births are crossings of the compression
-        at which c begins to be born, rare and so independent; old foam lies on waves of any phase. Foam that
-        is thinner than the faintest is none.
+        F > f where the present c exceeds f, and elsewhere where a birth has left as much: a birth of strength
+        c does so for T log₂(c/f) seconds. Births are up-crossings of the corresponding compression, rare and
+        therefore independent; old foam lies on waves of any phase. Foam fainter than the limit counts as
+        none.
         """
         strength, rise = births()
         octaves = np.diff(np.log2(strength), prepend=2.0 * np.log2(strength[0]) - np.log2(strength[1]))
@@ -138,20 +141,20 @@ class Strains:
         return float(np.sum(covered * strength * octaves)) * math.log(2.0) + FAINTEST * float(covered[0])
 
     def highest_frequency(self, threshold: float) -> float:
-        """Frequency in rad/s up to which the compression must be known in time, to tell when it is over a
+        """Highest frequency in rad/s of the compression that must be resolved to detect exceedances of a
         threshold.
 
-        That is twice the root mean square, and more for a threshold that is so rare that the compression
-        rises little above it: by a share of 1/u² of it, u the standard deviations at which it lies.
+        It is twice the root mean square frequency, and more for a rare threshold, above which the compression
+        rises only by a fraction of about 1/u², with the threshold at u standard deviations.
         """
         share = float(self.at(np.array([threshold]), "share")[0])
         deviations = math.sqrt(max(0.0, -2.0 * math.log(share)))
         return _BAND * self.frequency * max(1.0, deviations / _RARE)
 
     def threshold(self, coverage: float, half_life: float) -> float:
-        """The compression from which foam is to be born, so that it covers a share of the sea.
+        """The threshold at which foam covers a given fraction of the sea.
 
-        It is never below LEAST_COMPRESSION, so that a sea without compression has no foam.
+        At least LEAST_COMPRESSION, so that a sea without compression has no foam.
         """
         low, high = np.log(self.level[0]), np.log(self.level[-1])
         for _ in range(_HALVINGS):
@@ -170,15 +173,16 @@ def strain_covariances(
     rotation: float = 0.0,
     interpolated: bool = False,
 ) -> tuple[Array, Array]:
-    """Covariances (3, 3) of the gradient's xx, yy and xy, and of their rates in 1/s²; those of waves add.
+    """Covariances (3, 3) of the gradient's xx, yy and xy, and of their rates in 1/s². Those of independent
+    waves add up.
 
-    They are of the waves that the grid resolves, as seen by a point that drifts with (x, y) m/s. The gradient
-    of the horizontal displacement is Gaussian with the covariance of its spectrum; so is its rate,
-    independent of it, with ω² (ω as the drifting point meets the waves) in the integral.
+    They describe the waves that the grid resolves, seen from a point that drifts with (x, y) m/s. The
+    gradient of the horizontal displacement is Gaussian, with the covariance of its spectrum; its rate is
+    Gaussian and independent of it, with ω² (the encounter frequency of the drifting point) in the integral.
 
-    rotation : by which the grid is turned against the axes of the drift and of the gradient, rad
-    interpolated : whether what is wanted are the strains between the samples, bilinear: the mean square of a
-        wave is less there, by (2 + cos kΔ)/3 along each axis
+    rotation : of the grid relative to the axes of the drift and of the gradient, rad
+    interpolated : whether strains are bilinearly interpolated between samples, which reduces the mean square
+        of a wave by (2 + cos kΔ)/3 along each axis
     """
     grid = state.grid
     kx, ky = grid.kx, grid.ky
@@ -205,12 +209,12 @@ def strain_covariances(
 
 
 def gaussian_strains(of_gradient: Array, of_rates: Array) -> Strains:
-    """Strains whose gradient and its rate have the covariances that `strain_covariances` gives.
+    """Statistics of strains with the covariances returned by `strain_covariances`.
 
-    The compression is as large as the gradient, r times that of its direction, and r of a Gaussian gradient
-    has the chi distribution of three numbers: so shares are means over directions of its tails, also far out.
-    By Rice (1944) a level is crossed upwards at the mean of the positive rates there, a Gaussian's of the
-    direction alone, times the compression's density.
+    The compression is proportional to the length r of the normalised gradient, and for a Gaussian gradient r
+    has a chi distribution with three degrees of freedom: exceedances are averages of its tails over
+    directions, accurate far out. By Rice (1944) the rate of up-crossings is the mean positive rate at the
+    level, Gaussian for each direction, times the density of the compression.
     """
     xx, yy, xy = _root(of_gradient) @ _directions()
     half_difference = 0.5 * (xx - yy)
@@ -226,7 +230,7 @@ def gaussian_strains(of_gradient: Array, of_rates: Array) -> Strains:
     radius = np.minimum(level[:, np.newaxis] / compression, _RADII[-1])
     beyond = [np.interp(radius, _RADII, tail) for tail in _TAILS]
     share = np.sum(beyond[0], axis=1) / _DIRECTIONS
-    # the mean of the Jacobian 1 + tr + det there, of which tr grows with r and det with r²
+    # the mean of the Jacobian 1 + tr + det there, with tr proportional to r and det to r²
     area = share + np.sum(beyond[1] * (xx + yy) + beyond[2] * (xx * yy - xy * xy), axis=1) / _DIRECTIONS
     density = math.sqrt(2.0 / math.pi) * radius**2 * np.exp(-0.5 * radius**2) / compression
     crossings = np.sum(density * rate, axis=1) / (math.sqrt(2.0 * math.pi) * _DIRECTIONS)
@@ -236,13 +240,13 @@ def gaussian_strains(of_gradient: Array, of_rates: Array) -> Strains:
 
 
 def _root(covariance: Array) -> Array:
-    """(3, 3) matrix that makes numbers of a covariance from independent ones."""
+    """(3, 3) matrix that maps independent normal numbers to ones with a given covariance."""
     values, vectors = np.linalg.eigh(covariance)
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def _directions() -> Array:
-    """(3, _DIRECTIONS) unit vectors, evenly over the sphere: Fibonacci's spiral."""
+    """(3, _DIRECTIONS) unit vectors, evenly spread over the sphere on a Fibonacci spiral."""
     number = np.arange(_DIRECTIONS) + 0.5
     z = 1.0 - 2.0 * number / _DIRECTIONS
     longitude = math.pi * (1.0 + math.sqrt(5.0)) * number
@@ -250,7 +254,8 @@ def _directions() -> Array:
 
 
 def _chi_tails() -> tuple[Array, Array, Array, Array]:
-    """Radii, and the means of 1, r and r² beyond each, of the length r of three standard normal numbers."""
+    """Radii, and the tail means of 1, r and r² beyond each, with r the length of three standard normal
+    numbers."""
     r = np.linspace(0.0, 14.0, 2801)
     normal = math.sqrt(2.0 / math.pi) * np.exp(-0.5 * r * r)
     beyond = np.array([math.erfc(radius / math.sqrt(2.0)) for radius in r])
@@ -263,11 +268,11 @@ _RADII, *_TAILS = _chi_tails()
 def foam_model(
     parameters: OceanParameters, strains_of: Callable[[tuple[float, float]], Strains], spacing: float
 ) -> FoamModel:
-    """How the foam of a sea is born and lives.
+    """The foam model of a sea.
 
-    strains_of : gives the strains that a point with this drift in m/s meets, of the waves that the samples
-        hold on which foam is made: so foam made coarser covers as much
-    spacing : of those samples, m
+    strains_of : function that returns the strains met by a point with a drift in m/s, of the waves on the
+        foam's own grid, so that coarser foam covers as much
+    spacing : of the foam's grid, m
     """
     foam, wind = parameters.foam, foam_wind(parameters)
     drift, rows = (0.0, 0.0), None
@@ -283,7 +288,7 @@ def foam_model(
         strains = strains_of(drift)
         threshold = strains.threshold(coverage, foam.half_life)
         frequency = strains.highest_frequency(threshold)
-        # what is left of it lasts half_life/ln 2 in the mean
+        # mean duration of remaining foam: half_life/ln 2
         new = _BREAKS_FOR / (_BREAKS_FOR + foam.half_life / math.log(2.0))
         breaking = max(threshold, strains.threshold(new * coverage, 0.0))
     return FoamModel(

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Windrows: the lines along the wind in which old foam lies from 7 Bft on.
+"""Windrows: the lines along the wind into which old foam gathers from 7 Bft.
 
-Water that rolls about axes along the wind (Langmuir 1938) draws foam out and gathers it. So old foam is read
-not where it was born but nearer to the middle of a cell that is long along the wind: in each cell it is
-stretched about that middle. Across the wind the cells are shifted against each other.
+Rolls of water with axes along the wind (Langmuir 1938) stretch and gather foam. Old foam is therefore not
+read where it was born but closer to the centre of a cell elongated along the wind, which stretches it about
+that centre. Neighbouring cells across the wind are offset.
 
-What was drawn out is gathered by a pattern of lines g that is normally distributed over the water: foam that
-covered the share F covers F' with F'/(1 - F') = o(F) exp(σg). The odds o(F) are those with which the mean of
-F' over g is F: so there is as much foam as before, closed where it was thick, threads where it was thin. The
-lines have all spacings that are seen at sea, the narrow ones between the wide ones. Those narrower than what
-the samples hold are left out of g and of its variance, as what cannot be told apart is even.
+The stretched foam is gathered by a pattern of lines g, normally distributed over the water: a coverage F
+becomes F' with F'/(1 - F') = o(F) exp(σg). The odds o(F) are chosen such that the mean of F' over g is F, so
+the amount of foam is preserved: closed where it was thick, threads where it was thin. The lines have all
+spacings seen at sea, narrow ones between wide ones. Lines too narrow for the samples are omitted from g and
+its variance, so unresolved foam is even.
 
-Cells and lines drift with the foam. They are made of waves that fit the side of the sea's square, so they
-are the same on a tile, on one grid of several patches, and at places; in a loop they stand still.
+Cells and lines drift with the foam. They consist of waves periodic over the sea's square, so they are the
+same on a tile, on merged patches and at places; in a loop they stand still.
 """
 
 from __future__ import annotations
@@ -33,42 +33,42 @@ from ..numerics.choice import chosen
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: wind in m/s at 10 m at which windrows begin to show, 7 Bft, and from which they are whole, 9 Bft
+#: wind in m/s at 10 m at which windrows appear, 7 Bft, and at which they are fully formed, 9 Bft
 _FROM, _WHOLE = 13.9, 20.8
 
-#: m; length of a cell along the wind, by how much foam in it is stretched, and how far neighbours are shifted
-#: against each other, rad. A sea that is shorter than two cells has none
+#: length of a cell along the wind in m, the stretch of foam in it, and the offset of neighbours in rad. A sea
+# smaller than two cells has no windrows
 _CELL, _STRETCH, _SHIFT = 50.0, 4.0, 2.0
-#: of the variance that says where foam lies, the lines' share where samples hold them all; and σ² over the
-#: ratio of that share to the rest: a logistic distribution against a normal one
+#: fraction of the variance of foam that fully resolved lines account for; and σ² over the ratio of that
+# fraction to the rest: a logistic distribution against a normal one
 _GATHERED, _LOGISTIC = 0.7, 2.9
-#: steps of the share F in the table of o(F), of the logarithm of odds that it is made of, and of g
+#: table sizes: of o(F) in F, of the log odds from which it is computed, and of g
 _SHARES, _ODDS, _NORMAL = 4096, np.linspace(-14.0, 14.0, 561), np.linspace(-5.0, 5.0, 161)
-#: s; half of the foam that a crest has left is drawn out in this time
+#: time in s in which half of a crest's foam is drawn out
 _DRAWN_IN = 0.9
-#: samples in a wave, or from a thread to the next, from which on it begins to count, and counts whole
+#: samples per wave, or between threads, at which it begins to count, and at which it counts fully
 _HELD = (2.0, 4.0)
 
-#: of threads: what their waves are at their edge, in standard deviations; narrower ones would be dotted
+#: value of the waves at the edge of a thread, in standard deviations; narrower threads would be dotted
 _THINNEST = 0.03
-#: standard deviations up to which a table of them goes, and its steps
+#: range in standard deviations of the table for threads, and its number of steps
 _FARTHEST, _AWAY = 5.0, 2**14
 
 _RADIANS = np.float32(2.0 * math.pi)
 
-#: places that are looked at together
+#: places processed at a time
 _CHUNK = 2**16
 
 
 class _Kind(NamedTuple):
-    """Waves of one kind.
+    """One kind of windrow waves.
 
     across : their shortest and longest wavelength across the wind, m
-    aspect : how much longer they are along it
-    number : of the waves
-    variance : of what they are in the lines, of 1
-    threads : whether lines are where the waves are 0: threads that wander, part and meet, two to a wave;
-        otherwise patches where they are high
+    aspect : ratio of their length along the wind to that across
+    number : number of waves
+    variance : their part of the lines' variance of 1
+    threads : whether lines follow the zeros of the waves, two per wave: threads that wander, part and meet;
+        otherwise they are patches where the waves are high
     """
 
     across: tuple[float, float]
@@ -78,9 +78,9 @@ class _Kind(NamedTuple):
     threads: bool
 
 
-#: what shifts cells
+#: offsets of cells
 _SHIFTING = _Kind((12.0, 60.0), 8.0, 12, 1.0, False)
-#: wide lines, narrow lines in between, streaks, and the stretches of sea that have more lines or fewer
+#: wide lines, narrow lines in between, streaks, and large areas with more or fewer lines
 _LINES = (
     _Kind((60.0, 300.0), 14.0, 12, 0.34, True),
     _Kind((16.0, 60.0), 16.0, 14, 0.34, True),
@@ -91,13 +91,13 @@ _LINES = (
 
 @dataclass(frozen=True)
 class Windrows:
-    """Those of a sea.
+    """The windrows of a sea.
 
-    strength : 0 for none, 1 where all old foam is drawn out
+    strength : from 0 for none to 1, at which all old foam is drawn out
     direction : of the wind, rad
-    side : of the square that they repeat with, m
+    side : of the square with which they repeat, m
     seed : of the sea
-    spacing : of the samples that they are seen on, m
+    spacing : of the samples on which they are shown, m
     """
 
     strength: float
@@ -107,8 +107,8 @@ class Windrows:
     spacing: float
 
     def sources(self, x: Array, y: Array) -> tuple[Array, Array, RealArray]:
-        """Where the foam comes from that is drawn out to places in m, which drift with it, and the lines that
-        gather it, exp(σg); of the places' shape.
+        """Source positions of the foam drawn out to places in m, which drift with it, and the gathering lines
+        exp(σg), in the places' shape.
         """
         source_x, source_y, lines = np.empty(x.shape), np.empty(y.shape), np.empty(x.shape, np.float32)
         for part in _parts(x.size, _CHUNK):
@@ -117,8 +117,8 @@ class Windrows:
         return source_x, source_y, lines
 
     def on_grid(self, along: Array) -> tuple[RealArray, RealArray, RealArray]:
-        """By how many m foam is drawn along x and y that comes to the crossings of lines at these places on
-        both axes, which drift with it, and the lines that gather it, exp(σg); (rows, columns) each.
+        """Offsets in m along x and y to the source of the foam on a grid, given by the coordinates of its
+        columns and rows, which drift with it, and the gathering lines exp(σg); (rows, columns) each.
         """
         count = len(along)
         found = np.empty((3, count, count), np.float32)
@@ -127,10 +127,10 @@ class Windrows:
         return found[0], found[1], found[2]
 
     def _drawn_by(self, x: Array, y: Array) -> tuple[RealArray, RealArray, RealArray]:
-        """As `on_grid`, of places in m whose x and y broadcast."""
+        """As `on_grid`, for places in m whose x and y broadcast."""
         pattern = self._pattern
         along_x, along_y = pattern.cell
-        # from the middle of the place's cell, in cells
+        # offset from the centre of the place's cell, in cells
         off = _turn(along_x * x) + _turn(along_y * y)
         off += np.float32(_SHIFT / (2.0 * math.pi)) * pattern.shift.at(x, y)
         off -= np.rint(off)
@@ -139,9 +139,9 @@ class Windrows:
         return off * np.float32(along_x), off * np.float32(along_y), lines
 
     def gathered(self, foam: RealArray, lines: RealArray) -> RealArray:
-        """The share in 0…1 that foam covers when it lies in lines; none stays none.
+        """Coverage in 0…1 of foam gathered into lines; 0 stays 0.
 
-        lines : exp(σg), as `sources` gives it
+        lines : exp(σg), as returned by `sources`
         """
         at = (foam * np.float32(_SHARES) + np.float32(0.5)).astype(np.int32)
         odds = np.take(_odds(self._pattern.contrast), at, mode="clip")
@@ -149,21 +149,21 @@ class Windrows:
         return np.asarray(odds / (odds + np.float32(1.0)))
 
     def stays(self, half_life: float) -> float:
-        """The half-life in s of foam where it was born: less than its own where all of it is drawn out."""
+        """Half-life in s of foam at its place of birth, which is shorter if it is drawn out."""
         if self.strength < 1.0 or half_life == 0.0:
             return half_life
         return 1.0 / (1.0 / half_life + 1.0 / _DRAWN_IN)
 
     def staying(self, foam: RealArray, age: RealArray) -> RealArray:
-        """What is left where it was born of old foam, which goes over into what is drawn out as it ages."""
+        """Old foam that remains where it was born; with age it passes into the drawn-out foam."""
         return foam * (1.0 - self.strength * _drawn(age))
 
     def drawn_out(
         self, own: RealArray, age: RealArray, drawn: RealArray, drawn_age: RealArray, lines: RealArray
     ) -> tuple[RealArray, RealArray]:
-        """Old foam and its age of what stays where it was born, and of what was drawn out.
+        """Combine foam that stays where it was born with drawn-out foam; returns the foam and its age.
 
-        The age is that of the larger part.
+        The age is that of the larger of the two.
         """
         other = self.gathered(drawn, lines) * (self.strength * _drawn(drawn_age))
         return np.minimum(own + other, np.float32(1.0)), chosen(other > own, drawn_age, age)
@@ -176,7 +176,7 @@ class Windrows:
 def windrows(
     wind_speed: float, direction: float, side: float, seed: int, spacing: float = 0.0
 ) -> Windrows | None:
-    """The windrows of a wind in m/s at 10 m; None where it is too weak, or the sea too small."""
+    """The windrows of a wind in m/s at 10 m; None if the wind is too weak or the sea too small."""
     part = min(1.0, max(0.0, (wind_speed - _FROM) / (_WHOLE - _FROM)))
     strength = part * part * (3.0 - 2.0 * part)
     if strength == 0.0 or side < 2.0 * _CELL:
@@ -194,7 +194,7 @@ class _Waves:
     phase: Array
 
     def at(self, x: Array, y: Array) -> RealArray:
-        """Its values at places in m, float32; x and y broadcast."""
+        """Values at places in m, float32; x and y broadcast."""
         total = np.zeros(np.broadcast_shapes(x.shape, y.shape), np.float32)
         product = np.empty_like(total)
         for kx, ky, amplitude, phase in zip(self.kx, self.ky, self.amplitude, self.phase, strict=True):
@@ -202,7 +202,7 @@ class _Waves:
                 continue
             if x.shape == y.shape:
                 total += np.float32(amplitude) * np.cos(_RADIANS * _turn(kx * x + ky * y + phase))
-            else:  # on a grid a cosine is one of columns and one of rows: cos(a + b)
+            else:  # on a grid, cos(a + b) separates into factors for columns and rows
                 a, b = _RADIANS * _turn(kx * x), _RADIANS * _turn(ky * y + phase)
                 total += np.multiply(np.float32(amplitude) * np.cos(a), np.cos(b), out=product)
                 total -= np.multiply(np.float32(amplitude) * np.sin(a), np.sin(b), out=product)
@@ -215,10 +215,10 @@ class _Waves:
 
 @dataclass(frozen=True)
 class _Pattern:
-    """What the samples hold of the windrows.
+    """The windrows as resolved by the samples.
 
     cell : wave vector of the cells, rad/m
-    shift : that neighbouring cells have against each other
+    shift : offset of neighbouring cells
     lines : waves of each kind of lines
     """
 
@@ -228,17 +228,17 @@ class _Pattern:
 
     @property
     def held(self) -> float:
-        """Share of the lines' variance that is held, 0…1."""
+        """Resolved fraction of the lines' variance, 0…1."""
         return sum(kind.variance * waves.variance for kind, waves in zip(_LINES, self.lines, strict=True))
 
     @property
     def contrast(self) -> float:
-        """σ, the standard deviation of the logarithm of odds that lines make."""
+        """σ, the standard deviation of the log odds due to the lines."""
         gathered = _GATHERED * self.held
         return math.sqrt(_LOGISTIC * gathered / (1.0 - gathered))
 
     def lines_at(self, x: Array, y: Array) -> RealArray:
-        """g at places in m: of a normal distribution with the variance 1, or 0 where nothing is held."""
+        """g at places in m, normally distributed with variance 1; 0 if nothing is resolved."""
         total = np.zeros(np.broadcast_shapes(x.shape, y.shape), np.float32)
         for kind, waves in zip(_LINES, self.lines, strict=True):
             if waves.variance == 0.0:
@@ -254,7 +254,7 @@ class _Pattern:
 
 @lru_cache(maxsize=16)
 def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Pattern:
-    """The windrows on the lattice of the square."""
+    """The pattern of windrows from wave vectors of the square."""
     step = 2.0 * math.pi / side
 
     def fitting(along: Array, across: Array) -> tuple[Array, Array]:
@@ -267,7 +267,7 @@ def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Patte
         key = random.mix(np.arange(kind.number, dtype=np.uint64) + np.uint64(random.combine(seed, stream)))
         shortest, longest = kind.across
         longest = min(longest, 0.5 * side)
-        # as many in each octave, one after the other
+        # the same number in each octave, one after another
         octaves = (np.arange(kind.number) + random.uniform(key, 0)) / kind.number
         across = 2.0 * math.pi / longest * (longest / shortest) ** octaves
         along = across / kind.aspect * random.normal(key, 1)
@@ -284,7 +284,8 @@ def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Patte
 
 @lru_cache(maxsize=1)
 def _threads() -> RealArray:
-    """By how far a normal number is from 0, in steps: what is normally distributed too, and highest there."""
+    """Table over the distance of a normal number from 0 of a value that is normally distributed too, and
+    largest at 0."""
     normal, away = NormalDist(), np.linspace(_THINNEST, _FARTHEST, 500)
     known = [-normal.inv_cdf(2.0 * normal.cdf(each) - 1.0) for each in away.tolist()]
     middle = (np.arange(_AWAY) + 0.5) * (_FARTHEST / _AWAY)
@@ -293,7 +294,7 @@ def _threads() -> RealArray:
 
 @lru_cache(maxsize=16)
 def _odds(contrast: float) -> RealArray:
-    """o(F) for shares F from 0 to 1 in steps of 1/_SHARES."""
+    """o(F) for F from 0 to 1 in steps of 1/_SHARES."""
     weight = np.exp(-0.5 * _NORMAL**2)
     gathered = 1.0 / (1.0 + np.exp(-_ODDS[:, np.newaxis] - contrast * _NORMAL))
     share = np.sum(gathered * (weight / np.sum(weight)), axis=1)
@@ -303,12 +304,12 @@ def _odds(contrast: float) -> RealArray:
 
 
 def _drawn(age: RealArray) -> RealArray:
-    """Share of the foam of an age that is drawn out."""
+    """Fraction of foam of an age that is drawn out."""
     return np.asarray(1.0 - np.exp2(age * np.float32(-1.0 / _DRAWN_IN)))
 
 
 def _turn(angle: Array) -> RealArray:
-    """Angles in rad as turns in [-½, ½], of which single precision loses nothing."""
+    """Angles in rad as turns in [-½, ½], for which single precision suffices."""
     turn = angle * (1.0 / (2.0 * math.pi))
     return np.asarray((turn - np.rint(turn)).astype(np.float32))
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kinds of waves: what a sea is the sum of."""
+"""The kinds of waves whose sum is the sea."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a kind of waves can tell and give: one class a kind, whose instances are the layers of a sea.
+"""The interface of a kind of waves: one class per kind, whose instances are the layers of a sea.
 
-Whatever needs to know of a sea's waves asks these methods, in the order of `kinds.KINDS`, and each of them
-says nothing by default. A method of a layer is asked for those that are not muted; one of the class is asked
-once a sea that has such layers, which act together.
+All code that needs information about a sea's waves calls these methods, in the order of `kinds.KINDS`; the
+defaults contribute nothing. Instance methods are called for each layer that is not muted; class methods once
+per sea, for kinds whose layers act together.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
 
-#: a component of the displacement, 0…2, and what it is differentiated by: "", "x", "y" or "t"
+#: a component of the displacement, 0…2, and the variable of its derivative: "", "x", "y" or "t"
 Key = tuple[int, str]
 
 _LARGEST = 2**31 - 1
@@ -39,34 +39,35 @@ _WHOLE = "Blender's whole numbers"
 
 
 class Gives(Flag):
-    """What the waves of a kind are, and what is told of them."""
+    """What the waves of a kind provide."""
 
-    #: a spectrum, from which the sea draws its waves: `directional_spectrum`
+    #: a spectrum from which the sea draws random waves: `directional_spectrum`
     SPECTRUM = auto()
     #: coefficients on the sea's own grid: `add`
     COEFFICIENTS = auto()
-    #: coefficients of displacements that are no gradient of a potential: `shares`
+    #: coefficients of displacements that are not the gradient of a potential: `shares`
     SHARES = auto()
-    #: displacements at any places, which need not repeat with the domain: `fields`
+    #: displacements at any places, not necessarily periodic: `fields`
     FIELDS = auto()
     #: their heights and periods: `state`
     STATE = auto()
-    #: waves that repeat in time where the sea does
+    #: waves that loop with the sea
     LOOPS = auto()
 
 
-#: how waves come into a sea
+#: the ways in which waves enter a sea
 WAVES = Gives.SPECTRUM | Gives.COEFFICIENTS | Gives.SHARES | Gives.FIELDS
 
 
 class Names(NamedTuple):
-    """How a kind looks in the window.
+    """How a kind is presented in the user interface.
 
-    number : what .blend files hold for it, and its place in menus and lists: never that of another kind
-    settings : of the property of a layer in .blend files that holds the settings; "" for the layer itself
-    noun : in the middle of a sentence
+    number : its value in .blend files and its position in menus and lists; never reused for another kind
+    settings : name of the layer's property group in .blend files that holds its settings; "" for the layer
+        itself
+    noun : its name within a sentence
     label, description, icon : of the kind, in lists
-    entry : of the menu that adds a layer; "" for the label
+    entry : label in the menu that adds a layer; "" for `label`
     """
 
     number: int
@@ -87,11 +88,11 @@ class Wind(NamedTuple):
 
 @dataclass(frozen=True)
 class MemoryNeed:
-    """Bytes that a sea takes.
+    """Memory use of a sea, in bytes.
 
-    state : kept as long as the sea: coefficients, frequencies, random numbers
-    building : on top of it, while the state is made
-    surface : of each surface that is made at the same time: its fields and the arrays between the passes
+    state : kept for the lifetime of the sea: coefficients, frequencies, random numbers
+    building : additional, while the state is computed
+    surface : for each surface computed at the same time: its fields and the arrays between the passes
     """
 
     state: int
@@ -99,52 +100,52 @@ class MemoryNeed:
     surface: int
 
     def peak(self, surfaces: int = 1) -> int:
-        """The most that is taken at once, with a number of surfaces at the same time."""
+        """Peak memory with a number of surfaces at the same time."""
         return self.state + max(self.building, surfaces * self.surface)
 
 
 class BlockShares(Protocol):
-    """Coefficients of a block of columns, at one time."""
+    """Contributions to a block of columns, at one time."""
 
     def add(self, component: int, rate: bool, target: ComplexArray, factor: float = 1.0) -> None:
         """Add the share in P[component], or in its rate, times `factor` to coefficients (columns, N)."""
 
 
 class Shares(Protocol):
-    """Coefficients at one time."""
+    """Contributions at one time."""
 
     def of_block(self, block: slice, scale: float = 1.0) -> BlockShares:
-        """Those of a block of columns kx, times `scale`."""
+        """The contributions to a block of columns kx, times `scale`."""
 
 
 class Sharing(Protocol):
-    """What adds coefficients of the displacement's components at a time."""
+    """Computes contributions to the coefficients of the displacement's components."""
 
     def shares(self, time: float, still: bool, moving: bool, dtype: type, workers: int = 1) -> Shares:
-        """What is added at a time in s: to positions, where `still`, and to rates, where `moving`."""
+        """The contributions at a time in s: to positions if `still`, and to rates if `moving`."""
 
 
 class Outlook(Protocol):
-    """What to expect of a kind's layers, told without making any waves."""
+    """A summary of a kind's layers, without computing any waves."""
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """One sentence each, with the remedy."""
 
     def lines(self) -> list[str]:
-        """What `info` says."""
+        """The lines that `info` prints."""
 
     def to_plain(self) -> Any:
-        """What `info --json` says."""
+        """The data that `info --json` prints."""
 
 
 class Contribution(Validated):
     """The waves of one layer.
 
     kind : its name in JSON
-    gives, names : see there
-    former_list : the list in which JSON had such layers before there was one list for all; "" for none
-    constant : why nothing of it, but for fields that say so, can change during a shot
+    gives, names : see `Gives` and `Names`
+    former_list : name of this kind's own list in format version 1; "" for none
+    constant : why its fields, unless marked otherwise, cannot be animated
     """
 
     kind: ClassVar[str]
@@ -154,17 +155,17 @@ class Contribution(Validated):
     constant: ClassVar[str] = "it sets which waves there are: the next frame would show other waves"
 
     muted: bool
-    mask: Mask | None = None  # of a kind without such a field
+    mask: Mask | None = None  # for a kind without such a field
     id: int = -1
 
     @classmethod
     def has(cls, field: str) -> bool:
-        """Whether layers of the kind have a field."""
+        """Whether layers of this kind have a field."""
         return field in {own.name for own in fields(cls)}  # type: ignore[arg-type]  # each is a dataclass
 
     @classmethod
     def to_begin_with(cls, sea: OceanParameters, time: float) -> Self:
-        """A new layer that fits a sea at a time in s."""
+        """A new layer with defaults that suit a sea at a time in s."""
         return cls()
 
     def changed(self, **changes: Any) -> Self:
@@ -172,34 +173,37 @@ class Contribution(Validated):
         return replace(self, **changes)  # type: ignore[type-var]  # each kind is a dataclass
 
     def check(self, sea: OceanParameters, path: str) -> None:
-        """Raise ParameterError, with the remedy, where a sea cannot have such a layer at a path in it."""
+        """Raise ParameterError, with a remedy, if a sea cannot have this layer. `path` is the layer's path in
+        the sea."""
 
     @classmethod
     def check_together(cls, sea: OceanParameters) -> None:
-        """Raise ParameterError where it cannot have all of its layers."""
+        """Raise ParameterError if a sea cannot have all of its layers of this kind."""
 
     def is_held(self, sea: OceanParameters, resolution: int) -> bool:
-        """Whether so many samples hold its waves; a sea on fewer of them mutes the layer."""
+        """Whether a grid with this many samples can hold its waves; if not, the layer is muted."""
         return True
 
     def in_patch(self, sea: OceanParameters, patch: int, rotation: float) -> Self | None:
-        """What a patch that is turned by `rotation` rad holds of it, in its axes: the first all."""
+        """The part of the layer that a patch holds, in the patch's axes, which are rotated by `rotation` rad;
+        by default the first patch holds all."""
         return self if patch == 0 else None
 
     def directional_spectrum(self, sea: OceanParameters) -> DirectionalSpectrum | None:
-        """Of waves that the sea draws; None in a calm."""
+        """The spectrum of waves that the sea draws; None in a calm."""
         return None
 
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
-        """Add its waves to coefficients, and what of their energy is expected over all seeds."""
+        """Add its waves to the coefficients, and their expected energy over all seeds."""
 
     def frequencies(self, sea: OceanParameters, grid: WaveVectorGrid) -> Array | None:
-        """ω ≥ 0 in rad/s without a loop, (N, N//2+1), of waves that it added with ones of their own."""
+        """ω ≥ 0 in rad/s without a loop, (N, N//2+1), of waves that it added with frequencies of their
+        own."""
         return None
 
     @classmethod
     def shares(cls, sea: OceanParameters) -> Sharing | None:
-        """What makes the coefficients that are no gradient of a potential."""
+        """Computes its coefficients that are not the gradient of a potential."""
         return None
 
     def fields(
@@ -211,41 +215,43 @@ class Contribution(Validated):
     def strain_covariances(
         self, sea: OceanParameters, drift: tuple[float, float]
     ) -> tuple[Array, Array] | None:
-        """Of waves given as fields: (3, 3) of xx, yy and xy of the displacement's gradient, and of rates."""
+        """For waves given as fields: covariances (3, 3) of xx, yy and xy of the displacement's gradient, and
+        of their rates."""
         return None
 
     def state(self, sea: OceanParameters) -> SeaState | None:
-        """Heights and periods of all of its waves, whether a grid resolves them or not."""
+        """State of all of its waves, whether a grid resolves them or not."""
         return None
 
     def longest_random_wave(self, sea: OceanParameters) -> float:
-        """Wavelength in m at the peak of what differs in height from seed to seed; NaN for nothing."""
+        """Peak wavelength in m of waves whose height varies with the seed; NaN for none."""
         return float("nan")
 
     def slope_variance(self, sea: OceanParameters, resolution: int | None) -> float:
-        """Mean square slope of the waves that are no spectrum's: of all, or of those on so many samples."""
+        """Mean square slope of waves without a spectrum: of all, or of those on a grid with this many
+        samples."""
         return 0.0
 
     def wind(self, sea: OceanParameters) -> Wind | None:
-        """The wind that makes whitecaps on these waves; None without one: swell does not break."""
+        """The wind that makes these waves break into whitecaps; None for swell."""
         return None
 
     @classmethod
     def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
-        """Bytes that its layers take beside the sea's own coefficients.
+        """Memory that its layers use besides the sea's own coefficients.
 
-        real : bytes of a real number
-        moving : whether rates are wanted
+        real : bytes per real number
+        moving : whether rates are computed
         """
         return MemoryNeed(0, 0, 0)
 
     def warnings(self, sea: OceanParameters) -> Iterable[str]:
-        """What the sea's statistics warn of, one sentence each, with the remedy."""
+        """Warnings for the sea's statistics, one sentence each, with a remedy."""
         return ()
 
     @classmethod
     def outlook(cls, sea: OceanParameters) -> Outlook | None:
-        """What to expect of its layers, of waves that the sea's heights are without."""
+        """Summary of its layers, for waves that the sea's statistics do not include."""
         return None
 
 
@@ -253,23 +259,23 @@ def direction(
     description: str = "Direction towards which the waves run, counter-clockwise from +x",
     changes: bool = False,
 ) -> Any:
-    """A field: where a layer's waves or its wind go."""
+    """Marks a field: the direction towards which the layer's waves or wind go."""
     why = "any number of turns, to the precision of a float"
     return number(0.0, -1e6, 1e6, "rad", description, why, changes=changes)
 
 
 def muted() -> Any:
-    """A field: whether a layer takes part."""
+    """Marks a field: whether the layer is muted."""
     return switch(False, "Leave the layer out; no other layer changes")
 
 
 def identity() -> Any:
-    """A field: what tells a layer from others of its kind."""
+    """Marks a field: the id of the layer among those of its kind."""
     description = "Identity of the layer, from which its seed follows; -1 is the first free one"
     return integer(-1, -1, _LARGEST, description, _WHOLE)
 
 
 def own_seed(what: str = "Seed of this layer alone") -> Any:
-    """A field: the seed of a layer's random numbers."""
+    """Marks a field: the seed of the layer's random numbers."""
     derived = Off(-1, 0, "follows from the ocean's seed and the layer's id")
     return integer(-1, -1, _LARGEST, what, _WHOLE, off=derived)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves by a spectrum: their energy, their directions, their band."""
+"""Waves drawn from a spectrum."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ if TYPE_CHECKING:
 
 SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
-#: those that grow with the fetch
+#: spectra that depend on the fetch
 FETCH_LIMITED = ("TMA", "JONSWAP")
 DEFINITIONS = ("WIND", "SEA_STATE")
 DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
 
 _LARGEST_SEED = 2**31 - 1
 
-#: rad; directions are allowed up to this
+#: largest allowed direction, rad
 _MOST_TURNED = 1e6
 
-#: layers whose random numbers are kept
+#: number of layers whose random numbers are cached
 _KEPT = 4
 
 
 @dataclass(frozen=True)
 class WaveLayer(Contribution):
-    """One wave system, given by its wind and fetch or by its height and period.
+    """One wave system, defined by wind and fetch or by wave height and period.
 
     Examples
     --------
@@ -160,21 +160,21 @@ class WaveLayer(Contribution):
 
     @property
     def is_calm(self) -> bool:
-        """Whether it is given by a wind that raises no waves: there is none, or it blows over no water."""
+        """Whether it is defined by a wind that raises no waves: no wind, or no fetch."""
         if self.definition != "WIND" or self.spectrum == "GENERALIZED_AB":
-            return False  # its energy comes from elsewhere
+            return False  # its energy is not the wind's
         has_fetch = self.spectrum in FETCH_LIMITED
         return self.wind_speed < constants.CALM or (has_fetch and self.fetch < constants.CALM)
 
     def random_seed(self, sea: OceanParameters) -> int:
-        """Its own, or one that follows from the ocean's seed and its id."""
+        """Its own seed, or one derived from the ocean's seed and its id."""
         return self.seed if self.seed >= 0 else random.combine(sea.seed, self.id)
 
     def in_patch(self, sea: OceanParameters, patch: int, rotation: float) -> Self:
-        """The same wind in the patch's axes, where one towards θ blows towards θ - rotation.
+        """The same layer in the patch's axes, in which a direction θ becomes θ - rotation.
 
-        Each patch but the first has random numbers of its own, or waves at a band's end, of which two patches
-        hold a part each, would be alike in both.
+        Each patch except the first has its own random numbers. Otherwise waves at the end of a band, of which
+        two patches hold a part each, would be correlated.
         """
         changes = {}
         if rotation:
@@ -186,17 +186,17 @@ class WaveLayer(Contribution):
         return self.changed(**changes) if changes else self
 
     def directional_spectrum(self, sea: OceanParameters) -> DirectionalSpectrum | None:
-        """In the sea's water, within its band; None in a calm."""
+        """The spectrum in the sea's water, within the patch's band; None in a calm."""
         return None if self.is_calm else DirectionalSpectrum(self, sea.water, sea.dispersion, sea.band)
 
     def wind(self, sea: OceanParameters) -> Wind | None:
-        """The layer's own, at 10 m."""
+        """The layer's wind at 10 m."""
         if self.is_calm or self.definition != "WIND" or self.amplitude_scale == 0.0:
             return None
         return Wind(wind_at_10_m(self.wind_speed, self.wind_height), self.wind_direction)
 
     @classmethod
     def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
-        """Random numbers, which are kept."""
+        """The cached random numbers."""
         kept = min(len(sea.active(cls)), _KEPT)
         return MemoryNeed(sea.resolution * (sea.resolution // 2 + 1) * kept * 2 * 2 * real, 0, 0)

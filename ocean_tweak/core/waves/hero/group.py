@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a hero wave to the coefficients of its waves, which the sea's initial state takes in.
+"""The Fourier coefficients of a hero wave, which are added to the sea's initial state.
 
 At its focus the surface is A·exp(-ξ²/2σ² - ζ²/2τ²)·cos(k0 ξ + φ), with ξ along and ζ across the direction.
-The transform of this is a Gaussian around k0 with deviations 1/σ and 1/τ. Each of its waves turns with the
-sea's own ω(k), so that crests run with ω/k and the group with dω/dk.
+Its transform is a Gaussian around k0 with standard deviations 1/σ and 1/τ. Each wave has the sea's own ω(k),
+so crests travel at ω/k and the group at dω/dk.
 """
 
 from __future__ import annotations
@@ -24,28 +24,28 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
 
-#: of a Gaussian: width between the places at half its height over its deviation
+#: full width at half maximum of a Gaussian, in standard deviations
 HALF_HEIGHT_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
 
-#: deviations up to which the Gaussian's waves are taken: those beyond are less than 1/20,000 of the highest
+#: cut-off of the Gaussian, in standard deviations: waves beyond are less than 1/20,000 of the highest
 REACH = 4.5
 
-#: samples that a wavelength must have
+#: least number of samples per wavelength
 FEWEST_SAMPLES = 4
 
-#: modes of a block that are made at once
+#: modes of a block computed at a time
 _BLOCK = 2**17
 
 
 class Bandwidth(NamedTuple):
-    """Deviations of a group's wave vectors around k0, rad/m: along its direction and across."""
+    """Standard deviations of a group's wave vectors around k0, rad/m: along its direction and across."""
 
     along: float
     across: float
 
 
 def bandwidth(wave: HeroWave) -> Bandwidth:
-    """1/σ and 1/τ: the longer or wider a group, the closer its waves are to one."""
+    """1/σ and 1/τ: the longer and wider a group, the narrower its bandwidth."""
     length = wave.group_length * wave.wavelength
     return Bandwidth(HALF_HEIGHT_WIDTH / length, HALF_HEIGHT_WIDTH / wave.group_width)
 
@@ -56,7 +56,7 @@ def wave_number(wave: HeroWave) -> float:
 
 
 def largest_wave_number(wave: HeroWave) -> float:
-    """Of all waves of a group, rad/m: that of the point of their ellipse which is farthest from 0."""
+    """Largest wave number of a group, rad/m: the point of its ellipse of wave vectors farthest from 0."""
     k0, (along, across) = wave_number(wave), bandwidth(wave)
     cosine = 1.0
     if across > along:
@@ -65,14 +65,14 @@ def largest_wave_number(wave: HeroWave) -> float:
 
 
 def needed_samples(wave: HeroWave, domain_size: float) -> int:
-    """Fewest samples along a side that hold all of a group's waves, whatever its direction; even."""
+    """Smallest even number of samples along a side that holds all of a group's waves, in any direction."""
     spacing = 2.0 * math.pi / domain_size
-    of_group = math.ceil(largest_wave_number(wave) / spacing) + 1  # the last modes are no waves
+    of_group = math.ceil(largest_wave_number(wave) / spacing) + 1  # the Nyquist modes are not used
     return 2 * max(of_group, math.ceil(0.5 * FEWEST_SAMPLES * domain_size / wave.wavelength))
 
 
 def check_hero_wave(wave: HeroWave, domain_size: float, resolution: int, path: str) -> None:
-    """Raise ParameterError, with the remedy, for a wave that the patch or its samples cannot hold."""
+    """Raise ParameterError, with a remedy, for a wave that the patch or its grid cannot hold."""
     length = wave.group_length * wave.wavelength
     for name, value, size, smaller in (
         ("wavelength", wave.wavelength, wave.wavelength, "shorter"),
@@ -96,7 +96,7 @@ def check_hero_wave(wave: HeroWave, domain_size: float, resolution: int, path: s
 
 
 class _Waves(NamedTuple):
-    """Waves of a block: their wave vectors over 2π/L, (M,) whole numbers, and weights, (M,)."""
+    """Modes of a block: wave vectors in units of 2π/L, (M,) integers, and weights, (M,)."""
 
     i: NDArray[Any]
     j: NDArray[Any]
@@ -104,7 +104,7 @@ class _Waves(NamedTuple):
 
 
 def _blocks(wave: HeroWave, spacing: float) -> Iterator[_Waves]:
-    """A group's waves, whatever the resolution: kx = i·Δk of either sign, ky = j·Δk."""
+    """A group's modes, independent of the resolution: kx = i·Δk of either sign, ky = j·Δk."""
     k0, (along, across) = wave_number(wave), bandwidth(wave)
     cosine, sine = math.cos(wave.direction), math.sin(wave.direction)
     i = _between(k0 * cosine, REACH * math.hypot(along * cosine, across * sine), spacing)
@@ -113,7 +113,7 @@ def _blocks(wave: HeroWave, spacing: float) -> Iterator[_Waves]:
     for first in range(0, len(i), width):
         kx, ky = spacing * i[first : first + width, np.newaxis], spacing * j
         distance = ((kx * cosine + ky * sine - k0) / along) ** 2 + ((ky * cosine - kx * sine) / across) ** 2
-        distance[(kx == 0.0) & (ky == 0.0)] = np.inf  # the mean is no wave
+        distance[(kx == 0.0) & (ky == 0.0)] = np.inf  # the mean is not a wave
         rows, columns = np.nonzero(distance <= REACH**2)
         yield _Waves(i[first + rows], j[columns], np.exp(-0.5 * distance[rows, columns]))
 
@@ -129,13 +129,13 @@ def add_hero_wave(
 
     omega : (N, N//2+1) rad/s, of the sea
 
-    They are in step at the focus, where their heights add up to the crest's exactly. The grid must hold all
-    of them.
+    The modes are in phase at the focus, where their heights add up exactly to the crest height. The grid must
+    hold all of them.
     """
     n, spacing = grid.resolution, grid.spacing
     height = 0.5 * wave.crest_height / sum(float(np.sum(some.weight)) for some in _blocks(wave, spacing))
     for i, j, weight in _blocks(wave, spacing):
-        side = np.where(i < 0, -1, 1)  # of two opposite wave vectors the half plane holds one
+        side = np.where(i < 0, -1, 1)  # the half plane holds one of two opposite wave vectors
         turns = i * (wave.x / grid.domain_size % 1.0) + j * (wave.y / grid.domain_size % 1.0)
         angle = (
             omega[side * j % n, side * i] * wave.time + wave.phase - 2.0 * np.pi * (turns - np.rint(turns))

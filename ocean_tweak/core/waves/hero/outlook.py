@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When and where a sea's hero waves have their focus and how fast they run, told without making any."""
+"""Time, place and speed of a sea's hero waves at their focus, without computing any."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 
 class HeroWaveOutlook(NamedTuple):
-    """What to expect of one wave.
+    """Summary of one hero wave.
 
-    number : which of the sea's hero waves it is
-    time, frame : of its focus, s and frame of the shot
-    x, y : of its focus, m, in the patch
-    direction : towards which it runs, rad
+    number : its number among the sea's hero waves
+    time, frame : of the focus, in s and as a frame of the shot
+    x, y : of the focus, m, within the patch
+    direction : towards which it travels, rad
     wavelength, period : m and s
-    crest_height : at its focus, m
-    phase_speed, group_speed : of its crests and of the group, m/s
+    crest_height : at the focus, m
+    phase_speed, group_speed : of the crests and of the group, m/s
     domain_size : side of the patch, m
     warnings : one sentence each, with the remedy
     """
@@ -44,7 +44,7 @@ class HeroWaveOutlook(NamedTuple):
     warnings: tuple[str, ...]
 
     def place(self, time: float) -> tuple[float, float]:
-        """x and y in m, in the patch, of the middle of the group at an ocean time in s."""
+        """Position (x, y) in m, within the patch, of the centre of the group at an ocean time in s."""
         way = self.group_speed * (time - self.time)
         return (
             (self.x + way * math.cos(self.direction)) % self.domain_size,
@@ -63,13 +63,13 @@ class HeroWaveOutlook(NamedTuple):
 
 
 class HeroWaveOutlooks(NamedTuple):
-    """What to expect of all hero waves of a sea that are not muted."""
+    """Summary of all hero waves of a sea that are not muted."""
 
     waves: tuple[HeroWaveOutlook, ...]
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """One sentence each, with the remedy."""
+        """One sentence each, with a remedy."""
         return tuple(warning for wave in self.waves for warning in wave.warnings)
 
     def lines(self) -> list[str]:
@@ -83,7 +83,7 @@ class HeroWaveOutlooks(NamedTuple):
 
 
 def hero_wave_outlooks(parameters: OceanParameters, waves: Sequence[HeroWave]) -> HeroWaveOutlooks | None:
-    """Of a sea's hero waves that are not muted; None where there are none."""
+    """Summary of a sea's hero waves that are not muted; None if there are none."""
     found = (_outlook(parameters, index, wave) for index, wave in enumerate(waves) if not wave.muted)
     return HeroWaveOutlooks(tuple(found)) if any(not wave.muted for wave in waves) else None
 

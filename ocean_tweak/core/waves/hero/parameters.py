@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hero waves: when and where a group is together, and how large it is there."""
+"""Parameters of a hero wave: time and place of its focus, and its size there."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from ...parameters.ocean_parameters import OceanParameters
     from ...synthesis.coefficients import Coefficients
 
-#: wavelengths that a crest must be wide: a narrower hump is no wave, it runs apart in all directions
+#: smallest width of a crest in wavelengths: a narrower hump spreads in all directions
 NARROWEST = 0.5
 
-#: of a wave to begin with: wavelengths in a patch; a crest's height and width over the wavelength and patch
+#: defaults of a new wave: wavelengths per patch, crest height over wavelength, width over patch
 _WAVES, _STEEPNESS, _WIDTH = 6.0, 0.05, 0.4
 
-#: wavelengths that 16 samples hold with a group of two
+#: wavelengths per patch that 16 samples can hold for a group of length two
 _WAVES_OF_16 = 3.5
 
 
@@ -30,8 +30,8 @@ _WAVES_OF_16 = 3.5
 class HeroWave(Contribution):
     """A group of waves under a bell-shaped (Gaussian) envelope, which adds to the sea.
 
-    Its waves obey the sea's dispersion relation: at its focus the group is what these numbers say; before
-    and after it runs along its direction, and is longer, wider and lower.
+    Its waves obey the sea's dispersion relation: at its focus the group has the shape given here; before and
+    after, it travels along its direction, and is longer, wider and lower.
 
     Examples
     --------
@@ -98,20 +98,20 @@ class HeroWave(Contribution):
             )  # fmt: skip
 
     def check(self, sea: OceanParameters, path: str) -> None:
-        """The patch and its samples must hold its waves."""
+        """Check that the patch and its grid can hold its waves."""
         check_hero_wave(self, sea.domain_size, sea.resolution, path)
 
     def is_held(self, sea: OceanParameters, resolution: int) -> bool:
-        """Whether so many samples hold all of the group's waves."""
+        """Whether a grid with this many samples holds all of the group's waves."""
         return needed_samples(self, sea.domain_size) <= resolution
 
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
-        """Add its waves; none of their energy is expected, which no seed changes."""
+        """Add its waves. They do not depend on the seed, so they have no expected energy."""
         add_hero_wave(self, to.grid, to.omega, to.h_plus, to.h_minus)
 
     @classmethod
     def to_begin_with(cls, sea: OceanParameters, time: float) -> Self:
-        """A group of two waves along x whose focus is in the middle of the patch."""
+        """A group of two waves along x with its focus in the middle of the patch."""
         size = sea.domain_size
         wavelength = size / min(_WAVES, _WAVES_OF_16 * sea.resolution / 16)
         return cls(
@@ -121,5 +121,5 @@ class HeroWave(Contribution):
 
     @classmethod
     def outlook(cls, sea: OceanParameters) -> HeroWaveOutlooks | None:
-        """When and where they have their focus."""
+        """Time and place of their focus."""
         return hero_wave_outlooks(sea, sea.of(cls))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seas out of images: white noise or the artist's own, filtered in the plane of wave vectors.
+"""Seas from images: white noise or an artist's image, filtered in the Fourier domain.
 
 After Gary Mastin, Peter Watterberg and John Mareda: Fourier synthesis of ocean scenes (1987).
 """

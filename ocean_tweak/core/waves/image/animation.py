@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fast the phase of each wave of an image turns: the three animations of Mastin et al. (1987)."""
+"""Angular frequencies of an image's waves: the three animations of Mastin et al. (1987)."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ Array = NDArray[np.float64]
 
 
 def runs_along(layer: ImageLayer, grid: WaveVectorGrid) -> NDArray[np.bool_]:
-    """(N, N//2+1): whether a wave runs along its wave vector k ≥ 0, not against it: the one with the wind.
+    """(N, N//2+1): whether the wave with the wind travels along +k, not along -k.
 
-    Of waves square to the wind, one of both is taken, so that k and -k always run the same way.
+    For waves at right angles to the wind one direction is chosen, consistently for k and -k.
     """
     towards = grid.kx * math.cos(layer.wind_direction) + grid.ky * math.sin(layer.wind_direction)
     return (towards > 0.0) | ((towards == 0.0) & ((grid.kx > 0.0) | (grid.ky > 0.0)))
 
 
 def dominant_band(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> NDArray[np.bool_]:
-    """(N, N//2+1): wavelengths of which the filter leaves over two thirds of what it leaves of its favourite.
+    """(N, N//2+1): modes for which the filter keeps more than two thirds of its maximum.
 
-    Of the modified Pierson-Moskowitz filter the frequencies count, as eq. 1 has them, and in a calm there is
-    none; a fractal's favourite is the longest wave of the patch.
+    For the modified Pierson-Moskowitz filter this applies to the frequency spectrum of eq. 1, and in a calm
+    to no mode; a fractal has its maximum at the longest wave of the patch.
     """
     if layer.filter == "MODIFIED_PIERSON_MOSKOWITZ":
         f = dispersion.angular_frequency(grid.k, relation, water) / (2.0 * np.pi)
@@ -50,18 +50,18 @@ def dominant_band(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water:
 
 
 def _dispersion(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
-    """Each wave at its own speed, after a dispersion relation; the paper takes deep water's (eq. 10)."""
+    """Each wave at its own speed, from a dispersion relation; the paper uses that of deep water (eq. 10)."""
     return dispersion.angular_frequency(grid.k, relation, water)
 
 
 def _dominant_band(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
-    """One rate for the phases of the dominant waves and another for those of all others."""
+    """One rate for the dominant waves and another for all others."""
     band = dominant_band(layer, grid, relation, water)
     return np.where(band, layer.dominant_rate, layer.surrounding_rate)
 
 
 def _translation(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
-    """abs(k·v) for the velocity v along the wind: the image moves as it is (eq. 9)."""
+    """abs(k·v) for the velocity v along the wind: the image moves without changing (eq. 9)."""
     vx, vy = (layer.translation_speed * part(layer.wind_direction) for part in (math.cos, math.sin))
     return np.abs(grid.kx * vx + grid.ky * vy)
 
@@ -82,8 +82,8 @@ def angular_frequency(
 ) -> Array:
     """ω(k) ≥ 0 in rad/s, (N, N//2+1), the same for k and -k.
 
-    In a loop of duration T the nearest multiple of 2π/T, at least one for what moves at all. A translation's
-    are multiples of it: others were refused with the parameters.
+    In a loop of duration T, the nearest multiple of 2π/T, at least one for waves that move. Those of a
+    translation are multiples already, as others are refused by the parameters.
     """
     omega = RATES[layer.animation](layer, grid, relation, water)
     if loop_duration is None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a filter leaves of an image's energy, over wave vectors. Its square root multiplies magnitudes.
+"""Power of the image filters over wave vectors; its square root multiplies magnitudes.
 
-Symbols as in Mastin, Watterberg & Mareda (1987): f in Hz, its peak f_m, U in m/s at 10 m, D the dimension of
-a fractal. All powers are even in k: an image does not tell a wave from the one that runs against it, and
-the paper's figure 7 passes 45° and 225° alike.
+Symbols as in Mastin, Watterberg & Mareda (1987): f in Hz, its peak f_m, U in m/s at 10 m, D the fractal
+dimension. All powers are even in k: an image cannot distinguish opposite directions, and the paper's figure 7
+passes 45° and 225° alike.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: cells nearer to the origin than this many cells are averaged over n x n sub-cells, n ~ this over the radius
+#: cells within this radius, in cells, of the origin are averaged over n x n sub-cells, with n about this over
+# the radius
 _FINEST_RADIUS = 32.0
 
-#: width of the texture's Gaussian over its peak wave number; the paper gives none
+#: width of the texture's Gaussian over its peak wave number, not given in the paper
 _TEXTURE_WIDTH = 1.0 / 3.0
 
 
@@ -55,7 +56,8 @@ def total_energy(U: float, g: float = constants.GRAVITY) -> float:
 
 
 def spreading_power(ratio: ArrayLike) -> Array:
-    """p over f/f_m > 0. Mastin et al. (1987), eq. 5; at the peak, which it leaves out, both branches meet."""
+    """p over f/f_m > 0. Mastin et al. (1987), eq. 5; both branches meet at the peak, which the paper leaves
+    out."""
     ratio = np.asarray(ratio, np.float64)
     mu = np.where(ratio < 1.0, constants.MASTIN_BELOW_EXPONENT, constants.MASTIN_ABOVE_EXPONENT)
     return constants.MASTIN_SHAPE * ratio**mu
@@ -74,7 +76,7 @@ def directional_spreading(ratio: ArrayLike, theta: ArrayLike) -> Array:
 
 @lru_cache(maxsize=1)
 def _normalisation() -> tuple[Array, Array]:
-    """p and 1/N_p at so many places that the line between them is good to 10⁻⁷."""
+    """p and 1/N_p, tabulated finely enough for linear interpolation to 10⁻⁷."""
     p = np.linspace(0.0, constants.MASTIN_SHAPE, 8193)
     values = [math.exp(math.lgamma(x + 1.0) - math.lgamma(x + 0.5)) / (2.0 * math.sqrt(math.pi)) for x in p]
     return p, np.array(values)
@@ -84,7 +86,7 @@ def directional_power(k: Array, theta: Array, layer: ImageLayer, relation: str, 
     """The modified Pierson-Moskowitz filter's power, even in k, over k > 0 and the angle to the wind.
 
     PAPER: F(f, θ) in m²·s/rad, eq. 3. PHYSICAL: Ψ = F·(df/dk)/k in m⁴, whose integral over the plane is m0.
-    The means of both directions: of its energy along the wind, an image gives half to either.
+    The mean of both directions, because an image gives half of its energy to either.
     """
     omega = dispersion.angular_frequency(k, relation, water)
     f, g = omega / (2.0 * np.pi), water.gravity
@@ -99,7 +101,7 @@ def directional_power(k: Array, theta: Array, layer: ImageLayer, relation: str, 
 def _modified_pierson_moskowitz(
     layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water
 ) -> Array:
-    """Means over the cells of wave vectors: near the peak the spectrum changes within one."""
+    """Means over wave-vector cells, as the spectrum varies within a cell near the peak."""
 
     def power(kx: Array, ky: Array) -> Array:
         k = np.maximum(np.hypot(kx, ky), 1e-9 * grid.spacing)
@@ -144,9 +146,9 @@ POWERS: dict[str, Callable[[ImageLayer, WaveVectorGrid, str, Water], Array]] = {
 
 
 def filter_power(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: Water) -> Array:
-    """(N, N//2+1): what the layer's filter leaves of each mode's energy; 0 for the mean and at Nyquist.
+    """(N, N//2+1): power of the layer's filter for each mode; 0 for the mean and at Nyquist.
 
-    relation : name of the dispersion relation, for the filter that is given over frequencies
+    relation : name of the dispersion relation, for the filter defined over frequencies
     """
     power = POWERS[layer.filter](layer, grid, relation, water)
     power[~grid.usable] = 0.0
@@ -154,9 +156,10 @@ def filter_power(layer: ImageLayer, grid: WaveVectorGrid, relation: str, water: 
 
 
 def unit_gain(power: Array, grid: WaveVectorGrid) -> Array:
-    """The power with a mean of 1 over all modes but the mean: white noise keeps its variance.
+    """The power scaled to an average of 1 over all modes except the mean, so that white noise keeps its
+    variance.
 
-    The paper's gain of one (Mastin et al. 1987, fig. 7).
+    The paper's unit gain (Mastin et al. 1987, fig. 7).
     """
     total = float(np.sum(power * grid.multiplicity))
     return power * ((grid.resolution**2 - 1) / total) if total > 0.0 else power

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves out of an image."""
+"""Parameters of waves from an image."""
 
 from __future__ import annotations
 
@@ -139,7 +139,8 @@ class ImageLayer(Contribution):
         return self.filter == "MODIFIED_PIERSON_MOSKOWITZ" and self.filter_gain == "PHYSICAL"
 
     def check(self, sea: OceanParameters, path: str) -> None:
-        """A translation must end where it began when the loop does: another one would bend the image.
+        """Check that a translation returns to its start at the end of the loop, as the image would otherwise
+        be distorted.
 
         It does where it moves by whole patches both ways.
         """
@@ -160,7 +161,8 @@ class ImageLayer(Contribution):
             )  # fmt: skip
 
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
-        """Add its waves: to the sea's own where they have its frequencies, which is no more work a frame."""
+        """Add its waves: to the sea's own if they have the same frequencies, which costs nothing per
+        frame."""
         waves = image_waves(
             self, to.grid, sea.dispersion, sea.water, sea.seed, sea.loop_duration, sea.match_height, to.dtype
         )
@@ -174,33 +176,33 @@ class ImageLayer(Contribution):
             to.set_apart(self, *waves, mirrored=self.animation != "TRANSLATION")
 
     def frequencies(self, sea: OceanParameters, grid: WaveVectorGrid) -> NDArray[np.float64] | None:
-        """How fast its phases turn without a loop."""
+        """Angular frequencies of its waves without a loop."""
         return angular_frequency(self, grid, sea.dispersion, sea.water)
 
     def state(self, sea: OceanParameters) -> SeaState:
-        """Of all that the image holds."""
+        """State of all modes of the image."""
         return state_of(sea.alone(self), self)
 
     def longest_random_wave(self, sea: OceanParameters) -> float:
-        """That of noise through the physical filter; all others have the height that they are given."""
+        """The peak wavelength of noise with the physical filter; other images have a fixed height."""
         if self.image is not None or not self.is_physical or not wanted_variance(self, sea.water) > 0.0:
             return float("nan")
         return peak_wavelength(self, sea.dispersion, sea.water)
 
     def slope_variance(self, sea: OceanParameters, resolution: int | None) -> float:
-        """Of what the image holds, or of what of it so many samples do."""
+        """Mean square slope of all modes of the image, or of those on a grid with this many samples."""
         made = filtered(self, sea.domain_size, resolution, sea.dispersion, sea.water, sea.seed)
         return made.slope_variance
 
     def wind(self, sea: OceanParameters) -> Wind | None:
-        """That of the modified Pierson-Moskowitz filter."""
+        """The wind of the modified Pierson-Moskowitz filter."""
         if self.filter != "MODIFIED_PIERSON_MOSKOWITZ" or not wanted_variance(self, sea.water) > 0.0:
             return None
         return Wind(self.wind_speed, self.wind_direction)
 
     @classmethod
     def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
-        """Coefficients of waves with frequencies of their own, and what filtering takes."""
+        """Coefficients of waves with frequencies of their own, and the memory for filtering."""
         layers = sea.active(cls)
         apart = sum(layer.animation != "DISPERSION" for layer in layers)
         half_plane = sea.resolution * (sea.resolution // 2 + 1)
@@ -208,7 +210,7 @@ class ImageLayer(Contribution):
         return MemoryNeed(half_plane * (3 * 2 * real + 8) * apart, filtering, 0)
 
     def warnings(self, sea: OceanParameters) -> Iterator[str]:
-        """Of an image of which nothing is left."""
+        """A warning for an image of which the filter leaves nothing."""
         if wanted_variance(self, sea.water) > 0.0 and not self.state(sea).m0 > 0.0:
             yield f"Image {self.id}: its filter leaves nothing of it. Use another filter, wind or image"
 

@@ -27,7 +27,8 @@ LARGEST_SIDE = 2048
 
 
 def white_noise(resolution: int, seed: int) -> Array:
-    """(N, N) whole grey levels from 1 to 255, uniform and independent: -127 … 127 around 128.
+    """(N, N) integer grey levels from 1 to 255, uniform and independent, with the mean 128 subtracted: -127 …
+    127.
 
     Mastin, Watterberg & Mareda (1987), fig. 5.
     """
@@ -38,7 +39,7 @@ def white_noise(resolution: int, seed: int) -> Array:
 
 
 def noise_variance() -> float:
-    """Variance of the white noise's grey levels, by its distribution."""
+    """Variance of the distribution of the white noise's grey levels."""
     return ((2 * NOISE_REACH + 1) ** 2 - 1) / 12.0
 
 
@@ -60,7 +61,7 @@ def image_coefficients(image: Raster) -> ComplexArray:
 
 
 def side(layer: ImageLayer) -> int:
-    """Samples along each side of what a layer's waves are made of."""
+    """Samples along each side of a layer's source image or noise."""
     return layer.noise_resolution if layer.image is None else _image_side(layer.image)
 
 
@@ -76,13 +77,13 @@ def fitted(coefficients: _Modes, resolution: int) -> _Modes:
 
 
 def _transformed(values: Array, resolution: int) -> ComplexArray:
-    """Coefficients c of Σ c exp(2πi(jx + iy)), x and y from 0 to 1: Σ|c|² is the variance of what is held."""
+    """Coefficients c of Σ c exp(2πi(jx + iy)), x and y from 0 to 1: Σ|c|² is the variance."""
     coefficients = np.fft.rfft2(values - np.mean(values)) / values.size
     return _placed(coefficients, values.shape, resolution)
 
 
 def _placed(coefficients: _Modes, shape: tuple[int, ...], resolution: int) -> _Modes:
-    """Coefficients of samples of some shape on a square grid: those below Nyquist of both."""
+    """Coefficients of samples of any shape moved to a square grid: the modes below Nyquist of both."""
     result = np.zeros((resolution, resolution // 2 + 1), coefficients.dtype)
     rows, columns = ((min(size, resolution) + 1) // 2 for size in shape)  # modes from 0 on, without Nyquist
     result[:rows, :columns] = coefficients[:rows, :columns]

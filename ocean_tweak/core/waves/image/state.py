@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From an image to the coefficients of its waves, and to their heights, periods and lengths."""
+"""The Fourier coefficients of an image's waves, and their sea state."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 RealArray = NDArray[np.floating]
 
-#: share of an image's energy below which a filter has left nothing of it
+#: fraction of an image's energy below which a filter is considered to remove all of it
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class Filtered:
-    """An image after its filter, on a grid of its own or of the sea.
+    """A filtered image, on a grid of its own or on that of the sea.
 
-    grid : its modes
+    grid : its wave vectors
     coefficients : (N, N//2+1) m, of the elevation at time 0
-    expected : (N, N//2+1) m², mean over all seeds of their squares; of an artist's image the squares
+    expected : (N, N//2+1) m², mean over all seeds of their squares; for an artist's image, the squares
     """
 
     grid: WaveVectorGrid
@@ -57,9 +57,9 @@ class Filtered:
 
 
 class ImageWaves(NamedTuple):
-    """Waves of an image, arrays as those of the sea's initial state, transposed in memory.
+    """Waves of an image; arrays like those of the sea's initial state, transposed in memory.
 
-    h_plus, h_minus : waves that run along k and against it, m
+    h_plus, h_minus : waves that travel along +k and -k, m
     omega : rad/s, ≥ 0, the same for k and -k
     expected_plus, expected_minus : m²
     """
@@ -72,7 +72,7 @@ class ImageWaves(NamedTuple):
 
 
 def noise_seed(layer: ImageLayer, sea_seed: int) -> int:
-    """The seed of a layer's noise: its own, or one that follows from the sea's and the layer's id."""
+    """The seed of a layer's noise: its own, or one derived from the sea's seed and the layer's id."""
     return layer.seed if layer.seed >= 0 else random.combine(sea_seed, layer.id, 0x71C)
 
 
@@ -84,13 +84,13 @@ def filtered(
     water: Water,
     sea_seed: int = 0,
 ) -> Filtered:
-    """The elevation that an image and its filter make at time 0.
+    """The elevation at time 0 from an image and its filter.
 
-    resolution : of the sea; None for all that the image holds
+    resolution : of the sea; None for all modes of the image
 
-    Noise through the physical filter has, over all seeds, the variance of the wind's spectrum. All other
-    elevations have theirs exactly, in all modes of the image: more resolution of the sea shows more of
-    them, and changes none.
+    Noise with the physical filter has the variance of the wind's spectrum on average over seeds. Other
+    elevations have their variance exactly, counting all modes of the image: a higher resolution of the sea
+    shows more modes without changing any.
     """
     noise = layer.image is None
     if layer.image is None:
@@ -106,7 +106,7 @@ def filtered(
     coefficients = source * np.sqrt(power)
     squares = np.abs(coefficients) ** 2
     if np.sum(squares) < _ROUNDING * np.max(power) * np.sum(np.abs(source) ** 2):
-        squares = np.zeros_like(squares)  # what is left is the rounding of the image's numbers, not a wave
+        squares = np.zeros_like(squares)  # the remainder is rounding noise of the image, not waves
     coefficients *= np.sqrt(_factor(squares, whole, wanted))
     energy = power if noise else squares
     result = Filtered(whole, coefficients, energy * _factor(energy, whole, wanted))
@@ -114,7 +114,7 @@ def filtered(
 
 
 def wanted_variance(layer: ImageLayer, water: Water) -> float:
-    """Variance in m² of the elevation that a layer is to have: its wind's or its own height's."""
+    """Target variance in m² of a layer's elevation, from its wind or from its own height."""
     if layer.is_physical:
         return layer.amplitude_scale**2 * total_energy(layer.wind_speed, water.gravity)
     return (layer.amplitude_scale * layer.significant_wave_height / 4.0) ** 2
@@ -128,12 +128,12 @@ def _wind_driven(
     water: Water,
     source: ComplexArray,
 ) -> Filtered:
-    """h = c √(ΨΔkxΔky), with c the noise's coefficients over their expected size 1/N."""
+    """h = c √(ΨΔkxΔky), with c the noise's coefficients divided by their expected magnitude 1/N."""
     grid = WaveVectorGrid(resolution, domain_size)
     side = len(source)
     expected = filter_power(layer, grid, relation, water) * (layer.amplitude_scale**2 * grid.cell_area)
     limit = (min(side, resolution) // 2 - 0.5) * grid.spacing
-    expected[(grid.kx > limit) | (np.abs(grid.ky) > limit)] = 0.0  # beyond what the noise holds
+    expected[(grid.kx > limit) | (np.abs(grid.ky) > limit)] = 0.0  # beyond the modes of the noise
     return Filtered(grid, side * fitted(source, resolution) * np.sqrt(expected), expected)
 
 
@@ -143,7 +143,7 @@ def _on_grid(whole: Filtered, resolution: int) -> Filtered:
 
 
 def _factor(energy: Array, grid: WaveVectorGrid, wanted: float) -> float:
-    """By which energies become the wanted variance in m²; 0 where a filter leaves nothing."""
+    """Factor from energies to the target variance in m²; 0 if a filter removes everything."""
     total = float(np.sum(energy * grid.multiplicity))
     return wanted / total if total > 0.0 else 0.0
 
@@ -160,7 +160,7 @@ def image_waves(
 ) -> ImageWaves:
     """Coefficients of an image's waves on the sea's grid.
 
-    match_height : whether this seed is to have the expected variance
+    match_height : whether to scale this seed to the expected variance
     """
     made = filtered(layer, grid.domain_size, grid.resolution, relation, water, sea_seed)
     if match_height:
@@ -180,26 +180,26 @@ def image_waves(
 
 
 def _transposed(values: NDArray[Any], where: NDArray[np.bool_], dtype: type) -> NDArray[Any]:
-    """The values in some places, 0 elsewhere; transposed in memory."""
+    """The values where a condition holds, 0 elsewhere; transposed in memory."""
     return np.asfortranarray(np.where(where, values, 0.0).astype(dtype, copy=False))
 
 
 @remembered("states of images")
 def state_of(sea: OceanParameters, layer: ImageLayer) -> SeaState:
-    """State of all that an image holds: it takes long, and is asked for often.
+    """State of all modes of an image; cached, as it is slow to compute and often needed.
 
-    sea : what of a sea acts on it, and no more
+    sea : reduced to the settings that affect it
     """
     return modes_state([_modes(sea, layer)], sea)
 
 
 def _modes(sea: OceanParameters, layer: ImageLayer) -> Modes:
-    """All that an image holds, whether the sea's grid resolves it or not, and without the loop."""
+    """All modes of an image, whether the sea's grid resolves them or not, without the loop."""
     relation, water = sea.dispersion, sea.water
     made = filtered(layer, sea.domain_size, None, relation, water, sea.seed)
     energy = made.expected
     if layer.is_physical and made.m0 > 0.0:
-        # an image or patch that is too small for some of the wind's waves does not make them any less
+        # an image or patch too small for some of the wind's waves does not make the others lower
         energy = energy * (wanted_variance(layer, water) / made.m0)
     along = runs_along(layer, made.grid)
     omega = angular_frequency(layer, made.grid, relation, water)

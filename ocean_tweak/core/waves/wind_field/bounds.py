@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many particles a layer can have at once, told from its parameters alone."""
+"""Upper bounds on the number of particles of a layer, from its parameters alone."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from .relations import period
 if TYPE_CHECKING:
     from .parameters import WindFieldLayer
 
-#: particles of all layers together: beyond it a frame takes seconds
+#: largest number of particles of all layers together: beyond it a frame takes seconds
 MOST_PARTICLES = 2_000_000
 
-#: waves that are looked at to find those that live, and winds that are kept: origins times keys
+#: largest number of births examined to find live waves, and of stored winds (origins times keys)
 MOST_BIRTHS, MOST_WINDS = 5_000_000, 8_000_000
 
-#: bytes that a particle takes while they are made and put on the grid
+#: bytes per particle while particles are created and put on the grid
 PARTICLE_BYTES = 400
 
-#: how much larger than its class's radius a particle's own may be: classes are at most a factor of 2 apart
+#: how much larger than its class's radius a particle's radius may be: classes differ by at most a factor of 2
 _ROUNDING = math.sqrt(2.0)
 
 
 def check_bounds(layers: Sequence[WindFieldLayer], gravity: float) -> None:
-    """Raise ParameterError, with the number and the remedy, where layers would have too many particles."""
+    """Raise ParameterError, with the number and a remedy, if layers would have too many particles."""
     particles = sum(most_particles(layer) for layer in layers)
     if particles > MOST_PARTICLES:
         raise ParameterError(
@@ -51,7 +51,8 @@ def check_bounds(layers: Sequence[WindFieldLayer], gravity: float) -> None:
 
 
 def bytes_of(layers: Sequence[WindFieldLayer], gravity: float) -> tuple[int, int]:
-    """Bytes that layers keep, and bytes more while their particles are made: at most."""
+    """Upper bounds on the bytes that layers keep, and on those used in addition while particles are
+    created."""
     layers = [layer for layer in layers if not layer.muted]
     kept = sum(_origins(layer) * (24 + 16 * max(1, len(layer.keys))) for layer in layers)
     kept += sum(8 * min(MOST_WINDS, 32 * _origins(layer) * len(layer.keys)) for layer in layers)
@@ -65,11 +66,11 @@ def _origins(layer: WindFieldLayer) -> int:
 
 
 def most_particles(layer: WindFieldLayer) -> int:
-    """A number that the layer's particles never exceed, whatever the wind does.
+    """An upper bound on the number of the layer's particles for any wind.
 
-    With a constant wind V, n wavelengths of life hold n waves of an origin, evenly spread over ages; with one
-    that changes between V_min and V_max, at most n(1 + ln(V_max/V_min)): waves that a stronger wind left
-    live on among those of the weaker one. Their particles are counted as divided as their ages allow.
+    With a constant wind V and a life of n wavelengths, an origin has n live waves, evenly spread over ages;
+    if the wind varies between V_min and V_max, at most n(1 + ln(V_max/V_min)), as waves of a stronger wind
+    live on among those of a weaker one. Particles are counted as divided as often as their ages allow.
     """
     speed = layer.greatest_speed
     if layer.muted or speed < layer.minimum_wind_speed:
@@ -85,8 +86,8 @@ def most_particles(layer: WindFieldLayer) -> int:
 
 
 def _divided(ratio: float) -> tuple[int, float]:
-    """What a particle has become at its end and in the mean over its life, from the distance of neighbours at
-    its end over that at which they divide; the distance grows with the age."""
+    """Number of particles that one becomes by the end of its life, and on average over it, from the ratio of
+    the final distance of neighbours to that at which they divide; the distance grows with age."""
     parts, mean, begin = 1, 0.0, 0.0
     while ratio > parts:
         end = parts / ratio
@@ -96,7 +97,8 @@ def _divided(ratio: float) -> tuple[int, float]:
 
 
 def most_births(layer: WindFieldLayer, gravity: float) -> int:
-    """Waves that are looked at to find those that live: none of an origin lives longer than the longest."""
+    """Upper bound on the births examined to find live waves: no wave of an origin lives longer than the
+    longest."""
     speed = layer.greatest_speed
     if layer.muted or speed < layer.minimum_wind_speed:
         return 0

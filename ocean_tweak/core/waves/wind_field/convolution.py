@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The coefficients of many particles at once: points on the grid, times the transform of their shape.
+"""Fourier coefficients of many particles at once: points on the grid, times the transform of their shape.
 
 A particle becomes nine samples of a quadratic B-spline, whose width, unlike that of a bilinear deposit, does
-not depend on where between the samples it lies; dividing by the spline's own transform makes the shape
-that of a bump moved by spline interpolation, exact where the particle meets a sample.
+not depend on its position between the samples; dividing by the spline's transform gives the bump shifted by
+spline interpolation, exact where the particle coincides with a sample.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from .shape import bump
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
 
-#: particles that are deposited together
+#: particles deposited at a time
 _CHUNK = 2**17
 
-#: NumPy before 2.0 transforms in double precision only, and into arrays of its own
+#: NumPy before 2.0 transforms in double precision only, and not in place
 _IN_PLACE = int(np.__version__.partition(".")[0]) >= 2
 
-#: rows that are transformed together
+#: rows transformed at a time
 _ROWS = 32
 
 
@@ -37,10 +37,10 @@ _ROWS = 32
 class Kernel:
     """The transform of a bump for kx and ky from 0 to N/2, (N//2+1, N//2+1) indexed [kx, ky].
 
-    Both are complex, or each product with coefficients would convert them.
+    Both are complex, as each product with coefficients would otherwise convert them.
 
-    height : of z; real, even in kx and ky, without its mean
-    sideways : of x; imaginary, odd in kx, even in ky. That of y is its transpose
+    height : for z; real, even in kx and ky, without the mean
+    sideways : for x; imaginary, odd in kx, even in ky. The one for y is its transpose
     """
 
     height: ComplexArray
@@ -79,14 +79,14 @@ def kernel(grid: WaveVectorGrid, radius: float, dtype: type) -> Kernel:
         parts.append(transform)
     height, sideways = parts
     height[0, 0] = 0.0
-    # by their symmetry one has no imaginary part and the other no real one, but for rounding
+    # by symmetry one is real and the other imaginary, except for rounding
     return Kernel(np.ascontiguousarray(height.real, dtype), np.ascontiguousarray(1j * sideways.imag, dtype))
 
 
 def deposit(x: Array, y: Array, weights: Sequence[Array], grid: WaveVectorGrid) -> list[Array]:
-    """(N, N) float64 [y, x] grids on which particles at places in m leave each of their weights.
+    """(N, N) float64 [y, x] grids, one for each weight, onto which particles at places in m are deposited.
 
-    Sums are made in the order of the particles, so that they are the same to the bit on any machine.
+    Sums are in the order of the particles, so they are the same bit for bit on any machine.
     """
     n = grid.resolution
     sums: list[Array] = []
@@ -104,7 +104,7 @@ def deposit(x: Array, y: Array, weights: Sequence[Array], grid: WaveVectorGrid) 
 
 
 def _spline(places: Array, n: int, domain_size: float) -> tuple[NDArray[np.intp], Array]:
-    """The three samples around each place, (3, places), and the quadratic B-spline's weights there."""
+    """The three samples around each place, (3, places), and their quadratic B-spline weights."""
     samples, weight = spline_weights(places * (n / domain_size))
     return samples % n, weight
 
@@ -112,8 +112,9 @@ def _spline(places: Array, n: int, domain_size: float) -> tuple[NDArray[np.intp]
 class Points(NamedTuple):
     """Particles of one radius on the grid, transformed along x: (N, N//2+1) each.
 
-    amplitude : m; None where only rates are wanted
-    rates : amplitude a second, and amplitude times velocity along x and along y; None if not wanted
+    amplitude : m; None if only rates are needed
+    rates : time derivative of the amplitude, and amplitude times velocity along x and along y; None if not
+        needed
     """
 
     kernel: Kernel
@@ -121,9 +122,9 @@ class Points(NamedTuple):
     rates: tuple[ComplexArray, ComplexArray, ComplexArray] | None
 
     def coefficients(self, rate: bool, block: slice, grid: WaveVectorGrid) -> ComplexArray:
-        """(columns, N) transform of the points, or of their change a second, for some columns kx.
+        """(columns, N) transform of the points, or of their time derivative, for some columns kx.
 
-        A bump's change is that of its height and its motion: dP/dt = (da/dt)·W - a·C·∇W.
+        A bump changes by its height and by its motion: dP/dt = (da/dt)·W - a·C·∇W.
         """
         if rate and self.rates is not None:
             growing, along, up = (_transposed(part, block) for part in self.rates)
@@ -140,7 +141,7 @@ class Points(NamedTuple):
 
 
 def _along_y(columns: ComplexArray) -> ComplexArray:
-    """Transform along the last axis, in the array itself where NumPy can."""
+    """Transform along the last axis, in place if NumPy can."""
     return np.fft.fft(columns, axis=-1, out=columns) if _IN_PLACE else np.fft.fft(columns, axis=-1)
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where and when waves are born: in a few places of each cell of the patch, drawn from a seed, and whenever
-the wind there, and nothing else, says so.
+"""Where and when waves are born: at a few random places in each cell of the patch, at times determined by the
+wind there alone.
 
 The phase of an origin grows by dt/T, T = √(2π)·V/g the period of its wind's waves; a wave is born whenever it
-passes a whole number. So the waves that live at any time follow from that time, without those before.
+passes an integer. So the live waves at any time can be computed directly.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-_X, _Y, _PHASE = 0, 1, 2  # streams of an origin's random numbers
+_X, _Y, _PHASE = 0, 1, 2  # random streams of an origin
 
-#: tells the numbers of these layers from those of spectral layers with the same ids
+#: keeps the random numbers of these layers distinct from those of spectral layers with the same ids
 _SALT = 0x57494E44
 
-#: numbers of the table of phases over which steps between two times of the wind become coarser, and steps
-#: between two times at most and at least
+#: table size above which steps between two keys of the wind become coarser, and the largest and smallest
+# number of steps between two keys
 _TABLE, _MOST_STEPS = 2_000_000, 128
 
 
 class Origins(NamedTuple):
-    """Places (n,) in m, and the share of a period (n,) by which each is ahead, in [0, 1)."""
+    """Places (n,) in m, and the initial phase (n,) of each in periods, in [0, 1)."""
 
     x: Array
     y: Array
@@ -43,7 +43,7 @@ class Origins(NamedTuple):
 
 
 def layer_origins(layer: WindFieldLayer, ocean_seed: int, domain_size: float) -> Origins:
-    """The origins of a layer, cell after cell."""
+    """The origins of a layer, cell by cell."""
     seed = layer.seed if layer.seed >= 0 else random.combine(ocean_seed, layer.id)
     count = layer.columns * layer.rows * layer.origins
     start = np.uint64(random.combine(seed, _SALT))
@@ -60,7 +60,7 @@ def layer_origins(layer: WindFieldLayer, ocean_seed: int, domain_size: float) ->
 
 
 class Births(NamedTuple):
-    """Waves that live at a time: where and when each was born, and the wind that it keeps.
+    """Live waves at a time: where and when each was born, and the wind it was born in.
 
     x, y : (n,) m
     age : (n,) s
@@ -74,7 +74,7 @@ class Births(NamedTuple):
 
 
 class Emission:
-    """The births of a layer's waves."""
+    """Computes the births of a layer's waves."""
 
     def __init__(self, layer: WindFieldLayer, origins: Origins, domain_size: float, gravity: float) -> None:
         self._layer = layer
@@ -82,7 +82,7 @@ class Emission:
         self._gravity = gravity
         self._times, self._winds = winds_at(layer, origins.x, origins.y, domain_size)
         speed = np.hypot(self._winds[..., 0], self._winds[..., 1])
-        #: (origins,) s: the longest life of a wave from there
+        #: (origins,) s: longest life of a wave from each origin
         self._longest_life = layer.life * period(speed.max(axis=0), gravity)
         self._nodes = self._node_times()
         self._phases = self._table()
@@ -90,12 +90,12 @@ class Emission:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the winds at the origins, and of their phases."""
+        """Bytes of the winds and phases at the origins."""
         own = (self._times, self._winds, self._longest_life, self._nodes, self._phases, self._rate_after)
         return total_bytes((*own, *self._origins))
 
     def births(self, time: float) -> Births:
-        """The waves born before a time in s that are not gone yet; origin after origin, oldest first."""
+        """The waves alive at a time in s, by origin, oldest first."""
         start = np.maximum(self._nodes[0], time - self._longest_life)
         first = np.floor(self._phase(start))
         last = np.floor(self._phase(np.full(len(start), max(time, self._nodes[0]))))
@@ -113,13 +113,13 @@ class Emission:
         return Births(self._origins.x[origin], self._origins.y[origin], age[alive], wind[alive])
 
     def _rate(self, winds: Array) -> Array:
-        """1/T in 1/s of winds (…, 2), 0 where it is calm."""
+        """1/T in 1/s for winds (…, 2), 0 in a calm."""
         speed = np.hypot(winds[..., 0], winds[..., 1])
         blowing = speed >= self._layer.minimum_wind_speed
         return np.divide(1.0, period(speed, self._gravity), out=np.zeros(speed.shape), where=blowing)
 
     def _node_times(self) -> Array:
-        """From the start on, the times at which phases are tabulated; after the last the wind is constant."""
+        """Times at which phases are tabulated, from the start; after the last one the wind is constant."""
         start = self._layer.start_time
         keys = np.concatenate(([start], self._times[self._times > start]))
         if len(self._times) == 1:
@@ -132,7 +132,7 @@ class Emission:
         return np.append(inner.ravel(), keys[-1])
 
     def _table(self) -> Array:
-        """(nodes, origins) phases at the nodes: of the rate in the middle between two of them."""
+        """(nodes, origins) phases at the nodes, integrated by the midpoint rule."""
         phases = np.empty((len(self._nodes), self._winds.shape[1]))
         phases[0] = self._origins.phase
         widths = np.diff(self._nodes)
@@ -164,7 +164,7 @@ class Emission:
         return np.asarray(self._phases[node, everywhere] + elapsed * self._slope(node, everywhere))
 
     def _slope(self, node: Indices, origin: Indices) -> Array:
-        """Phase a second after a node."""
+        """Rate of the phase after a node, 1/s."""
         last = len(self._nodes) - 1
         if last == 0:
             return np.asarray(self._rate_after[origin])
@@ -174,8 +174,8 @@ class Emission:
         return np.where(node == last, self._rate_after[origin], rise / width)
 
     def _time_of(self, number: Array, origin: Indices) -> Array:
-        """Times at which the phases of origins pass numbers, all of them above the first node's."""
-        low = np.zeros(len(number), np.intp)  # the last node with a phase below the number, by bisection
+        """Times at which the phases of origins pass given numbers, all above the phase at the first node."""
+        low = np.zeros(len(number), np.intp)  # the last node whose phase is below the number, by bisection
         high = np.full(len(number), len(self._nodes))
         while np.any(high - low > 1):
             middle = (low + high) // 2
@@ -189,5 +189,5 @@ class Emission:
 
 @remembered("winds at origins")
 def emission_of(layer: WindFieldLayer, seed: int, domain_size: float, gravity: float) -> Emission:
-    """Where and when a layer's waves are born, in a sea with a seed."""
+    """The emission of a layer in a sea with a seed."""
     return Emission(layer, layer_origins(layer, seed, domain_size), domain_size, gravity)

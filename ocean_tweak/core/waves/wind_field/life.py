@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a wave's birth to its particles at a time: straight flight, rise and fall, division in three.
+"""The life of a wave: straight travel, growth and decay, division of its particles into three.
 
-All of it follows from the age. Positions are not reduced to the patch, which repeats.
+Everything is a function of the age. Positions are not wrapped to the patch.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: neighbours further apart than this share of the radius divide, and those of a parallel crest are so far
+#: distance of neighbours, in radii, beyond which particles divide; also their distance in a parallel crest
 SPACING = 0.5
 
 
@@ -31,7 +31,7 @@ class Particles(NamedTuple):
     x, y : m
     velocity_x, velocity_y : m/s
     amplitude, amplitude_rate : m and m/s
-    shape : index of the radius among the sea's classes
+    shape : index of the particle's radius class
     """
 
     x: Array
@@ -46,9 +46,9 @@ class Particles(NamedTuple):
 def particles_of(
     births: Births, layer: WindFieldLayer, classes: RadiusClasses, gravity: float, shortest: float
 ) -> Particles:
-    """The particles of some waves, those divided least first.
+    """The particles of some waves, least divided first.
 
-    shortest : wavelength in m below which a wave has none
+    shortest : wavelength in m below which a wave has no particles
     """
     speed = np.hypot(births.wind[:, 0], births.wind[:, 1])
     kept = wavelength(speed, gravity) >= shortest
@@ -63,7 +63,7 @@ def particles_of(
     towards = np.arctan2(wind[:, 1], wind[:, 0])
     parts: list[Particles] = []
     for times in np.unique(divided):
-        # one row a wave, one column a particle
+        # one row per wave, one column per particle
         these = np.nonzero(divided == times)[0][:, np.newaxis]
         turn, aside = _fan(layer, int(times))
         angle = towards[these] + turn
@@ -87,15 +87,15 @@ def particles_of(
 
 
 def joined(parts: Sequence[Particles]) -> Particles:
-    """Particles one after the other."""
+    """Concatenate particles."""
     none = (*([np.zeros(0)] * 6), np.zeros(0, np.intp))
     return Particles._make(np.concatenate(columns) for columns in zip(none, *parts, strict=True))
 
 
 def amplitude(speed: Array, layer: WindFieldLayer, gravity: float) -> Array:
-    """Height in m of a wave's particles at the middle of its life, before they divide.
+    """Height in m of a wave's particles in the middle of its life, before division.
 
-    Li & Wang (2016), eq. 5, k_a·V; or by steepness s, s·λ/2π, with which long waves are not the flatter ones.
+    Li & Wang (2016), eq. 5, k_a·V; or s·λ/2π for a steepness s, so that long waves are not flatter.
     """
     if layer.height == "WIND_SPEED":
         return np.asarray(layer.amplitude_scale * layer.height_per_speed * speed)
@@ -103,7 +103,7 @@ def amplitude(speed: Array, layer: WindFieldLayer, gravity: float) -> Array:
 
 
 def divisions(travelled: Array, radius: Array, layer: WindFieldLayer) -> NDArray[np.intp]:
-    """How often the particles of waves have divided in three.
+    """Number of times the particles of waves have divided in three.
 
     Li & Wang (2016), eq. 25 with its small angle, and algorithm 1, corrected: half a radius is the limit
     (the algorithm's quarter of a size, which is 2r), and the distance travelled is C·(t - t_born).
@@ -116,7 +116,8 @@ def divisions(travelled: Array, radius: Array, layer: WindFieldLayer) -> NDArray
 
 
 def _fan(layer: WindFieldLayer, times: int) -> tuple[Array, Array]:
-    """Directions in rad and places aside in radii of a wave's particles, against those of its middle."""
+    """Directions in rad and lateral offsets in radii of a wave's particles, relative to the middle of its
+    crest."""
     first = np.arange(layer.particles, dtype=np.float64) - 0.5 * (layer.particles - 1)
     if layer.crest == "PARALLEL":
         return np.zeros(layer.particles), np.asarray(SPACING * first)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What waves the wind fields of a sea will raise, told without making any."""
+"""Summary of the waves of a sea's wind fields, without computing any."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class WindWaveOutlook(NamedTuple):
-    """What to expect.
+    """Summary of a sea's wind fields.
 
-    most_particles : more there never are
-    longest_wavelength : of the strongest wind, m; 0 where it is calm
+    most_particles : upper bound on the number of particles
+    longest_wavelength : of the strongest wind, m; 0 in a calm
     warnings : one sentence each, with the remedy
     """
 
@@ -42,7 +42,7 @@ class WindWaveOutlook(NamedTuple):
 def wind_wave_outlook(
     parameters: OceanParameters, layers: Sequence[WindFieldLayer]
 ) -> WindWaveOutlook | None:
-    """Of a sea's wind fields that are not muted; None where there are none."""
+    """Summary of a sea's wind fields that are not muted; None if there are none."""
     if all(layer.muted for layer in layers):
         return None
     spacing = parameters.domain_size / parameters.resolution

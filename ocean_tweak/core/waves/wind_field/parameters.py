@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves from a wind field: the wind, where waves are born, what they are like."""
+"""Parameters of waves from a wind field."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 CRESTS = ("ARC", "PARALLEL")
 HEIGHTS = ("STEEPNESS", "WIND_SPEED")
 
-#: times at which a wind may be given
+#: largest number of keys of a wind
 MOST_KEYS = 1024
 
 
 @dataclass(frozen=True)
 class WindKey(Validated):
-    """The wind over the patch at one time.
+    """The wind over the patch at one key time.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class WindKey(Validated):
 
 @dataclass(frozen=True)
 class WindFieldLayer(Contribution):
-    """Waves that follow a wind field. Each keeps the wind of the place and time of its birth.
+    """Waves that follow a wind field. Each wave is determined by the wind at the place and time of its birth.
 
     A wave of wind V has the length λ = V²/g, the period T = √(2π)·V/g and the speed V/√(2π).
 
@@ -156,17 +156,17 @@ class WindFieldLayer(Contribution):
 
     @cached_property
     def greatest_speed(self) -> float:
-        """The strongest wind anywhere and at any time, m/s; between samples it is never stronger."""
+        """The strongest wind at any place and time, m/s; interpolation never exceeds it."""
         speeds = [float(np.hypot(*np.moveaxis(raster.values, -1, 0)).max()) for raster in self.rasters]
         return self.wind_scale * max(speeds, default=self.wind_speed)
 
     @property
     def rasters(self) -> tuple[Raster, ...]:
-        """The vectors of all keys, in the order of their times."""
+        """The rasters of all keys, in the order of their times."""
         return tuple(key.vectors for key in self.keys if key.vectors is not None)
 
     def check(self, sea: OceanParameters, path: str) -> None:
-        """Its waves must find room in the patch."""
+        """Check that its waves fit into the patch."""
         size, speed = sea.domain_size, self.greatest_speed
         longest = speed**2 / sea.water.gravity
         if longest > size:
@@ -180,17 +180,17 @@ class WindFieldLayer(Contribution):
 
     @classmethod
     def check_together(cls, sea: OceanParameters) -> None:
-        """There must not be too many particles."""
+        """Check the number of particles."""
         check_bounds(sea.active(cls), sea.water.gravity)
 
     @classmethod
     def shares(cls, sea: OceanParameters) -> WindWaves:
-        """Their particles, put on the sea's grid."""
+        """The contributions of their particles to the sea's coefficients."""
         return WindWaves(sea, sea.active(cls))
 
     @classmethod
     def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
-        """Of each radius two quarters of a plane stay; each weight takes a grid and half a plane a radius."""
+        """Each radius keeps two quarter planes; each weight needs a grid, and half a plane per radius."""
         n = sea.resolution
         of_radii = MOST_CLASSES * n * (n // 2 + 1) * 2 * real
         kept, making = bytes_of(sea.active(cls), sea.water.gravity)
@@ -198,5 +198,5 @@ class WindFieldLayer(Contribution):
 
     @classmethod
     def outlook(cls, sea: OceanParameters) -> WindWaveOutlook | None:
-        """How many particles they have, and waves how long."""
+        """Their number of particles and longest wavelength."""
         return wind_wave_outlook(sea, sea.of(cls))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The three wind fields of Li & Wang (2016), figure 9, as layers to begin with."""
+"""The three wind fields of Li & Wang (2016), figure 9, as starting points."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ...data.raster import Raster
 from .parameters import WindFieldLayer, WindKey
 
-#: vectors along each side
+#: number of vectors along each side
 _SAMPLES = 16
 
-#: waves in a patch one behind the other, and the least and the strongest wind in m/s
+#: wavelengths per patch, and the weakest and strongest wind in m/s
 _WAVES, _LEAST, _STRONGEST = 24.0, 0.5, 40.0
 
 
@@ -26,7 +26,7 @@ def uniform(speed: float) -> WindFieldLayer:
 
 
 def opposed_halves(speed: float) -> WindFieldLayer:
-    """Figure 9 D: to the left in the left half, to the right in the right half."""
+    """Figure 9 D: wind to the left in the left half, to the right in the right half."""
     vectors = np.zeros((_SAMPLES, _SAMPLES, 2))
     vectors[:, : _SAMPLES // 2, 0] = -speed
     vectors[:, _SAMPLES // 2 :, 0] = speed
@@ -34,7 +34,7 @@ def opposed_halves(speed: float) -> WindFieldLayer:
 
 
 def varying_speed(speed: float) -> WindFieldLayer:
-    """Figure 9 F: one direction, weak at the patch's lower edge and strong at its upper one."""
+    """Figure 9 F: one direction, weak at the lower edge of the patch and strong at the upper one."""
     vectors = np.zeros((_SAMPLES, _SAMPLES, 2))
     vectors[..., 0] = speed * np.linspace(0.4, 1.4, _SAMPLES)[:, np.newaxis]
     return _of_vectors(vectors, "Varying Speed")
@@ -49,9 +49,9 @@ WIND_FIELDS: dict[str, Callable[[float], WindFieldLayer]] = {
 
 
 def wind_field(name: str, domain_size: float, gravity: float) -> WindFieldLayer:
-    """A layer by its name, of a wind whose waves are a 24th of the patch long: 13 m/s on 400 m.
+    """A layer by name, with a wind whose waves have 1/24 of the patch's length: 13 m/s on 400 m.
 
-    Raises KeyError for a name that is none of WIND_FIELDS.
+    Raises KeyError for a name that is not in WIND_FIELDS.
     """
     speed = math.sqrt(domain_size * gravity / _WAVES)
     speed = float(f"{min(max(speed, _LEAST), _STRONGEST):.2g}")

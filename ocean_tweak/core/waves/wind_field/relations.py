@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a wind's waves are like: Li & Wang (2016), eq. 14 to 20. V in m/s, g in m/s²; λ = C·T."""
+"""Relations between a wind and its waves: Li & Wang (2016), eq. 14 to 20. V in m/s, g in m/s²; λ = C·T."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def wavelength(V: Number, g: float) -> Number:
 
 
 def period(V: Number, g: float) -> Number:
-    """T in s, at which waves are emitted too. Li & Wang (2016), eq. 19: that of λ in deep water."""
+    """T in s, also the interval between births. Li & Wang (2016), eq. 19: the period of λ in deep water."""
     return V * (float(np.sqrt(2.0 * np.pi)) / g)
 
 

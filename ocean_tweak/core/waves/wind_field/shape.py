@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bump of water that a particle carries, and the few radii that the particles of a sea may have."""
+"""The bump of water that a particle carries, and the radius classes of particles."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: how many radii there are at most, how far the smallest may lie below the largest, and the ratio of two
-#: neighbours below which there are fewer: rounded by less than a fifth, nobody sees it, and each costs time
+#: largest number of radii, smallest ratio of the smallest to the largest, and the ratio of neighbours below
+# which there are fewer radii: rounding by less than a fifth is not visible, and each radius costs time
 MOST_CLASSES, _WIDEST, _FINEST = 4, 16.0, 2.0**0.5
 
-#: samples of a raster that are looked at, and the share of them whose waves may be rounded up
+#: number of raster samples examined, and the fraction of them whose waves may be rounded up
 _SAMPLES, _SHORTEST_SHARE = 65536, 0.05
 
 
@@ -35,10 +35,10 @@ class RadiusClasses(NamedTuple):
 
 
 def radius_classes(layers: Iterable[WindFieldLayer], gravity: float) -> RadiusClasses:
-    """The radii of the particles of some layers, from their winds: half the wavelengths.
+    """The particle radii of some layers, from their winds: half the wavelengths.
 
-    Those themselves where there are at most four, else four of equal ratio. The resolution has no say: it
-    refines the same sea.
+    The exact radii if there are at most four, else four with equal ratios. They do not depend on the
+    resolution.
     """
     speeds = np.concatenate([np.zeros(0), *(_speeds(layer) for layer in layers)])
     radii = np.unique(0.5 * wavelength(speeds, gravity))
@@ -54,7 +54,7 @@ def radius_classes(layers: Iterable[WindFieldLayer], gravity: float) -> RadiusCl
 
 
 def _speeds(layer: WindFieldLayer) -> Array:
-    """Winds of a layer that raise waves, m/s, at some of the samples of all its times."""
+    """Speeds in m/s of a layer's winds that raise waves, at some of the samples of all keys."""
     if not layer.keys:
         speeds = np.array([layer.wind_scale * layer.wind_speed])
     else:
@@ -68,7 +68,7 @@ def _speeds(layer: WindFieldLayer) -> Array:
 
 
 class Bump(NamedTuple):
-    """A particle of height 1 at places around it: what is added to the position and its derivatives.
+    """The displacement around a particle of height 1, and its derivatives.
 
     position, by_x, by_y : (…, 3), of x, y and z
     """
@@ -79,16 +79,16 @@ class Bump(NamedTuple):
 
 
 def bump(dx: Array, dy: Array, radius: float) -> Bump:
-    """The bump at places (dx, dy) in m from its middle; 0 with slope 0 from the radius on.
+    """The bump at places (dx, dy) in m from its centre; 0, with zero slope, from the radius outwards.
 
-    W = ½(cos(π d/r) + 1): Li & Wang (2016), eq. 6, corrected (as printed its rim is a step); sideways
-    -sin(π Δx/r)·W and -sin(π Δy/r)·W, eq. 23, which draws the water towards the crest.
+    W = ½(cos(π d/r) + 1): Li & Wang (2016), eq. 6, corrected (as printed there is a step at the rim);
+    sideways -sin(π Δx/r)·W and -sin(π Δy/r)·W, eq. 23, which moves the water towards the crest.
     """
     distance = np.hypot(dx, dy)
     inside = distance < radius
     turn = np.pi / radius
     height = np.where(inside, 0.5 * (np.cos(turn * distance) + 1.0), 0.0)
-    # dW/dd / d, which is finite in the middle
+    # dW/dd / d, which is finite at the centre
     steep = np.where(inside, -0.5 * turn * turn * np.sinc(distance / radius), 0.0)
     slope_x, slope_y = steep * dx, steep * dy
     sine_x, sine_y = np.sin(turn * dx), np.sin(turn * dy)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The wind at places, and rasters of winds made from functions."""
+"""Interpolated wind, and rasters of wind sampled from functions."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: from places x and y in m, arrays of one shape, to the wind along x and along y in m/s there
+#: a function of places x and y in m, arrays of one shape, that returns the wind along x and along y in m/s
 WindFunction = Callable[[Array, Array], tuple[ArrayLike, ArrayLike]]
 
 
 def sampled_wind(wind: WindFunction, domain_size: float, samples: int = 64, name: str = "") -> Raster:
-    """The raster of a wind that is given as a function, with so many samples along each side.
+    """The raster of a wind given as a function, with this many samples along each side.
 
-    Raises ParameterError, naming it, where the wind is not finite.
+    Raises ParameterError, with the raster's name, if the wind is not finite.
     """
     places = np.arange(samples) * (domain_size / samples)
     x, y = np.meshgrid(places, places)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The waves of a sea's wind fields: their particles, and what these add to the sea's coefficients."""
+"""The particles of a sea's wind fields, and their contributions to the sea's coefficients."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 ComplexArray = NDArray[np.complexfloating]
 
-#: samples to the shortest wave that is shown
+#: samples per shortest wave that is shown
 SHORTEST = 4.0
 
 
@@ -38,7 +38,7 @@ class WindWaves:
 
     @cached_property
     def classes(self) -> RadiusClasses:
-        """The radii that their particles have."""
+        """The radius classes of their particles."""
         return radius_classes(self._layers, self._gravity)
 
     @cached_property
@@ -47,7 +47,7 @@ class WindWaves:
         return [emission_of(layer, seed, size, self._gravity) for layer in self._layers]
 
     def particles(self, time: float) -> Particles:
-        """All particles at a time in s, layer after layer."""
+        """All particles at a time in s, layer by layer."""
         shortest = SHORTEST * self._parameters.domain_size / self._parameters.resolution
         parts = [
             particles_of(emission.births(time), layer, self.classes, self._gravity, shortest)
@@ -56,9 +56,9 @@ class WindWaves:
         return joined(parts)
 
     def shares(self, time: float, still: bool, moving: bool, dtype: type, workers: int = 1) -> Shares:
-        """What the particles add at a time: to positions, where `still`, and to rates, where `moving`.
+        """The contributions of the particles at a time: to positions if `still`, and to rates if `moving`.
 
-        workers : threads, which share the radii; the result does not depend on their number
+        workers : threads, among which the radii are divided; the result does not depend on their number
         """
         particles = self.particles(time)
 
@@ -87,7 +87,7 @@ class WindWaves:
 
 
 class Shares:
-    """Coefficients of the particles at one time."""
+    """Contributions of the particles at one time."""
 
     def __init__(self, grid: WaveVectorGrid, points: list[Points]) -> None:
         self._grid = grid
@@ -99,7 +99,7 @@ class Shares:
 
 
 class BlockShares:
-    """Coefficients of a block of columns: the particles of each radius are transformed once."""
+    """Contributions to a block of columns; the particles of each radius are transformed once."""
 
     def __init__(self, grid: WaveVectorGrid, points: list[Points], block: slice, scale: float) -> None:
         self._grid = grid
