@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The frame loop: each frame is made from the parameters and its number alone."""
+"""The frame loop of a bake. Each frame depends only on the parameters and its number."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from .regions import TILE, Area, Tile
 
 
 class FrameSink(Protocol):
-    """Whatever keeps frames; called from several threads at once."""
+    """Stores frames; called from several threads at once."""
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The fields that a frame must have; with PARTS among them, of each part those that add up."""
+        """The fields that a frame must have; with PARTS, also the summable fields of each part."""
 
     def write(self, frame: Frame, fields: SurfaceFields, *others: SurfaceFields) -> tuple[Path, ...]:
-        """Keep a frame's fields, those of the first patch, of the others and of the parts; returns where."""
+        """Store a frame's fields: those of the first patch, of the others and of the parts. Returns where."""
 
 
 class BakedFrame(NamedTuple):
-    """A frame that has been kept.
+    """A frame that has been stored.
 
-    seconds : that it took, with its foam
+    seconds : time taken, including foam
     """
 
     frame: Frame
@@ -45,9 +45,9 @@ class BakedFrame(NamedTuple):
 
 
 class ShotSeas:
-    """Surfaces of a shot's frames, on one thread; quickest where frames follow each other.
+    """Computes the surfaces of a shot's frames on one thread; fastest for consecutive frames.
 
-    on : where they are wanted: on the tile of each patch, or in an area of all together
+    on : where to compute them: on the tile of each patch, or in an area for their sum
     """
 
     def __init__(self, shot: Shot, on: Tile | Area = TILE) -> None:
@@ -56,24 +56,24 @@ class ShotSeas:
         self._sea: Ocean | None = None
 
     def sea(self, frame: Frame) -> Ocean:
-        """The sea of a frame: the last one where its parameters are the same."""
+        """The sea of a frame; the previous one is reused if the parameters are the same."""
         parameters = self.shot.at(frame).parameters
         if self._sea is None or self._sea.parameters != parameters:
             self._sea = Ocean(parameters, workers=1)
         return self._sea
 
     def seas(self, frame: Frame) -> tuple[Ocean, ...]:
-        """Those whose fields a frame has: of each patch, or of all together in an area."""
+        """The seas whose fields make up a frame: each patch, or their sum in an area."""
         sea = self.sea(frame)
         return (sea,) if isinstance(self.on, Area) else sea.patches
 
     def prepare(self, frame: Frame) -> None:
-        """Make the waves of a frame, which its surfaces share."""
+        """Compute the wave coefficients of a frame, which its surfaces share."""
         for sea in self.seas(frame):
             sea.prepare()
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each of its seas in a frame, and ADDING of each part where PARTS is asked for.
+        """Fields of each of its seas in a frame, and ADDING of each part if PARTS is requested.
 
         Velocity is per second of the shot.
         """
@@ -94,7 +94,7 @@ class ShotSeas:
         return made
 
     def frame(self, frame: Frame, outputs: Iterable[str]) -> SurfaceFields:
-        """Fields of a frame of a sea on one grid, or in an area. Raises ValueError for another."""
+        """Fields of a frame of a sea on one grid, or in an area. Raises ValueError for separate patches."""
         if self.shot.parameters.is_cascade and self.on == TILE:
             raise ValueError("this sea has several patches: their fields are those of frames()")
         (fields,) = self.frames(frame, outputs)
@@ -109,18 +109,18 @@ def bake(
     tell: Callable[[Frame, str], None] = lambda frame, doing: None,
     on: Tile | Area = TILE,
 ) -> Iterator[BakedFrame]:
-    """Make and keep each frame, several at once; yields each in order when it is kept.
+    """Compute and store frames, several at once; yields each in order once it is stored.
 
-    A worker makes a whole frame on one thread: while one encodes, another computes. Only a tile's foam, which
-    has a memory, is made here, in the order of the frames; that of an area looks back anew in each. What a
-    frame holds does not depend on the number of workers. When the caller stops, frames under way are finished
-    and no more begun.
+    Each worker computes a whole frame on one thread, so one can encode while another computes. Only the foam
+    of a tile, which has a history, is computed here, in the order of the frames; foam in an area is computed
+    from scratch in each frame. Results do not depend on the number of workers. When the caller stops, frames
+    in progress are finished and no more are started.
 
-    tell : is told again and again what is being done for a frame
-    on : where the fields are wanted
+    tell : called repeatedly with the progress of a frame
+    on : where to compute the fields
 
-    Raises MemoryError before the first frame where the machine is too small, and ValueError for fields of
-    several patches that are not sums of theirs.
+    Raises MemoryError before the first frame if the machine has too little memory, and ValueError for fields
+    that separate patches do not have.
     """
     _check(shot.parameters, sink, workers, on)
     with_memory = ShotSeas(shot, on)
@@ -137,16 +137,16 @@ def bake(
         return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
-    # frames go forward: what they share stays, and no seas of frames gone by
+    # frames are in ascending order: keep what they share, and drop the seas of past frames
     need = memory_need(shot.parameters, sink.outputs, on=on)
     with MEMO.at_most(need.state + workers * need.surface), ThreadPoolExecutor(workers) as pool:
         try:
             for frame in frames:
                 begun = time.perf_counter()
-                if not under_way:  # made once, before the workers ask for it
+                if not under_way:  # computed once, before the workers need it
                     with_memory.prepare(frame)
                 foam = _foam(with_memory, frame, wanted, tell) if wanted else None
-                # the wait for a worker is no work
+                # do not count the wait for a worker
                 under_way.append(pool.submit(make, frame, begun - time.perf_counter(), foam))
                 if len(under_way) > workers:
                     yield under_way.popleft().result()
@@ -168,7 +168,7 @@ def _foam(
 
 
 def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile | Area) -> None:
-    """Raise for what cannot be baked, or not on this machine."""
+    """Raise for a shot that cannot be baked, or not on this machine."""
     is_cascade = parameters.is_cascade and on == TILE
     if is_cascade and parameters.is_masked:
         raise ValueError(

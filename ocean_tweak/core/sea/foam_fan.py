@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Places at rest, and foam on them, for a picture of the sea: as dense as its pixels are.
+"""Rest positions and their foam for one camera view, as dense as its pixels.
 
-From a height h a pixel covers what is at the distance r, r along the horizon and r²/h towards it. The fan's
-columns are directions from the foot of the camera, dense within the picture and few beside it; its rows are
-r ∝ 1/u² for even steps of u, so that cells are r wide and r^1.5 long: near the geometric mean of both. A
-camera among the waves sees their faces, on which a pixel is some times as long as it is wide: cells are, too.
+Seen from a height h, the footprint of a pixel at a distance r is proportional to r across the view and to
+r²/h along it. The fan's columns are directions from the point below the camera, dense within the picture and
+sparse beside it; its rows are r ∝ 1/u² for even steps of u, so cells are ∝ r wide and ∝ r^1.5 long, close to
+the geometric mean of both. A camera among the waves sees their faces, on which a pixel is a few times longer
+than wide, and so are the cells.
 
-Each row has the foam of the level (`foam_levels`) whose cells are the next smaller ones; near to the next
-level it goes over into that. Foam is made where the picture looks, and has the mean elsewhere. What counts
-as known of the breaking waves are those that the nearest row can show.
+Each row has the foam of the level (`foam_levels`) with the next smaller cells, and blends into the next level
+close to it. Foam is computed within the picture, and has its mean elsewhere. Only breaking waves that the
+nearest row can show count as resolved.
 
-The places drift along with the foam. A fan stays while the camera moves or turns little.
+The places drift with the foam. A fan is kept while the camera moves and turns little.
 """
 
 from __future__ import annotations
@@ -30,33 +31,34 @@ from .foam_levels import FINEST, FoamLevels
 
 Array = NDArray[np.float64]
 
-#: rad, of the steps in which a fan turns, and by how much of the way to the nearest water it moves at once
+#: steps in which a fan rotates, rad, and moves, as a fraction of the distance to the nearest water
 _TURN, _MOVE = math.radians(5.0), 0.125
-#: distances of the nearest water are of so many steps to an octave
+#: steps per octave of the distance to the nearest water
 _STEPS = 4
-#: how much nearer than the flat water at the picture's edge the fan begins to be dense: crests are higher
+#: the fan is dense from this fraction of the distance of flat water at the picture's edge, as crests are
+# higher
 _NEARER = 0.85
-#: rows before that, and columns beside the picture: they are for light alone
+#: rows in front of that, and columns beside the picture, which only matter for lighting
 _ROWS_BEFORE, _COLUMNS_BESIDE = 16, 48
-#: of the nearest of these, as a share of the dense rows' distance
+#: distance of the nearest of these rows, as a fraction of that of the dense rows
 _FOOT = 0.02
-#: rows to a column of the picture
+#: rows per column of the picture
 _ROWS_TO_COLUMNS = 0.7
-#: how much longer than wide cells are before a camera among the waves
+#: ratio of length to width of cells in front of a camera among the waves
 _ON_FACES = 3.0
-#: share of a level's octave of cell sizes after which the next one begins to show
+#: fraction of a level's octave of cell sizes after which the next level is blended in
 _OVER = 0.85
 
 
 @dataclass(frozen=True)
 class View:
-    """What a camera sees of the water.
+    """The view of a camera over the water.
 
-    x, y : of the place below it, m
-    near : m from there to the nearest water in the picture
-    azimuth : rad counter-clockwise from +x, of the middle of the picture
-    half_angle : rad from there to the farthest direction in the picture
-    reach : m, how far water is to be shown
+    x, y : of the point below it, m
+    near : distance from there to the nearest water in the picture, m
+    azimuth : of the middle of the picture, rad counter-clockwise from +x
+    half_angle : from there to the farthest direction in the picture, rad
+    reach : distance up to which water is shown, m
     is_low : whether it is among the waves
     """
 
@@ -69,7 +71,7 @@ class View:
     is_low: bool = False
 
     def stepped(self, drift: tuple[float, float], time: float) -> View:
-        """One that sees as much, and is the same for all views near it; its place is that of the time 0."""
+        """A view that covers this one and is the same for all nearby views, at its place at time 0."""
         near = 2.0 ** (math.floor(_STEPS * math.log2(self.near)) / _STEPS)
         move = _MOVE * near
         x, y = (
@@ -79,17 +81,18 @@ class View:
         return replace(
             self, x=x, y=y, near=near,
             azimuth=_TURN * round(self.azimuth / _TURN),
-            # what moves aside by half a step of the place is seen at the near edge
+            # covers a lateral move by half a step at the near edge
             half_angle=min(_TURN * math.ceil(self.half_angle / _TURN + 1.0), math.pi - _TURN),
         )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Fan:
-    """Foam at a time on places at rest; all arrays are of (rows, columns), and the last column is the first.
+    """Foam at a time on rest positions; all arrays are (rows, columns), and the last column repeats the
+    first.
 
     x, y : of the places, m
-    size : of the cells there, m
+    size : of the cells, m
     """
 
     x: Array
@@ -99,11 +102,11 @@ class Fan:
 
 
 class _Rows(NamedTuple):
-    """Places of a level.
+    """The places of one level.
 
     level : its number
-    rows : of the fan
-    share : (rows,) of the level there
+    rows : the fan's rows
+    share : (rows,) weight of the level in them
     foam : of the places in the picture
     """
 
@@ -114,7 +117,8 @@ class _Rows(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """Of a fan, as in `Fan`, at time 0; and how many columns are in the picture, and rows before it."""
+    """Places of a fan at time 0, as in `Fan`, with the number of columns in the picture and of rows in front
+    of it."""
 
     x: Array
     y: Array
@@ -123,14 +127,14 @@ class _Places(NamedTuple):
 
 
 class FoamFan:
-    """The foam of a sea of patches before a camera. Making it is cheap.
+    """The foam of a sea of patches in front of a camera. Creating it is cheap.
 
-    It serves ascending times and a view that stays near; any other is made from the sea alone, and is the
-    same. One thread at a time goes on with it, and others wait.
+    It is efficient for ascending times and views that change little; others are computed from scratch, with
+    the same result. One thread at a time uses it while others wait.
     """
 
     def __init__(self, levels: FoamLevels, places: int) -> None:
-        """`places` is how many a fan has, at the most."""
+        """`places` is the largest number of places of a fan."""
         self._levels = levels
         self.places = places
         self._busy = threading.Lock()
@@ -143,7 +147,7 @@ class FoamFan:
         return sum(rows.foam.nbytes for rows in self._rows)
 
     def at(self, time: float | Fraction, view: View) -> Fan:
-        """Foam before a camera at a time in s. It may be called on any thread."""
+        """Foam in front of a camera at a time in s. May be called on any thread."""
         model = self._levels.seas[0].foam_model
         now = model.reduced(time)
         stepped = view.stepped(model.drift, float(now))
@@ -152,7 +156,7 @@ class FoamFan:
             if self._view != stepped:
                 self._view, self._rows = stepped, tuple(self._new_rows(places))
             missing = [rows.foam.missing(now) for rows in self._rows]
-            # moment by moment, because levels share strains
+            # one moment at a time, because levels share strains
             for index in sorted({index for each in missing for index in each}):
                 for rows, of_rows in zip(self._rows, missing, strict=True):
                     if index in of_rows:
@@ -162,7 +166,7 @@ class FoamFan:
         return Fan(places.x + drift_x, places.y + drift_y, places.size, foam)
 
     def _new_rows(self, places: _Places) -> list[_Rows]:
-        """One for each level that the picture shows."""
+        """Rows for each level that the picture shows."""
         number = np.log2(np.maximum(places.size[_ROWS_BEFORE:, 0] / FINEST, 1.0))
         found = []
         for level, sea in enumerate(self._levels.seas):
@@ -193,7 +197,7 @@ class FoamFan:
             known[rows.rows] += share[:, 0]
             total[0][at] += share * foam
             total[1][at] += share * breaking
-            # a mean of two ages would be that of neither
+            # the mean of two ages would be neither
             total[2][at] = np.where(share * foam >= most[at], age, total[2][at])
             most[at] = np.maximum(most[at], share * foam)
         rest = np.ones(places.x.shape, np.float32)
@@ -205,12 +209,12 @@ class FoamFan:
 
 
 def _places(view: View, count: int) -> _Places:
-    """Those of a fan of so many places, at the most."""
+    """The places of a fan with at most this many."""
     near = _NEARER * view.near
     farthest = max(view.reach, 2.0 * near)
     octaves = math.log(farthest / near)
     ratio = octaves / (2.0 * view.half_angle * _ON_FACES) if view.is_low else _ROWS_TO_COLUMNS
-    # c columns with ratio·c rows of c and those beside
+    # c columns with ratio·c rows, plus those beside the picture
     columns = int(math.sqrt(0.25 * _COLUMNS_BESIDE**2 + count / ratio) - 0.5 * _COLUMNS_BESIDE)
     rows = count // (columns + _COLUMNS_BESIDE) - _ROWS_BEFORE
     if view.is_low:

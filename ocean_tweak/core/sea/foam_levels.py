@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam of a sea as it is seen at several distances: each level knows half as fine waves as the one before.
+"""Levels of detail of a sea's foam: each level resolves waves half as fine as the one before.
 
-Level n has cells of the size FINEST·2ⁿ, and its foam is that of the sea without the waves shorter than four
-of them: it is born on the crests that can be seen at that distance, with the threshold that belongs to them,
-and no lattice shows.
+Level n has cells of size FINEST·2ⁿ, and the foam of the sea without waves shorter than four cells: it forms
+on the crests visible at that distance, with the threshold for these waves, so the grid does not show.
 
-The coarser a level, the less it knows of what breaks. Of its foam F counts the share κ of the strains'
-variance that it holds, of that which is seen, and for the rest the mean W of the sea, κF + (1 - κ)W: the mean
-stays, and what cannot be known is even. Beyond the last level there is W alone. Dupuy & Bruneton (2012)
-average whitecaps over the waves that are too small to be seen for the same reason.
+The coarser a level, the fewer breaking crests it resolves. Its foam F is weighted by the fraction κ of the
+visible strain variance that it resolves, and mixed with the sea's mean W: κF + (1 - κ)W. This preserves the
+mean, and unresolved foam is even. Beyond the last level there is only W. Dupuy & Bruneton (2012) average
+whitecaps over unresolved waves for the same reason.
 """
 
 from __future__ import annotations
@@ -25,25 +24,25 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import waves_above
 from .ocean import Ocean
 
-#: m, of the finest level's cells
+#: size of the finest level's cells, m
 FINEST = 0.25
-#: cells in a level's shortest wave
+#: cells per shortest wave of a level
 _CELLS_A_WAVE = 4.0
-#: samples of a patch along its shortest wave: read between them, a fourth of that wave's variance is lost,
-#: and less of longer ones
+#: samples of a patch along its shortest wave: interpolation then loses a quarter of that wave's variance, and
+# less of longer ones
 _SAMPLES_A_WAVE = 4.25
-#: by how much longer a level's shortest wave may be than a patch's, and the patch is whole all the same:
-#: levels share the strains of a patch that they both have whole
+#: ratio up to which a level's shortest wave may exceed that of a patch without cutting the patch: levels
+# share the strains of patches that they hold completely
 _WHOLE = 1.15
-#: a level whose waves have less of the strains' variance than this tells little
+#: a level that resolves less than this fraction of the strain variance is not used
 _LEAST_SHARE = 0.15
 _MOST_LEVELS = 10
 
 
 class FoamLevels:
-    """Those of a sea of patches. Making it is cheap.
+    """The foam levels of a sea of patches. Creating it is cheap.
 
-    `parameters` are those of the sea, `seas` those of the levels, as many as tell anything of the strains.
+    `parameters` describe the sea, `seas` the levels, as far as they resolve enough of the strains.
     """
 
     def __init__(self, parameters: OceanParameters) -> None:
@@ -51,7 +50,7 @@ class FoamLevels:
 
     @cached_property
     def seas(self) -> tuple[Ocean, ...]:
-        """From the finest on; each has the same drift."""
+        """From the finest level; all have the same drift."""
         found = [self._sea(0)]
         least = _LEAST_SHARE * found[0].divergence_variance
         while len(found) < _MOST_LEVELS:
@@ -63,17 +62,17 @@ class FoamLevels:
 
     @cached_property
     def beyond(self) -> Whitecaps:
-        """What the mean of the sea is."""
+        """The mean foam of the sea."""
         foam = foam_outlook(self.parameters).coverage
         breaking = min(self.seas[0].mean_breaking, foam)
-        # births are as frequent at any time before, so what is left of them is exponential in its age
+        # births are equally frequent at all times, so the remaining foam is exponential in its age
         age = self.parameters.foam.half_life / math.log(2.0)
         return Whitecaps(*(np.array(value, np.float32) for value in (foam, breaking, age)))
 
     def mixed(self, own: Whitecaps, level: int, seen: float = FINEST) -> Whitecaps:
-        """Foam of a level with the mean for what it does not know.
+        """Foam of a level, mixed with the mean for unresolved foam.
 
-        seen : size in m of the smallest cell that can be seen at all; the waves of smaller ones count nowhere
+        seen : size in m of the smallest visible cell; waves too short for it are ignored
         """
         share = np.float32(min(1.0, self.seas[level].divergence_variance / self._variance(seen)))
         mean, rest = self.beyond, np.float32(1.0) - share
@@ -85,12 +84,12 @@ class FoamLevels:
         )
 
     def _variance(self, cell: float) -> float:
-        """Of the strains that a level with cells of any size in m would hold."""
+        """Strain variance that a level with cells of a size in m would resolve."""
         variances = [sea.divergence_variance for sea in self.seas]
         return float(np.interp(math.log2(cell / FINEST), np.arange(len(variances)), variances))
 
     def _sea(self, level: int) -> Ocean:
-        # foam that is made coarser elsewhere is coarse by the levels alone here
+        # the resolution of foam elsewhere does not apply: here the levels determine it
         parameters = self.parameters
         sea = parameters.replace(foam=replace(parameters.foam, resolution=0), patches=parameters.patches)
         shortest = _CELLS_A_WAVE * FINEST * 2.0**level

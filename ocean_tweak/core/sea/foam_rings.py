@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam around a place, on square lattices in one another: dense near it, coarse far away.
+"""Foam around a place on nested square rings: dense near it, coarse far away.
 
-Ring n is of level n of the foam (`foam_levels`) and has its cells. Its places drift along with the foam and
-are whole cells apart from where the water of time 0 was, whatever place is asked for: who looks on from
-elsewhere sees the same foam.
+Ring n has the cells and the foam of level n (`foam_levels`). Its places drift with the foam and stay on a
+lattice fixed to the water, whatever the centre: foam is the same from any viewpoint.
 """
 
 from __future__ import annotations
@@ -27,17 +26,18 @@ from .ocean import Ocean
 Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
 
-#: places along each side of a ring, at most: as many as a surface with so many vertices shows
+#: largest number of places along each side of a ring
 SAMPLES, VERTICES = 192, 200_000
-#: of them, from a ring's middle: up to the first it counts alone, from the second on the next one does
+#: fractions of a ring's side, from its centre: up to the first only this ring counts, from the second only
+# the next one
 INNER, OUTER = 5 / 12, 11 / 24
-#: of them, by which rings follow their place: all in all no more than 1/2 - OUTER
+#: fraction of a ring's side in steps of which rings follow their place; in total at most 1/2 - OUTER
 _STEP = 1 / 24
 _LEAST_STEP = 2
 
 
 class Place(NamedTuple):
-    """Around which rings lie, at rest, m."""
+    """The centre of the rings, a rest position in m."""
 
     x: float
     y: float
@@ -47,9 +47,9 @@ class Place(NamedTuple):
 class Rings:
     """Foam at a time.
 
-    corners : x and y of each ring's first place at rest, m
-    foam : of each ring, (samples, samples) [y, x]
-    beyond : of places farther away: each of one number
+    corners : (x, y) of each ring's first place, a rest position in m
+    foam : foam of each ring, (samples, samples) [y, x]
+    beyond : foam farther away, one value per field
     """
 
     corners: tuple[tuple[float, float], ...]
@@ -60,9 +60,9 @@ class Rings:
 class _Ring(NamedTuple):
     """One ring.
 
-    sea : of its level
-    spacing : of its cells, m
-    samples : along each side
+    sea : the sea of its level
+    spacing : size of its cells, m
+    samples : places along each side
     """
 
     sea: Ocean
@@ -70,7 +70,7 @@ class _Ring(NamedTuple):
     samples: int
 
     def around(self, place: Place, time: Fraction) -> tuple[int, int]:
-        """The numbers of the first cell of a ring that lies around a place at a time."""
+        """Indices of the first cell of a ring around a place at a time."""
         step = round(_STEP * self.samples)
         x, y = (
             step * round((along - float(time) * drift) / self.spacing / step) - self.samples // 2
@@ -79,9 +79,9 @@ class _Ring(NamedTuple):
         return x, y
 
     def cells(self, first: tuple[int, int]) -> tuple[Cells, Cells]:
-        """Columns and rows of the cells of a ring with this first one, (samples²,) each.
+        """Column and row indices of a ring's cells, from its first one, (samples²,) each.
 
-        A cell is always at the same place of the array, whatever the ring: that of its remainder.
+        A cell always has the same position in the array: its indices modulo the number of samples.
         """
         along = np.arange(self.samples)
         x, y = (number + (along - number) % self.samples for number in first)
@@ -89,12 +89,13 @@ class _Ring(NamedTuple):
         return columns.ravel(), rows.ravel()
 
     def foam(self, columns: Cells, rows: Cells) -> DriftingFoam:
-        """Foam on some cells, without births so far."""
+        """Foam on some cells, still without births."""
         x, y = (self.spacing * along.astype(np.float64) for along in (columns, rows))
         return self.sea.new_drifting_foam(x, y)
 
     def moved_on(self, lying: _Lying | None, first: tuple[int, int]) -> tuple[_Lying, _Entering | None]:
-        """The ring with this first cell, and what is to enter it; if nothing of it stays, all is new."""
+        """The ring moved to a new first cell, and the cells that enter it; all are new if nothing
+        overlaps."""
         if lying is None:
             return _Lying(first, self.foam(*self.cells(first))), None
         if lying.first == first:
@@ -108,32 +109,32 @@ class _Ring(NamedTuple):
 
 
 class _Lying(NamedTuple):
-    """A ring as it lies: its first cell, and its foam."""
+    """A ring at its present position: its first cell, and its foam."""
 
     first: tuple[int, int]
     foam: DriftingFoam
 
 
 class _Entering(NamedTuple):
-    """Foam on the cells that a ring gets when it moves on, and where in its arrays they come."""
+    """Foam on the cells that enter a ring when it moves, and their positions in its arrays."""
 
     foam: DriftingFoam
     where: NDArray[np.intp]
 
 
 def samples_for(vertices: int) -> int:
-    """Places along each side of a ring that a surface with so many vertices, in levels of its own, shows."""
+    """Places along each side of a ring suited to a surface with this many vertices."""
     steps = round(_STEP * SAMPLES * math.sqrt(vertices / VERTICES))
     return round(min(max(steps, _LEAST_STEP), _STEP * SAMPLES) / _STEP)
 
 
 class FoamRings:
-    """The foam of a sea of patches around a place. Making it is cheap.
+    """The foam of a sea of patches around a place. Creating it is cheap.
 
-    It serves ascending times and a place that stays near; any other is made from the sea alone, and is the
-    same. One thread at a time goes on with it, and others wait.
+    It is efficient for ascending times and places that move little; others are computed from scratch, with
+    the same result. One thread at a time uses it while others wait.
 
-    samples : places along each side of a ring, of `samples_for`
+    samples : places along each side of a ring, from `samples_for`
     """
 
     def __init__(self, levels: FoamLevels, samples: int = SAMPLES) -> None:
@@ -154,10 +155,10 @@ class FoamRings:
         history: bool = True,
         told: Callable[[float], None] = lambda _: None,
     ) -> Rings:
-        """Foam around a place at a time in s. It may be called on any thread.
+        """Foam around a place at a time in s. May be called on any thread.
 
-        history : whether what is left of earlier moments is wanted too, and not what breaks now alone
-        told : hears the share of these moments, 0…1, that is remembered by now
+        history : whether to include older foam, instead of presently breaking crests only
+        told : called with the completed fraction of the history, 0…1
         """
         now = self._rings[0].sea.foam_model.reduced(time)
         firsts = [ring.around(place, now) for ring in self._rings]
@@ -165,7 +166,7 @@ class FoamRings:
             new = [ring.foam(*ring.cells(first)) for ring, first in zip(self._rings, firsts, strict=True)]
             return self._shown(new, firsts, now)
         with self._busy:
-            # whoever fails on the way begins anew
+            # after an error, start again
             before: list[_Lying | None] = [*self._lying] or [None] * len(firsts)
             self._lying = []
             both = zip(self._rings, before, firsts, strict=True)
@@ -173,7 +174,7 @@ class FoamRings:
             rings = [lying.foam for lying, _ in moved]
             wanting = rings + [entering.foam for _, entering in moved if entering is not None]
             missing = [foam.missing(now) for foam in wanting]
-            # moment by moment, because rings share strains
+            # one moment at a time, because rings share strains
             moments = sorted({index for each in missing for index in each})
             for number, index in enumerate(moments):
                 told(number / len(moments))

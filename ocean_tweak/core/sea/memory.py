@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sea needs of the machine's memory, told before it is made."""
+"""Estimates of a sea's memory use, before it is created."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from ..waves.contribution import Gives, MemoryNeed
 from ..waves.kinds import KINDS
 from .regions import TILE, Area, Tile
 
-#: float64 arrays of half the plane that live while the initial state is made, beyond what stays
+#: temporary float64 half-plane arrays while the initial state is computed
 _TEMPORARY_ARRAYS = 5
 
-#: bytes a sample of an area: where it lies, between which samples of a part, and what is read there
+#: bytes per sample of an area: its position, its cell in a part, and the values read there
 _READING = 80
 
-#: bytes a sample of a tile that are kept for each part which is read between its samples: where it lies
-#: there, and how much counts at the far sides
+#: bytes per sample of a tile, kept for each interpolated part: its position there, and the blend weights at
+# the far sides
 _PLACED = 18
 
-#: bytes a sample of an area where foam is made: births there and where old foam is drawn from
+#: bytes per sample of an area with foam: births there and at the sources of old foam
 _LOOKING_BACK = 96
 
-#: bytes of the tables from which a state is made, whatever the resolution
+#: bytes of the tables from which a state is computed, at any resolution
 TABLES = 48 * 2**20
 
 
@@ -41,7 +41,8 @@ def memory_need(
     precision: str = "single",
     on: Tile | Area = TILE,
 ) -> MemoryNeed:
-    """Bytes that a sea needs for the outputs asked for; one of several patches has all of them at once."""
+    """Memory that a sea needs for the requested outputs; a sea of several patches holds all of them at
+    once."""
     outputs = frozenset(outputs)
     if PARTS in outputs:
         return _need_with_parts(parameters, outputs - {PARTS}, precision)
@@ -69,7 +70,7 @@ def memory_need(
 
 
 def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
-    """That of the sea and of each of its parts, which are kept beside it."""
+    """Memory of the sea and of each of its parts, which are kept as well."""
     needs = [memory_need(parameters, outputs, precision)]
     needs += [memory_need(part.parameters, ADDING, precision) for part in parts(parameters)]
     return MemoryNeed(
@@ -80,7 +81,7 @@ def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], preci
 
 
 def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
-    """That of all parts, and on one grid of the components that are added up there."""
+    """Memory of all parts, plus the summed components on the merged grid."""
     separate = merged_bands(parameters) if parameters.merged_resolution else parameters
     of_parts = parts(separate)
     needs = [memory_need(part.parameters, outputs - OF_MEMORY, precision) for part in of_parts]
@@ -106,7 +107,7 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
 def _need_in_area(
     parameters: OceanParameters, outputs: frozenset[str], precision: str, on: Area
 ) -> MemoryNeed:
-    """That of all parts on samples of their own, and of the components that are added up in the area."""
+    """Memory of all parts on their own grids, plus the summed components in the area."""
     separate = merged_bands(parameters) if parameters.merged_resolution else parameters
     waves = (outputs - OF_MEMORY) | ({"cusp"} if outputs & OF_MEMORY else set())
     needs = [memory_need(part.parameters, waves, precision) for part in parts(separate)]
@@ -126,8 +127,8 @@ def _need_in_area(
 
 
 def _foam_bytes(parameters: OceanParameters) -> int:
-    """The fields themselves; births with their times, the looks that they are from, what draws them out, a
-    compression and temporaries at the foam's own resolution."""
+    """Bytes of the foam fields, and at the foam's own resolution of births with their times, looks, windrow
+    arrays, a compression and temporaries."""
     own = parameters.foam.resolution or parameters.resolution
     return 4 * len(OF_MEMORY) * parameters.resolution**2 + 104 * own**2
 
@@ -137,7 +138,7 @@ def _columns(group: Iterable[str], gradient: bool) -> int:
 
 
 def check_memory(need: int, what: str) -> None:
-    """Raise MemoryError, with a remedy, where the machine, or the container, has fewer bytes than needed."""
+    """Raise MemoryError, with a remedy, if the machine or container has less memory than needed."""
     available = usable_memory()
     if available is not None and need > available:
         raise MemoryError(
@@ -147,9 +148,9 @@ def check_memory(need: int, what: str) -> None:
 
 
 def beyond_budget(parameters: OceanParameters) -> str | None:
-    """What to say, with a remedy, of a sea whose waves take more than the memory of this process may keep.
+    """A warning, with a remedy, for a sea whose waves exceed the memory budget of this process.
 
-    None where they fit. Such a sea is shown all the same: whoever has it keeps its waves.
+    None if they fit. Such a sea is still shown, as an ocean in use keeps its own waves.
     """
     need, budget = memory_need(parameters).state, MEMO.budget
     if need <= budget:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Any sea, that can be asked for its surface at any time: the door to all that is behind it.
+"""`Ocean`: computes the surface of any sea at any time.
 
-A sea is a sum of parts: waves on a grid of their own, which may be turned and lie under masks. Of one part
-that is neither, a tile is made as it is; all others are added up on the tile's samples or at places.
+A sea is a sum of parts: waves on grids of their own, which may be rotated and masked. The tile of a single
+part without rotation or mask is computed directly; all others are summed on the tile's samples or at places.
 """
 
 from __future__ import annotations
@@ -35,22 +35,22 @@ from .sums import AnywhereSum, TileSum
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: minimum eigenvalue below which several sheets of the surface are looked for
+#: minimum eigenvalue below which the surface is searched for several sheets
 _NEARLY_FOLDED = 0.1
 
 
 class Ocean:
-    """The sea of some parameters. Making one is cheap; its waves are made when needed.
+    """The sea described by some parameters. Creating one is cheap; its waves are computed when needed.
 
-    It may be of one patch, of patches that are merged on one grid or separate, under masks or not.
+    The sea may have one patch or several, merged or separate, with or without masks.
 
     parameters : OceanParameters
     precision : "single" for float32 fields, "double" for reference work in float64
-    workers : threads that make a surface, by default one a core where that helps, for 1024² samples or for
-        many fields of 512², else one; the result does not depend on it
+    workers : threads per surface; by default one per core if that helps (from 1024² samples, or for many
+        fields of 512²), else one. The result does not depend on it
 
-    Raises ValueError for an unknown precision or a number of workers below 1. Whatever makes the waves
-    raises MemoryError, before that, where the machine is too small.
+    Raises ValueError for an unknown precision or fewer than 1 worker. Methods that need the waves raise
+    MemoryError, before computing any, if the machine has too little memory.
 
     Examples
     --------
@@ -76,10 +76,10 @@ class Ocean:
 
     @property
     def patches(self) -> tuple[Ocean, ...]:
-        """The seas that have a tile each: separate patches, in axes along their sides and without masks.
+        """The seas with a tile each: separate patches, in axes along their sides and without masks.
 
-        Displacement, velocity, slope and strain of the sea are the sums of theirs, each turned by the patch's
-        rotation; its other fields are not sums. Any other sea is its own only patch.
+        Displacement, velocity, slope and strain of the sea are the sums of theirs, each rotated by the
+        patch's rotation; other fields do not add up. Any other sea is its own only patch.
 
         Examples
         --------
@@ -99,13 +99,13 @@ class Ocean:
 
     @cached_property
     def parts(self) -> tuple[Ocean, ...]:
-        """The waves of each patch and under each mask as seas of their own, without that mask and in axes
-        along the patch's sides: turned and weighted, they add up. Merged patches are separate here.
+        """The waves of each patch under each mask as seas of their own, without the mask and in axes along
+        the patch's sides: rotated and weighted, they add up to the sea. Merged patches are separate here.
         """
         return tuple(Ocean(part.parameters, self.precision, self._workers) for part in parts(self.parameters))
 
     def memory(self, outputs: Iterable[str] = ("displacement",), on: Tile | Area = TILE) -> MemoryNeed:
-        """Bytes that the sea takes, and each surface with these outputs.
+        """Memory that the sea uses, and that each surface with these outputs uses.
 
         Examples
         --------
@@ -117,7 +117,7 @@ class Ocean:
         return memory_need(self.parameters, outputs, self.precision, on)
 
     def prepare(self) -> None:
-        """Make the waves, which all surfaces share; the first surface does so otherwise.
+        """Compute the waves that all surfaces share; otherwise the first surface does so.
 
         Examples
         --------
@@ -130,7 +130,7 @@ class Ocean:
 
     @property
     def initial_state(self) -> InitialState:
-        """The coefficients of a sea that is one sum of waves. Raises ValueError for another."""
+        """The Fourier coefficients of a sea on a single grid. Raises ValueError for any other sea."""
         if self.parameters.needs_summation:
             raise ValueError(
                 "initial_state: this sea is several sums of waves, or has masks: ask each of its "
@@ -145,17 +145,18 @@ class Ocean:
         on: Tile | Area | Places = TILE,
         out: Mapping[str, RealArray] | None = None,
     ) -> SurfaceFields:
-        """Fields at a time in s; only the outputs asked for are computed.
+        """Fields at a time in s; only the requested outputs are computed.
 
-        on : where they are wanted. On a tile, arrays are (N, N) [y, x], in an area (resolution, resolution),
-            at places as the places are, with the field's channels behind. In areas and at places parts are
-            bilinear between their samples and add up before a normal or eigenvalue is made of them; foam of a
-            sea that has a tile is that of the tile.
+        on : where to compute them. Arrays are (N, N) [y, x] on a tile, (resolution, resolution) in an area,
+            and have the shape of the places otherwise, followed by the field's channels. In areas and at
+            places, parts are interpolated bilinearly and summed before normals and eigenvalues are computed;
+            the foam of a sea with a tile is that of the tile.
         out : arrays to fill, by output; their shape and dtype must be those of the field, and their last
             axis contiguous. Other outputs get new arrays.
 
         Raises ValueError for an unknown output, a time that is not finite, an array that does not fit, or a
-        tile of what has none: separate patches, which have one each, and waves that do not repeat.
+        tile of a sea without one: with separate patches, which have one each, or with waves that do not
+        repeat.
 
         Examples
         --------
@@ -190,7 +191,7 @@ class Ocean:
         outputs: Iterable[str] = ("displacement",),
         on: Tile | Area | Places = TILE,
     ) -> SurfaceFields:
-        """Fields at a frame of the shot, which may hold a sub-frame.
+        """Fields at a frame or subframe of the shot.
 
         Examples
         --------
@@ -209,15 +210,15 @@ class Ocean:
         surface: str = "mesh",
         velocity: bool = False,
     ) -> SurfacePoints:
-        """The surface above places x and y in m, of any one shape, at a time in s.
+        """The surface above places x and y in m, of any shape, at a time in s.
 
-        surface : "mesh" for the bilinear surface between the samples, which a mesh with a vertex a sample
-            shows, or of separate patches the sum of theirs; "exact" for the band-limited one, whose cost
-            grows with points times wave vectors
-        velocity : whether it is wanted too
+        surface : "mesh" for the surface bilinear between samples, as on a mesh with one vertex per sample, or
+            the sum of these surfaces for separate patches; "exact" for the band-limited surface, at a cost
+            proportional to the number of points times that of wave vectors
+        velocity : whether to compute velocities as well
 
         Raises ValueError for an unknown surface, a time or place that is not finite, or an exact surface with
-        trough damping: no sum of waves.
+        trough damping, which is not a sum of waves.
 
         Examples
         --------
@@ -252,9 +253,9 @@ class Ocean:
         return self.points_at(x, y, time, surface).height
 
     def statistics(self) -> Statistics:
-        """Wave height, period and wavelength: of the spectrum, as resolved, and of this seed.
+        """Wave height, period and wavelength of the spectrum, as resolved by the grid, and of this seed.
 
-        Of merged patches, of the waves that their one grid holds; in all cases without masks.
+        For merged patches, of the waves on the merged grid; always without masks.
 
         Examples
         --------
@@ -273,28 +274,29 @@ class Ocean:
 
     @cached_property
     def foam_model(self) -> FoamModel:
-        """How foam is born and lives that is made on these samples.
+        """The foam model for foam computed on these samples.
 
-        Its threshold is that of the sea without masks, and follows from the strains of all parts together.
+        Its threshold is that of the sea without masks, from the strains of all parts together.
         """
         return foam_model(self.parameters, self._strains, self._spacing)
 
     @cached_property
     def foam_history(self) -> FoamHistory:
-        """The births of the tile's foam; it serves ascending times, any other is made from the sea alone.
+        """The history of the tile's foam, efficient for ascending times; foam at other times is computed from
+        scratch.
 
         Raises ValueError for separate patches.
         """
         return self.new_foam_history()
 
     def new_foam_history(self) -> FoamHistory:
-        """One more history of the same foam, for times between which others are asked for."""
-        # what it keeps does not hold this ocean, which holds it: both go as soon as nobody has them
+        """A further history of the same foam, for an independent sequence of times."""
+        # avoid a reference cycle, so that both are freed as soon as they are unused
         sea, dtype = self.of_foam, real_type(self.precision)
         tile, n = sea._tile, sea.parameters.resolution
 
         def compression_at(time: Fraction) -> RealArray:
-            # below 0 where the surface is stretched, as what is interpolated in time must be
+            # negative where the surface is stretched, as needed for interpolation in time
             left: RealArray = np.empty((n, n), dtype)
             tile.fill(time, frozenset({"min_eigenvalue"}), {"min_eigenvalue": left})
             return np.subtract(1.0, left, out=left)
@@ -302,44 +304,46 @@ class Ocean:
         return FoamHistory(sea.foam_model, compression_at, self.parameters.resolution, self._workers)
 
     def _whitecaps_at(self, x: Array, y: Array, time: float | Fraction) -> Whitecaps:
-        """Foam at flat places in m: that of the tile, or of what has none from the places' own past."""
+        """Foam at flat arrays of places in m: that of the tile, or without one from the history of each
+        place."""
         if not (self.parameters.is_cascade or self._placed):
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
         sea = self.of_foam
         return whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
-        """(places,) float32 compression at flat rest positions in m, below 0 where the sea is stretched."""
+        """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is
+        stretched."""
         return self._anywhere.compression_at(x, y, time)
 
     def new_drifting_foam(self, x: Array, y: Array) -> DriftingFoam:
-        """Foam at places on no tile, which drift along with it.
+        """Foam at arbitrary places that drift with it.
 
-        x, y : (places,) where they are at time 0, at rest, m
+        x, y : (places,) rest positions at time 0, m
         """
         sea = self.of_foam
         return DriftingFoam(sea.foam_model, sea._anywhere.compression_at, x, y)
 
     @cached_property
     def divergence_variance(self) -> float:
-        """Mean square of Dx by x + Dy by y, of the waves between the samples, without masks."""
+        """Mean square of ∂Dx/∂x + ∂Dy/∂y, bilinear between samples, without masks."""
         (xx, yy, _), _ = self._strain_covariances((0.0, 0.0))
         return float(xx[0] + 2.0 * xx[1] + yy[1])
 
     @cached_property
     def mean_breaking(self) -> float:
-        """The mean over the horizontal plane of how strongly crests break at a time."""
+        """Mean of the breaking foam over the horizontal plane at any time."""
         model = self.foam_model
         return self._strains(model.drift).covered(max(model.threshold, model.breaking_threshold), 0.0)
 
     @property
     def foam_is_of_its_samples(self) -> bool:
-        """Whether foam is made of the compression of these samples, not of the sea at another resolution."""
+        """Whether foam uses the compression at these samples, not that of the sea at another resolution."""
         return self.parameters.foam.resolution in (0, self.parameters.resolution)
 
     @property
     def of_foam(self) -> Ocean:
-        """The sea at the resolution at which foam is made."""
+        """The sea at the resolution of its foam."""
         return self if self.foam_is_of_its_samples else self._coarser
 
     @cached_property
@@ -349,7 +353,7 @@ class Ocean:
 
     @cached_property
     def _added_up(self) -> OceanParameters:
-        """The sea with merged patches on separate grids, as they are added up on their one grid."""
+        """The sea with its merged patches on the separate grids from which they are summed."""
         return merged_bands(self.parameters) if self.parameters.merged_resolution else self.parameters
 
     @cached_property
@@ -366,7 +370,7 @@ class Ocean:
 
     @cached_property
     def _tile(self) -> PartWaves | TileSum:
-        """What fills the samples of the tile. Raises ValueError for what has none."""
+        """Computes the samples of the tile. Raises ValueError for a sea without one."""
         check_repeats(self.parameters)
         if self.parameters.is_cascade:
             raise ValueError(
@@ -404,7 +408,7 @@ class Ocean:
         return fields
 
     def _strains(self, drift: tuple[float, float]) -> Strains:
-        """Of all parts together, as a point with this drift meets them."""
+        """Strain statistics of all parts together, seen from a point with this drift."""
         return gaussian_strains(*self._strain_covariances(drift))
 
     def _strain_covariances(self, drift: tuple[float, float]) -> tuple[Array, Array]:
@@ -417,7 +421,7 @@ class Ocean:
     def _points_of_tile(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
     ) -> tuple[SurfacePoints, float]:
-        """Points of the bilinear surface between the tile's samples, and the metres between those."""
+        """Points of the surface bilinear between the tile's samples, and the sample spacing in m."""
         outputs = {"displacement", "min_eigenvalue"} | ({"velocity"} if with_velocity else set())
         fields = self.surface(time, outputs)
         folded = fields.min_eigenvalue < _NEARLY_FOLDED
@@ -426,7 +430,7 @@ class Ocean:
 
 
 def _fill(fields: Mapping[str, RealArray], made: Whitecaps) -> None:
-    """Put foam into the fields that are of it."""
+    """Fill the foam fields."""
     for name in fields.keys() & OF_MEMORY:
         fields[name][...] = getattr(made, name).reshape(fields[name].shape)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The waves of one part of a sea: one sum of coefficients, on a grid of their own."""
+"""The waves of one part of a sea, on a grid of their own."""
 
 from __future__ import annotations
 
@@ -34,7 +34,8 @@ RealArray = NDArray[np.floating]
 PRECISIONS = {"single": np.complex64, "double": np.complex128}
 
 
-# whoever draws from them holds them; fresh pages for each wind that is tried cost as much as the waves
+# seas that use them keep them alive; allocating new ones for each wind that is tried would cost as much as
+# the waves
 MEMO.limit("waves", 64)
 
 
@@ -50,9 +51,9 @@ def _damping(parameters: OceanParameters, dtype: type, strength: float) -> Troug
 
 
 class PartWaves:
-    """The waves of a part. Making one is cheap; its coefficients are made when needed.
+    """The waves of a part. Creating one is cheap; its coefficients are computed when needed.
 
-    side : of the sea's domain, m, with which masks repeat
+    side : of the sea's domain, with which masks repeat, m
     precision, workers : as for an `Ocean`
     """
 
@@ -65,17 +66,17 @@ class PartWaves:
 
     @property
     def is_on_tile(self) -> bool:
-        """Whether its samples are those of the sea's tile, if that has one."""
+        """Whether its samples coincide with those of the sea's tile."""
         return self.part.patch == 0 and not self.part.rotation
 
     @cached_property
     def initial_state(self) -> InitialState:
-        """Shared by all waves whose parameters differ only in what acts after it."""
+        """Shared by all waves whose parameters differ only in settings that do not affect it."""
         return _initial_state(self._before_action, PRECISIONS[self.precision])
 
     @cached_property
     def _before_action(self) -> OceanParameters:
-        # a loop's frames were checked against the shot's timing: keep that, but not its start
+        # the loop was checked against the shot's frame rate: keep that, but not the start frame
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
         kept = Gives.SPECTRUM | Gives.COEFFICIENTS
         on_grid = tuple(layer for layer in self.parameters.layers if layer.gives & kept)
@@ -97,7 +98,7 @@ class PartWaves:
         )
 
     def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
-        """Fill the arrays of all outputs but foam, on the part's own samples: what is quickest."""
+        """Fill the arrays of all outputs except foam on the part's own samples, the fastest case."""
         groups = memory_groups(wanted)
         needs = [frozenset().union(*(CHANNELS[name].needs for name in group)) for group in groups]
         most = max((len(self._synthesis.columns(each)) for each in needs), default=0)
@@ -114,7 +115,7 @@ class PartWaves:
     ) -> dict[Key, RealArray]:
         """(N, N) components of the displacement, (0…2, ""), or their derivatives by "x", "y" or "t".
 
-        closed : whether they are (N+1, N+1), the last row and column the first ones again
+        closed : whether they are (N+1, N+1), with the first row and column repeated at the end
         """
         keys = frozenset(wanted)
         n, dtype = self.parameters.resolution, real_type(self.precision)
@@ -133,14 +134,14 @@ class PartWaves:
     def exact_field(self, time: float | Fraction) -> Field:
         """The band-limited surface in the sea's axes, whose cost grows with points times wave vectors.
 
-        Raises ValueError with trough damping, which leaves no sum of waves.
+        Raises ValueError with trough damping, with which it is not a sum of waves.
         """
         if self.parameters.trough_damping > 0.0:
             raise ValueError("surface = 'exact': not available with trough damping; use mesh")
         return self._in_sea(exact(replace(self._synthesis, dtype=np.complex128), time), time)
 
     def mesh_field(self, time: float | Fraction, with_velocity: bool) -> tuple[Field, float]:
-        """The surface that is bilinear between the samples, and how far in m it moves a point sideways."""
+        """The surface bilinear between samples, and its largest horizontal displacement in m."""
         outputs = frozenset({"displacement"} | ({"velocity"} if with_velocity else set()))
         n, dtype = self.parameters.resolution, real_type(self.precision)
         made: dict[str, RealArray] = {name: np.empty((n, n, 3), dtype) for name in outputs}
@@ -150,26 +151,27 @@ class PartWaves:
         return self._in_sea(bilinear(displacement, made.get("velocity"), self.part.spacing), time), reach
 
     def _in_sea(self, field: Field, time: float | Fraction) -> Field:
-        """Their own surface in the sea's axes, under their masks."""
+        """A surface of these waves, rotated to the sea's axes and masked."""
         masks, when = self.part.masks, SeaTime(time, self.parameters.loop_duration)
         weights_at = partial(weights, masks, self._side, when=when) if masks else None
         return weighted_field(turned_field(field, self.part.rotation), weights_at)
 
 
 def real_type(precision: str) -> type:
-    """Of the numbers of fields."""
+    """The floating-point type of fields."""
     return np.float32 if precision == "single" else np.float64
 
 
 def strain_covariances(
     parts: Sequence[PartWaves], drift: tuple[float, float], between_samples: bool = False
 ) -> tuple[Array, Array]:
-    """As `core.foam.threshold.strain_covariances` has them, of parts together, without masks.
+    """Strain covariances (see `core.foam.threshold.strain_covariances`) of several parts together, without
+    masks.
 
-    Waves are independent, so theirs add.
+    Waves are independent, so their covariances add up.
 
-    between_samples : whether all parts are read between their samples, where they have less than their
-        waves, and not only those whose samples are not the tile's
+    between_samples : whether all parts are interpolated, which reduces their strains, and not only those
+        whose samples differ from the tile's
     """
     found = [
         foam_threshold.strain_covariances(

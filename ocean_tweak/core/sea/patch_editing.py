@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A patch more, a patch less, or none: what stays is a sea that holds every wave once."""
+"""Adding and removing patches, so that the sea still contains every wave exactly once."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, NO_SHORTEST, REPEATING_SHARE, Patch
 from .patch_plan import RESOLUTIONS, SPARE, odd_side, rotation_of, rounded, wavelength_with_share_below
 
-#: how often the longest wave of a new patch goes into its side, where its samples allow
+#: longest waves along a side of a new patch, if its resolution allows
 _CELLS = 12.0
-#: a band that is shared has two octaves at least, so that either part is worth a patch
+#: smallest band that is split in two, in octaves, so that either half is worth a patch
 _LEAST_RATIO = 4.0
-#: samples along a side of a new patch that goes on where the last one's grid ends
+#: samples along a side of a new patch that continues beyond the last one's grid
 _LEAST_RESOLUTION = 128
 
 
 def with_another_patch(parameters: OceanParameters) -> OceanParameters:
-    """The sea with one patch more, behind the last.
+    """The sea with one more patch after the last.
 
-    It takes the shorter half of the last one's octaves, from the first patch no longer waves than may
-    repeat. Where that one has no short end, or too few octaves for two, it goes on with shorter waves. A sea
-    without patches first becomes one of one.
+    It takes over the shorter half of the last patch's octaves; from the first patch, only waves that may
+    repeat. If the last patch has no short end, or too few octaves, the new one continues with shorter waves.
+    A sea without patches first becomes a sea of one.
 
-    Raises ParameterError where there are as many as there can be, and for what a sea of patches cannot have.
+    Raises ParameterError if there are too many patches, and for settings that patches do not support.
     """
     patches = parameters.patches or (
         Patch(domain_size=parameters.domain_size, resolution=parameters.resolution),
@@ -48,10 +48,10 @@ def with_another_patch(parameters: OceanParameters) -> OceanParameters:
 
 
 def without_patch(parameters: OceanParameters, index: int) -> OceanParameters:
-    """The sea without one of its patches, whose waves its neighbour takes: the one before it, of the first
-    the one behind, which then is the first and so not turned.
+    """The sea without one of its patches. Its waves go to the previous one; those of the first go to the
+    next, which becomes the first and is no longer rotated.
 
-    The last one that goes leaves a sea without patches. Raises IndexError where there is no such patch.
+    Removing the only patch leaves a sea without patches. Raises IndexError for an invalid index.
     """
     patches = list(parameters.patches)
     gone = patches.pop(index)
@@ -65,7 +65,7 @@ def without_patch(parameters: OceanParameters, index: int) -> OceanParameters:
 
 
 def _finer(last: Patch, patches: Sequence[Patch]) -> Patch:
-    """A patch of waves shorter than the last one's, down to the shortest that its samples hold."""
+    """A patch of waves shorter than the last one's, down to the shortest on its grid."""
     longest = last.shortest_wavelength
     resolution = max(last.resolution, _LEAST_RESOLUTION)
     side = _side(_CELLS * longest, SPARE * _CELLS * longest, patches)
@@ -74,7 +74,7 @@ def _finer(last: Patch, patches: Sequence[Patch]) -> Patch:
 
 
 def _halves(parameters: OceanParameters, last: Patch, patches: Sequence[Patch]) -> tuple[Patch, Patch]:
-    """A last patch with the longer half of its octaves, and one with the shorter half."""
+    """Split a patch into one with the longer half of its octaves and one with the shorter half."""
     shortest = last.shortest_wavelength
     longest = min(last.longest_wavelength, last.domain_size)
     end = math.sqrt(shortest * longest)

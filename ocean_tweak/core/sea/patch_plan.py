@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Patches from three numbers: the finest detail, the area that does not repeat, and memory.
+"""Plans patches from three numbers: the finest detail, the area without repetition, and memory.
 
-The first patch is as large as the area, so nothing of it repeats there. The others do; but all waves that
-they hold are a tenth of the variance at most, so the autocorrelation of the sea a domain of theirs away is a
-tenth at most. Their sides are turned against each other by parts of a quarter turn, of which no two are
-alike, and stand in no ratio of small whole numbers, so that what repeats in one does not in another.
+The first patch is as large as the area, so it does not repeat there. The others do, but together they hold at
+most a tenth of the variance, so the autocorrelation of the sea at the distance of one of their domains is at
+most a tenth. They are rotated by different fractions of a quarter turn, and the ratios of their sides are not
+ratios of small integers, so their repetitions do not coincide.
 """
 
 from __future__ import annotations
@@ -27,24 +27,23 @@ from .memory import memory_need
 
 Array = NDArray[np.float64]
 
-#: what can be wished for: least, most and unit
+#: allowed targets: minimum, maximum and unit
 WISHES = {"finest": (1e-3, 1e4, "m"), "area": (0.1, 1e5, "m"), "memory": (1e6, 1e15, "bytes")}
 
-#: samples along a side that are tried
+#: resolutions that are tried
 RESOLUTIONS = (64, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048, 3072, 4096, 6144, 8192)
 
-#: how often the longest wave of a band goes into a side: as often as memory allows, because what repeats is
-#: seen less the more waves it has
+#: longest waves along a side, as many as memory allows, because repetition is less visible with more waves
 _CELLS = (18.0, 12.0, 9.0, LEAST_CELLS)
 
-#: samples along a side with which one patch, which repeats nothing, is preferred to several
+#: resolution up to which a single patch, which does not repeat, is preferred to several
 _ONE_PATCH = 1024
 
-#: a little more than is promised, which rounding and ratios may take
+#: safety margin for rounding and for adjusting ratios
 SPARE = 1.06
-#: ratios of sides stay away from p/q with whole numbers up to this
+#: ratios of sides keep away from p/q with integers up to this
 _WHOLE = 8
-#: digits of lengths in m
+#: significant digits of lengths in m
 _DIGITS = 4
 
 _QUARTER = 0.5 * math.pi
@@ -53,13 +52,13 @@ _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 @dataclass(frozen=True)
 class Wish:
-    """What patches are planned for.
+    """The targets of a plan.
 
     finest : length in m of the shortest waves
-    area : side in m of the square that is not to repeat
-    memory : bytes that the sea may take
+    area : side in m of the square without repetition
+    memory : bytes that the sea may use
 
-    Raises ParameterError for numbers that are no lengths or bytes.
+    Raises ParameterError for numbers out of range.
     """
 
     finest: float
@@ -76,9 +75,9 @@ class Wish:
 
 
 def planned(parameters: OceanParameters, wish: Wish) -> OceanParameters:
-    """The sea with patches for a wish: the widest that memory allows, and of those the cheapest.
+    """The sea with patches that meet the targets: the largest that memory allows, and of those the cheapest.
 
-    Raises ParameterError, with the numbers that would do, for a wish that no patches can fill.
+    Raises ParameterError, with limits that would work, if no plan fits.
     """
     planner = _Planner(parameters)
     patches = planner.widest(wish)
@@ -95,13 +94,13 @@ class _Planner:
         sea = SeaSpectrum(self._parameters)
         self._longest = 0.0
         if np.isfinite(sea.peak_frequency):
-            # of the layer with the longest waves: the cells around its peak must not be too few
+            # of the layer with the longest waves: there must be enough cells around its peak
             slowest = min(layer.peak_frequency for layer in sea.layers)
             self._longest = 2.0 * math.pi / float(_wave_number(slowest, self._parameters))
         self._lengths, self._shares = _shares(sea)
 
     def widest(self, wish: Wish) -> tuple[Patch, ...] | None:
-        """The patches that fill a wish with the most waves a side; None where none do."""
+        """The patches that meet the targets with the most waves along a side; None if no plan fits."""
         for memory, resolutions in self._choices:
             if len(resolutions) == 1 and memory <= wish.memory and resolutions[0] <= _ONE_PATCH:
                 patches = self._patches(wish, resolutions, LEAST_CELLS)
@@ -117,7 +116,7 @@ class _Planner:
         return None
 
     def least_memory(self, wish: Wish) -> int | None:
-        """Bytes that a wish takes; None where no memory is enough."""
+        """Smallest memory in bytes that meets the targets; None if no amount is enough."""
         for memory, resolutions in self._choices:
             if self._patches(wish, resolutions, LEAST_CELLS) is not None:
                 return memory
@@ -125,7 +124,7 @@ class _Planner:
 
     @cached_property
     def _choices(self) -> list[tuple[int, tuple[int, ...]]]:
-        """Memory and samples along the side of each patch, cheapest first."""
+        """Memory and resolutions of each patch, cheapest first."""
         cost = {resolution: self._memory(resolution) for resolution in RESOLUTIONS}
         choices = [
             (first, other, count)
@@ -140,7 +139,7 @@ class _Planner:
         return sorted(found)
 
     def _memory(self, resolution: int) -> tuple[int, int]:
-        """Bytes that each patch keeps, and those that only one takes at a time."""
+        """Bytes that each patch keeps, plus those that only one uses at a time."""
         need = memory_need(self._parameters.at_resolution(resolution))
         return need.state + need.surface, max(0, need.building - need.surface)
 
@@ -156,12 +155,12 @@ class _Planner:
         return _finer(Patch(side, 0.0, rounded(end), NO_LONGEST, first), wish.finest, others, cells)
 
     def _share_below(self, wavelength: float) -> float:
-        """Share of the variance in waves shorter than a length in m."""
+        """Fraction of the variance in waves shorter than a length in m."""
         return float(np.interp(wavelength, self._lengths, self._shares))
 
 
 def _finer(first: Patch, finest: float, others: list[int], cells: float) -> tuple[Patch, ...] | None:
-    """The patches of the shorter waves, each with its share of what is left, counted in octaves."""
+    """The patches of the shorter waves, each with an equal part of the remaining octaves."""
     patches = [first]
     ratio = (first.shortest_wavelength / finest) ** (1.0 / len(others))
     for index, resolution in enumerate(others, 1):
@@ -179,12 +178,12 @@ def _finer(first: Patch, finest: float, others: list[int], cells: float) -> tupl
 
 
 def rotation_of(index: int) -> float:
-    """Turn in rad of a sea's patch by its number: each stands well away from all others."""
+    """Rotation in rad of a patch by its index, well apart from those of all others."""
     return round(_QUARTER * math.fmod(index * _GOLDEN, 1.0), _DIGITS)
 
 
 def wavelength_with_share_below(parameters: OceanParameters, share: float) -> float:
-    """Length in m of the waves below which a share of the sea's variance is; 0 for a flat sea."""
+    """Wavelength in m below which a fraction of the sea's variance lies; 0 for a flat sea."""
     lengths, shares = _shares(SeaSpectrum(parameters.without_patches))
     return float(np.interp(share, shares, lengths)) if shares[-1] > 0.0 else 0.0
 
@@ -194,7 +193,7 @@ def _wave_number(omega: float, parameters: OceanParameters) -> float:
 
 
 def _shares(sea: SeaSpectrum) -> tuple[Array, Array]:
-    """Wavelengths in m, ascending, and the share of the variance in waves shorter than each."""
+    """Wavelengths in m, ascending, and the fraction of the variance in waves shorter than each."""
     omega, weight = sea.rule
     k = dispersion.wave_number(omega, sea.parameters.dispersion, sea.parameters.water)
     energy = (sea.frequency_spectrum(omega) * weight)[::-1]
@@ -203,13 +202,14 @@ def _shares(sea: SeaSpectrum) -> tuple[Array, Array]:
 
 
 def rounded(length: float) -> float:
-    """A length in m with few digits, never shorter."""
+    """A length in m rounded up to few digits."""
     unit = 10.0 ** (math.floor(math.log10(length)) - _DIGITS + 1)
     return float(f"{math.ceil(length / unit - 1e-9) * unit:.{_DIGITS}g}")
 
 
 def odd_side(low: float, high: float, patches: Sequence[Patch]) -> float | None:
-    """A side in m between two lengths, the rather large, in no ratio of small whole numbers to the others."""
+    """A side in m between two lengths, preferably large, whose ratio to the others is not one of small
+    integers."""
     if low > high:
         return None
     unit = 10.0 ** (math.floor(math.log10(high)) - _DIGITS + 1)
@@ -222,12 +222,12 @@ def odd_side(low: float, high: float, patches: Sequence[Patch]) -> float | None:
 
 
 def _oddness(ratio: float) -> float:
-    """Distance of a ratio from the nearest p/q with q up to 8, as a share of the smaller side."""
+    """Distance of a ratio from the nearest p/q with q up to 8, as a fraction of the smaller side."""
     return min(abs(ratio * q - round(ratio * q)) for q in range(1, _WHOLE + 1))
 
 
 def _refusal(planner: _Planner, wish: Wish) -> ParameterError:
-    """What is said of a wish that cannot be filled, with what would do instead."""
+    """The error for targets that cannot be met, with limits that would work."""
     remedies = []
     memory = planner.least_memory(wish)
     if memory is not None:
@@ -252,7 +252,7 @@ def _fits(planner: _Planner, finest: float, area: float, memory: float) -> bool:
 
 
 def _nearest(fits: Callable[[float], bool], wanted: float, limit: float) -> float | None:
-    """The number nearest to the one wanted, on the way to a limit, that fits; None where none does."""
+    """The number nearest to a target, in the direction of a limit, that fits; None if none does."""
     steps = [wanted * (limit / wanted) ** share for share in _ways()]
     good = next((index for index, value in enumerate(steps) if fits(value)), None)
     if good is None:

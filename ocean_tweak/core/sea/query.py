@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The surface above a given place: its height, its normal and its motion there.
+"""Height, normal and velocity of the surface above given places.
 
-The sea moves its samples sideways too, so the sample above a place must be found: the rest position r with
-r + P_xy(r) = (x, y). Newton's method does so from the place itself; where the surface folds, there are
-several, all quads around are looked at, and the highest sheet counts.
+Waves also displace samples horizontally, so the rest position r with r + P_xy(r) = (x, y) must be found.
+Newton's method starts from the place itself; where the surface folds there are several solutions, all quads
+nearby are tested, and the highest sheet is taken.
 
-Of several parts together, Newton's method goes from the long waves to the short: the place at rest that the
-first part finds is where the search with the first two begins, and so on. So no step has to cross more than a
-part's own waves.
+For several parts, Newton's method proceeds from long waves to short: the solution for the first part is the
+start for the first two, and so on. So no step has to cross more than one part's own waves.
 """
 
 from __future__ import annotations
@@ -25,27 +24,27 @@ RealArray = NDArray[np.floating]
 Array = NDArray[np.float64]
 
 _STEPS = 40
-_TOLERANCE = 1e-5  # of a sample's spacing
+_TOLERANCE = 1e-5  # tolerance, in sample spacings
 
-#: where the surface is compressed to less than this, it may lie over itself nearby
+#: below this eigenvalue the surface may fold over nearby
 _FOLDING = 0.3
-#: quads of the net that is laid around a place to find other sheets, at the most, along each axis
+#: largest number of quads along each axis of the net around a place that is searched for further sheets
 _NET = 64
-#: lines of a rough net that tells how far points are moved around here, and by how much it may be wrong
+#: lines of a coarse net for the largest horizontal displacement nearby, and its safety factor
 _ROUGH, _MARGIN = 13, 1.2
-#: places around which nets are laid at once
+#: places processed at a time
 _CHUNK = 32
 
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """The surface above some places, each array as long as those, in m and m/s.
+    """The surface above some places; arrays in the places' shape, in m and m/s.
 
     height : z
-    rest : (…, 2) position at rest of what is there now
+    rest : (…, 2) rest position of the water there
     normal : (…, 3) unit normal
-    velocity : (…, 3) of the water there; None if it was not asked for
-    found : whether the place was met to a hundred-thousandth of a sample; False only within folds
+    velocity : (…, 3) of the water there; None if not requested
+    found : whether the solution is accurate to a hundred-thousandth of a sample; False only within folds
     """
 
     height: Array
@@ -63,9 +62,9 @@ def find_points(
     spacing: float,
     folded: NDArray[np.bool_],
 ) -> SurfacePoints:
-    """The bilinear surface above places x and y in m, of one shape.
+    """The bilinear surface above places x and y in m, arrays of one shape.
 
-    folded : (N, N) samples near which the surface may lie over itself: there every quad is looked at
+    folded : (N, N) samples near which the surface may fold over; there every quad is tested
     """
     places_x, places_y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
     shape, px, py = places_x.shape, places_x.ravel(), places_y.ravel()
@@ -85,7 +84,7 @@ def find_points(
 
 
 def _spread(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
-    """The mask with all samples up to `reach` away, along both axes and around the edges."""
+    """Dilate a periodic mask by `reach` samples along both axes."""
     for axis in (0, 1):
         wide = mask.copy()
         for shift in range(1, min(reach, len(mask) // 2) + 1):
@@ -101,7 +100,7 @@ class _Sheet(NamedTuple):
 
 
 def _highest_sheet(px: Array, py: Array, displacement: RealArray, spacing: float, reach: int) -> _Sheet:
-    """The highest of the quads over each place, looked for among all up to `reach` samples away."""
+    """The highest quad over each place, among all within `reach` samples."""
     n = len(displacement)
     j0, i0 = np.floor(px / spacing).astype(np.intp), np.floor(py / spacing).astype(np.intp)
     best = np.full(px.shape, -np.inf)
@@ -131,7 +130,8 @@ def _highest_sheet(px: Array, py: Array, displacement: RealArray, spacing: float
 
 
 def inside_quad(corners: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """u and v at which quads (4, points, 2) pass over the origin, by Newton's method, and whether they do."""
+    """Solve for (u, v) at which quads (4, points, 2) contain the origin, by Newton's method; also returns
+    whether they do."""
     p00, p01, p10, p11 = corners
     across, up, twist = p01 - p00, p10 - p00, p00 - p01 - p10 + p11
     u = np.full(len(p00), 0.5)
@@ -159,12 +159,12 @@ def find_summed_points(
     reach: float,
     with_velocity: bool,
 ) -> SurfacePoints:
-    """The surface of some patches together above places x and y in m, of one shape.
+    """The surface of the sum of several patches above places x and y in m, arrays of one shape.
 
     fields, spacings : of each patch, in the sea's axes, from long waves to short
-    reach : how far in m the sea may have moved a point sideways
+    reach : largest horizontal displacement of the sea in m
 
-    Where the surface folds, the highest of the sheets that a net of rest positions around each place shows.
+    Where the surface folds, the highest of the sheets found by a net of rest positions around each place.
     """
     places_x, places_y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
     shape, px, py = places_x.shape, places_x.ravel(), places_y.ravel()
@@ -193,8 +193,8 @@ def _from_long_to_short(
 def _sheets(
     px: Array, py: Array, field: Field, spacing: float, reach: float
 ) -> Iterator[tuple[int, float, float, float]]:
-    """The sheets over each place: its number, the rest position and the height."""
-    # how far points were moved around here is less than the farthest of the whole sea
+    """The sheets over each place: index of the place, rest position and height."""
+    # the largest displacement nearby is smaller than that of the whole sea
     rough = np.linspace(-reach, reach, _ROUGH)
     rough_x, rough_y = _net(px, py, rough)
     (moved, _, _), _ = field(rough_x.ravel(), rough_y.ravel(), False)
@@ -205,7 +205,7 @@ def _sheets(
     value = field(net_x.ravel(), net_y.ravel(), False)[0].value.reshape(*net_x.shape, 3)
     off = np.stack((net_x, net_y), axis=-1) + value[..., :2]
     off -= np.stack((px, py), axis=-1)[:, np.newaxis, np.newaxis]
-    # (4, places, rows, columns, 2): a quad's corners as they lie around the place
+    # (4, places, rows, columns, 2): corners of quads relative to the place
     corners = np.stack([off[:, i : count + i, j : count + j] for i in (0, 1) for j in (0, 1)])
     near = np.all((corners.min(axis=0) <= 0.0) & (corners.max(axis=0) >= 0.0), axis=-1)
     place, row, column = np.nonzero(near)
@@ -215,7 +215,7 @@ def _sheets(
     step = offset[1] - offset[0]
     start_x, start_y = (net[place, row, column] + step * w for net, w in ((net_x, u), (net_y, v)))
     x, y, met = newton(px[place], py[place], start_x, start_y, field, spacing)
-    # a sheet between two folds may be narrower than a step of Newton's: then the net itself has to do
+    # a sheet between two folds may be narrower than a Newton step: then use the net's own solution
     kept = met & (np.hypot(x - start_x, y - start_y) < 2.0 * step)
     x, y = np.where(kept, x, start_x), np.where(kept, y, start_y)
     z = [value[place, row + i, column + j, 2] for i in (0, 1) for j in (0, 1)]
@@ -225,7 +225,7 @@ def _sheets(
 
 
 def _net(px: Array, py: Array, offset: Array) -> tuple[Array, Array]:
-    """x and y of a square net around each place, (places, rows, columns)."""
+    """Coordinates x and y of a square net around each place, (places, rows, columns)."""
     x = px[:, np.newaxis, np.newaxis] + offset
     y = py[:, np.newaxis, np.newaxis] + offset[:, np.newaxis]
     net_x, net_y = np.broadcast_arrays(x, y)
@@ -233,7 +233,7 @@ def _net(px: Array, py: Array, offset: Array) -> tuple[Array, Array]:
 
 
 def _near_folds(x: Array, y: Array, field: Field, step: float) -> NDArray[np.bool_]:
-    """Whether the surface is compressed a lot at any of 5 x 5 places around each."""
+    """Whether the surface is strongly compressed at any of 5 x 5 positions around each place."""
     result = np.zeros(x.shape, bool)
     for dy in (-2.0, -1.0, 0.0, 1.0, 2.0):
         for dx in (-2.0, -1.0, 0.0, 1.0, 2.0):
@@ -252,7 +252,7 @@ def refine_points(
     spacing: float,
     with_velocity: bool = False,
 ) -> SurfacePoints:
-    """The points of another surface near those of `guess`, above the same places."""
+    """The points of another surface above the same places, starting from `guess`."""
     px, py = (np.broadcast_to(np.asarray(v, np.float64), guess.height.shape).ravel() for v in (x, y))
     rest = guess.rest.reshape(-1, 2)
     rest_x, rest_y, found = newton(px, py, rest[:, 0], rest[:, 1], field, spacing)
@@ -267,7 +267,7 @@ def described(
     field: Field,
     with_velocity: bool,
 ) -> SurfacePoints:
-    """The surface of a field at rest positions, in the shape that was asked for."""
+    """The surface of a field at rest positions, in a given shape."""
     values, velocity = field(rest_x, rest_y, with_velocity)
     normal = _normals(values)
     return SurfacePoints(
@@ -282,10 +282,10 @@ def described(
 def newton(
     px: Array, py: Array, rest_x: Array, rest_y: Array, field: Field, spacing: float
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Rest positions of what is above (px, py), from first guesses, and which of them were met.
+    """Rest positions of the surface above (px, py), from initial guesses, and whether each converged.
 
-    Only points that are not there yet take part in a step. A step is at most two samples long and gets
-    shorter, so that it settles where the bilinear surface has edges.
+    Only points that have not converged take part in a step. Steps are at most two samples long and get
+    shorter, so that they converge at the edges of the bilinear surface.
     """
     rest_x, rest_y = rest_x.copy(), rest_y.copy()
     waiting = np.arange(px.size)
@@ -307,7 +307,7 @@ def newton(
         move_y = np.where(steep, (xx * off_y - yx * off_x) / safe, off_y)
         longest = 2.0 * spacing * (1.0 if step < 10 else 10.0 / step)
         factor = np.minimum(1.0, longest / np.maximum(np.hypot(move_x, move_y), 1e-300))
-        far = np.hypot(off_x, off_y) > 4.0 * spacing  # first come near, then be careful
+        far = np.hypot(off_x, off_y) > 4.0 * spacing  # first approach, then damp the steps
         factor = np.where(far, 1.0, factor)
         rest_x[waiting] -= factor * move_x
         rest_y[waiting] -= factor * move_y

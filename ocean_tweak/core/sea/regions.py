@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the fields of a sea are wanted."""
+"""The regions on which fields of a sea can be computed."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ..data.printable import shown, without_exponent
 
 Array = NDArray[np.float64]
 
-#: samples along each side of an area in a file, at most: as of a sea's own
+#: largest number of samples along a side of an area in a file, as for a sea
 MOST_SAMPLES = 8192
 
 
 @dataclass(frozen=True)
 class Tile:
-    """The (N, N) samples [y, x] of a sea's own domain, which repeats.
+    """The (N, N) samples [y, x] of a sea's own periodic domain.
 
     Examples
     --------
@@ -36,13 +36,13 @@ TILE = Tile()
 
 @dataclass(frozen=True)
 class Area:
-    """(N, N) samples [y, x] over any square, which does not repeat: its far sides do not fit its near ones.
+    """(N, N) samples [y, x] of any square, which is not periodic.
 
     size : of the square, m
     resolution : samples along each side
     corner : x and y of the first sample, m
 
-    Raises ValueError for a square without size or samples.
+    Raises ValueError for a size or resolution of 0 or less.
 
     Examples
     --------
@@ -78,7 +78,7 @@ class Area:
 
     @classmethod
     def of_file(cls, size: float, resolution: int, corner: Sequence[float] = (0.0, 0.0)) -> Area:
-        """An area of plain data, as `to_dict` writes it. Raises ValueError for one that no file can have."""
+        """An area from plain data, as written by `to_dict`. Raises ValueError for invalid data."""
         x, y = corner
         if not (type(resolution) is int and 2 <= resolution <= MOST_SAMPLES):
             raise ValueError(f"resolution = {resolution!r}: must be from 2 to {MOST_SAMPLES} samples")
@@ -86,23 +86,23 @@ class Area:
 
     @classmethod
     def of_words(cls, words: Sequence[str]) -> Area:
-        """An area as it is written on the command line. Raises ValueError."""
+        """An area from its form on the command line. Raises ValueError."""
         if len(words) not in (2, 4):
             raise ValueError(f"{' '.join(words)!r} must be SIZE SAMPLES, or SIZE SAMPLES X Y")
         return cls.of_file(float(words[0]), int(words[1]), [float(word) for word in words[2:]] or (0.0, 0.0))
 
     def words(self) -> tuple[str, ...]:
-        """SIZE SAMPLES X Y, without exponents."""
+        """The form for the command line, SIZE SAMPLES X Y, without exponents."""
         size, *corner = map(without_exponent, (self.size, *self.corner))
         return (size, str(self.resolution), *corner)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as it stands in jobs and headers."""
+        """Plain data, as in jobs and headers."""
         return {**asdict(self), "corner": list(self.corner)}
 
 
 def told_area(data: Mapping[str, Any]) -> Area | None:
-    """The area that a job, or the header of an image, is of. Raises ValueError for what is none."""
+    """The area in a job or an image's header, or None. Raises ValueError for invalid data."""
     if "area" not in data:
         return None
     try:
@@ -115,7 +115,7 @@ def told_area(data: Mapping[str, Any]) -> Area | None:
 class Places:
     """Rest positions x and y in m, of shapes that broadcast: fields have their shape.
 
-    Raises ValueError where they are asked for and not finite.
+    Fields of places that are not finite raise ValueError.
 
     Examples
     --------

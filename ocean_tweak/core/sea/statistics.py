@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sea of patches will be: the sum, and what each patch holds of it."""
+"""Statistics of a sea of patches: of the sum and of each patch."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from ..statistics.sea_statistics import (
 
 
 def statistics_of_patches(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> Statistics:
-    """Statistics of a sea of patches from those of each in its own axes."""
+    """Combine the statistics of patches, each in its own axes, to those of the sea."""
     patches = parameters.patches
     in_sea = [_turned(found, patch.rotation) for found, patch in zip(of_patches, patches, strict=True)]
     whole = parameters.replace(patches=())
@@ -56,7 +56,7 @@ def statistics_of_patches(parameters: OceanParameters, of_patches: Sequence[Stat
 
 
 def _turned(found: Statistics, rotation: float) -> Statistics:
-    """Statistics of a patch in the sea's axes."""
+    """Statistics of a patch rotated to the sea's axes."""
 
     def in_sea(state: SeaState) -> SeaState:
         direction = math.remainder(state.mean_direction + rotation, math.tau)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces as functions of rest positions: bilinear between samples, or the Fourier sum itself; and several
-of them together, each in axes of its own and under weights.
+"""Surfaces as functions of the rest position: bilinear between samples, or the exact Fourier sum; and sums of
+several, each with its own axes and weights.
 """
 
 from __future__ import annotations
@@ -22,24 +22,26 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
 
-#: points whose sums are made together
+#: points processed at a time
 _CHUNK = 2048
 
 
 class Values(NamedTuple):
-    """A field and its derivatives by the rest position at some points: (points, channels) each."""
+    """A field and its derivatives with respect to the rest position at some points: (points, channels)
+    each."""
 
     value: Array
     by_x: Array
     by_y: Array
 
 
-#: gives the position P (x, y, z), and with `True` the velocity, at rest positions x and y in m
+#: function that returns the displacement P (x, y, z), or with `True` the velocity, at rest positions x and y
+# in m
 Field = Callable[[Array, Array, bool], tuple[Values, Array | None]]
 
 
 def bilinear(displacement: RealArray, velocity: RealArray | None, spacing: float) -> Field:
-    """The surface that a mesh with a vertex a sample shows: bilinear between the samples, periodic."""
+    """The periodic surface bilinear between samples, as on a mesh with one vertex per sample."""
 
     def field(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
         corners, *shares = between(y / spacing, x / spacing, displacement.shape)
@@ -58,9 +60,10 @@ def bilinear(displacement: RealArray, velocity: RealArray | None, spacing: float
 
 
 def exact(synthesis: Synthesis, time: float | Fraction) -> Field:
-    """Positions and velocities at rest positions anywhere, as sums over all wave vectors.
+    """Positions and velocities at any rest positions, as sums over all wave vectors.
 
-    A point costs as much as there are wave vectors. Trough damping is not a sum of waves: it is left out.
+    The cost per point is proportional to the number of wave vectors. Trough damping is not a sum of waves and
+    is ignored.
     """
     grid = synthesis.state.grid
     columns = _Columns(synthesis, time)
@@ -79,7 +82,7 @@ def exact(synthesis: Synthesis, time: float | Fraction) -> Field:
 
 
 class _Columns:
-    """Coefficients of the columns that positions and their derivatives need, made once for a time."""
+    """Coefficients of the columns needed for positions and derivatives, computed once for a time."""
 
     def __init__(self, synthesis: Synthesis, time: float | Fraction) -> None:
         self._synthesis = synthesis
@@ -105,7 +108,7 @@ class _Columns:
 
 
 def turned_field(field: Field, rotation: float) -> Field:
-    """A patch's surface in the sea's axes."""
+    """A patch's surface rotated to the sea's axes."""
     if not rotation:
         return field
     c, s = math.cos(rotation), math.sin(rotation)
@@ -142,7 +145,7 @@ def weighted_field(field: Field, weights_at: Callable[[Array, Array], Weights] |
 
 
 def summed_field(fields: Sequence[Field]) -> Field:
-    """The surface of several patches together."""
+    """The sum of the surfaces of several patches."""
 
     def total(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
         parts = [field(x, y, with_velocity) for field in fields]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a hull feels of the sea: the plane of least squares through the surface over its waterline.
+"""The effect of the sea on a hull: the least-squares plane through the surface over its waterline.
 
-The waterline is a disc. Points spread evenly over it stand for its area, so waves much shorter than the hull
-cancel out and those much longer pass in full.
+The waterline is approximated by a disc, sampled evenly. Waves much shorter than the hull average out, and
+much longer ones act in full.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ POINTS = 1 + 3 * RINGS * (RINGS + 1)
 
 
 class Plane(NamedTuple):
-    """z = height + slope_x·x + slope_y·y around the middle of the disc; m, and slopes without a unit."""
+    """z = height + slope_x·x + slope_y·y around the centre of the disc; height in m, slopes dimensionless."""
 
     height: Array
     slope_x: Array
@@ -29,9 +29,9 @@ class Plane(NamedTuple):
 
 
 def stencil() -> Array:
-    """(POINTS, 2) points that share a disc of radius 1 evenly, symmetric about its middle.
+    """(POINTS, 2) points evenly spread over a disc of radius 1, symmetric about its centre.
 
-    Ring m lies at the root of the mean square radius of the part of the area that its 6m points stand for.
+    Ring m lies at the root mean square radius of the area that its 6m points represent.
     """
     rings = [np.zeros((1, 2))]
     for ring in range(1, RINGS + 1):
@@ -42,13 +42,13 @@ def stencil() -> Array:
 
 
 def fitted_plane(heights: Array, radius: float) -> Plane:
-    """The plane of least squares through heights (…, POINTS) in m over `stencil()` times a radius in m.
+    """The least-squares plane through heights (…, POINTS) in m over `stencil()` times a radius in m.
 
-    Raises ValueError for a radius that is not above 0.
+    Raises ValueError for a radius of 0 or less.
     """
     if not radius > 0.0:
         raise ValueError(f"radius = {radius!r}: must be above 0; a single point has no plane")
     offsets = radius * stencil()
-    # the stencil is symmetric: the three unknowns do not mix
+    # the stencil is symmetric, so the normal equations are diagonal
     slopes = heights @ offsets / np.sum(offsets**2, axis=0)
     return Plane(heights.mean(axis=-1), slopes[..., 0], slopes[..., 1])
