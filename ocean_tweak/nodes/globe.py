@@ -8,14 +8,16 @@ from .fields import combined, connect, coordinates
 from .sample import Spaces
 
 EARTH_RADIUS = 6_371_000.0  # m
-#: a camera lower than this part of the radius, 2 m, or under water sees as far as from there
-_LEAST_HEIGHT = 2.0 / EARTH_RADIUS
+#: m; a camera that is lower, or under water, sees as far as from there
+LEAST_HEIGHT = 2.0
 
 
 def reach_of(build: Builder, eye: Socket) -> Socket:
     """The distance √(2Rh) of the horizon from an eye over the water, or the one that is asked for."""
     radius = build.given("Planet Radius")
-    height = build.math("MAXIMUM", coordinates(build, eye)[2], build.math("MULTIPLY", radius, _LEAST_HEIGHT))
+    height = build.math(
+        "MAXIMUM", coordinates(build, eye)[2], build.math("MULTIPLY", radius, LEAST_HEIGHT / EARTH_RADIUS)
+    )
     horizon = build.math("MULTIPLY", build.math("MULTIPLY", radius, 2.0), height)
     horizon = build.math("SQRT", horizon, None)
     return build.switch("FLOAT", build.given("To Horizon"), build.given("Reach"), horizon)

@@ -15,6 +15,7 @@ from ..core import Ocean, OceanParameters
 from . import boat_hull, buoy
 from .boat import new_boat
 from .buoy import new_buoy
+from .clear_water import sight
 from .floating import Ride, float_on
 from .moods import VIEW
 from .units import metres_per_unit
@@ -114,11 +115,8 @@ def _best_seen(
     bearing = side * math.tan(0.5 * angle) * np.linspace(*_ASIDE, _BEARINGS)
     distance = np.linspace(chosen.nearest, chosen.farthest, _LEADS)[:, np.newaxis]
     away = (distance[..., np.newaxis] * (forward + bearing[:, np.newaxis] * right)).reshape(-1, 2)
-    # the slope at which each piece of the way to a place is seen, the place itself being the last
-    share = np.array([*np.linspace(0.05, 0.9, 32), 1.0])[:, np.newaxis]
-    x, y = (place[axis] + share * away[:, axis] for axis in (0, 1))
-    height = Ocean(parameters).height_at(x, y, parameters.timing.time(parameters.timing.start_frame))
-    slope = (height - place[2]) / (share * np.hypot(*away.T))
-    hidden = (slope[:-1].max(axis=0) - slope[-1]) * np.hypot(*away.T)
+    time = parameters.timing.time(parameters.timing.start_frame)
+    seen = sight(Ocean(parameters), time, place, away, np.append(np.linspace(0.05, 0.9, 32), 1.0))
+    hidden = seen.horizon - seen.water
     best = int((hidden if chosen.hidden is None else np.abs(hidden - chosen.hidden)).argmin())
-    return float(x[-1, best]), float(y[-1, best])
+    return float(seen.x[best]), float(seen.y[best])

@@ -10,6 +10,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..core.sea.foam_fan import View
+from ..nodes.globe import LEAST_HEIGHT
 from ..nodes.modifier_inputs import get_input
 from .plan import camera_matrix, camera_of, surface_modifier
 
@@ -17,8 +18,6 @@ from .plan import camera_matrix, camera_of, surface_modifier
 AERIAL, _NEAR = 20.0, 5.0
 #: rad below the horizon, between which the lowest line of sight is for a fan to be before the camera
 _LOWEST = math.radians(2.0), math.radians(60.0)
-#: m, of a camera in a trough or under water: the surface reaches as far as from there
-_LEAST_HEIGHT = 2.0
 #: rad, of the picture to each side at the most
 _WIDEST = math.radians(100.0)
 #: places along each side of the picture that are looked at
@@ -51,7 +50,7 @@ def view_of(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> 
     if half_angle > _WIDEST:
         return None
     near = _NEAR if is_low else height / math.tan(lowest)
-    reach = _reach(surface, max(height, _LEAST_HEIGHT), scale)
+    reach = _reach(surface, max(height, LEAST_HEIGHT), scale)
     return View(x, y, near, azimuth, half_angle, reach, is_low)
 
 

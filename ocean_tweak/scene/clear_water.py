@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which point of a ready scene's sea is put under the 3D cursor, where Blender adds objects: a clear one."""
+"""What a camera in a ready scene sees of the water, and which point of the sea is put under the 3D cursor,
+where Blender adds objects: a clear one.
+"""
 
 from __future__ import annotations
 
 import math
+from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from .moods import VIEW, Mood
+
+Array = NDArray[np.float64]
 
 #: sensor of a new camera, mm, and height by width of the lowest pictures that are usual
 _SENSOR, _LOWEST = 36.0, 27.0 / 64.0
@@ -21,7 +27,7 @@ _FARTHER = 0.2
 
 
 def clear_place(
-    mood: Mood, place: NDArray[np.float64], parameters: OceanParameters, view: float = VIEW
+    mood: Mood, place: Array, parameters: OceanParameters, view: float = VIEW
 ) -> tuple[float, float]:
     """x and y in the patch, in m, of a place near the middle of the picture that no wave hides, and where the
     water stands at its mean level in the first frame: what is added there lies on the water.
@@ -37,17 +43,40 @@ def clear_place(
     aside *= ahead * _ASIDE * _half_width(mood)
     forward = np.array([math.cos(view), math.sin(view)])
     away = np.stack([ahead, aside], axis=-1).reshape(-1, 2) @ np.array([forward, [forward[1], -forward[0]]])
-    # the slopes at which each piece of the way is seen, and at last the water's mean level there
-    share = np.linspace(0.02, 1.0, _STEPS)[:, np.newaxis]
+    seen = sight(sea, time, place, away, np.linspace(0.02, 1.0, _STEPS))
+    # in wave heights: how far the water is from its mean level, and how much of it stands before that place
+    badness = np.abs(seen.water) + 10.0 * np.maximum(seen.horizon - np.maximum(seen.water, 0.0), 0.0)
+    badness = badness / wave_height + _FARTHER * np.hypot(*away.T) / crest
+    best = int(badness.argmin())
+    return float(seen.x[best]), float(seen.y[best])
+
+
+class Sight(NamedTuple):
+    """Places that a camera looks at; (places,) each, in m.
+
+    x, y : of each, in the patch
+    water : its height there
+    horizon : height there that is seen just above the waves in between
+    """
+
+    x: Array
+    y: Array
+    water: Array
+    horizon: Array
+
+
+def sight(sea: Ocean, time: float | Fraction, place: Array, away: Array, shares: Array) -> Sight:
+    """What waves leave to be seen of places.
+
+    place : of the camera, x, y and z in m, in the patch
+    away : (places, 2) from the camera to each, m
+    shares : of the way to a place, at which water is looked for; the last is 1, the place itself
+    """
+    share, way = shares[:, np.newaxis], np.hypot(*away.T)
     x, y = (place[axis] + share * away[:, axis] for axis in (0, 1))
     water = sea.height_at(x, y, time)
-    way = np.hypot(*away.T)
-    hidden = ((water - place[2]) / (share * way))[:-1].max(axis=0) * way + place[2]
-    # in wave heights: how far the water is from its mean level, and how much of it stands before that place
-    badness = np.abs(water[-1]) + 10.0 * np.maximum(hidden - np.maximum(water[-1], 0.0), 0.0)
-    badness = badness / wave_height + _FARTHER * way / crest
-    best = int(badness.argmin())
-    return float(x[-1, best]), float(y[-1, best])
+    steepest = ((water[:-1] - place[2]) / (share[:-1] * way)).max(axis=0)
+    return Sight(x[-1], y[-1], water[-1], place[2] + steepest * way)
 
 
 def _half_width(mood: Mood) -> float:

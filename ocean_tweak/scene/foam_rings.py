@@ -106,15 +106,27 @@ class _Maker:
 
     def at_once(self, wanted: _Shown) -> tuple[Rings, bool]:
         """A window's rings, quickly made, and whether they are those of the time and around the place."""
-        few, last = self._few, self._shown
-        if few is None or last is None or not last.leads_to(wanted) or self._busy.locked():
+        led = self._led_to(wanted)
+        if led is None:
             alone = FoamRings(self._levels, wanted.samples)
             return alone.at(wanted.time, wanted.place, history=False), False
-        with self._busy:
-            made = few.at(wanted.time, last.place)
-            self._shown = last._replace(time=wanted.time)
+        made, last = led
         MEMO.put(_RINGS, self._parameters, self)  # it has grown
         return made, math.dist(last.place, wanted.place) <= _FOLLOWS * last.samples * FINEST
+
+    def _led_to(self, wanted: _Shown) -> tuple[Rings, _Shown] | None:
+        """Rings that follow the window's, and these; None where none do, or while a thread makes some."""
+        if not self._busy.acquire(blocking=False):
+            return None
+        try:
+            few, last = self._few, self._shown
+            if few is None or last is None or not last.leads_to(wanted):
+                return None
+            made = few.at(wanted.time, last.place)
+            self._shown = last._replace(time=wanted.time)
+            return made, last
+        finally:
+            self._busy.release()
 
 
 @dataclass(frozen=True)

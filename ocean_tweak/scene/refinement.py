@@ -135,7 +135,8 @@ class _Outstanding:
         """Let the thread make something."""
         if self.worker is None:
             self.worker = ThreadPoolExecutor(1, "Ocean Tweak")
-        self.shares.pop(uid, None)
+        if part is Wanted.HISTORY:
+            self.shares.pop(uid, None)
         self.making[uid, part] = self.worker.submit(job)
 
     def clear(self) -> None:

@@ -89,8 +89,14 @@ def _direction(item: _Object) -> float | None:
     return None if found is None else float(getattr(*found))
 
 
-def _set_direction(item: _Object, value: float) -> None:
-    setattr(*_directed(item), value)
+def _turn(item: _Object) -> float | None:
+    """What its dial shows, which turns clockwise about its axis."""
+    direction = _direction(item)
+    return None if direction is None else -direction
+
+
+def _set_turn(item: _Object, value: float) -> None:
+    setattr(*_directed(item), -value)
 
 
 def _speed(item: _Object) -> float | None:
@@ -152,7 +158,7 @@ HANDLES = {
         lambda item: _middle(item) @ _ALONG_X,
     ),
     "direction": Handle(
-        "GIZMO_GT_dial_3d", _WIND_COLOUR, _DIAL, _direction, _set_direction, lambda item: _at(item) @ _FROM_X
+        "GIZMO_GT_dial_3d", _WIND_COLOUR, _DIAL, _turn, _set_turn, lambda item: _at(item) @ _FROM_X
     ),
     "speed": Handle("GIZMO_GT_arrow_3d", _WIND_COLOUR, {}, _speed, _set_speed, _along),
     "focus": Handle(

@@ -33,7 +33,7 @@ def test_each_sets_what_it_reads(handles, item):
     settings = item.ocean_tweak
     bpy.ops.ocean.layer_add(kind="HERO_WAVE")
     hero = settings.active_layer
-    wanted = {"size": 45.0, "direction": 0.5, "speed": 20.0, "focus": (12.0, 34.0, 0.0), "wavelength": 25.0}
+    wanted = {"size": 45.0, "direction": -0.5, "speed": 20.0, "focus": (12.0, 34.0, 0.0), "wavelength": 25.0}
     settings.active_layer, settings.layers[0].definition = 0, "WIND"
     for name, value in wanted.items():
         settings.active_layer = hero if name in ("focus", "wavelength") else 0
@@ -41,7 +41,7 @@ def test_each_sets_what_it_reads(handles, item):
         assert handles[name].read(item) == pytest.approx(value)
     wave = settings.layers[hero].hero_wave
     assert settings.domain_size == pytest.approx(90.0)
-    assert settings.layers[0].wind_direction == pytest.approx(0.5)
+    assert settings.layers[0].wind_direction == pytest.approx(0.5)  # a dial turns clockwise
     assert settings.layers[0].wind_speed == pytest.approx(60.0 * 20.0 / 90.0)  # 60 m/s are a side
     assert (wave.x, wave.y, wave.wavelength) == pytest.approx((12.0, 34.0, 25.0))
 

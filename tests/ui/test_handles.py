@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The handles in the 3D view, pulled with the mouse; undo and redo take each as one step."""
 
+import math
+
 import pytest
 
 FRAMED = """
@@ -53,6 +55,13 @@ def pull(hand, name, right, down=0, beside=(0, 0)):
     hand.wait("is_refining()", False)
 
 
+def add_hero_wave(hand):
+    """As one step of undo."""
+    add = "bpy.ops.ocean.layer_add(kind='HERO_WAVE'); bpy.ops.ed.undo_push(message='added')"
+    command = f"with over('WINDOW'): {add}"
+    hand.ask(f"run({command!r})")
+
+
 def undone_and_redone(hand, expression, before):
     after = hand.ask(expression)
     hand.to_viewport()
@@ -77,8 +86,33 @@ def test_the_wind_turns_and_blows_harder(framed):
     undone_and_redone(framed, "ocean().layers[0].wind_speed", 12.0)
 
 
+def test_the_wind_turns_with_the_dial(framed):
+    """Its circle is gripped a sixth of a turn from the wind's direction, where no arrow is."""
+    wind = "ocean().layers[0].wind_direction"
+    before = framed.ask(wind)
+    x, y = framed.ask("on_screen(extension('ui.gizmos').HANDLES['direction'].place(item).translation)")
+    radius = framed.ask("bpy.context.preferences.view.gizmo_size * bpy.context.preferences.system.ui_scale")
+    grip, turn = before + math.pi / 3.0, math.pi / 6.0
+    (a, b), (c, d) = ((radius * math.cos(angle), -radius * math.sin(angle)) for angle in (grip, grip + turn))
+    framed.to_viewport()
+    framed.drag_from(x + a, y + b, c - a, d - b)
+    framed.wait(wind, lambda value: abs(value - before - turn) < math.radians(8.0))
+    undone_and_redone(framed, wind, before)
+
+
+def test_a_hero_wave_becomes_longer(framed):
+    add_hero_wave(framed)
+    wave = "ocean().layers[ocean().active_layer].hero_wave"
+    framed.ask(f"setattr({wave}, 'direction', 0.0)")
+    framed.wait("is_refining()", False)
+    before = framed.ask(f"{wave}.wavelength")
+    pull(framed, "wavelength", right=50, beside=(6, 0))
+    framed.wait(f"{wave}.wavelength", lambda value: value > before + 20.0)
+    undone_and_redone(framed, f"{wave}.wavelength", before)
+
+
 def test_a_hero_wave_is_put_where_it_shall_be(framed):
-    framed.ask("run(\"with over('WINDOW'): bpy.ops.ocean.layer_add(kind='HERO_WAVE')\")")
+    add_hero_wave(framed)
     wave = "ocean().layers[ocean().active_layer].hero_wave"
     before = framed.ask(f"{wave}.x")
     framed.wait("is_refining()", False)

@@ -38,7 +38,6 @@ def test_a_list_and_a_pin(hand):
     hand.ask(f"run({TWO!r})")
     hand.wait("len(oceans())", 2)
     hand.wait("shown()", "Ocean")  # the first by name, though nothing is selected
-    hand.find("ocean.pin(", across=(0.97, 0.94))
     hand.click(*hand.find("ocean.pin(", across=(0.97, 0.94)))
     hand.wait("bpy.context.scene.ocean_tweak_pinned", "Ocean")
     hand.ask("setattr(bpy.context.view_layer.objects, 'active', bpy.data.objects['Ocean.001'])")
