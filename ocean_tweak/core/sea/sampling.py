@@ -110,7 +110,7 @@ class Grid:
         return weighted(turned(found, self._rotation), weights)
 
 
-class Strains:
+class StrainFields:
     """Of the gradient at places or on samples half the sum and half the difference of the diagonal, and the
     mean of the others: those of waves add, and from the sum of all follows the compression.
     """
@@ -119,7 +119,7 @@ class Strains:
         self.fields = half_sum, half_difference, shear
 
     @classmethod
-    def of(cls, gradient: Components) -> Strains:
+    def of(cls, gradient: Components) -> StrainFields:
         """Those of a gradient."""
         xx, xy, yx, yy = (gradient[key] for key in GRADIENT)
         fields = xx + yy, xx - yy, xy + yx
@@ -127,18 +127,18 @@ class Strains:
             field *= np.float32(0.5)
         return cls(*fields)
 
-    def add(self, other: Strains) -> None:
+    def add(self, other: StrainFields) -> None:
         """Add those of other waves at the same places."""
         for field, added in zip(self.fields, other.fields, strict=True):
             field += added
 
-    def turned(self, rotation: float) -> Strains:
+    def turned(self, rotation: float) -> StrainFields:
         """In axes against which theirs are turned by `rotation` rad: the last two turn twice as far."""
         if not rotation:
             return self
         half_sum, along, across = self.fields
         c, s = (np.float32(part(2.0 * rotation)) for part in (math.cos, math.sin))
-        return Strains(half_sum, c * along - s * across, s * along + c * across)
+        return StrainFields(half_sum, c * along - s * across, s * along + c * across)
 
     def compression(self) -> RealArray:
         """1 - `channels.min_eigenvalue`, below 0 where the surface is stretched."""
@@ -154,7 +154,7 @@ class StrainGrid:
     """Periodic strains of some waves without masks, read in the sea's axes; the arguments are a `Grid`'s."""
 
     def __init__(self, components: Components, size: float, rotation: float) -> None:
-        fields = Strains.of(components).fields
+        fields = StrainFields.of(components).fields
         self._geometry = Geometry(size, len(fields[0]) - 1, rotation)
         self._fields = [field.reshape(-1) for field in fields]
 
@@ -163,10 +163,10 @@ class StrainGrid:
         """Bytes of the strains."""
         return total_bytes(self._fields)
 
-    def read(self, x: Array, y: Array) -> Strains:
+    def read(self, x: Array, y: Array) -> StrainFields:
         """At places in m, of one flat shape."""
         reader = self._geometry.reader(x, y)
-        return Strains(*(reader.read(field) for field in self._fields)).turned(self._geometry.rotation)
+        return StrainFields(*(reader.read(field) for field in self._fields)).turned(self._geometry.rotation)
 
 
 class Summed:

@@ -38,8 +38,8 @@ from .sampling import (
     Geometry,
     Grid,
     Key,
+    StrainFields,
     StrainGrid,
-    Strains,
     Summed,
     closed,
 )
@@ -249,7 +249,7 @@ class AnywhereSum:
             total.add(strains)
         return total.compression().astype(np.float32, copy=False)
 
-    def _strains_at(self, x: Array, y: Array, time: Fraction) -> Iterator[Strains]:
+    def _strains_at(self, x: Array, y: Array, time: Fraction) -> Iterator[StrainFields]:
         """Those of each part, and of waves on no grid."""
         known: dict[tuple[Mask, ...], Weights] = {}
         for waves in self._parts:
@@ -257,9 +257,9 @@ class AnywhereSum:
             if isinstance(grid, StrainGrid):
                 yield grid.read(x, y)
             else:
-                yield Strains.of(grid.read(x, y, self._weights(waves.part.masks, x, y, time, known)))
+                yield StrainFields.of(grid.read(x, y, self._weights(waves.part.masks, x, y, time, known)))
         for placed in self._placed:
-            yield Strains.of(placed.at(x, y, time, GRADIENT))
+            yield StrainFields.of(placed.at(x, y, time, GRADIENT))
 
     def _strains(self, waves: PartWaves, time: Fraction) -> Grid | StrainGrid:
         def make() -> Grid | StrainGrid:
