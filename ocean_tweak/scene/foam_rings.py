@@ -22,12 +22,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import OceanParameters
+from ..core.foam.model import Whitecaps
 from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
 from ..core.sea.foam_fan import Fan, FoamFan, View
 from ..core.sea.foam_levels import FINEST, FoamLevels
 from ..core.sea.foam_rings import FoamRings, Place, Rings, samples_for
-from ..core.sea.placed_waves import repeating
+from ..core.sea.placed_waves import repeating, with_own_foam
 from ..nodes.camera_foam import RING_FOAM
 from ..nodes.modifier_inputs import get_input
 from .camera_view import view_of
@@ -134,6 +135,7 @@ class Around:
     """Foam that is wanted around a camera.
 
     sea : of several patches
+    whole : the same with layers that make foam of their own
     time : s
     place : of the camera
     view : of one that is turned towards the horizon
@@ -144,6 +146,7 @@ class Around:
     """
 
     sea: OceanParameters
+    whole: OceanParameters
     time: Fraction
     place: Place
     view: View | None
@@ -177,6 +180,12 @@ class Around:
         """
         _maker(self.sea).follow(self._in_window, told)
 
+    def values(self, foam: Whitecaps, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float32]:
+        """(places, 3) foam, breaking and age at places in m: the waves', and that of hulls."""
+        of_waves = Whitecaps(*(np.ravel(field) for field in foam))
+        found = with_own_foam(self.whole, of_waves, np.ravel(x), np.ravel(y), self.time)
+        return np.stack(found, axis=-1).astype(np.float32, copy=False)
+
     @property
     def _in_window(self) -> _Shown:
         return _Shown(self.time, self.place, samples_for(min(self.in_window, self.vertices)))
@@ -190,7 +199,7 @@ def around(
     plan, points : of the ocean and of its bake, if it has one
     """
     sea, time = (plan.parameters, plan.time) if points is None else points.moment[:2]
-    sea = repeating(sea)
+    sea, whole = repeating(sea), sea
     if not sea.patches or "foam" not in plan.channels or foam_outlook(sea).coverage == 0.0:
         return None
     place = Place(*camera_place(surface, scene, plan.scale))
@@ -198,7 +207,7 @@ def around(
         get_input(surface_modifier(surface), name) for name in ("Vertex Budget", "Viewport Vertex Budget")
     )
     frame = float(plan.frame / time_stretch(scene))
-    return Around(sea, time, place, view_of(surface, scene, plan.scale), *budgets, frame, plan.scale)
+    return Around(sea, whole, time, place, view_of(surface, scene, plan.scale), *budgets, frame, plan.scale)
 
 
 def _maker(sea: OceanParameters) -> _Maker:
@@ -214,9 +223,9 @@ def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:
     along = np.arange(samples)
     for number, (corner, foam) in enumerate(zip(rings.corners, rings.foam, strict=True)):
         block = slice(number * samples**2, (number + 1) * samples**2)
-        x, y = (shown.scale * (first + FINEST * 2.0**number * along) for first in corner)
-        places[block, 0], places[block, 1] = (part.ravel() for part in np.meshgrid(x, y))
-        values[block] = np.stack(foam, axis=-1).reshape(-1, 3)
+        x, y = np.meshgrid(*(first + FINEST * 2.0**number * along for first in corner))
+        places[block, 0], places[block, 1] = shown.scale * x.ravel(), shown.scale * y.ravel()
+        values[block] = shown.values(foam, x, y)
     values[-1], places[-1] = rings.beyond, (shown.frame, 0.0, samples)
     _write(mesh, places, values)
 
@@ -226,7 +235,7 @@ def _fill_fan(mesh: bpy.types.Mesh, fan: Fan, shown: Around) -> None:
     the number of columns."""
     last = shown.frame, fan.x.shape[1], 0.0
     places = shown.scale * np.stack((fan.x, fan.y, fan.size), axis=-1).reshape(-1, 3)
-    values = np.stack(fan.foam, axis=-1).reshape(-1, 3)
+    values = shown.values(fan.foam, fan.x, fan.y)
     _write(mesh, np.append(places, [last], 0).astype(np.float32), np.append(values, values[-1:], 0))
 
 

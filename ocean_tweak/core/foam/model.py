@@ -146,6 +146,12 @@ class Whitecaps(NamedTuple):
     breaking: RealArray
     foam_age: RealArray
 
+    def over(self, foam: RealArray, breaking: RealArray, age: RealArray) -> Whitecaps:
+        """With other foam at the same places: of both, that of which there is more."""
+        more = foam > self.foam
+        joined = np.where(more, foam, self.foam), np.maximum(breaking, self.breaking)
+        return seen(joined[1], joined[0], np.where(more, age, self.foam_age))
+
     def at(self, x: Array, y: Array, side: float) -> Whitecaps:
         """Foam of a periodic tile of (N, N) samples and `side` m, interpolated at places in m."""
         n = len(self.foam)

@@ -25,7 +25,7 @@ from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
 from .memory import check_memory, memory_need
 from .part_waves import PRECISIONS, PartWaves, real_type, strain_covariances
-from .placed_waves import PlacedWaves, check_repeats, placed_waves
+from .placed_waves import PlacedWaves, check_repeats, placed_waves, with_own_foam
 from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import SurfacePoints, find_points, refine_points
 from .regions import TILE, Area, Places, Tile
@@ -309,7 +309,8 @@ class Ocean:
         if not (self.parameters.is_cascade or self._placed):
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
         sea = self.of_foam
-        return whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
+        found = whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
+        return with_own_foam(self.parameters, found, x, y, time)
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
+from ..foam.model import Whitecaps
 from ..masks.noise import SeaTime
 from ..masks.weights import Weights, move, unweighted, weighted, weights
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
-from ..waves.contribution import Contribution, Gives
+from ..waves.contribution import Contribution, Gives, OwnFoam
 from .regions import Area
 from .sampling import Key, Summed
 from .surfaces import Field, Values
@@ -42,6 +43,16 @@ class PlacedWaves:
         under = weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration))
         wanted = unweighted(keys, moves=move(masks))
         return weighted(self._layer.fields(self._sea, x, y, time, wanted), under)
+
+    def foam(self, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
+        """What the layer makes of its own at rest positions in m, of one flat shape."""
+        found = self._layer.own_foam(self._sea, x, y, time)
+        masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
+        if found is None or not masks:
+            return found
+        share = weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration)).value
+        share = share.astype(np.float32)
+        return OwnFoam(found.foam * share, found.breaking * share, found.age)
 
     def field(self, time: float | Fraction) -> Field:
         """Their own surface at a time."""
@@ -97,6 +108,17 @@ def _rim(area: Area) -> Weights:
     reach = _RIM * area.size * (area.resolution - 1) / area.resolution
     slope = np.sign(0.5 - along) * 6.0 * part * (1.0 - part) / reach
     return Weights(*(np.outer(v, u).ravel() for v, u in ((share, share), (share, slope), (slope, share))))
+
+
+def with_own_foam(
+    sea: OceanParameters, whitecaps: Whitecaps, x: Array, y: Array, time: float | Fraction
+) -> Whitecaps:
+    """The foam of a sea's waves with that which layers make of their own, at flat rest positions in m."""
+    for waves in placed_waves(sea):
+        own = waves.foam(x, y, time)
+        if own is not None:
+            whitecaps = whitecaps.over(*own)
+    return whitecaps
 
 
 def check_repeats(sea: OceanParameters) -> None:

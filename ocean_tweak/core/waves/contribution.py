@@ -118,6 +118,18 @@ class Shares(Protocol):
         """The contributions to a block of columns kx, times `scale`."""
 
 
+class OwnFoam(NamedTuple):
+    """Foam that a layer makes beside that of breaking waves, (places,) float32.
+
+    foam, breaking : how much there is, and of it what is thrown up now, 0…1
+    age : s
+    """
+
+    foam: RealArray
+    breaking: RealArray
+    age: RealArray
+
+
 class Sharing(Protocol):
     """Computes contributions to the coefficients of the displacement's components."""
 
@@ -211,6 +223,10 @@ class Contribution(Validated):
     ) -> Mapping[Key, RealArray]:
         """Components of the displacement at rest positions in m, of one flat shape, choppiness applied."""
         return {}
+
+    def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
+        """Foam beside that of breaking waves, at rest positions in m, of one flat shape; None without any."""
+        return None
 
     def strain_covariances(
         self, sea: OceanParameters, drift: tuple[float, float]

@@ -27,8 +27,9 @@ Key = tuple[int, str]
 _Z = 2
 #: width in which waves go down to 0 at the end of their area, in its side
 _RIM = 0.25
-#: of a path, how many pasts are kept at the ends of pieces: a frame goes on from the last before it
-_PASTS = 8
+#: of a path, how many pasts are kept at the ends of pieces, from which a frame goes on, and after how many
+#: pieces at least there is one
+_PASTS, _STRIDE = 8, 8
 
 #: fields, of which a frame wants up to twelve, and what they are made of
 _FIELDS, _MOMENTS = "wakes' fields", "wakes"
@@ -67,7 +68,7 @@ class WakeWaves:
         self._basin, self._track, self._footprint, self._where = basin, track, footprint, where
         self._orbit_depth = orbit_depth
         self._pasts: dict[int, Past] = {}
-        self._stride = 1
+        self._stride = _STRIDE
         self._busy = threading.Lock()
 
     @property
@@ -149,11 +150,11 @@ class WakeWaves:
                 past, begin = Past(self._basin, self._footprint, self._track.first), 0
             else:
                 past = self._pasts[begin].copy()
-            for count in range(begin, len(done)):
-                past.go_on(done[count : count + 1])
-                if (count + 1) % self._stride == 0 and count + 1 < len(done):
-                    self._keep(count + 1, past.copy())
-            self._keep(len(done), past.copy() if way is not None else past)
+            while begin < len(done):
+                end = min((begin // self._stride + 1) * self._stride, len(done))
+                past.go_on(done[begin:end])
+                begin = end
+                self._keep(begin, past.copy())
         if way is not None:
             past.go_on([way])
         return past

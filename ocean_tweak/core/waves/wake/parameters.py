@@ -18,9 +18,10 @@ from ...data.raster import Raster
 from ...data.validation import Validated, choice, integer, nested, number, raster, switch
 from ...masks.parameters import Mask
 from ...numerics.memo import MEMO
-from ..contribution import Contribution, Gives, Key, MemoryNeed, Names, muted
+from ..contribution import Contribution, Gives, Key, MemoryNeed, Names, OwnFoam, muted
 from .elevation import Basin
 from .fields import WakeWaves, Where
+from .foam import HullFoam
 from .footprint import hull_footprint
 from .outlook import WakeOutlooks, transverse_wavelength, wake_outlooks
 from .track import Track
@@ -119,6 +120,15 @@ class WakeLayer(Contribution):
         0.015, 1e-4, 10.0, "1/s", "Rate at which waves fade, e^(-rate × age): how long a wake keeps its past",
         "from hours to a moment",
     )  # fmt: skip
+    foam: float = number(
+        1.0, 0.0, 1.0, "", "How white the water is that the hull has stirred, at its stern and its bow; slow "
+        "hulls make less",
+        "a share",
+    )  # fmt: skip
+    foam_half_life: float = number(
+        15.0, 0.1, 600.0, "s", "Time in which the band of foam astern fades to half",
+        "from whitecaps to the slicks of ships",
+    )  # fmt: skip
     area_size: float = number(
         2048.0, 0.1, 1e5, "m", "Side of the square in which the waves are made; from a quarter of it on, "
         "around its middle, they fade out",
@@ -214,10 +224,17 @@ class WakeLayer(Contribution):
         MEMO.put(_WAKES, key, waves)  # which may have grown
         return found
 
+    def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
+        """The band astern, and what the bow throws aside."""
+        if not self.foam > 0.0:
+            return None
+        hull = HullFoam(self.track, self.length, self.beam, self.foam, self.foam_half_life, sea.water.gravity)
+        return hull.at(x, y, float(time))
+
     @cached_property
     def _of_waves(self) -> Self:
         """The layer without what the waves are made without."""
-        return self.changed(mask=None)
+        return self.changed(mask=None, foam=0.0)
 
     def _basin(self, sea: OceanParameters) -> Basin:
         water, is_deep = sea.water, sea.dispersion == "DEEP"

@@ -138,6 +138,10 @@ class Track:
         since = time - float(self.times[index])
         return (x + since * vx, y + since * vy), (vx, vy)
 
+    def immersion(self, time: float) -> float:
+        """What the draught is multiplied by at a time in s."""
+        return 1.0 if self.immersions is None else float(np.interp(time, self.times, self.immersions))
+
     @property
     def fastest(self) -> tuple[float, int]:
         """The greatest speed in m/s, and the sample up to which it is."""
