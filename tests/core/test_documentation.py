@@ -34,6 +34,7 @@ PAPERS = {
     "Foam": 0,
     "Masks": 0,
     "Spray": 0,
+    "Riding": 0,
 }
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The effect of the sea on a hull: the least-squares plane through the surface over its waterline.
 
-The waterline is approximated by a disc, sampled evenly. Waves much shorter than the hull average out, and
-much longer ones act in full.
+The waterline is approximated by a disc or an ellipse, sampled evenly. Waves much shorter than the hull
+average out, and much longer ones act in full.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
@@ -41,12 +41,14 @@ def stencil() -> Array:
     return np.concatenate(rings)
 
 
-def fitted_plane(heights: Array, radius: float) -> Plane:
+def fitted_plane(heights: Array, radius: ArrayLike) -> Plane:
     """The least-squares plane through heights (…, POINTS) in m over `stencil()` times a radius in m.
+
+    radius : of a disc, or the two semi-axes of an ellipse along x and y
 
     Raises ValueError for a radius of 0 or less.
     """
-    if not radius > 0.0:
+    if not np.all(np.greater(radius, 0.0)):
         raise ValueError(f"radius = {radius!r}: must be above 0; a single point has no plane")
     offsets = radius * stencil()
     # the stencil is symmetric, so the normal equations are diagonal
