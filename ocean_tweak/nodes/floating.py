@@ -3,6 +3,10 @@
 
 What rides feels the plane of least squares through the surface over its waterline, a disc; waves shorter than
 the disc cancel out. The stencil of points that stands for it is that of `core.sea.waterline`.
+
+A carrier may ride damped: where its hull is then depends on the past, which nodes do not see. The extension
+works it out, `core.sea.riding`, and gives it to the carrier for one frame; at any other the hull follows the
+surface.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ import math
 
 import bpy
 
+from ..core.sea.riding import LEAST_DAMPING
 from ..core.sea.waterline import POINTS
 from .building import Builder, Input, Plug, Socket, output
 from .fields import alone, combined, connect, coordinates, sample_index, whole_number
@@ -36,6 +41,38 @@ RIDE_INPUTS = (
         "Stay as high above the surface as its place is above calm water, whatever Draft and Keel are",
     ),
 )  # fmt: skip
+DAMPED_INPUTS = (
+    Plug(
+        "Damped", "NodeSocketBool", False,
+        "Ride with inertia: heave, pitch and roll swing as damped oscillators. Otherwise it follows the "
+        "surface at every moment",
+    ),
+    Plug(
+        "Beam", "NodeSocketFloat", 0.0,
+        "Of a damped ride: the smaller horizontal size, along y; 0 is as wide as long",
+    ),
+    Plug("Along Y", "NodeSocketBool", False, "Of a damped ride: its bow or stern is along its y axis, not x"),
+    Plug("Heave Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
+    Plug("Pitch Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
+    Plug("Roll Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
+    Plug(
+        "Damping", "NodeSocketFloat", 0.3,
+        "Of heave and pitch: 1 does not swing at all, 0.3 is usual for ships",
+    ),
+    Plug("Roll Damping", "NodeSocketFloat", 0.1, "Of roll: 1 does not swing at all, 0.1 is usual for ships"),
+)  # fmt: skip
+#: where a damped hull is, and at which frame of the scene
+SOLVED_INPUTS = (
+    Plug(
+        "Solved", "NodeSocketVector", None,
+        "Height of a damped hull and its slopes along x and y, in the ocean's space", hidden=True,
+    ),
+    Plug("Solved Frame", "NodeSocketFloat", -1e6, "The scene's frame at which it is so", hidden=True),
+)  # fmt: skip
+_OF_RIDE = (
+    Plug("Is Solved", "NodeSocketBool", False, "Height and slopes are those given"),
+    Plug("Solved", "NodeSocketVector", None, "Height, and slopes along x and y, in the ocean's space"),
+)
 AS_ONE = Plug(
     "As One", "NodeSocketBool", False,
     "Move all of the geometry as one around its origin, not each instance by itself",
@@ -49,7 +86,15 @@ _RANGES = {
     "Keel": ("DISTANCE", -1e6, 1e6),
     "Tilt": ("FACTOR", 0.0, 1.0),
     "Drift": ("FACTOR", 0.0, 1.0),
+    "Beam": ("DISTANCE", 0.0, 1e6),
+    "Heave Period": ("TIME_ABSOLUTE", 0.0, 1e3),
+    "Pitch Period": ("TIME_ABSOLUTE", 0.0, 1e3),
+    "Roll Period": ("TIME_ABSOLUTE", 0.0, 1e3),
+    "Damping": ("FACTOR", LEAST_DAMPING, 1.0),
+    "Roll Damping": ("FACTOR", LEAST_DAMPING, 1.0),
 }
+#: frames by which a moment is another one
+_SAME_FRAME = 1e-3
 
 
 def _build_stencil(tree: bpy.types.NodeTree) -> None:
@@ -78,7 +123,7 @@ def _build_stencil(tree: bpy.types.NodeTree) -> None:
 def _build_ride(tree: bpy.types.NodeTree) -> None:
     build = Builder(
         tree,
-        (Plug("Places", "NodeSocketGeometry", None, "Points"), *RIDE_INPUTS),
+        (Plug("Places", "NodeSocketGeometry", None, "Points"), *RIDE_INPUTS, *_OF_RIDE),
         (
             Plug(
                 "Stencil", "NodeSocketGeometry", None, "The points around each place, one place after another"
@@ -98,10 +143,23 @@ def _build_ride(tree: bpy.types.NodeTree) -> None:
     moment = discs.mean(build.scaled(discs.offset, coordinates(build, point)[2]))
     square = discs.mean(build.vector("MULTIPLY", discs.offset, discs.offset))
     slope_x, slope_y, _ = coordinates(build, build.vector("DIVIDE", moment, square))
+    is_solved = build.given("Is Solved")
+    solved, solved_x, solved_y = coordinates(build, build.given("Solved"))
     tangents = (
-        build.switch("VECTOR", is_disc, along_x, combined(build, 1.0, 0.0, slope_x)),
-        build.switch("VECTOR", is_disc, along_y, combined(build, 0.0, 1.0, slope_y)),
-    )
+        build.switch(
+            "VECTOR", is_solved,
+            build.switch("VECTOR", is_disc, along_x, combined(build, 1.0, 0.0, slope_x)),
+            combined(build, 1.0, 0.0, solved_x),
+        ),
+        build.switch(
+            "VECTOR", is_solved,
+            build.switch("VECTOR", is_disc, along_y, combined(build, 0.0, 1.0, slope_y)),
+            combined(build, 0.0, 1.0, solved_y),
+        ),
+    )  # fmt: skip
+    felt = discs.mean(point)
+    felt_x, felt_y, _ = coordinates(build, felt)
+    where = build.switch("VECTOR", is_solved, felt, combined(build, felt_x, felt_y, solved))
     origin = build.math("SUBTRACT", build.given("Keel"), build.given("Draft"))
     settled = build.math("MULTIPLY", origin, size)
     height = combined(build, 0.0, 0.0, build.switch("FLOAT", build.given("Keep Height"), settled, above))
@@ -109,7 +167,7 @@ def _build_ride(tree: bpy.types.NodeTree) -> None:
         {
             "Stencil": stencil,
             "Points": discs.points,
-            "Position": spaces.point_of_asker(build.vector("ADD", discs.mean(point), height)),
+            "Position": spaces.point_of_asker(build.vector("ADD", where, height)),
             "Rotation": _tilt(build, spaces.normal_of_asker(), spaces.normal_of_asker(*tangents)),
         }
     )
@@ -186,9 +244,9 @@ def _set_ranges(tree: bpy.types.NodeTree) -> None:
             item.subtype, item.min_value, item.max_value = _RANGES[item.name]
 
 
-def _ride(build: Builder, places: Socket) -> bpy.types.Node:
+def _ride(build: Builder, places: Socket, solved: dict[str, Input] | None = None) -> bpy.types.Node:
     inputs: dict[str, Input] = {plug.name: build.given(plug.name) for plug in RIDE_INPUTS}
-    return build.group(node_group(RIDE), {"Places": places, **inputs})
+    return build.group(node_group(RIDE), {"Places": places, **inputs, **(solved or {})})
 
 
 def _of_place(build: Builder, ride: bpy.types.Node, place: Input) -> tuple[Socket, Socket]:
@@ -256,9 +314,15 @@ def _product(build: Builder, first: Socket, second: Socket) -> Socket:
 
 
 def _build_carrier(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, RIDE_INPUTS)
+    build = Builder(tree, (*RIDE_INPUTS, *DAMPED_INPUTS, *SOLVED_INPUTS))
     _set_ranges(tree)
-    ride = _ride(build, _origin(build))
+    frame = output(build.add("GeometryNodeInputSceneTime"), "Frame")
+    away = alone(
+        build, "ABSOLUTE", build.math("SUBTRACT", frame, build.given("Solved Frame")), "ShaderNodeMath"
+    )
+    is_now = build.compare("LESS_THAN", away, _SAME_FRAME, "FLOAT")
+    is_solved = build.logic("AND", build.given("Damped"), is_now)
+    ride = _ride(build, _origin(build), {"Is Solved": is_solved, "Solved": build.given("Solved")})
     position, rotation = _of_place(build, ride, 0)
     moved = _moved(build, ride, build.given("Geometry"))
     there = _transform(build, translation=position, rotation=rotation)
@@ -266,6 +330,6 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
 
 
 STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
-RIDE = GroupKind("Ocean Tweak Ride", 3, _build_ride)
-FLOAT = GroupKind("Float on Ocean", 3, _build_float)
-CARRIER = GroupKind("Float on Ocean Carrier", 3, _build_carrier)
+RIDE = GroupKind("Ocean Tweak Ride", 4, _build_ride)
+FLOAT = GroupKind("Float on Ocean", 4, _build_float)
+CARRIER = GroupKind("Float on Ocean Carrier", 4, _build_carrier)

@@ -5,15 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
+from mathutils import Matrix
 
-from . import contact, float_carrier, float_keys, floating, handlers
+from ..core.sea.waterline import Plane
+from . import contact, float_carrier, float_keys, float_riding, floating, handlers
+from .animated import shown_settings
 from .floating import FloatError, Ride
 from .floating_place import Water, place_on, water_at
 from .hull import Hull
-from .units import metres_per_unit, time_stretch
+from .plan import plan_for
+from .units import frame_rate, metres_per_unit, time_stretch
 from .view_layers import evaluated, taking_part
 
 
@@ -26,6 +30,7 @@ class _Rider:
     hull : of the object, where the water is to touch it
     level : how high above its origin the water stands
     track : where the object was so far
+    felt : of a damped one on a sequence: the water so far
     """
 
     item: bpy.types.Object
@@ -36,6 +41,7 @@ class _Rider:
     hull: Hull | None
     level: float
     track: float_keys.Track
+    felt: list[Plane] = field(default_factory=list)
 
 
 class FloatBake:
@@ -91,9 +97,27 @@ class FloatBake:
         for rider in self._riders:
             if rider.ocean not in waters:
                 waters[rider.ocean] = water_at(rider.ocean, self._scene, depsgraph, frame)
-            places = (each.evaluated_get(depsgraph).matrix_world for each in (rider.place, rider.ocean))
-            rider.track.add(place_on(waters[rider.ocean], *places, rider.ride, metres))
+            water = waters[rider.ocean]
+            places = [each.evaluated_get(depsgraph).matrix_world for each in (rider.place, rider.ocean)]
+            solved = None
+            if float_riding.can_ride(rider.ride):
+                solved = self._solved(rider, water, *places, depsgraph)
+            rider.track.add(place_on(water, *places, rider.ride, metres, solved))
         self.done += 1
+
+    def _solved(
+        self, rider: _Rider, water: Water, place: Matrix, ocean: Matrix, depsgraph: bpy.types.Depsgraph
+    ) -> float_riding.Solved:
+        """Where a damped hull is: on a live sea from all of its past, on a sequence from what was baked."""
+        scene, settings = self._scene, shown_settings(rider.ocean, depsgraph)
+        plan = plan_for(rider.ocean, settings, scene)
+        if settings.source == "LIVE":
+            at = float_riding.place_of(rider.place, depsgraph)
+            return float_riding.solve(plan, rider.ride, ocean, scene, at)
+        under = float_riding.footprint(place, ocean, rider.ride, float(plan.metres))
+        rider.felt.append(float_riding.felt(under, water.carried, lambda x, y: water.surface(x, y)[0]))
+        seconds, gravity = 1 / frame_rate(scene), plan.parameters.water.gravity
+        return float_riding.solve_by_frames(rider.felt, seconds, rider.ride, under, gravity)
 
     def finish(self) -> int:
         """Write the keys; what floated live is left to them. Returns how many objects there are."""

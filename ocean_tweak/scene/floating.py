@@ -8,7 +8,7 @@ those are gone.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 
@@ -54,6 +54,11 @@ class Ride:
     drift : 0 stays above its place, 1 goes along with the water
     keep_height : whether its origin stays as high above the surface as its place is above calm water,
         whatever draft and keel say
+    damped : whether it has inertia; otherwise it follows the surface at every moment
+    beam : of a damped one, across its length, Blender units; 0 is as wide as long
+    along_y : whether its length is along its y axis
+    heave_period, pitch_period, roll_period : natural ones, s; 0 are those of its size
+    damping, roll_damping : of heave and pitch, and of roll, as shares of the critical one
     """
 
     waterline: float = 0.0
@@ -62,6 +67,14 @@ class Ride:
     tilt: float = 1.0
     drift: float = 0.0
     keep_height: bool = False
+    damped: bool = False
+    beam: float = 0.0
+    along_y: bool = False
+    heave_period: float = 0.0
+    pitch_period: float = 0.0
+    roll_period: float = 0.0
+    damping: float = 0.3
+    roll_damping: float = 0.1
 
     @property
     def level(self) -> float:
@@ -101,20 +114,31 @@ def own_hull(item: bpy.types.Object) -> Hull | None:
     return hull_of(item, upright.matrix_world, bpy.context.evaluated_depsgraph_get())
 
 
-def usual_ride(kind: str, item: bpy.types.Object, hull: Hull | None) -> Ride:
+def usual_ride(kind: str, item: bpy.types.Object, hull: Hull | None, damped: bool = False) -> Ride:
     """How an object floats where nobody says so.
 
     kind : a key of RIDES
     hull : of the object, None for one without
+    damped : whether it has inertia, where it has a hull
     """
     above = kind == "OBJECT" and item.type in _ABOVE
     if hull is None:
         return Ride(keep_height=above)
+    if damped:
+        return replace(_damped_ride(hull), keep_height=above)
     if kind == "CUSTOM":
         return Ride(keel=hull.keel)
     if kind == "SHIP":
         return Ride(waterline=hull.length, draft=hull.draft, keel=hull.keel, tilt=_SHIP_TILT)
     return Ride(waterline=hull.beam, draft=hull.draft, keel=hull.keel, keep_height=above)
+
+
+def _damped_ride(hull: Hull) -> Ride:
+    """Of a hull that inertia, and not a smaller tilt, keeps from following the water."""
+    return Ride(
+        waterline=hull.length, beam=hull.beam, along_y=hull.is_along_y, draft=hull.draft, keel=hull.keel,
+        damped=True,
+    )  # fmt: skip
 
 
 def level_at(item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride | None = None) -> float:

@@ -19,6 +19,7 @@ from ..core.sea.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
 from . import evaluation
 from .animated import shown_settings
+from .float_riding import Solved
 from .floating import FloatError, Ride
 from .image_sequence import SequenceError, file_of, shown_frame, since_shown
 from .plan import Plan, plan_for, seconds_per_file, velocity_scale
@@ -75,16 +76,21 @@ def water_at(
     return Water(displacement, plan.parameters.domain_size / len(displacement))
 
 
-def place_on(water: Water, place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Matrix:
+def place_on(
+    water: Water, place: Matrix, ocean: Matrix, ride: Ride, metres: float, solved: Solved | None = None
+) -> Matrix:
     """Where something floats whose place on land is known, in the world: a rotation and a location.
 
     place, ocean : world matrices, Blender units
     metres : in a Blender unit
+    solved : where it is if it rides damped
     """
     to_ocean = ocean.inverted_safe() @ place
     size = (to_ocean.to_3x3() @ Vector((1.0, 0.0, 0.0))).length
     middle = np.array(to_ocean.translation)[:2] * metres
     height, normal, drift = _settled(water, middle, ride, 0.5 * ride.waterline * size * metres)
+    if solved is not None:
+        height, normal = solved.height, _normal(solved.slope_x, solved.slope_y)
     level = Vector((*(middle + drift), height)) / metres
     level.z += to_ocean.translation.z if ride.keep_height else -ride.level * size
     up = _world_normal(ocean, Vector((0.0, 0.0, 1.0)))
@@ -103,8 +109,12 @@ def _settled(water: Water, middle: Array, ride: Ride, radius: float) -> tuple[fl
     if not radius > 0.0:
         return float(heights[0]), normals[0], drift
     plane = fitted_plane(heights, radius)
-    normal = np.array([-plane.slope_x, -plane.slope_y, 1.0])
-    return float(plane.height), normal / np.linalg.norm(normal), drift
+    return float(plane.height), _normal(float(plane.slope_x), float(plane.slope_y)), drift
+
+
+def _normal(slope_x: float, slope_y: float) -> Array:
+    normal: Array = np.array([-slope_x, -slope_y, 1.0])
+    return normal / np.linalg.norm(normal)
 
 
 def _world_normal(ocean: Matrix, normal: Vector) -> Vector:

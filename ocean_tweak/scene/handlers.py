@@ -24,6 +24,7 @@ from . import (
     contact,
     failures,
     float_carrier,
+    float_riding,
     former_settings,
     held_sea,
     left_behind,
@@ -80,6 +81,7 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
 def follow_before_frame(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """A script may have moved floating objects or keyed masks since the last evaluation."""
     float_carrier.follow()
+    float_riding.follow_before_frame(scene)
     mask_following.bind(scene)
 
 
@@ -99,6 +101,7 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
             shown = shown_settings(item, depsgraph)
             mask_following.take_over(item, shown, depsgraph)
             show(item, scene, of_a_frame(item) & ~Wanted.FILES, shown)
+    float_riding.follow_after_frame(scene, depsgraph)
 
 
 @_loud
@@ -153,10 +156,11 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 
 
 @persistent
-def follow_by_hand(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+def follow_by_hand(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Let floating objects go where they were moved to, and look after those that came and went."""
     if depsgraph is None or depsgraph.id_type_updated("OBJECT"):
         float_carrier.follow()
+        float_riding.follow_by_hand(scene, depsgraph)
 
 
 @persistent
@@ -303,6 +307,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     spray.forget_all()
     source_images.forget_all()
     float_carrier.follow()
+    float_riding.forget_all()
     contact.refresh()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if is_live(item) else Wanted.NOTES)
@@ -403,6 +408,7 @@ def _forget_all() -> None:
     failures.forget_all()
     refinement.forget_all()
     mask_following.forget_all()
+    float_riding.forget_all()
     refresh.forget_all()
     forget_cameras()
     portability.forget_all()

@@ -69,6 +69,12 @@ class Hull:
         return float(np.ptp(self.vertices[:, :2], axis=0).max())
 
     @property
+    def is_along_y(self) -> bool:
+        """Whether the larger one is that along y."""
+        across, along = np.ptp(self.vertices[:, :2], axis=0)
+        return bool(along > across)
+
+    @property
     def draft(self) -> float:
         """How deep it sits where nobody says so: a third of its beam, at most half of its height."""
         return min(self.beam / _BEAM_OF_DRAFT, 0.5 * float(np.ptp(self.vertices[:, 2])))

@@ -60,6 +60,20 @@ class _Rides(_OnOcean):
         default="OBJECT",
         description="What sets waterline, draft and tilt",
     )
+    riding: EnumProperty(
+        name="Riding",
+        items=[
+            ("KINEMATIC", "Kinematic", "Follows the surface at every moment"),
+            (
+                "DAMPED",
+                "Damped",
+                "Has inertia: heave, pitch and roll swing as damped oscillators whose natural periods are "
+                "those of its size. On live oceans, and in every bake to keyframes",
+            ),
+        ],
+        default="KINEMATIC",
+        description="How it answers to the waves",
+    )
     waterline: FloatProperty(
         name="Waterline",
         min=0.0,
@@ -101,12 +115,13 @@ class _Rides(_OnOcean):
         description="Put a collar of foam and ripples on the water around it, and mark where its meshes "
         "are wet",
     )
-    shown = ("ride", "waterline", "draft", "tilt", "drift", "keep_height", "use_contact")
+    shown = ("ride", "riding", "waterline", "draft", "tilt", "drift", "keep_height", "use_contact")
 
     def ride_of(self, item: bpy.types.Object) -> Ride:
         """How an object shall float; what a script gives goes before the object, unless it asks for both."""
         hull, asked = floating.own_hull(item), self.properties.is_property_set
-        values = vars(floating.usual_ride(self.ride, item, hull)) | {"drift": self.drift}
+        damped = self.riding == "DAMPED"
+        values = vars(floating.usual_ride(self.ride, item, hull, damped)) | {"drift": self.drift}
         for name in _OF_OBJECT:
             if self.ride == "CUSTOM" or (asked(name) and not asked("ride")):
                 values[name] = getattr(self, name)

@@ -170,7 +170,7 @@ def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, exten
     select(buoy)
     assert drawn() == ["object.ocean_tweak_float", touch, *buttons]
     bpy.ops.object.ocean_tweak_float()
-    inputs = ["Ocean", "Waterline", "Draft", "Keel", "Tilt", "Drift", "Keep Height"]
+    inputs = ["Ocean", "Waterline", "Draft", "Keel", "Tilt", "Drift", "Keep Height", "Damped"]
     assert drawn() == ["Float As", *inputs, touch, *buttons]
 
 

@@ -35,6 +35,8 @@ _FORGOTTEN = 0.005
 _FADES = 0.25
 #: moments that are looked back at, at the most
 MOST_MOMENTS = 512
+#: of a hull whose swing is forgotten before those moments end, in most cases
+LEAST_DAMPING = 0.02
 #: a fishing boat's and a ship's block coefficient is about this part of its waterplane coefficient
 _FULLNESS = 0.8
 #: metacentric height in beams, of a ship that nobody has inclined

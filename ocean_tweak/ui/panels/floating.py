@@ -4,9 +4,9 @@
 import bpy
 
 from ...nodes.contact import LOOK_INPUTS
-from ...nodes.floating import RIDE_INPUTS
-from ...nodes.modifier_inputs import input_property, input_sockets
-from ...scene import contact, float_carrier, floating
+from ...nodes.floating import DAMPED_INPUTS, RIDE_INPUTS
+from ...nodes.modifier_inputs import get_input, input_property, input_sockets
+from ...scene import contact, float_carrier, float_riding, floating
 from .. import float_operators
 from .drawing import SidebarPanel, split
 
@@ -32,7 +32,8 @@ class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
             layout.operator_menu_enum(float_operator, "ride", text="Float As", icon="PRESET")
             known = input_sockets(modifier.node_group)  # of a linked one perhaps not all
             column = layout.column()
-            for plug in RIDE_INPUTS:
+            is_damped = "Damped" in known and get_input(modifier, "Damped")
+            for plug in (*RIDE_INPUTS, *(DAMPED_INPUTS if is_damped else DAMPED_INPUTS[:1])):
                 if plug.name not in known:
                     continue
                 owner, name = input_property(modifier, plug.name)
@@ -40,6 +41,8 @@ class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
                     column.prop_search(owner, name, bpy.data, "objects", text=plug.name, icon="MOD_OCEAN")
                 else:
                     column.prop(owner, name, text=plug.name)
+            if is_damped and (text := float_riding.why_not(carrier)):
+                column.label(text=text, icon="INFO")
         if item is not None:
             _contact(layout, item)
         column = layout.column(align=True)

@@ -1,0 +1,369 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hulls that ride damped: where each is at the frame that is shown, from what it felt of the sea before.
+
+Nodes see one frame only, so this is worked out here and given to the carrier, with the frame for which it
+holds. Of the past only moments are asked for that frames share, and what a hull felt then is kept: a frame
+more needs the water at one moment or none. In a window, a hull that is moved by hand follows the surface
+until the hand rests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+from numpy.typing import NDArray
+
+from ..core import Ocean, OceanParameters, ParameterError
+from ..core.numerics.memo import MEMO
+from ..core.sea.regions import Places
+from ..core.sea.riding import Moments, Oscillator, moments, natural_periods, ride
+from ..core.sea.waterline import Plane, fitted_plane, stencil
+from ..nodes.floating import CARRIER
+from ..nodes.modifier_inputs import get_input
+from ..nodes.versioned import is_of_kind
+from . import float_carrier, float_path
+from .animated import is_animated, shown_settings
+from .floating import Ride, ride_of
+from .plan import Plan, plan_for
+from .settings import OceanObjectError, is_ocean, oceans_in, settings_of
+from .units import frame_rate, time_stretch
+
+Array = NDArray[np.float64]
+
+#: of MEMO
+_FELT = "water that hulls felt"
+MEMO.limit(_FELT, 16)
+#: waters that are kept of a sea, and the bytes of one
+_MOST, _BYTES = 50_000, 400
+#: samples of a sea in a beam, of which hulls feel no more
+_IN_BEAM = 3.0
+#: digits of m and of rad below which two places are one
+_DIGITS = 3, 5
+#: s before a frame at which keys that were changed are noticed
+_LOOKS = (0, 1, 3, 10, 30)
+#: s that a hand must rest
+_PAUSE = 0.25
+#: of a carrier to which nothing is given
+_NEVER = -1e6
+
+# by the session uid of a carrier: what the place that it has follows from
+_known: dict[int, object] = {}
+
+
+class Footprint(NamedTuple):
+    """Where a waterline lies in the ocean's space, m and rad.
+
+    heading : of its bow or stern, from the x axis
+    drift : how much it goes along with the water
+    """
+
+    x: float
+    y: float
+    heading: float
+    half_length: float
+    half_beam: float
+    drift: float
+
+
+class Solved(NamedTuple):
+    """Where a hull is: height in m and slopes along x and y, in the ocean's space."""
+
+    height: float
+    slope_x: float
+    slope_y: float
+
+
+class _Felt:
+    """What hulls felt of a sea, by moment and place."""
+
+    def __init__(self, parameters: OceanParameters) -> None:
+        self._ocean = Ocean(parameters)
+        self._waters: dict[tuple[Fraction, Footprint], Plane] = {}
+
+    @property
+    def nbytes(self) -> int:
+        return _BYTES * len(self._waters)
+
+    def at(self, time: Fraction, place: Footprint) -> Plane:
+        """Height, and slopes along the hull and across it."""
+        known = self._waters.get((time, place))
+        if known is None:
+            while len(self._waters) >= _MOST:
+                del self._waters[next(iter(self._waters))]
+            known = self._waters[time, place] = self._new(time, place)
+        return known
+
+    def _new(self, time: Fraction, place: Footprint) -> Plane:
+        return felt(
+            place,
+            lambda x, y: self._ocean.surface(time, on=Places(x, y)).displacement[:, :2],
+            lambda x, y: self._ocean.height_at(x, y, time),
+        )
+
+
+def felt(
+    place: Footprint, carried: Callable[[Array, Array], Array], height: Callable[[Array, Array], Array]
+) -> Plane:
+    """Height, and slopes along the hull and across it, of water in m.
+
+    carried : (points, 2) how far the water of places at rest has gone
+    height : (points,) of the surface above places
+    """
+    half = place.half_length, place.half_beam
+    along, across = (np.array(half) * stencil()).T
+    cosine, sine = math.cos(place.heading), math.sin(place.heading)
+    x = place.x + along * cosine - across * sine
+    y = place.y + along * sine + across * cosine
+    if place.drift:
+        drift_x, drift_y = place.drift * carried(x, y).mean(axis=0)
+        x, y = x + drift_x, y + drift_y
+    return fitted_plane(height(x, y), half)
+
+
+def can_ride(ride: Ride) -> bool:
+    """Whether a ride is damped, of something that has a size."""
+    return ride.damped and ride.waterline > 0.0
+
+
+def why_not(carrier: bpy.types.Object) -> str:
+    """Why a carrier that shall ride damped does not, or not as it should; "" where all is well."""
+    ocean, ride = ride_of(carrier)
+    if ride.waterline <= 0.0:
+        return "Follows the surface: set Waterline to its length"
+    if ocean is not None and is_ocean(ocean) and settings_of(ocean).source != "LIVE":
+        return "Follows the surface: on a baked ocean only Bake to Keyframes rides damped"
+    if not float_path.is_known(carrier):
+        return "Its past is not known from keys: it is taken as if it had stood here"
+    return ""
+
+
+def footprint(place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Footprint:
+    """The waterline of what is at a place, both matrices being those in the world.
+
+    metres : in a Blender unit
+    """
+    to_ocean = ocean.inverted_safe() @ place
+    turned = to_ocean.to_3x3()
+    size = 0.5 * metres * (turned @ Vector((1.0, 0.0, 0.0))).length
+    ahead = turned @ Vector((0.0, 1.0, 0.0) if ride.along_y else (1.0, 0.0, 0.0))
+    beam = ride.beam if ride.beam > 0.0 else ride.waterline
+    return Footprint(
+        round(to_ocean.translation.x * metres, _DIGITS[0]),
+        round(to_ocean.translation.y * metres, _DIGITS[0]),
+        round(math.atan2(ahead.y, ahead.x), _DIGITS[1]),
+        round(ride.waterline * size, _DIGITS[1]),
+        round(beam * size, _DIGITS[1]),
+        ride.drift,
+    )
+
+
+def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator, Oscillator, Oscillator]:
+    """Heave, pitch and roll, with the periods that are set, or else those of the size."""
+    length, beam = 2.0 * place.half_length, 2.0 * place.half_beam
+    scale = length / ride.waterline
+    draft = ride.draft * scale if ride.draft > 0.0 else beam / 3.0
+    of_size = natural_periods(max(length, beam), min(length, beam), draft, gravity)
+    heave, pitch, roll = (
+        given if given > 0.0 else own
+        for given, own in zip((ride.heave_period, ride.pitch_period, ride.roll_period), of_size, strict=True)
+    )
+    return (
+        Oscillator(heave, ride.damping), Oscillator(pitch, ride.damping), Oscillator(roll, ride.roll_damping)
+    )  # fmt: skip
+
+
+def in_ocean(along: Array, place: Footprint) -> Solved:
+    """Height and slopes, of which these are along a hull and across it, in the ocean's axes."""
+    height, slope, heel = (float(value) for value in along)
+    cosine, sine = math.cos(place.heading), math.sin(place.heading)
+    return Solved(height, slope * cosine - heel * sine, slope * sine + heel * cosine)
+
+
+def solve(
+    plan: Plan,
+    ride_of_hull: Ride,
+    ocean: Matrix,
+    scene: bpy.types.Scene,
+    place_at: Callable[[Fraction], Matrix],
+) -> Solved:
+    """Where a hull is on a live sea at the frame of a plan.
+
+    place_at : its place on land, in the world, at a frame of the animation
+    """
+    metres, stretch = float(plan.metres), time_stretch(scene)
+
+    def lies(time: Fraction) -> Footprint:
+        since = (plan.time - time) / Fraction(plan.rate) * frame_rate(scene) if plan.rate else Fraction(0)
+        return footprint(place_at((plan.frame - since) / stretch), ocean, ride_of_hull, metres)
+
+    now = lies(plan.time)
+    modes = modes_of(ride_of_hull, now, plan.parameters.water.gravity)
+    known = moments(plan.time, modes)
+    sea = _sea_of(plan.parameters, now)
+    felt = MEMO.get(_FELT, sea, lambda: _Felt(sea))
+    water = np.array([felt.at(time, lies(time)) for time in known.times])
+    MEMO.put(_FELT, sea, felt)  # it has grown
+    return in_ocean(ride(water, known, plan.time, modes), now)
+
+
+def solve_by_frames(
+    felt: list[Plane], seconds: Fraction, ride_of_hull: Ride, place: Footprint, gravity: float
+) -> Solved:
+    """Where a hull is after it felt these waters, one a frame; before the first it lay on it at rest.
+
+    seconds : between them
+    """
+    modes = modes_of(ride_of_hull, place, gravity)
+    count = max(len(felt), math.ceil(max(mode.memory for mode in modes) / float(seconds)))
+    known = Moments(seconds, range(-count, 2))
+    # the next one is not known, and not needed
+    rows = [felt[0]] * (count + 1 - len(felt)) + felt + [felt[-1]]
+    return in_ocean(ride(np.array(rows), known, Fraction(0), modes), place)
+
+
+def _sea_of(parameters: OceanParameters, place: Footprint) -> OceanParameters:
+    """The same sea on as many samples as a hull feels."""
+    beam = 2.0 * min(place.half_beam, place.half_length)
+    wanted = 2 ** math.ceil(math.log2(max(_IN_BEAM * parameters.domain_size / beam, 16.0)))
+    return parameters.at_resolution(min(wanted, parameters.resolution))
+
+
+def follow_before_frame(scene: bpy.types.Scene) -> None:
+    """Let damped hulls be where they are at the frame that the scene is about to evaluate."""
+    for carrier in _damped():
+        ocean, ride = ride_of(carrier)
+        if ocean is not None and not is_animated(ocean) and float_path.is_known(carrier):
+            _give(carrier, ocean, ride, scene, None)
+
+
+def follow_after_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None) -> None:
+    """As `follow_before_frame`, of oceans that are animated and hulls that something else than keys moves."""
+    for carrier in _damped():
+        ocean, ride = ride_of(carrier)
+        if ocean is not None and (is_animated(ocean) or not float_path.is_known(carrier)):
+            _give(carrier, ocean, ride, scene, depsgraph)
+
+
+def follow_by_hand(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None) -> None:
+    """Let damped hulls be where they are, whatever was moved or set."""
+    in_window = not bpy.app.background and (depsgraph is None or depsgraph.mode == "VIEWPORT")
+    for carrier in _damped():
+        ocean, ride = ride_of(carrier)
+        if ocean is None:
+            continue
+        if not in_window:
+            _give(carrier, ocean, ride, scene, depsgraph)
+        elif _reasons(carrier, ocean, ride, scene, depsgraph) != _known.get(carrier.session_uid):
+            float_carrier.set_inputs(carrier, {"Solved Frame": _NEVER})
+            _wait()
+
+
+def forget_all() -> None:
+    """Another file is opened."""
+    _known.clear()
+    if bpy.app.timers.is_registered(_after_pause):
+        bpy.app.timers.unregister(_after_pause)
+
+
+def _wait() -> None:
+    if bpy.app.timers.is_registered(_after_pause):
+        bpy.app.timers.unregister(_after_pause)
+    bpy.app.timers.register(_after_pause, first_interval=_PAUSE)
+
+
+def _after_pause() -> None:
+    for carrier in _damped():
+        ocean, ride = ride_of(carrier)
+        if ocean is not None:
+            _give(carrier, ocean, ride, bpy.context.scene, bpy.context.evaluated_depsgraph_get())
+
+
+def _damped() -> Iterator[bpy.types.Object]:
+    """The carriers of this file that ride damped."""
+    if not any(is_of_kind(group, CARRIER) for group in bpy.data.node_groups):
+        return
+    for item in list(bpy.data.objects):
+        if item.library is None and float_carrier.is_carrier(item) and ride_of(item)[1].damped:
+            yield item
+
+
+class _Reasons(NamedTuple):
+    """What a hull's place at a frame follows from.
+
+    ocean, places : matrices, of the hull now and some seconds before
+    """
+
+    plan: Plan
+    ride: Ride
+    ocean: tuple[tuple[float, ...], ...]
+    places: tuple[tuple[tuple[float, ...], ...], ...]
+
+
+def _reasons(
+    carrier: bpy.types.Object,
+    ocean: bpy.types.Object,
+    ride: Ride,
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph | None,
+) -> _Reasons | None:
+    """None where a hull follows the surface: of no size, or on a sea that is not live."""
+    if ocean not in oceans_in(scene) or not can_ride(ride):
+        return None
+    settings = shown_settings(ocean, depsgraph)
+    if settings.source != "LIVE":
+        return None
+    try:
+        plan = plan_for(ocean, settings, scene)
+    except (ParameterError, OceanObjectError):
+        return None  # the ocean tells
+    at, fps, stretch = place_of(carrier, depsgraph), frame_rate(scene), time_stretch(scene)
+    places = [at((plan.frame - seconds * fps) / stretch) for seconds in _LOOKS]
+    return _Reasons(plan, ride, _plain(ocean.matrix_world), tuple(map(_plain, places)))
+
+
+def _plain(matrix: Matrix) -> tuple[tuple[float, ...], ...]:
+    return tuple(map(tuple, matrix))
+
+
+def place_of(
+    carrier: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None
+) -> Callable[[Fraction], Matrix]:
+    """By the frame of the animation; where keys do not say all it was always where it is."""
+    if float_path.is_known(carrier):
+        return lambda frame: float_path.matrix_at(carrier, float(frame))
+    there = (carrier if depsgraph is None else carrier.evaluated_get(depsgraph)).matrix_world.copy()
+    return lambda _frame: there
+
+
+def _give(
+    carrier: bpy.types.Object,
+    ocean: bpy.types.Object,
+    ride: Ride,
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph | None,
+) -> None:
+    """Tell a carrier where its hull is, or that it follows the surface."""
+    reasons, uid = _reasons(carrier, ocean, ride, scene, depsgraph), carrier.session_uid
+    if reasons is None:
+        _known.pop(uid, None)
+        _set(carrier, (0.0, 0.0, 0.0), _NEVER)
+        return
+    if _known.get(uid) == reasons:
+        return
+    plan = reasons.plan
+    found = solve(plan, ride, ocean.matrix_world, scene, place_of(carrier, depsgraph))
+    _known[uid] = reasons
+    _set(carrier, (found.height * plan.scale, found.slope_x, found.slope_y), float(plan.frame))
+
+
+def _set(carrier: bpy.types.Object, solved: tuple[float, float, float], frame: float) -> None:
+    modifier = float_carrier.modifier_of(carrier)
+    now = get_input(modifier, "Solved"), get_input(modifier, "Solved Frame")
+    if np.float32(frame) != np.float32(now[1]) or not np.array_equal(np.float32(now[0]), np.float32(solved)):
+        float_carrier.set_inputs(carrier, {"Solved": solved, "Solved Frame": frame})
