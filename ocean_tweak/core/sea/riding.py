@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a hull rides the sea: its heave, pitch and roll swing as damped oscillators that the water drives.
+"""Heave, pitch and roll of a hull as damped oscillators that are forced by the sea.
 
-In each of these modes the hull hangs on the water by a spring and a damper, and the water is the plane that
-its waterline feels, `core.sea.waterline`: with f of the water and q of the hull,
+In each mode the hull is tied by a spring and a damper to the water, that is, to the plane fitted over its
+waterline (`core.sea.waterline`). With f the position of the water and q that of the hull,
 
     q'' + 2ζω₀ (q' − f') + ω₀² (q − f) = 0
 
-Between moments at which f is known it is taken as straight. There q = f is a solution, so that the hull's
-distance from the water swings freely, and each kink of f is a blow to it:
+f is known at discrete moments and linear between them. On each interval q = f is a solution, so the distance
+q − f oscillates freely, and each change of slope of f acts as an impulse:
 
     q(t) = f(t) − Σ_j Δf'(t_j) g(t − t_j),     g(t) = e^(−ζω₀t) sin(ω_d t)/ω_d,     ω_d = ω₀ √(1 − ζ²)
 
-Moments are whole multiples of a step, whatever the time that is asked for. So any time follows from its own
-past alone, and has the same bytes in whatever order times are asked for.
+The moments are multiples of a step, whatever time is asked for. Any time therefore follows from its own past
+alone, with the same bytes in whatever order times are asked for.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: moments in a natural period, at the least: at resonance straight lines between them lose 1 %
+#: moments per natural period, at least: at resonance the linear interpolation loses 1 %
 _PER_PERIOD = 16
-#: what is left of a blow when it is forgotten
+#: amplitude of an impulse response, relative to its start, at which it is cut off
 _FORGOTTEN = 0.005
-#: part of the past, its oldest, over which a blow fades, so that nothing jumps when it is forgotten
+#: oldest part of the past over which responses are faded out, so that the cut-off causes no jump
 _FADES = 0.25
-#: moments that are looked back at, at the most
+#: upper bound of the number of moments
 MOST_MOMENTS = 512
-#: of a hull whose swing is forgotten before those moments end, in most cases
+#: lowest damping ratio offered to users: with less, that bound cuts responses off early
 LEAST_DAMPING = 0.02
-#: a fishing boat's and a ship's block coefficient is about this part of its waterplane coefficient
+#: block coefficient over waterplane coefficient, of boats and ships
 _FULLNESS = 0.8
-#: metacentric height in beams, of a ship that nobody has inclined
+#: assumed metacentric height, in beams
 _METACENTRIC_HEIGHT = 0.1
-#: beams in a length from which on something is a ship, which rolls otherwise than it pitches
+#: length in beams above which the formula for the roll of ships is used
 _SHIP = 2.0
 
 
@@ -74,11 +74,11 @@ class Oscillator:
 
     @property
     def memory(self) -> float:
-        """Seconds after which a blow is forgotten."""
+        """Seconds after which an impulse response is cut off."""
         return -math.log(_FORGOTTEN) * self.period / (2.0 * math.pi * self.damping)
 
-    def swing(self, since: Array) -> Array:
-        """g, in s: the distance that a blow of 1 m/s leaves, some seconds after it; 0 before."""
+    def impulse_response(self, since: Array) -> Array:
+        """Impulse response g in s, by the seconds since the impulse; 0 before it."""
         natural = 2.0 * math.pi / self.period
         # critical damping is a limit
         damped = natural * math.sqrt(max(1.0 - self.damping**2, 1e-12))
@@ -89,10 +89,10 @@ class Oscillator:
 
 @dataclass(frozen=True)
 class Moments:
-    """When the water must be known, so that a hull's place at a time follows.
+    """The moments at which the water must be known to find a hull's position at a time.
 
     step : s between them
-    numbers : of the moments, from 0 s on; the last but one is the last that is not after the time
+    numbers : multiples of the step; the last but one is the last moment not after that time
     """
 
     step: Fraction
@@ -100,21 +100,21 @@ class Moments:
 
     @property
     def times(self) -> list[Fraction]:
-        """Of the moments, s."""
+        """In s."""
         return [number * self.step for number in self.numbers]
 
 
 def natural_periods(length: float, beam: float, draft: float, gravity: float = 9.81) -> Periods:
-    """Of a hull with these sizes in m.
+    """Natural periods of a hull from its dimensions in m.
 
     Heave is 2π √((m + a)/(ρ g A)) with the added mass of half a circle as wide as the beam, ρπB²/8 a metre of
     length: 2π √((C T + πB/8)/g), where C is the block over the waterplane coefficient. Pitch has the same
     period: the gyradius of a hull, a quarter of its length, is that of an elliptic waterline. (Lloyd 1989,
     Seakeeping; DNV-RP-N103, appendix A.) Roll is that of the weather criterion, 2 C B/√GM with
     C = 0.373 + 0.023 B/T − 0.043 L/100 (IMO 2008, International Code on Intact Stability, A 2.3.4), GM being
-    a tenth of the beam; what is shorter than two beams is no ship, and rolls as it pitches.
+    a tenth of the beam; a hull shorter than two beams has the same period in roll as in pitch.
 
-    Raises ValueError for a size, or a gravity, that is not finite and above 0.
+    Raises ValueError for a dimension or gravity that is not finite and above 0.
     """
     for name, value in (("length", length), ("beam", beam), ("draft", draft), ("gravity", gravity)):
         if not 0.0 < value < math.inf:
@@ -130,9 +130,9 @@ def natural_periods(length: float, beam: float, draft: float, gravity: float = 9
 
 
 def moments(time: Fraction, modes: tuple[Oscillator, ...]) -> Moments:
-    """When the water must be known for a time in s: a bounded number of moments, those of other times too.
+    """The moments needed for a time in s: a bounded number, shared with neighbouring times.
 
-    The step is a second halved or doubled, and at most a sixteenth of each mode's period.
+    The step is a power of two in s, and at most a sixteenth of each mode's period.
     """
     shortest = min(mode.period for mode in modes) / _PER_PERIOD
     step = Fraction(2) ** math.floor(math.log2(shortest))
@@ -142,11 +142,12 @@ def moments(time: Fraction, modes: tuple[Oscillator, ...]) -> Moments:
 
 
 def ride(water: Array, known: Moments, time: Fraction, modes: tuple[Oscillator, ...]) -> Array:
-    """(modes,) where a hull is at a time in s, in the unit of what the water does.
+    """(modes,) position of a hull at a time in s, in the unit of the forcing.
 
-    water : (moments, modes) what the hull feels of it. Before the first moment it went on as it begins
+    water : (moments, modes) forcing: height and slopes of the water under the hull. Before the first moment
+        it is taken to continue with constant slope
 
-    Raises ValueError for water that does not fit the moments and modes, or is not finite.
+    Raises ValueError for forcing of another shape, or that is not finite.
     """
     if water.shape != (len(known.numbers), len(modes)) or len(known.numbers) < 2:
         raise ValueError(
@@ -163,5 +164,5 @@ def ride(water: Array, known: Moments, time: Fraction, modes: tuple[Oscillator, 
     rest = np.clip((1.0 - age / (step * len(age))) / _FADES, 0.0, 1.0)
     kinks = np.diff(slopes, axis=0) * (rest**2 * (3.0 - 2.0 * rest))[:, np.newaxis]
     for column, mode in enumerate(modes):
-        place[column] -= kinks[:, column] @ mode.swing(age)
+        place[column] -= kinks[:, column] @ mode.impulse_response(age)
     return place
