@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boats that ride damped: as the core has it, from any frame alone, and like the surface where none solves."""
+"""Boats that ride damped: as the core has it, from any frame alone, and on the surface where none solves."""
 
 import math
 from fractions import Fraction

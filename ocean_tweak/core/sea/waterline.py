@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def stencil() -> Array:
     return np.concatenate(rings)
 
 
-def fitted_plane(heights: Array, radius: ArrayLike) -> Plane:
+def fitted_plane(heights: Array, radius: float | tuple[float, float]) -> Plane:
     """The least-squares plane through heights (…, POINTS) in m over `stencil()` times a radius in m.
 
     radius : of a disc, or the two semi-axes of an ellipse along x and y
@@ -50,7 +50,7 @@ def fitted_plane(heights: Array, radius: ArrayLike) -> Plane:
     """
     if not np.all(np.greater(radius, 0.0)):
         raise ValueError(f"radius = {radius!r}: must be above 0; a single point has no plane")
-    offsets = radius * stencil()
+    offsets = np.multiply(radius, stencil())
     # the stencil is symmetric, so the normal equations are diagonal
     slopes = heights @ offsets / np.sum(offsets**2, axis=0)
     return Plane(heights.mean(axis=-1), slopes[..., 0], slopes[..., 1])
