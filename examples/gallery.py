@@ -41,6 +41,8 @@ class Shot(NamedTuple):
     wind : speed in m/s and fetch in m of another sea, on patches down to waves of a fifth of a metre; None
         for the mood's own
     changes : of fields of the mood
+    sky : a key of SKIES, for another sky than the mood's
+    light : of fields of the sky
     foam : as a share of what the wind leaves
     is_afloat : whether something floats before the camera
     away : how far that is, at least and at most, in m; None for where the mood has it
@@ -50,6 +52,8 @@ class Shot(NamedTuple):
     mood: str
     wind: tuple[float, float] | None = None
     changes: Mapping[str, float] = MappingProxyType({})
+    sky: str = ""
+    light: Mapping[str, float] = MappingProxyType({})
     foam: float = 1.0
     is_afloat: bool = True
     away: tuple[float, float] | None = None
@@ -63,22 +67,24 @@ SHOTS = {
     "backlit-crest": Shot(
         "FRESH_BREEZE", (14.0, 80e3), is_afloat=False,
         changes={
-            "sun": math.radians(6.0), "sun_elevation": math.radians(13.0), "clouds": 0.35, "rings": 0,
-            "eye": 0.9, "crest_distance": 5.0, "lens": 70.0, "tilt": math.radians(-2.0),
+            "rings": 0, "eye": 0.9, "crest_distance": 5.0, "lens": 70.0, "tilt": math.radians(-2.0),
         },
+        light={"sun_azimuth": math.radians(96.0), "sun_elevation": math.radians(13.0), "clouds": 0.35},
     ),
     "aerial-60m": Shot(
         "FRESH_BREEZE", (13.0, 200e3), away=(150.0, 210.0), foam=2.5,
-        changes={
-            "eye": 60.0, "tilt": math.radians(10.0), "lens": 32.0, "rings": 0, "visibility": 60e3,
-            "sun": math.radians(38.0), "sun_elevation": math.radians(17.0), "exposure": -0.1,
+        changes={"eye": 60.0, "tilt": math.radians(10.0), "lens": 32.0, "rings": 0},
+        light={
+            "sun_azimuth": math.radians(128.0), "sun_elevation": math.radians(17.0), "exposure": -0.1,
+            "visibility": 60e3,
         },
     ),
     "aerial-300m": Shot(
         "STORM", away=(780.0, 950.0), shadows=CloudShadows(size=2200.0, left=0.15),
-        changes={
-            "eye": 300.0, "tilt": math.radians(11.5), "lens": 35.0, "exposure": -0.3, "visibility": 90e3,
-            "sun": math.radians(-46.0), "sun_elevation": math.radians(26.0), "clouds": 0.65, "overcast": 0.12,
+        changes={"eye": 300.0, "tilt": math.radians(11.5), "lens": 35.0},
+        light={
+            "sun_azimuth": math.radians(44.0), "sun_elevation": math.radians(26.0), "clouds": 0.65,
+            "overcast": 0.12, "exposure": -0.3, "visibility": 90e3,
         },
     ),
 }  # fmt: skip
@@ -124,7 +130,9 @@ def build(extension: Extension, shot: Shot, engine: str) -> None:
     """A new file with the scene of a shot, ready to render."""
     moods, surroundings = extension.module("scene.moods"), extension.module("scene.surroundings")
     bpy.ops.wm.read_homefile(use_empty=True)
-    mood = dataclasses.replace(moods.MOODS[shot.mood], **shot.changes)
+    mood = moods.MOODS[shot.mood]
+    sky = extension.module("scene.skies").SKIES[shot.sky].sky if shot.sky else mood.sky
+    mood = dataclasses.replace(mood, **shot.changes, sky=dataclasses.replace(sky, **shot.light))
     if shot.wind is not None:
         mood = dataclasses.replace(mood, waves=partial(wind_sea, extension, *shot.wind, shot.foam))
     if shot.away is not None:

@@ -100,25 +100,26 @@ def add_ocean(extension, scene, parameters, method, source, sequence):
 def dress(extension, parameters):
     """Water to the horizon, sky, sun and camera, the same in all scenes, as the ready storm has them."""
     moods, surroundings = extension.module("scene.moods"), extension.module("scene.surroundings")
-    water_material, sky = extension.module("scene.water_material"), extension.module("scene.sky")
+    water_material, scene_sky = extension.module("scene.water_material"), extension.module("scene.scene_sky")
     mood = dataclasses.replace(moods.MOODS["STORM"], crest_distance=7.0, tilt=math.radians(-2.0))
-    above = mood.sky(LOOKING)
-    world, sun = sky.new_world("Storm", above), sky.new_sun("Sun", above)
+    sky = mood.sky.turned(LOOKING - moods.VIEW)
     material = water_material.water_material(mood.water)
-    water_material.set_air(material, mood.visibility, above.haze(LOOKING))
-    water_material.light_by(material, sun)
     place = surroundings.camera_place(mood, parameters, LOOKING)
     camera = None
     for scene in bpy.data.scenes:
         ocean = next(item for item in scene.objects if item.name.startswith("Ocean "))
         camera = camera or surroundings.new_camera(mood, place, ocean, scene, LOOKING)
         scene.collection.objects.link(camera)
-        scene.collection.objects.link(sun)
-        scene.camera, scene.world, scene.view_settings.exposure = camera, world, mood.exposure
+        scene.camera = camera
         if not ocean.material_slots:  # the three of them share a mesh
             water_material.assign(ocean, material)
         water_material.describe(ocean, parameters, scene)
         surroundings.add_horizon(ocean, parameters, scene, scene.collection, RINGS)
+        if scene != bpy.data.scenes[0]:  # one world and one sun serve all
+            scene.world = bpy.data.scenes[0].world
+            scene.collection.objects.link(bpy.data.objects["Ocean Sun"])
+        scene_sky.settings_of(scene).use_exposure = True
+        scene_sky.put(scene, sky, LOOKING)
 
 
 def save(path: Path) -> None:

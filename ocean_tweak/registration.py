@@ -43,6 +43,8 @@ from .ui import (
     scene_operators,
     sea_operators,
     sequence_operators,
+    sky_operators,
+    sky_properties,
     usd_operators,
     wind_operators,
 )
@@ -50,6 +52,7 @@ from .ui import (
 CLASSES = (
     *preferences.CLASSES,
     *properties.CLASSES,
+    *sky_properties.CLASSES,
     *adding.CLASSES,
     *parameter_operators.CLASSES,
     *sequence_operators.CLASSES,
@@ -69,6 +72,7 @@ CLASSES = (
     *pinning.CLASSES,
     *scene_operators.CLASSES,
     *material_operators.CLASSES,
+    *sky_operators.CLASSES,
     *gizmos.CLASSES,
 )
 
@@ -145,6 +149,7 @@ def register(package: str | None = None) -> None:
     bpy.types.Object.ocean_tweak = bpy.props.PointerProperty(
         type=properties.OCEAN_PG_ocean, override={"LIBRARY_OVERRIDABLE"}
     )
+    sky_properties.register()
     pinning.register()
     previews.register()
     material_operators.register()
@@ -179,6 +184,7 @@ def unregister() -> None:
     material_operators.unregister()
     previews.unregister()
     pinning.unregister()
+    sky_properties.unregister()
     del bpy.types.Object.ocean_tweak
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -118,10 +118,15 @@ class Shading:
         values = {"Vector": position, "Scale": scale, **inputs}
         return self.node("ShaderNodeTexNoise", values, noise_dimensions="3D").outputs[0]
 
-    def ramp(self, factor: Socket, stops: Sequence[tuple[float, tuple[float, float, float]]]) -> Socket:
+    def ramp(
+        self,
+        factor: Socket,
+        stops: Sequence[tuple[float, tuple[float, float, float]]],
+        interpolation: str = "EASE",
+    ) -> Socket:
         """Colour of a ramp; `stops` are positions 0…1 with linear colours."""
         node = self.node("ShaderNodeValToRGB", {0: factor})
-        node.color_ramp.interpolation = "EASE"
+        node.color_ramp.interpolation = interpolation
         elements = node.color_ramp.elements
         while len(elements) < len(stops):
             elements.new(1.0)

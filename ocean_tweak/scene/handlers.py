@@ -35,6 +35,7 @@ from . import (
     portability,
     refinement,
     refresh,
+    scene_sky,
     solid_foam,
     source_images,
     spray,
@@ -188,6 +189,7 @@ def look_after_save(_path: object = None, _unused: object = None) -> None:
 def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """The console hears all again that is wrong with a shot."""
     failures.render_begins()
+    scene_sky.look_for_panoramas()
     for item in oceans_in(scene):
         show(item, scene, Wanted.BAKE)
         bake_state.warn(item)
@@ -251,6 +253,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     spray.remove_left()
     float_carrier.take_over()
     solid_foam.mend()
+    scene_sky.look_for_panoramas()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
 

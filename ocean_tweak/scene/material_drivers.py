@@ -45,6 +45,16 @@ def follow_lamp(
         _drive(light.inputs[axis], "energy * part", sources)
 
 
+def lamp_of(direction: bpy.types.ShaderNodeCombineXYZ) -> bpy.types.Object | None:
+    """The lamp that a vector follows; None where it follows none."""
+    tree = direction.id_data
+    path = direction.inputs[0].path_from_id("default_value")
+    curves = tree.animation_data.drivers if tree.animation_data is not None else ()
+    curve = next((curve for curve in curves if curve.data_path == path), None)
+    variables = curve.driver.variables if curve is not None else ()
+    return next((variable.targets[0].id for variable in variables), None)
+
+
 def _drive(value: bpy.types.NodeSocket, expression: str, sources: Mapping[str, Source]) -> None:
     value.driver_remove("default_value")
     driver = value.driver_add("default_value").driver

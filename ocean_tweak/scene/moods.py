@@ -11,10 +11,9 @@ from functools import partial
 from ..core import Foam, OceanParameters, Spray, Timing, WaveLayer
 from ..core.parameters.presets import built_in
 from ..core.sea.patch_plan import Wish, planned
+from .skies import VIEW, seen
 from .sky import Sky
 
-#: where the camera looks, rad counter-clockwise from +x: along +y, as Blender's front view does
-VIEW = 0.5 * math.pi
 #: one whose highest wave stands before the camera as high as such waves are
 _STORM_SEED = 8
 
@@ -25,9 +24,7 @@ class Mood:
 
     waves : gives the sea's parameters
     water : a key of `water_material.WATERS`
-    sun, sun_elevation, clouds, overcast, sunlight : as in `Sky`, the sun's azimuth from the view
-    visibility : in the air
-    exposure : of the picture, in stops
+    sky : for a camera that looks along VIEW
     eye : height of the camera above the water at its place
     crest_distance : from the camera to the highest crest, in significant wave heights
     lens : focal length in mm
@@ -41,12 +38,7 @@ class Mood:
     description: str
     waves: Callable[[], OceanParameters]
     water: str
-    sun: float
-    sun_elevation: float
-    clouds: float
-    overcast: float
-    visibility: float
-    exposure: float
+    sky: Sky
     eye: float
     crest_distance: float
     lens: float
@@ -54,15 +46,10 @@ class Mood:
     rings: int
     floats: str = "BUOY"
     vertices: int = 200_000
-    sunlight: float = 0.0
 
     def sea(self, timing: Timing) -> OceanParameters:
         """The sea's parameters."""
         return self.waves().replace(timing=timing)
-
-    def sky(self, view: float = VIEW) -> Sky:
-        """The sky, for a camera that looks along `view`."""
-        return Sky(self.sun_elevation, view + self.sun, self.clouds, self.overcast, self.sunlight)
 
 
 def _wind_sea(
@@ -96,26 +83,26 @@ MOODS = {
     "CALM": Mood(
         "Calm", "A light breeze of 3 m/s, low sun and clear water",
         waves=partial(_wind_sea, 3.0, 15e3, 120.0, 512, _degrees(200.0)), water="OCEANIC",
-        sun=_degrees(33.0), sun_elevation=_degrees(11.0), clouds=0.5, overcast=0.0, visibility=30e3,
-        exposure=0.0, eye=2.4, crest_distance=30.0, lens=35.0, tilt=_degrees(3.0), rings=9,
+        sky=seen(11.0, 33.0, clouds=0.5),
+        eye=2.4, crest_distance=30.0, lens=35.0, tilt=_degrees(3.0), rings=9,
     ),
     "FRESH_BREEZE": Mood(
         "Fresh Breeze", "10 m/s: waves of 2.5 m with whitecaps",
         waves=partial(_wind_sea, 10.0, 120e3, 400.0, 512, _degrees(215.0)), water="OCEANIC",
-        sun=_degrees(75.0), sun_elevation=_degrees(34.0), clouds=0.55, overcast=0.0,
-        visibility=30e3, exposure=0.0, eye=3.0, crest_distance=14.0, lens=40.0, tilt=_degrees(2.0), rings=5,
+        sky=seen(34.0, 75.0, clouds=0.55),
+        eye=3.0, crest_distance=14.0, lens=40.0, tilt=_degrees(2.0), rings=5,
     ),
     "STORM": Mood(
         "Storm", "25 m/s over 800 km: waves of 15 m, breaking crests, streaks of foam and spray",
         waves=_storm, water="STORM",
-        sun=_degrees(-85.0), sun_elevation=_degrees(16.0), clouds=0.6, overcast=0.95, sunlight=1.0,
-        visibility=6e3, exposure=-0.4, eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
+        sky=seen(16.0, -85.0, clouds=0.6, overcast=0.95, sunlight=1.0, visibility=6e3, exposure=-0.4),
+        eye=3.0, crest_distance=8.0, lens=62.0, tilt=_degrees(-5.2), rings=0,
         floats="BOAT", vertices=2_000_000,
     ),
     "HORIZON": Mood(
         "To the Horizon", "9 m/s and a swell, from ripples at the camera to the horizon",
         waves=partial(_preset_sea, "horizon"), water="OCEANIC",
-        sun=_degrees(40.0), sun_elevation=_degrees(24.0), clouds=0.5, overcast=0.0, visibility=150e3,
-        exposure=0.0, eye=2.0, crest_distance=14.0, lens=35.0, tilt=_degrees(4.0), rings=0,
+        sky=seen(24.0, 40.0, clouds=0.5, visibility=150e3),
+        eye=2.0, crest_distance=14.0, lens=35.0, tilt=_degrees(4.0), rings=0,
     ),
 }  # fmt: skip

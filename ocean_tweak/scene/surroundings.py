@@ -20,13 +20,12 @@ from ..nodes import detail_image
 from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
-from . import middle, ocean_object, startup_file, water_material
+from . import middle, ocean_object, scene_sky, startup_file, water_material
 from .afloat import add_afloat
 from .camera_surface import add_camera_surface
 from .clear_water import clear_place
 from .moods import MOODS, VIEW, Mood
 from .settings import VIEWPORT_RESOLUTION, settings_of
-from .sky import new_sun, new_world
 from .spray import TRANSPARENT_BOUNCES
 from .units import frame_rate, metres_per_unit
 from .view_layers import evaluated
@@ -98,7 +97,7 @@ def build(
     replaced = tuple(item.name for item in left)
     startup_file.remove(left)
     material = water_material.water_material(chosen.water)
-    water_material.set_air(material, chosen.visibility, chosen.sky().haze(VIEW))
+    water_material.set_air(material, chosen.sky.visibility, chosen.sky.haze(VIEW))
     water_material.assign(ocean, material)
     water_material.describe(ocean, parameters, scene)
     if chosen.rings:
@@ -108,7 +107,7 @@ def build(
     target.objects.link(camera)
     if chosen.eye < _BOAT:
         ride(camera, place, parameters, scene)
-    kept = _set_up(scene, chosen, wishes, camera, material, target, is_empty)
+    kept = _set_up(scene, chosen, wishes, camera, target, is_empty)
     if not chosen.rings:
         add_camera_surface(ocean, scene, budget=chosen.vertices)
     if parameters.spray is not None:  # of patches it is around the camera, once these are seen from there
@@ -227,7 +226,6 @@ def _set_up(
     mood: Mood,
     wishes: Wishes,
     camera: bpy.types.Object,
-    material: bpy.types.Material,
     collection: bpy.types.Collection,
     is_empty: bool,
 ) -> tuple[str, ...]:
@@ -236,11 +234,8 @@ def _set_up(
     if wishes.camera or scene.camera is None:
         scene.camera = camera
     if wishes.world or is_plain(scene.world):
-        sky = mood.sky()
-        scene.world = new_world(f"{mood.label} Sky", sky)
-        sun = new_sun("Ocean Sun", sky)
-        collection.objects.link(sun)
-        water_material.light_by(material, sun)
+        scene_sky.settings_of(scene).use_exposure = is_empty
+        scene_sky.put(scene, mood.sky, VIEW, f"{mood.label} Sky", collection)
     else:
         kept.append(f"world {scene.world.name}")
     set_engine(scene, wishes.engine)
@@ -251,7 +246,6 @@ def _set_up(
         with contextlib.suppress(TypeError):  # a studio's OCIO configuration may lack these
             scene.view_settings.view_transform = "AgX"
             scene.view_settings.look = "AgX - Medium High Contrast"
-        scene.view_settings.exposure = mood.exposure
     else:
         kept.append("frame range, samples and color management")
     return tuple(kept)

@@ -20,7 +20,7 @@ from ..nodes.versioned import beside, is_of_kind, is_stale, lay_out, node_group
 from ..nodes.water import WATER
 from ..nodes.water_pattern import DEPTH, DOMAIN, METRES, SLOPES, SPACING, WIND, WIND_SPEED
 from . import solid_foam
-from .material_drivers import follow_lamp, follow_pixel_angle, follow_seconds
+from .material_drivers import follow_lamp, follow_pixel_angle, follow_seconds, lamp_of
 from .units import metres_per_unit
 from .water_colour import coefficients_of, water_colour
 
@@ -30,6 +30,8 @@ _FAR = "ocean_tweak_is_far"
 # marks a mesh that shows the waves of the ocean it is a child of
 _NEAR = "ocean_tweak_is_near"
 NAME = "Ocean Tweak Water"
+# the input, and the label of the node that says it
+_SUN_DIRECTION = "Sun Direction"
 
 #: of the Solid view: bright enough for waves to show, and as smooth as shows their crests
 _IN_SOLID, _ROUGHNESS_IN_SOLID = (0.20, 0.44, 0.54, 1.0), 0.25
@@ -183,7 +185,7 @@ def light_by(material: bpy.types.Material, sun: bpy.types.Object) -> None:
     """Let a sun lamp shine through the crests of the water, wherever it turns and however bright it is."""
     group, tree = _group(material), material.node_tree
     nodes = []
-    for number, name in enumerate(("Sun Direction", "Sun Light")):
+    for number, name in enumerate((_SUN_DIRECTION, "Sun Light")):
         node = next((node for node in tree.nodes if node.label == name), None)
         if node is None:
             node = tree.nodes.new("ShaderNodeCombineXYZ")
@@ -191,6 +193,12 @@ def light_by(material: bpy.types.Material, sun: bpy.types.Object) -> None:
             tree.links.new(node.outputs[0], group.inputs[name])
         nodes.append(node)
     follow_lamp(*nodes, sun)
+
+
+def sun_of(material: bpy.types.Material) -> bpy.types.Object | None:
+    """The lamp that shines through the crests of the water; None where there is none."""
+    node = next((node for node in material.node_tree.nodes if node.label == _SUN_DIRECTION), None)
+    return lamp_of(node) if node is not None else None
 
 
 def water_node(material: bpy.types.Material | None) -> bpy.types.Node | None:

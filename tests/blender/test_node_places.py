@@ -13,15 +13,15 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def lit_water(extension, _scene):
-    water, sky = extension("scene.water_material"), extension("scene.sky")
+    water = extension("scene.water_material")
     material = water.water_material()
-    water.light_by(material, sky.new_sun("Sun", sky.Sky(math.radians(20.0), 0.0)))
+    water.light_by(material, bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
     return material
 
 
 def world(extension, _scene):
-    sky = extension("scene.sky")
-    return sky.new_world("Sky", sky.Sky(math.radians(20.0), 0.0, clouds=0.5, overcast=0.5))
+    sky = extension("scene.sky").Sky(math.radians(-5.0), 0.0, clouds=0.5, overcast=0.5)
+    return extension("scene.sky_world").new_world("Sky", sky)
 
 
 def spray(extension, scene):

@@ -211,8 +211,9 @@ def test_crests_before_a_low_sun_shine_green(inputs, sea, seen):
 
 
 def test_the_lamp_lights_the_crests_wherever_it_turns(water, empty_scene, extension):
-    sky = extension("scene.sky")
-    sun = sky.new_sun("Sun", sky.Sky(math.radians(20.0), math.radians(30.0)))
+    sky = extension("scene.sky").Sky(math.radians(20.0), math.radians(30.0))
+    sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    extension("scene.sky_world").set_lamp(sun, sky.sun_irradiance, sky.sun_elevation, sky.sun_azimuth)
     empty_scene.collection.objects.link(sun)
     material = water.water_material()
     item = bpy.data.objects.new("Item", bpy.data.meshes.new("Item"))
@@ -229,7 +230,7 @@ def test_the_lamp_lights_the_crests_wherever_it_turns(water, empty_scene, extens
     level = math.cos(math.radians(20.0))
     towards = (level * math.cos(math.radians(30.0)), 0.5 * level, math.sin(math.radians(20.0)))
     assert given("Sun Direction") == pytest.approx(towards, abs=1e-5)
-    assert given("Sun Light") == pytest.approx(sky.Sky(math.radians(20.0), 0.0).sun_irradiance, rel=1e-4)
+    assert given("Sun Light") == pytest.approx(sky.sun_irradiance, rel=1e-4)
     sun.rotation_euler, sun.data.energy = (0.0, 0.0, 0.0), 3.0
     assert given("Sun Direction") == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
     assert max(given("Sun Light")) == pytest.approx(3.0)

@@ -13,9 +13,10 @@ import math
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import bpy
@@ -80,11 +81,18 @@ def save_jpeg(picture: Path, path: Path) -> None:
 
 
 def build(
-    extension: Extension, sea: OceanParameters, base: str, towards: float, engine: str = "CYCLES", **look: Any
+    extension: Extension,
+    sea: OceanParameters,
+    base: str,
+    towards: float,
+    engine: str = "CYCLES",
+    light: Mapping[str, float] = MappingProxyType({}),
+    **look: Any,
 ) -> bpy.types.Object:
     """One of the extension's own scenes with a sea of ours; `look` changes fields of its mood.
 
     towards : where the waves run, rad counter-clockwise from the view
+    light : of fields of its sky
     """
     moods, stage = extension.module("scene.moods"), extension.module("scene.surroundings")
     layers = tuple(
@@ -99,7 +107,8 @@ def build(
             return half.replace(timing=timing)
 
     fields = {field.name: getattr(moods.MOODS[base], field.name) for field in dataclasses.fields(moods.Mood)}
-    moods.MOODS["PAPER"] = Given(**{**fields, **look})
+    sky = dataclasses.replace(fields["sky"], **light)
+    moods.MOODS["PAPER"] = Given(**{**fields, **look, "sky": sky})
     wishes = stage.Wishes(engine=engine, afloat=False)
     return stage.build(bpy.context.scene, "PAPER", wishes).ocean
 
@@ -111,7 +120,7 @@ def figure_6(extension: Extension, engine: str = "CYCLES") -> None:
 
 def figure_7(extension: Extension, engine: str = "CYCLES") -> None:
     """Horvath's figure 7."""
-    build(extension, horvath.FIGURE_7, "STORM", math.radians(160.0), engine, eye=6.0, rings=2, overcast=0.95)
+    build(extension, horvath.FIGURE_7, "STORM", math.radians(160.0), engine, eye=6.0, rings=2)
 
 
 def patches(extension: Extension, sea: OceanParameters = chen.PATCH) -> bpy.types.Object:
@@ -125,8 +134,11 @@ def patches(extension: Extension, sea: OceanParameters = chen.PATCH) -> bpy.type
 def fog(extension: Extension) -> None:
     """Lantz's surface with lighting and fog."""
     build(
-        extension, lantz.PATCH, "FRESH_BREEZE", math.radians(200.0), rings=7, visibility=250.0, eye=5.0,
-        clouds=0.2, sun_elevation=math.radians(20.0), sun=math.radians(10.0),
+        extension, lantz.PATCH, "FRESH_BREEZE", math.radians(200.0), rings=7, eye=5.0,
+        light={
+            "clouds": 0.2, "sun_elevation": math.radians(20.0), "sun_azimuth": math.radians(100.0),
+            "visibility": 250.0,
+        },
     )  # fmt: skip
 
 
@@ -144,9 +156,7 @@ def ray_traced(extension: Extension) -> None:
     scene = bpy.context.scene
     scene.collection.objects.link(bpy.data.objects.new("Sea", mesh))
     stage, sky = extension.module("scene.surroundings"), extension.module("scene.sky")
-    seen = sky.Sky(math.radians(18.0), math.radians(60.0), 0.4)
-    scene.world = sky.new_world("Sky", seen)
-    scene.collection.objects.link(sky.new_sun("Sun", seen))
+    extension.module("scene.scene_sky").put(scene, sky.Sky(math.radians(18.0), math.radians(60.0), 0.4))
     stage.set_engine(scene, "CYCLES")
     scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.camera.data.clip_end = 1e5

@@ -91,6 +91,13 @@ def channel_names(stream: BinaryIO) -> tuple[str, ...]:
     return tuple(_measured(stream)[0])
 
 
+def size(stream: BinaryIO) -> tuple[int, int]:
+    """Columns and rows of an image of any size, by its header. Raises UnusableError for what is none."""
+    with _file(stream, header_only=True) as file:
+        rows, columns = _Window.of(file.parts[0].header["displayWindow"]).shape
+    return columns, rows
+
+
 @contextlib.contextmanager
 def _file(stream: BinaryIO, **options: bool) -> Iterator[Any]:
     try:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab. Panels only draw: nothing here computes a sea."""
 
-from . import details, floating, layers, masks, material, output, patches, sea, spectrum, start
+from . import details, floating, layers, masks, material, output, patches, sea, sky, spectrum, start
 from .start import draw_add_menu
 
 __all__ = ["CLASSES", "draw_add_menu"]
@@ -16,6 +16,7 @@ CLASSES = (
     *spectrum.CLASSES,
     *details.CLASSES,
     *material.CLASSES,
+    *sky.CLASSES,
     *output.CLASSES,
     *floating.CLASSES,
 )
