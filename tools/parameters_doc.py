@@ -12,6 +12,7 @@ from typing import Any
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.data.validation import default_of
 from ocean_tweak.core.parameters.ocean_parameters import (
+    Coast,
     Foam,
     Mask,
     OceanParameters,
@@ -39,6 +40,7 @@ CLASSES = {
     PathSample: "in each entry of a wake's list `path`",
     Patch: "in each entry of the list `patches`",
     Mask: "in the `mask` of a layer of any kind but hero waves, or of a patch",
+    Coast: "in `coast`, which a sea may lack",
     Foam: "in `foam`",
     Spray: "in `spray`, which a sea may lack: it changes none of its waves",
     Timing: "in `timing`",

@@ -31,6 +31,7 @@ PUBLIC = {
     "core.spectral.wave_number_spectra.tessendorf_constant": "mends Tessendorf's amplitudes (make papers)",
     "core.waves.wake.elevation.wake_elevation": "a wake by itself, for scripts (docs/wakes.md)",
     "core.waves.wind_field.wind.sampled_wind": "a wind given as a function (docs/wind-fields.md)",
+    "core.waves.coast.march.propagate": "single waves over any bed, without a sea (docs/coast.md)",
     "registration.register": "the extension's door, __init__.py at the top, calls it",
 }
 

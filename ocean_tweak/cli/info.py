@@ -16,6 +16,8 @@ from ..core.data.printable import readable_bytes
 from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
 from ..core.parameters.patch import NO_LONGEST
+from ..core.parameters.patch_seas import open_sea
+from ..core.sea.coast_outlook import coast_outlook
 from ..core.sea.memory import beyond_budget, check_memory
 from ..core.statistics import sea_scales
 from ..core.statistics.sea_statistics import SeaState, Statistics
@@ -42,7 +44,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
     for name, of_sea in parameters.items():
         _foretell(name, of_sea)
-    results = {name: Ocean(of_sea.separate).statistics() for name, of_sea in parameters.items()}
+    results = {name: Ocean(open_sea(of_sea.separate)).statistics() for name, of_sea in parameters.items()}
     if arguments.save is not None:
         _save(arguments.save, seas)
     if arguments.json:
@@ -59,6 +61,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
                     kind.former_list or kind.kind.lower(): found.to_plain()
                     for kind, found in _outlooks(parameters[name])
                 },
+                **_coast(parameters[name]),
             }
             for name, statistics in results.items()
         }
@@ -114,6 +117,11 @@ def _outlooks(parameters: OceanParameters) -> list[tuple[type[Contribution], Out
     return [(kind, outlook) for kind, outlook in found if outlook is not None]
 
 
+def _coast(parameters: OceanParameters) -> dict[str, object]:
+    told = coast_outlook(Ocean(parameters))
+    return {} if told is None else {"coast": told.to_plain()}
+
+
 def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     state = sea_scales.sea_state(statistics.significant_wave_height)
@@ -145,8 +153,11 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         lines.append(f"  foam on {share}; a single frame looks back over {earlier} moments")
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
-        duration = float(parameters.loop_duration or 0)
-        lines.append(f"  loop of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
+        duration = float(parameters.repeats_after or 0)
+        what = "loop" if parameters.loop_duration is not None else "coast: the sea repeats, as a loop"
+        lines.append(f"  {what} of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
+    of_coast = coast_outlook(Ocean(parameters))
+    lines += [f"  {line}" for line in of_coast.lines()] if of_coast is not None else []
     warnings = [*statistics.warnings]
     for _, outlook in _outlooks(parameters):
         lines += [f"  {line}" for line in outlook.lines()]

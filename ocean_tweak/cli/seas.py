@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import re
 import sys
 from collections.abc import Callable, Mapping
@@ -12,13 +13,15 @@ from typing import Any, NamedTuple
 
 from ..core import OceanParameters, ParameterError, Spray
 from ..core.data.frames import Frame
-from ..core.data.plain_data import to_plain
+from ..core.data.plain_data import class_of, to_plain
 from ..core.data.printable import printable
+from ..core.data.raster import Raster
 from ..core.parameters.ocean_parameters import parse_json
 from ..core.parameters.presets import built_in
 from ..core.parameters.shot import Shot
 from ..core.sea.patch_plan import planned
 from ..export.files import LARGEST_JSON
+from ..export.images import with_rasters
 from ..export.sea_files import read_sea, sea_of_text
 from .outcome import UsageError
 
@@ -118,7 +121,7 @@ def changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
         value = getattr(arguments, key)
         if value is not None:
             data["timing"][key] = _value(value)
-    made = Shot.from_dict(data)
+    made = Shot.from_dict(with_rasters(OceanParameters, data, Path()))
     if arguments.plan is None:
         return made
     return Shot(planned(made.parameters, arguments.plan), made.animation)
@@ -133,9 +136,18 @@ def _value(text: str) -> Any:
 
 
 def _assign(data: Any, path: str, value: Any) -> None:
-    """Set data[a][0][b] for the path a.0.b; the parameters' own validation judges the result."""
+    """Set data[a][0][b] for the path a.0.b; the parameters' own validation judges the result.
+
+    What a sea may lack, such as its coast, is begun by what is set in it, and a file takes a raster's place.
+    """
     *parents, last = path.split(".")
+    metadata: Mapping[str, Any] = {"nested": OceanParameters}
+    is_begun = False  # which keys there may be, validation knows
     for key in parents:
+        if isinstance(data, dict):
+            metadata = _metadata(metadata, data, key)
+            if is_begun or _begins(metadata, data.get(key)):
+                data[key], is_begun = {}, True
         data = _entry(data, key, path)
     if isinstance(data, list):
         _entry(data, last, path)
@@ -144,6 +156,20 @@ def _assign(data: Any, path: str, value: Any) -> None:
         data[last] = value
     else:
         raise UsageError(f"--set {path}: there is nothing inside {parents[-1]}")
+
+
+def _begins(metadata: Mapping[str, Any], value: Any) -> bool:
+    """Whether there is nothing yet in which something can be set: nothing at all, or an image's numbers."""
+    is_image = metadata.get("kind") is Raster and isinstance(value, dict) and "file" not in value
+    return bool(metadata.get("optional")) and (value is None or is_image)
+
+
+def _metadata(metadata: Mapping[str, Any], data: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    """Of a field of a dataclass, an entry of a list or the only one, of which there is plain data."""
+    if "nested" not in metadata:
+        return {}
+    kind = class_of(metadata, data) if metadata.get("kinds") else metadata["nested"]
+    return next((field.metadata for field in dataclasses.fields(kind) if field.name == key), {})
 
 
 def _entry(data: Any, key: str, path: str) -> Any:

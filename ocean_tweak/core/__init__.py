@@ -3,6 +3,7 @@
 
 from .data.raster import Raster
 from .parameters.ocean_parameters import (
+    Coast,
     Foam,
     HeroWave,
     ImageLayer,
@@ -26,6 +27,7 @@ from .waves.wake.elevation import wake_elevation
 
 __all__ = [
     "Area",
+    "Coast",
     "Foam",
     "HeroWave",
     "ImageLayer",

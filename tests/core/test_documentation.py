@@ -35,6 +35,7 @@ PAPERS = {
     "Masks": 0,
     "Spray": 0,
     "Riding": 0,
+    "Coast": 0,
 }
 
 

@@ -33,6 +33,7 @@ from ..data.validation import (
 )
 from ..masks.parameters import Mask, check_mask
 from ..spectral.water import Water
+from ..waves.coast.parameters import Coast, repeats_after
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave
 from ..waves.image.parameters import ImageLayer
@@ -45,6 +46,7 @@ from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, 
 from .spray import Spray
 
 __all__ = [
+    "Coast",
     "Foam",
     "HeroWave",
     "ImageLayer",
@@ -226,6 +228,7 @@ class OceanParameters(Validated):
         "as the resolution of a sea", left_out=True,
     )  # fmt: skip
     mask: Mask | None = nested(Mask, optional=True)
+    coast: Coast | None = nested(Coast, optional=True)
     foam: Foam = nested(Foam)
     spray: Spray | None = nested(Spray, optional=True, compared=False)
     timing: Timing = nested(Timing)
@@ -255,6 +258,20 @@ class OceanParameters(Validated):
                 "must be 0 in a sea with masks: waves under a mask cannot be damped by the "
                 "troughs of the others",
             )  # fmt: skip
+        if self.has_coast:
+            self._check_coast()
+
+    def _check_coast(self) -> None:
+        """Raise ParameterError for what cannot be in a sea with a coast."""
+        if self.trough_damping > 0.0:
+            reason = "must be 0 with a coast: its waves are damped by no others"
+            raise ParameterError("trough_damping", self.trough_damping, reason)
+        if self.is_masked:
+            reason = "cannot be in a sea with masks: remove them; the bed itself gives shelter"
+            raise ParameterError("coast", "given", reason)
+        if self.dispersion == "DEEP":
+            reason = "must be FINITE_DEPTH or CAPILLARY with a coast: in DEEP water no wave feels a bed"
+            raise ParameterError("dispersion", self.dispersion, reason)
 
     def _settle_tile(self) -> None:
         """Fill in the domain size and resolution if they were not given: with patches they are those of the
@@ -292,6 +309,16 @@ class OceanParameters(Validated):
         """Whether any of its waves are masked."""
         own: tuple[Contribution | Patch, ...] = (*self.active(), *self.patches)
         return self.mask is not None or any(layer.mask is not None for layer in own)
+
+    @property
+    def has_coast(self) -> bool:
+        """Whether its waves run over a bed somewhere."""
+        return self.coast is not None and not self.coast.muted
+
+    @property
+    def repeats_after(self) -> Fraction | None:
+        """Time in s of which the periods of all waves are whole parts; None where they are any."""
+        return self.loop_duration if self.coast is None else repeats_after(self.loop_duration)
 
     @property
     def needs_summation(self) -> bool:

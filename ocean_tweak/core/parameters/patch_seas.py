@@ -157,7 +157,15 @@ def _is_on_grid(layer: Contribution) -> bool:
     return Gives.FIELDS not in layer.gives
 
 
+def open_sea(parameters: OceanParameters) -> OceanParameters:
+    """The sea whose waves are those that come to its coast, without what becomes of them there."""
+    if parameters.coast is None or not parameters.has_coast:
+        return parameters
+    return parameters.replace(coast=replace(parameters.coast, muted=True))
+
+
 def _without_masks(parameters: OceanParameters) -> OceanParameters:
+    parameters = open_sea(parameters)
     if not parameters.is_masked:
         return parameters
     return parameters.replace(

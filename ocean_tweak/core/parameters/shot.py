@@ -177,6 +177,8 @@ class Shot:
                 self._with(values)
             except ParameterError as error:
                 raise error.inside(_KEY) from None
+        if self.animation is not None and self.parameters.has_coast:
+            _check_beside_a_coast(self.animation)
 
     def _extremes(self) -> Iterator[dict[str, float | Raster]]:
         """The minimum and maximum of each value, and the longest lines; it suffices to check these, as
@@ -299,6 +301,17 @@ def _moved(mask: Mask | None, path: str, value: float | Raster) -> Mask:
         return replace(mask, **changes)
     except ParameterError as error:
         raise error.inside(owner) from None
+
+
+def _check_beside_a_coast(animation: Animation) -> None:
+    """Raise ParameterError where waves change whose way over a bed is made once for a whole shot."""
+    for path, _ in animation.samples:
+        if path.startswith("layers."):
+            raise ParameterError(
+                f"{_KEY}.samples.{path}", "animated",
+                "must stay the same in a sea with a coast, over whose bed each frame's waves would have to "
+                "be followed anew: remove it, or set coast.muted",
+            )  # fmt: skip
 
 
 def _length(values: Samples) -> int:

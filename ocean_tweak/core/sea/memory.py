@@ -14,8 +14,10 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import PARTS, merged_bands, parts
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from ..synthesis.transforms import term
+from ..waves.coast.ground import Ground
 from ..waves.contribution import Gives, MemoryNeed
 from ..waves.kinds import KINDS
+from .coast_pictures import most_frequencies
 from .regions import TILE, Area, Tile
 
 #: temporary float64 half-plane arrays while the initial state is computed
@@ -30,6 +32,9 @@ _PLACED = 18
 
 #: bytes per sample of an area with foam: births there and at the sources of old foam
 _LOOKING_BACK = 96
+
+#: bytes a sample over a bed: components there and derivatives, and what they are made of
+_OVER_BED = 160
 
 #: bytes of the tables from which a state is computed, at any resolution
 TABLES = 48 * 2**20
@@ -104,6 +109,20 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
     return MemoryNeed(state, max(need.building for need in needs), surface)
 
 
+def _coast_need(parameters: OceanParameters) -> MemoryNeed:
+    """That of what becomes of waves over a bed."""
+    if parameters.coast is None or not parameters.has_coast:
+        return MemoryNeed(0, 0, 0)
+    first = parameters.patches[0] if parameters.patches else None
+    size, resolution = parameters.domain_size, parameters.resolution
+    ground = Ground.of(
+        parameters.coast, first.domain_size if first else size, first.resolution if first else resolution,
+        first.rotation if first else 0.0, parameters.water.depth,
+    )  # fmt: skip
+    samples, count = ground.rows * ground.columns, most_frequencies(parameters)
+    return MemoryNeed(16 * count * samples, 24 * count * samples, _OVER_BED * samples)
+
+
 def _need_in_area(
     parameters: OceanParameters, outputs: frozenset[str], precision: str, on: Area
 ) -> MemoryNeed:
@@ -115,6 +134,8 @@ def _need_in_area(
     real = 4 if precision == "single" else 8
     numbers = sum(max(1, CHANNELS[name].components) for name in outputs)
     a_sample = _READING + (2 * numbers + (len(needs) + 1) * len(keys)) * real
+    coast = _coast_need(parameters)
+    needs.append(coast)
     surface = sum(need.surface for need in needs)
     if outputs & OF_MEMORY:
         surface += _foam_bytes(parameters)

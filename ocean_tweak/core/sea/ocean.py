@@ -23,6 +23,7 @@ from ..statistics.sea_statistics import Statistics, sea_statistics
 from ..synthesis.channels import CHANNELS, OF_MEMORY, SurfaceFields, checked_outputs
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
+from .coast_waves import CoastWaves
 from .memory import check_memory, memory_need
 from .part_waves import PRECISIONS, PartWaves, real_type, strain_covariances
 from .placed_waves import PlacedWaves, check_repeats, placed_waves, with_own_foam
@@ -232,7 +233,7 @@ class Ocean:
         _check_time(time)
         x, y = Places(x, y).rest_positions()
         exact = self._anywhere.exact_field(time) if surface == "exact" else None
-        if self.parameters.is_cascade or self._placed:
+        if not self._has_tile:
             points, spacing = self._anywhere.points_above(x, y, time, velocity)
         else:
             points, spacing = self._points_of_tile(x, y, time, velocity)
@@ -306,7 +307,7 @@ class Ocean:
     def _whitecaps_at(self, x: Array, y: Array, time: float | Fraction) -> Whitecaps:
         """Foam at flat arrays of places in m: that of the tile, or without one from the history of each
         place."""
-        if not (self.parameters.is_cascade or self._placed):
+        if self._has_tile:
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
         sea = self.of_foam
         found = whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
@@ -385,7 +386,16 @@ class Ocean:
 
     @cached_property
     def _anywhere(self) -> AnywhereSum:
-        return AnywhereSum(self.parameters, self._parts, self._placed, self.precision)
+        return AnywhereSum(self.parameters, self._parts, self._placed, self.precision, self.coast)
+
+    @cached_property
+    def coast(self) -> CoastWaves | None:
+        """What the waves are over the sea's bed; None for the open sea."""
+        return CoastWaves(self.parameters, self._parts) if self.parameters.has_coast else None
+
+    @property
+    def _has_tile(self) -> bool:
+        return not (self.parameters.is_cascade or self._placed or self.parameters.has_coast)
 
     @property
     def _spacing(self) -> float:
@@ -413,7 +423,7 @@ class Ocean:
         return gaussian_strains(*self._strain_covariances(drift))
 
     def _strain_covariances(self, drift: tuple[float, float]) -> tuple[Array, Array]:
-        between_samples = self.parameters.is_cascade or bool(self._placed)
+        between_samples = not self._has_tile
         gradient, rates = strain_covariances(self._parts, drift, between_samples)
         for of_gradient, of_rates in placed_strain_covariances(self.parameters, drift):
             gradient, rates = gradient + of_gradient, rates + of_rates

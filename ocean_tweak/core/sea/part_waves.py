@@ -72,10 +72,11 @@ class PartWaves:
     @cached_property
     def initial_state(self) -> InitialState:
         """Shared by all waves whose parameters differ only in settings that do not affect it."""
-        return _initial_state(self._before_action, PRECISIONS[self.precision])
+        return _initial_state(self.drawn_from, PRECISIONS[self.precision])
 
     @cached_property
-    def _before_action(self) -> OceanParameters:
+    def drawn_from(self) -> OceanParameters:
+        """All that waves follow from before time, choppiness and foam."""
         # the loop was checked against the shot's frame rate: keep that, but not the start frame
         timing = Timing(fps=self.parameters.timing.fps) if self.parameters.loop_duration else Timing()
         kept = Gives.SPECTRUM | Gives.COEFFICIENTS
@@ -91,7 +92,7 @@ class PartWaves:
         return Synthesis(
             self.initial_state,
             self.parameters,
-            _damping(self._before_action, PRECISIONS[self.precision], strength) if strength > 0.0 else None,
+            _damping(self.drawn_from, PRECISIONS[self.precision], strength) if strength > 0.0 else None,
             PRECISIONS[self.precision],
             self._workers,
             tuple(sharing for sharing in given if sharing is not None),
@@ -117,19 +118,18 @@ class PartWaves:
 
         closed : whether they are (N+1, N+1), with the first row and column repeated at the end
         """
-        keys = frozenset(wanted)
-        n, dtype = self.parameters.resolution, real_type(self.precision)
-        side = n + 1 if closed else n
-        made: dict[Key, RealArray] = {key: np.empty((side, side), dtype) for key in keys}
+        return components(self._synthesis, time, wanted, closed)
 
-        def write(block: slice, rows: Rows) -> None:
-            for component, derivative in keys:
-                rows.position(component, derivative, out=made[component, derivative][:n, :n][block])
+    def some(self, modes: NDArray[np.bool_]) -> Synthesis:
+        """What makes some waves alone, of those with the sea's own frequencies.
 
-        self._synthesis.fill(time, keys, write)
-        for field in made.values() if closed else ():
-            close(field)
-        return made
+        modes : (N, N//2+1, 2) which, of those along +k and of those along -k
+        """
+        state = self.initial_state
+        both = enumerate((state.h_plus, state.h_minus))
+        plus, minus = ((h.T * modes[..., side].T).T for side, h in both)
+        some = replace(state, h_plus=plus, h_minus=minus, others=())
+        return Synthesis(some, self.parameters, None, PRECISIONS[self.precision], self._workers)
 
     def exact_field(self, time: float | Fraction) -> Field:
         """The band-limited surface in the sea's axes, whose cost grows with points times wave vectors.
@@ -155,6 +155,25 @@ class PartWaves:
         masks, when = self.part.masks, SeaTime(time, self.parameters.loop_duration)
         weights_at = partial(weights, masks, self._side, when=when) if masks else None
         return weighted_field(turned_field(field, self.part.rotation), weights_at)
+
+
+def components(
+    synthesis: Synthesis, time: float | Fraction, wanted: Iterable[Key], closed: bool = False
+) -> dict[Key, RealArray]:
+    """As `PartWaves.components` has them."""
+    keys = frozenset(wanted)
+    n, dtype = synthesis.state.grid.resolution, np.dtype(synthesis.dtype).type(0).real.dtype
+    side = n + 1 if closed else n
+    made: dict[Key, RealArray] = {key: np.empty((side, side), dtype) for key in keys}
+
+    def write(block: slice, rows: Rows) -> None:
+        for component, derivative in keys:
+            rows.position(component, derivative, out=made[component, derivative][:n, :n][block])
+
+    synthesis.fill(time, keys, write)
+    for field in made.values() if closed else ():
+        close(field)
+    return made
 
 
 def real_type(precision: str) -> type:

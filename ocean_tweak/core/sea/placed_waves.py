@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 
 import numpy as np
@@ -14,6 +14,7 @@ from ..foam.model import Whitecaps
 from ..masks.noise import SeaTime
 from ..masks.weights import Weights, move, unweighted, weighted, weights
 from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.patch_seas import open_sea
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
 from ..waves.contribution import Contribution, Gives, OwnFoam
@@ -56,18 +57,22 @@ class PlacedWaves:
 
     def field(self, time: float | Fraction) -> Field:
         """Their own surface at a time."""
+        return as_field(lambda x, y, keys: self.at(x, y, time, keys))
 
-        def surface(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
-            wanted = ("", "x", "y", "t") if with_velocity else ("", "x", "y")
-            keys = [(component, by) for by in wanted for component in (X, Y, Z)]
-            found = self.at(x, y, time, keys)
-            columns: list[Array] = [
-                np.stack([np.asarray(found[component, by], np.float64) for component in (X, Y, Z)], axis=-1)
-                for by in wanted
-            ]
-            return Values(*columns[:3]), columns[3] if with_velocity else None
 
-        return surface
+def as_field(at: Callable[[Array, Array, Iterable[Key]], Mapping[Key, RealArray]]) -> Field:
+    """A surface from what gives components of the displacement at rest positions in m."""
+
+    def surface(x: Array, y: Array, with_velocity: bool) -> tuple[Values, Array | None]:
+        wanted = ("", "x", "y", "t") if with_velocity else ("", "x", "y")
+        found = at(x, y, [(component, by) for by in wanted for component in (X, Y, Z)])
+        columns: list[Array] = [
+            np.stack([np.asarray(found[component, by], np.float64) for component in (X, Y, Z)], axis=-1)
+            for by in wanted
+        ]
+        return Values(*columns[:3]), columns[3] if with_velocity else None
+
+    return surface
 
 
 def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
@@ -76,7 +81,8 @@ def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
 
 
 def repeating(sea: OceanParameters) -> OceanParameters:
-    """The sea without these layers; the same one where it has none."""
+    """The sea without these layers, and the open sea of one with a coast; the same one where it has none."""
+    sea = open_sea(sea)
     if not placed_waves(sea):
         return sea
     layers = (layer.changed(muted=True) if Gives.FIELDS in layer.gives else layer for layer in sea.layers)
@@ -123,6 +129,12 @@ def with_own_foam(
 
 def check_repeats(sea: OceanParameters) -> None:
     """Raise ParameterError, with the remedy, for a sea with waves that do not repeat, which has no tile."""
+    if sea.has_coast:
+        raise ParameterError(
+            "coast", "given",
+            "the waves over its bed do not repeat with the domain, as a tile's do: ask for an Area or Places "
+            "(--area on the command line), or set coast.muted",
+        )  # fmt: skip
     for index, layer in enumerate(sea.layers):
         if Gives.FIELDS in layer.gives and not layer.muted:
             raise ParameterError(

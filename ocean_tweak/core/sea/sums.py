@@ -29,6 +29,7 @@ from ..numerics.threads import default_workers, row_blocks, run_blocks
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import Part
 from ..synthesis.channels import CHANNELS, memory_groups
+from .coast_waves import CoastWaves
 from .part_waves import PartWaves
 from .placed_waves import PlacedWaves
 from .query import SurfacePoints, find_summed_points
@@ -43,7 +44,7 @@ from .sampling import (
     Summed,
     closed,
 )
-from .surfaces import Field, summed_field
+from .surfaces import Field, summed_field, weighted_field
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -206,7 +207,7 @@ class AnywhereSum:
     """The sum of a sea's waves at any rest positions: parts are read between their samples.
 
     parameters, precision : of the sea
-    parts, placed : whose sum it is
+    parts, placed, coast : whose sum it is
     """
 
     def __init__(
@@ -215,10 +216,12 @@ class AnywhereSum:
         parts: Sequence[PartWaves],
         placed: Sequence[PlacedWaves],
         precision: str,
+        coast: CoastWaves | None = None,
     ) -> None:
         self._parameters = parameters
         self._parts = parts
-        self._placed = placed
+        self._placed: Sequence[PlacedWaves | CoastWaves] = placed if coast is None else (*placed, coast)
+        self._coast = coast
         self._precision = precision
 
     def fill(
@@ -263,16 +266,18 @@ class AnywhereSum:
 
     def _strains(self, waves: PartWaves, time: Fraction) -> Grid | StrainGrid:
         def make() -> Grid | StrainGrid:
-            if waves.part.masks:
+            if self._is_weighted(waves):
                 return self._grid(waves, time, GRADIENT)
             components = waves.components(time, GRADIENT, closed=True)
             return StrainGrid(components, waves.part.parameters.domain_size, waves.part.rotation)
 
-        key = (waves.parameters, waves.part.rotation, bool(waves.part.masks), self._precision, time)
+        key = (waves.parameters, waves.part.rotation, self._is_weighted(waves), self._precision, time)
         return MEMO.get(_STRAINS, key, make)
 
     def exact_field(self, time: float | Fraction) -> Field:
-        """The band-limited surface. Raises ValueError with trough damping, which leaves no sum of waves."""
+        """The band-limited surface. Raises ValueError with trough damping and a coast: no sums of waves."""
+        if self._coast is not None:
+            raise ValueError("surface = 'exact': not available over the bed of a coast; use mesh")
         return summed_field([waves.exact_field(time) for waves in self._parts] + self._placed_fields(time))
 
     def points_above(
@@ -280,6 +285,8 @@ class AnywhereSum:
     ) -> tuple[SurfacePoints, float]:
         """Points of the sum of the parts' bilinear surfaces, and the fewest metres between samples."""
         fields, reaches = zip(*(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True)
+        if self._coast is not None:
+            fields = tuple(weighted_field(field, self._coast.shares) for field in fields)
         spacings = [waves.part.spacing for waves in self._parts]
         finest, reach = min(spacings), sum(reaches)
         for waves in self._placed:
@@ -295,7 +302,7 @@ class AnywhereSum:
     def _grid(self, waves: PartWaves, time: float | Fraction, needs: Iterable[Key]) -> Grid:
         """What is read of a part: its components on its own samples."""
         wanted = closed(needs)
-        if wanted and waves.part.masks:
+        if wanted and self._is_weighted(waves):
             wanted = unweighted(wanted, moves=move(waves.part.masks))
         components = waves.components(time, wanted, closed=True) if wanted else {}
         return Grid(components, waves.part.parameters.domain_size, waves.part.rotation)
@@ -323,8 +330,13 @@ class AnywhereSum:
         time: float | Fraction,
         known: dict[tuple[Mask, ...], Weights],
     ) -> Weights | None:
-        """What parts under some masks weigh at places, made once; None without masks."""
-        if masks and masks not in known:
+        """What parts under some masks weigh at places, made once; None without masks and coast."""
+        if self._coast is not None and masks not in known:
+            known[masks] = self._coast.shares(x, y)
+        elif masks and masks not in known:
             when = SeaTime(time, self._parameters.loop_duration)
             known[masks] = weights(masks, self._parameters.domain_size, x, y, when)
         return known.get(masks)
+
+    def _is_weighted(self, waves: PartWaves) -> bool:
+        return bool(waves.part.masks) or self._coast is not None

@@ -159,7 +159,7 @@ class Coefficients:
             self.omega,
             self.expected_plus,
             self.expected_minus,
-            loop_duration=self._sea.loop_duration,
+            loop_duration=self._sea.repeats_after,
             orbit_depth=_orbit_depth(self._sea),
             others=tuple(self._others),
         )
@@ -214,13 +214,13 @@ def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexAr
 
 
 def _angular_frequency(grid: WaveVectorGrid, parameters: OceanParameters) -> Array:
-    """ω(k), (N, N//2+1); in a loop of duration T the nearest multiple of 2π/T, at least one."""
+    """ω(k), (N, N//2+1); in a sea that repeats after T the nearest multiple of 2π/T, at least one."""
     result = np.empty(grid.shape[::-1])
     for columns in grid.column_blocks():
         k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
         omega = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
-        if parameters.loop_duration is not None:
-            fundamental = 2.0 * np.pi / float(parameters.loop_duration)
+        if parameters.repeats_after is not None:
+            fundamental = 2.0 * np.pi / float(parameters.repeats_after)
             omega = fundamental * np.maximum(1.0, np.rint(omega / fundamental))
         result[columns] = grid.mirror(omega)
     return result.T

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What becomes of a sea's long waves over a bed: a fixed complex picture of each frequency.
+
+The waves are the sea's own. Over the rim, where the depth is the open sea's, a picture is the sum of the
+waves of its frequency, each with its own wave vector; from there on that sum is marched over the bed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..numerics.memo import total_bytes
+from ..numerics.threads import default_workers
+from ..parameters.ocean_parameters import OceanParameters
+from ..spectral import dispersion
+from ..synthesis.coefficients import InitialState
+from ..waves.coast import march
+from ..waves.coast.ground import Ground
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+#: of waves that run towards the shore, the largest angle to the march
+_WIDEST = np.radians(70.0)
+
+
+class Incoming(NamedTuple):
+    """The waves of a sea's first patch that come to its coast.
+
+    modes : (N, N//2+1, 2) which of its modes they are, of those along +k and along -k
+    number : (waves,) of the frequency, in whole turns in the time after which the sea repeats
+    along, across : (waves,) rad/m, their wave vectors along the march and along its rows
+    amplitude : (waves,) complex, m, at the sea's origin and time 0
+    """
+
+    modes: NDArray[np.bool_]
+    number: NDArray[np.intp]
+    along: Array
+    across: Array
+    amplitude: ComplexArray
+
+
+def incoming(sea: OceanParameters, state: InitialState, ground: Ground) -> Incoming:
+    """Those that are long enough and run towards the shore."""
+    grid, coast, period = state.grid, ground.coast, sea.repeats_after
+    assert period is not None
+    turn = ground.turn - ground.rotation
+    c, s = round(np.cos(turn)), round(np.sin(turn))
+    along = np.broadcast_to(c * grid.kx + s * grid.ky, grid.shape)
+    across = np.broadcast_to(c * grid.ky - s * grid.kx, grid.shape)
+    long = grid.usable & (grid.k <= 2.0 * np.pi / coast.shortest_wavelength)
+    # the lattice's own numbers are rounded: which half of it a wave is of must not depend on that
+    straight = long & (np.abs(along) >= np.cos(_WIDEST) * grid.k)
+    modes = np.stack((straight & (along > 0.0), straight & (along < 0.0)), axis=-1)
+    plus, minus = modes[..., 0], modes[..., 1]
+    twice = np.broadcast_to(grid.multiplicity, grid.shape)
+    number = np.rint(state.omega * (float(period) / (2.0 * np.pi))).astype(np.intp)
+    return Incoming(
+        modes,
+        np.concatenate((number[plus], number[minus])),
+        np.concatenate((along[plus], -along[minus])),
+        np.concatenate((across[plus], -across[minus])),
+        np.concatenate(((twice * state.h_plus)[plus], np.conj(twice * state.h_minus)[minus])).astype(complex),
+    )
+
+
+def most_frequencies(sea: OceanParameters) -> int:
+    """How many frequencies the waves that come to a coast have, at the most."""
+    assert sea.coast is not None
+    assert sea.repeats_after is not None
+    k = 2.0 * np.pi / sea.coast.shortest_wavelength
+    highest = float(dispersion.angular_frequency(np.array(k), sea.dispersion, sea.water))
+    return int(highest * float(sea.repeats_after) / (2.0 * np.pi)) + 1
+
+
+@dataclass(frozen=True, eq=False)
+class Pictures:
+    """Of each frequency the elevation and the potential of the horizontal displacement, over all wet samples.
+
+    numbers : (frequencies,) in whole turns in the time after which the sea repeats
+    elevation, potential : (2 frequencies, wet samples) float32, m and m², first all real parts, then all
+        imaginary ones: the fields are the real parts of the pictures times e^(-iωt)
+    """
+
+    numbers: NDArray[np.intp]
+    elevation: NDArray[np.float32]
+    potential: NDArray[np.float32]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all of them."""
+        return total_bytes((self.elevation, self.potential))
+
+    def summed(self, factor: ComplexArray) -> tuple[RealArray, RealArray]:
+        """(wet samples,) float32 real parts of the sums of both, each picture times a factor."""
+        weights = np.concatenate((factor.real, -factor.imag)).astype(np.float32)
+        return weights @ self.elevation, weights @ self.potential
+
+
+def pictures(
+    sea: OceanParameters,
+    waves: Incoming,
+    ground: Ground,
+    tell: Callable[[float], None] = lambda done: None,
+) -> Pictures:
+    """March the waves over the bed. `tell` is told again and again which share is done."""
+    assert sea.repeats_after is not None
+    numbers, of_number = np.unique(waves.number, return_inverse=True)
+    omega = numbers.astype(np.float64) * (2.0 * np.pi / float(sea.repeats_after))
+    rim, wet = ground.rim_rows, ground.depth > 0.0
+    over_rim = _over_rim(waves, of_number, len(numbers), ground, rim)
+    bed = march.Bed.of(ground.depth[rim - 1 :], ground.step, sea.water.gravity)
+    amplitudes = np.ones(len(numbers)) if ground.coast.breaking else None
+    workers = default_workers(over_rim[:, -1].size * 64)
+    marched = march.march(bed, omega, over_rim[:, -1], None, amplitudes, workers, tell)
+    deep = sea.water.depth if sea.orbital_motion == "FINITE_DEPTH" else np.inf
+    wider = waves._replace(amplitude=waves.amplitude * _wider(np.hypot(waves.along, waves.across), deep))
+    own = _over_rim(wider, of_number, len(numbers), ground, rim)
+    # each wave's own number on the rim, from there on one for all of a frequency: no step between
+    late = ground.late_on_rim[:, np.newaxis]
+    elevation, potential = (np.empty((2, len(numbers), int(wet.sum())), np.float32) for _ in range(2))
+    depth = np.concatenate((np.broadcast_to(bed.depth[0], (rim, ground.columns)), bed.depth[1:]))
+    for index, frequency in enumerate(omega):
+        whole = np.concatenate((over_rim[index], marched[index, 1:]))
+        k = march.wave_numbers(frequency, depth, sea.water.gravity)
+        k = np.minimum(k, march.MOST_TURN / ground.step)
+        wide = whole * _wider(k, depth if np.isfinite(deep) else np.inf)
+        wide[:rim] += (1.0 - late) * (own[index] - wide[:rim])
+        for target, field in ((elevation, whole), (potential, wide)):
+            target[0, index], target[1, index] = field.real[wet], field.imag[wet]
+    both = (len(numbers) * 2, -1)
+    return Pictures(numbers, elevation.reshape(both), potential.reshape(both))
+
+
+def _wider(k: Array, depth: Array | float) -> Array:
+    """From the elevation to the potential, as `InitialState.potential_factor` has it."""
+    result: Array = 1.0 / (k * np.tanh(k * depth))
+    return result
+
+
+def _over_rim(
+    waves: Incoming, of_number: NDArray[np.intp], count: int, ground: Ground, rows: int
+) -> ComplexArray:
+    """(frequencies, rows, columns) complex64 sums of the waves of each frequency over the flat rim."""
+    along = ground.first[0] + ground.step * np.arange(rows)
+    across = ground.first[1] + ground.step * np.arange(ground.columns)
+    result: ComplexArray = np.empty((count, rows, ground.columns), np.complex64)
+    for index in range(count):
+        own = of_number == index
+        to_shore = np.exp(1j * along[:, np.newaxis] * waves.along[own]) * waves.amplitude[own]
+        result[index] = to_shore @ np.exp(1j * waves.across[own, np.newaxis] * across)
+    return result

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sea's waves over its bed: what they are there instead of the open sea's.
+
+With W the share of the coast, 0 in the open sea, and L what the depth leaves of waves that do not follow the
+bed, the sea is
+
+    (1 - W + W L) · all waves of the open sea  +  W · the pictures' waves  -  W L · the open sea's long waves
+
+whose first factor is a weight over all patches, as a mask's is, and the rest waves of a place, as those of a
+layer that does not repeat. Where W is 0 nothing is added, and the first factor is 1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..masks.weights import Weights
+from ..numerics.memo import MEMO, total_bytes
+from ..parameters.ocean_parameters import OceanParameters
+from ..synthesis.transforms import Synthesis, X, Y, Z
+from ..waves.coast.breakers import broken_share
+from ..waves.coast.differences import Differences
+from ..waves.coast.ground import Ground
+from .coast_pictures import Incoming, Pictures, incoming, pictures
+from .part_waves import PartWaves, components, real_type
+from .placed_waves import as_field
+from .sampling import Grid, Key, closed, turned, unweighted, weighted
+from .surfaces import Field
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+
+#: of waves that break for lack of depth, significant height over depth: √2 · 0.42
+_LARGEST = 0.6
+
+_PICTURES = "pictures of coasts"
+MEMO.limit("fields of coasts", 8)
+
+
+class CoastWaves:
+    """The waves over the bed of a sea, in the sea's axes.
+
+    sea : which has a coast
+    parts : all of its waves, those of the first patch first
+    """
+
+    def __init__(self, sea: OceanParameters, parts: Sequence[PartWaves]) -> None:
+        assert sea.coast is not None
+        self._sea, self._parts, self._waves = sea, parts, parts[0]
+        waves, first = self._waves, self._waves.parameters
+        self.ground = Ground.of(
+            sea.coast, first.domain_size, first.resolution, waves.part.rotation, sea.water.depth
+        )
+
+    @cached_property
+    def incoming(self) -> Incoming:
+        """The long waves that run ashore."""
+        return incoming(self._sea, self._waves.initial_state, self.ground)
+
+    @cached_property
+    def pictures(self) -> Pictures:
+        """What becomes of them; made once, whatever acts after the waves are drawn."""
+        # what a picture is made of
+        key = (self._waves.drawn_from, self.ground, self._waves.precision)
+        return MEMO.get(_PICTURES, key, lambda: pictures(self._sea, self.incoming, self.ground))
+
+    def shares(self, x: Array, y: Array) -> Weights:
+        """Of the open sea, at places in m."""
+        return self._weights.read(0, x, y)
+
+    def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
+        """What is added at rest positions in m, of one flat shape."""
+        wanted = unweighted(closed(keys))
+        over_bed, open_sea = self._field(time, wanted), self._long(time, wanted)
+        here = weighted(over_bed.read(x, y), self._weights.read(1, x, y))
+        instead_of = weighted(open_sea.read(x, y), self._weights.read(2, x, y))
+        return {key: here[key] - instead_of[key] for key in wanted}
+
+    def field(self, time: float | Fraction) -> Field:
+        """Their own surface at a time."""
+        return as_field(lambda x, y, keys: self.at(x, y, time, keys))
+
+    def _long(self, time: float | Fraction, keys: frozenset[Key]) -> Grid:
+        """The long waves of the open sea, on the first patch's samples."""
+
+        def make() -> Grid:
+            part = self._waves.part
+            return Grid(components(self._open, time, keys, True), part.parameters.domain_size, part.rotation)
+
+        return MEMO.get("fields of coasts", (self._waves.parameters, self.ground, time, keys, "open"), make)
+
+    @cached_property
+    def _open(self) -> Synthesis:
+        # a mode along +k is one of the coefficients h₊, its opposite of h₋
+        return self._waves.some(self.incoming.modes)
+
+    def _field(self, time: float | Fraction, keys: frozenset[Key]) -> _BedGrid:
+        key = (self._waves.parameters, self.ground, self._waves.precision, time, keys, "bed")
+        return MEMO.get("fields of coasts", key, lambda: self._made(time, keys))
+
+    def _made(self, time: float | Fraction, keys: frozenset[Key]) -> _BedGrid:
+        made = _Frame(self, time)
+        values = {key: made.component(*key) for key in keys}
+        return _BedGrid(self.ground, turned(values, self.ground.turn))
+
+    @cached_property
+    def differences(self) -> Differences:
+        """Derivatives on the bed's samples."""
+        return Differences(self.ground.depth > 0.0, self.ground.step)
+
+    @property
+    def choppiness(self) -> float:
+        """Of the sea."""
+        return self._sea.choppiness
+
+    def summed(self, time: float | Fraction, rate: bool) -> tuple[RealArray, RealArray]:
+        """(rows, columns) elevation and potential at a time, or their rates."""
+        made, period = self.pictures, self._sea.repeats_after
+        assert period is not None
+        share = float(Fraction(time) % period / period)
+        turns = made.numbers * share
+        factor = np.exp(-2j * np.pi * (turns - np.rint(turns)))
+        if rate:
+            factor *= -2j * np.pi / float(period) * made.numbers
+        wet = self.ground.depth > 0.0
+        fields: tuple[RealArray, RealArray] = tuple(
+            np.zeros(wet.shape, real_type(self._waves.precision)) for _ in range(2)
+        )  # type: ignore[assignment]
+        for field, values in zip(fields, made.summed(factor), strict=True):
+            field[wet] = values
+        return fields
+
+    @cached_property
+    def _weights(self) -> _BedWeights:
+        share = np.repeat(self.ground.blend[:, np.newaxis], self.ground.columns, axis=1)
+        limited = share * self._limit
+        return _BedWeights(self.ground, (1.0 - share + limited, share, limited))
+
+    @property
+    def share_of_energy(self) -> float:
+        """Of all waves, that of those which follow the bed, 0…1."""
+        follow, every = self._energy
+        return follow / every if every > 0.0 else 0.0
+
+    @cached_property
+    def _energy(self) -> tuple[float, float]:
+        """Variances in m² that are expected of the waves that follow the bed, and of all."""
+        first = self._waves.initial_state
+        follow = [
+            float(np.sum((of * first.grid.multiplicity)[self.incoming.modes[..., side]]))
+            for side, of in enumerate((first.expected_plus, first.expected_minus))
+        ]
+        every = [
+            float(np.sum((state.expected_plus + state.expected_minus) * state.grid.multiplicity))
+            for waves in self._parts
+            for state in waves.initial_state.parts
+        ]
+        return sum(follow), sum(every)
+
+    @cached_property
+    def significant_height(self) -> Array:
+        """(rows, columns) m, of all waves over the bed, the long ones as this seed has them."""
+        follow, every = self._energy
+        variance = np.zeros(self.ground.depth.shape)
+        parts = self.pictures.elevation
+        variance[self.ground.depth > 0.0] = 0.5 * np.einsum("ij,ij->j", parts, parts)
+        return 4.0 * np.sqrt(variance + max(every - follow, 0.0) * self._limit**2)
+
+    @cached_property
+    def broken_share(self) -> Array:
+        """(rows, columns) share of waves that are broken for lack of depth."""
+        return broken_share(self.significant_height / math.sqrt(2.0), self.ground.depth)
+
+    @cached_property
+    def _limit(self) -> Array:
+        """(rows, columns) what the depth leaves of waves that do not follow the bed."""
+        follow, every = self._energy
+        depth, height = np.maximum(self.ground.depth, 0.0), 4.0 * math.sqrt(max(every - follow, 1e-12))
+        limit = np.tanh(_LARGEST * depth / height) / math.tanh(_LARGEST * self.ground.deep / height)
+        result: Array = np.minimum(limit, 1.0)
+        return result
+
+
+class _Frame:
+    """Components over the bed at a time, in its own axes, each made when it is first asked for."""
+
+    def __init__(self, waves: CoastWaves, time: float | Fraction) -> None:
+        self._waves, self._time = waves, time
+        self._sums: dict[bool, tuple[RealArray, RealArray]] = {}
+        self._made: dict[Key, RealArray] = {}
+
+    def component(self, component: int, derivative: str) -> RealArray:
+        """The displacement's component or its derivative; x is along the march."""
+        key = component, derivative
+        if key not in self._made:
+            if derivative in ("x", "y"):
+                of = self.component(component, "")
+                self._made[key] = self._waves.differences.by(of, "xy".index(derivative))
+            else:
+                elevation, potential = self._sum(derivative == "t")
+                if component == Z:
+                    self._made[key] = elevation
+                else:
+                    along = self._waves.differences.by(potential, (X, Y).index(component))
+                    self._made[key] = along * elevation.dtype.type(self._waves.choppiness)
+        return self._made[key]
+
+    def _sum(self, rate: bool) -> tuple[RealArray, RealArray]:
+        if rate not in self._sums:
+            self._sums[rate] = self._waves.summed(self._time, rate)
+        return self._sums[rate]
+
+
+class _BedGrid:
+    """Components (rows, columns) on the bed's samples, in the sea's axes."""
+
+    def __init__(self, ground: Ground, values: dict[Key, RealArray]) -> None:
+        self._ground, self._values = ground, values
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the components."""
+        return total_bytes(self._values.values())
+
+    def read(self, x: Array, y: Array) -> dict[Key, RealArray]:
+        """At places in m, of one flat shape."""
+        where = self._ground.between(x, y)
+        return {key: where.read(field).astype(field.dtype) for key, field in self._values.items()}
+
+
+class _BedWeights:
+    """Weights on the bed's samples, and beyond its ends those at the ends."""
+
+    def __init__(self, ground: Ground, values: Iterable[Array]) -> None:
+        everywhere = Differences(np.ones(ground.depth.shape, bool), ground.step)
+        self._ground = ground
+        self._fields = []
+        c, s = math.cos(ground.turn), math.sin(ground.turn)
+        for value in values:
+            along, across = (everywhere.by(value, axis) for axis in (0, 1))
+            self._fields.append((value, c * along - s * across, s * along + c * across))
+
+    def read(self, index: int, x: Array, y: Array) -> Weights:
+        """One of them at places in m."""
+        where = self._ground.between(x, y)
+        return Weights(*(np.asarray(where.read(field), np.float64) for field in self._fields[index]))

@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One frequency over a varying depth, from the open sea towards the shore.
+
+The bottom does not move, so what a wave of one frequency becomes is a fixed complex picture A(x, y), of which
+the elevation is Re A e^(-iωt). It is marched row by row along x (angular spectrum marching: Dalrymple and
+Kirby 1988; Dalrymple, Suh, Kirby and Chae 1989), in the amplitude of the energy's flux along x,
+F = √(Cg qx/k) A. From a row to the next the phase of a wave (kx, ky) grows by q Δx, q = √(k² - ky²), in which
+k differs from place to place. With k̄ the row's mean and δk = k - k̄,
+
+    q ≈ q̄ + δk + (k̄/q̄ - 1) δk - ky²/(2 q̄³) δk²
+
+The first term is a factor of each wave along y, the second one of each place; the last two, by which waves at
+an angle differ from those straight on, are both, made symmetric and applied as an exponential's series to the
+third order.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...numerics.threads import run_blocks
+from ...spectral import constants
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complexfloating]
+
+#: m, below which water counts as that deep; radians of a wave in a step
+SHALLOWEST, MOST_TURN = 0.05, 1.2
+#: largest |δk| that the last terms take, and smallest cosine, as shares of k̄ and 1
+_LARGEST_CHANGE, _SMALLEST_COSINE = 0.35, 0.33
+#: |ky|/k̄ from which on waves along the shore fade, and how quickly
+_FADE_FROM, _FADE_OVER = 0.95, 0.03
+_ORDER = 3
+#: m, over which the direction of waves at a place is averaged, and a share of the width
+_DIRECTION_OVER, _MOST_OF_WIDTH = 60.0, 0.125
+#: of row 0, how many times as deep it may be in one place as in another
+_UNEVEN = 1.5
+#: B and γ of Thornton and Guza (1983)
+_INTENSITY, BREAKER_INDEX = 1.0, 0.42
+#: waves that are marched together
+_TOGETHER = 16
+
+
+def propagate(
+    depth: ArrayLike,
+    spacing: float,
+    omega: ArrayLike,
+    ky: ArrayLike,
+    *,
+    gravity: float = constants.GRAVITY,
+    breaking: ArrayLike | None = None,
+    workers: int = 1,
+) -> ComplexArray:
+    """Complex pictures (C, Nx, Ny) of incident waves of amplitude 1 and phase 0 at row 0 and y = 0.
+
+    depth : (Nx, Ny) m, row 0 offshore, periodic along y; 0 and less is land, where pictures are 0
+    spacing : between samples, m
+    omega, ky : (C,) rad/s, and rad/m along y, any real numbers; the phase grows as ky·y
+    breaking : (C,) m, amplitudes of the incident waves; with them, all together lose what breaking takes
+
+    Raises ValueError for a bed that cannot be marched over and for waves that do not run towards the shore.
+    """
+    bed, (w, along) = Bed.of(depth, spacing, gravity), _waves(omega, ky)
+    base = 2.0 * np.pi / (bed.depth.shape[1] * bed.spacing)
+    order = np.rint(along / base)
+    _check_shoreward(bed, w, along)
+    incident = np.exp(1j * (order * base)[:, np.newaxis] * bed.spacing * np.arange(bed.depth.shape[1]))
+    amplitudes = None if breaking is None else _amplitudes(breaking, len(w))
+    # what is left of ky beside a whole multiple is taken off the field, and put onto each wave along y
+    return march(bed, w, incident, along - order * base, amplitudes, workers)
+
+
+def march(
+    bed: Bed,
+    omega: Array,
+    incident: ComplexArray,
+    rest: Array | None = None,
+    amplitudes: Array | None = None,
+    workers: int = 1,
+    tell: Callable[[float], None] = lambda done: None,
+) -> ComplexArray:
+    """Pictures (C, Nx, Ny) complex64 of fields along row 0, each of one frequency.
+
+    omega : (C,) rad/s
+    incident : (C, Ny) of waves that run towards the shore, periodic along y but for a factor e^(i rest y)
+    rest : (C,) rad/m, left off `incident`; none by default
+    amplitudes : (C,) by which the pictures must be multiplied to be metres; with them, waves break
+    tell : is told again and again which share is done
+    """
+    marching = _March(bed, omega, incident, np.zeros(len(omega)) if rest is None else rest, amplitudes)
+    marching.run(workers, tell)
+    return marching.pictures
+
+
+@dataclass(frozen=True, eq=False)
+class Bed:
+    """What waves run over.
+
+    depth : (Nx, Ny) m, of land that of the row's water; water : (Nx, Ny) where there is some
+    spacing : m
+    gravity : m/s²
+    """
+
+    depth: Array
+    water: NDArray[np.bool_]
+    spacing: float
+    gravity: float
+
+    @classmethod
+    def of(cls, depth: ArrayLike, spacing: float, gravity: float) -> Bed:
+        """Raises ValueError, with the remedy, for depths that cannot be marched over."""
+        h = np.asarray(depth, np.float64)
+        if h.ndim != 2 or h.shape[0] < 2 or h.shape[1] < 2:
+            raise ValueError(f"depth: must be at least 2 rows of 2 depths, not of shape {h.shape}")
+        if not np.isfinite(h).all():
+            raise ValueError("depth: holds what is no number: fill the holes of the bed")
+        if not (math.isfinite(spacing) and spacing > 0.0):
+            raise ValueError(f"spacing = {spacing!r}: must be a length above 0 m")
+        if not (math.isfinite(gravity) and gravity > 0.0):
+            raise ValueError(f"gravity = {gravity!r}: must be above 0 m/s²")
+        water = h > 0.0
+        if not water[0].all():
+            raise ValueError(
+                "depth: row 0 must be water all along, for waves come in there: "
+                + (
+                    "all is dry: depths are positive downwards"
+                    if not water.any()
+                    else "begin farther offshore"
+                )
+            )
+        if h[0].max() > _UNEVEN * h[0].min():
+            raise ValueError(
+                f"depth: row 0, where waves come in, is from {h[0].min():g} to {h[0].max():g} m deep: make "
+                "the first rows flat, or begin farther offshore"
+            )
+        wet = np.where(water, np.maximum(h, SHALLOWEST), 0.0)
+        count = water.sum(axis=1, keepdims=True)
+        mean = np.where(count > 0, wet.sum(axis=1, keepdims=True) / np.maximum(count, 1), SHALLOWEST)
+        return cls(np.where(water, wet, mean), water, float(spacing), float(gravity))
+
+
+def _waves(omega: ArrayLike, ky: ArrayLike) -> tuple[Array, Array]:
+    w, k = np.atleast_1d(np.asarray(omega, np.float64)), np.atleast_1d(np.asarray(ky, np.float64))
+    if w.ndim != 1 or w.shape != k.shape:
+        raise ValueError(f"omega and ky: must be rows of one length, not of shapes {w.shape} and {k.shape}")
+    if not (np.isfinite(w).all() and (w > 0.0).all()):
+        raise ValueError("omega: must be finite and above 0 rad/s")
+    if not np.isfinite(k).all():
+        raise ValueError("ky: must be finite")
+    return w, k
+
+
+def _check_shoreward(bed: Bed, omega: Array, ky: Array) -> None:
+    k = wave_numbers(omega[:, np.newaxis], bed.depth[0], bed.gravity).min(axis=1)
+    against = np.abs(ky) >= k
+    if against.any():
+        index = int(np.argmax(against))
+        raise ValueError(
+            f"ky = {ky[index]:g} rad/m: wave {index} has {k[index]:g} rad/m at row 0, so it does not run "
+            "towards the shore: leave it out"
+        )
+
+
+def _amplitudes(breaking: ArrayLike, count: int) -> Array:
+    a = np.asarray(breaking, np.float64)
+    if a.shape != (count,) or not np.isfinite(a).all() or (a < 0.0).any():
+        raise ValueError(f"breaking: must be {count} amplitudes of 0 m or more, one of each wave")
+    return a
+
+
+def wave_numbers(omega: Array, depth: Array, gravity: float) -> Array:
+    """k in rad/m of ω² = g k tanh kh, of arrays that broadcast, to 1e-12.
+
+    By Newton's method from Eckart's (1952) start: that alone oscillates where depth changes slowly.
+    """
+    x = omega * omega * depth / gravity
+    kh = x / np.sqrt(np.tanh(x))
+    for _ in range(4):
+        t = np.tanh(kh)
+        kh -= (kh * t - x) / (t + kh * (1.0 - t * t))
+    return kh / depth
+
+
+def group_speeds(omega: Array, k: Array, depth: Array) -> Array:
+    """dω/dk in m/s."""
+    kh2 = 2.0 * k * depth
+    return omega / k * (0.5 + 0.5 * kh2 / np.sinh(np.minimum(kh2, 300.0)))
+
+
+class _March:
+    """All waves, a row after another; waves lose to breaking what all of them together tell."""
+
+    def __init__(
+        self, bed: Bed, omega: Array, incident: ComplexArray, rest: Array, amplitudes: Array | None
+    ) -> None:
+        self._bed, self._omega, self._rest, self._amplitudes = bed, omega, rest, amplitudes
+        rows, columns = bed.depth.shape
+        along = 2.0 * np.pi * np.fft.fftfreq(columns, bed.spacing)
+        self._ky = along + rest[:, np.newaxis]
+        self._turn_back = np.exp(1j * rest[:, np.newaxis] * bed.spacing * np.arange(columns))
+        half = min(_DIRECTION_OVER, _MOST_OF_WIDTH * columns * bed.spacing)
+        self._smooth = np.exp(-0.5 * (along[: columns // 2 + 1] * half) ** 2)
+        self.pictures = np.zeros((len(omega), rows, columns), np.complex64)
+        self._k = self._at(0)
+        self._flux = incident.astype(np.complex128)
+        for part in self._parts():
+            mean, speed = self._mean(part, 0)
+            waves = np.fft.fft(self._flux[part]) * np.sqrt(_cosines(self._ky[part] ** 2, mean))
+            self._flux[part] = np.fft.ifft(waves) * np.sqrt(speed)
+            self._draw(part, 0)
+        if amplitudes is not None:
+            energy = amplitudes**2 * np.mean(np.abs(incident) ** 2, axis=1)
+            #: Hz, of all waves by their energy
+            self._frequency = float(energy @ omega) / (2.0 * np.pi * max(float(energy.sum()), 1e-300))
+
+    def run(self, workers: int, tell: Callable[[float], None]) -> None:
+        """March to the last row."""
+        rows = len(self._bed.depth)
+        for row in range(1, rows):
+            before, self._k = self._k, self._at(row)
+            run_blocks(partial(self._step, row=row, before=before), self._parts(), workers)
+            if self._amplitudes is not None:
+                self._lose(row)
+            tell((row + 1) / rows)
+
+    def _parts(self) -> Iterator[slice]:
+        return (slice(i, min(i + _TOGETHER, len(self._omega))) for i in range(0, len(self._omega), _TOGETHER))
+
+    def _at(self, row: int) -> Array:
+        omega = self._omega[:, np.newaxis]
+        k = wave_numbers(omega, self._bed.depth[row], self._bed.gravity)
+        return np.minimum(k, MOST_TURN / self._bed.spacing)
+
+    def _step(self, part: slice, row: int, before: Array) -> None:
+        dx = self._bed.spacing
+        k = 0.5 * (before[part] + self._k[part])
+        mean = k.mean(axis=1, keepdims=True)
+        change = k - mean
+        ky = self._ky[part]
+        q = np.sqrt(np.maximum(mean * mean - ky * ky, 0.0))
+        share = np.abs(ky) / mean
+        keep = np.where(share < _FADE_FROM, 1.0, np.exp(-(((share - _FADE_FROM) / _FADE_OVER) ** 2)))
+        steep = np.maximum(q, _SMALLEST_COSINE * mean)
+        first = (mean / steep - 1.0) * keep
+        second = -0.5 * ky * ky / steep**3 * keep
+        screen, turn = np.exp(0.5j * dx * change), np.exp(0.5j * dx * q) * keep
+        waves = np.fft.fft(self._flux[part] * screen) * turn
+        d = np.clip(change, -_LARGEST_CHANGE * mean, _LARGEST_CHANGE * mean)
+        if np.abs(d).max() * dx > 1e-12:
+            waves = _series(waves, d, first, second, dx)
+        self._flux[part] = np.fft.ifft(waves * turn) * screen * self._bed.water[row]
+        self._draw(part, row)
+
+    def _draw(self, part: slice, row: int) -> None:
+        """A from F: of each wave along y as over the row's mean depth, and at each place what that leaves.
+
+        The latter asks for the direction there: of all waves around by their energy, so that those that cross
+        count each with their own, which a mean direction would not do.
+        """
+        k, field = self._k[part], np.fft.fft(self._flux[part])
+        mean, speed = self._mean(part, row)
+        ky = self._ky[part]
+        waves = field * (1.0 / np.sqrt(_cosines(ky * ky, mean)))
+        amplitude, slope = np.fft.ifft(waves), np.fft.ifft(1j * ky * waves)
+        columns = field.shape[1]
+        along, energy = (
+            np.fft.irfft(np.fft.rfft(each.real**2 + each.imag**2) * self._smooth, columns)
+            for each in (slope, amplitude)
+        )
+        along /= np.maximum(energy, 1e-9 * energy.max(axis=1, keepdims=True) + 1e-300)
+        amplitude *= np.sqrt(_cosines(along, mean) / (_cosines(along, k) * speed))
+        self.pictures[part, row] = amplitude * self._turn_back[part] * self._bed.water[row]
+
+    def _mean(self, part: slice, row: int) -> tuple[Array, Array]:
+        """k̄ of a row, and the speed of groups at each place."""
+        k = self._k[part]
+        speed = group_speeds(self._omega[part, np.newaxis], k, self._bed.depth[row])
+        return k.mean(axis=1, keepdims=True), speed
+
+    def _lose(self, row: int) -> None:
+        """What breaking takes on the way to a row, of all waves alike, taken implicitly or it would be stiff.
+
+        Thornton and Guza (1983, eq. 20) for the energy ρ g H²/8, H being the root mean square height, with
+        the flux's speed Cg cos θ of all waves together: dA/dx = -A a/2, in which a grows as H⁵.
+        """
+        assert self._amplitudes is not None
+        share = self._amplitudes**2
+        energy = share @ (np.abs(self.pictures[:, row]).astype(np.float64) ** 2)
+        flux = share @ np.abs(self._flux) ** 2
+        depth, height = self._bed.depth[row], np.sqrt(4.0 * energy)
+        speed = flux / np.maximum(energy, 1e-300)
+        loss = 1.5 * math.sqrt(math.pi) * _INTENSITY**3 * self._frequency * height**5
+        loss /= BREAKER_INDEX**4 * depth**5 * np.maximum(speed, 1e-6)
+        factor = (1.0 + 2.5 * loss * self._bed.spacing) ** -0.2
+        self._flux *= factor
+        self.pictures[:, row] *= factor.astype(np.float32)
+
+
+def _cosines(ky2: Array, k: Array) -> Array:
+    """qx/k of waves with so much ky², floored."""
+    return np.sqrt(np.maximum(1.0 - ky2 / (k * k), _SMALLEST_COSINE**2))
+
+
+def _series(waves: ComplexArray, d: Array, first: Array, second: Array, dx: float) -> ComplexArray:
+    """exp(i Δx D) of waves along y, D being the symmetric products of δk with first and δk² with second."""
+    total, term = waves, waves
+    d2 = d * d
+    for n in range(1, _ORDER + 1):
+        here = np.fft.ifft(term)
+        out = np.fft.fft(d * np.fft.ifft(first * term) + d2 * np.fft.ifft(second * term))
+        out += first * np.fft.fft(d * here) + second * np.fft.fft(d2 * here)
+        term = out * (0.5j * dx / n)
+        total = total + term
+    return total

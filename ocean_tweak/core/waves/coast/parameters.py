@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a coast is: the bed, where it lies, and which waves come to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+
+from ...data.errors import ParameterError
+from ...data.raster import Raster
+from ...data.validation import Off, Validated, choice, number, raster, switch
+
+#: sides of the bed, and the quarter turns from +x to them
+SHORES = ("+X", "+Y", "-X", "-Y")
+
+#: s, of which the periods of all waves are whole parts: as few frequencies as eyes do not tell from all
+REPEATS_AFTER = Fraction(512)
+
+
+@dataclass(frozen=True)
+class Coast(Validated):
+    """A bed over which the long waves of a sea's first patch run ashore; it lies along that patch's sides.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import Raster
+    >>> Coast(depth=Raster([[8.0, 4.0, 0.0], [8.0, 4.0, 0.0]]), spacing=50.0).shore
+    '+X'
+    """
+
+    depth: Raster | None = raster(
+        "Depth of the bed below still water, 0 and less on land; the first row has the smallest y", channels=1
+    )
+    spacing: float = number(
+        2.0, 0.01, 1e4, "m", "Distance between two samples of the depth", "from a tank to a continent's shelf"
+    )
+    x: float = number(0.0, -1e6, 1e6, "m", "Place of the first sample of the depth", "far outside any domain")
+    y: float = number(0.0, -1e6, 1e6, "m", "Place of the first sample of the depth", "far outside any domain")
+    shore: str = choice(
+        SHORES[0], SHORES, "Side of the bed where the shore is, towards which waves run. What runs away from "
+        "it, and what is short, does not feel the bed's shape but is limited by the depth",
+    )  # fmt: skip
+    rim: float = number(
+        60.0, 1.0, 1e5, "m", "Width before the bed in which the open sea goes over into the coast, and the "
+        "same again in which the bed sinks to the sea's own depth",
+        "from a tank to a continent's shelf",
+    )  # fmt: skip
+    shortest_wavelength: float = number(
+        20.0, 0.1, 1e4, "m", "Shortest waves offshore that are followed over the bed; shorter ones are many, "
+        "and too short to feel it", "from ripples to swell",
+    )  # fmt: skip
+    step: float = number(
+        0.0, 0.0, 1e3, "m", "Distance between samples of the waves over the bed",
+        "from a tank to swell", off=Off(0.0, 1.0, "uses that of the first patch"),
+    )  # fmt: skip
+    breaking: bool = switch(True, "Let waves break where they are too high for the depth")
+    muted: bool = switch(False, "Show the open sea instead; its waves stay those that come to the coast")
+
+    def __post_init__(self) -> None:
+        if isinstance(self.depth, Raster):
+            object.__setattr__(self, "depth", self.depth.grey())
+        super().__post_init__()
+        if self.depth is None:
+            raise ParameterError("depth", None, 'give the bed: a raster of depths, or {"file": "bed.exr"}')
+        if min(self.depth.shape[:2]) < 2:
+            raise ParameterError("depth", f"shape {self.depth.shape[:2]}", "must be 2 samples a side or more")
+
+
+def repeats_after(loop_duration: Fraction | None) -> Fraction:
+    """Time in s of which the periods of waves that come to a coast are whole parts."""
+    if loop_duration is None:
+        return REPEATS_AFTER
+    return loop_duration / ceil(loop_duration / REPEATS_AFTER)

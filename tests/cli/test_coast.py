@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A coast on the command line: its bed from a file, what it will be, and its area in images and in USD."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ocean_tweak.cli import main
+from ocean_tweak.export.exr import read_image
+from ocean_tweak.export.sea_files import read_sea
+
+SIZE = ["--set", "resolution=32", "--set", "domain_size=200", "--set", "water.depth=20"]
+
+
+@pytest.fixture
+def coast(tmp_path: Path) -> list[str]:
+    bed = np.repeat(np.linspace(12.0, -1.0, 51, dtype=np.float32)[np.newaxis], 51, axis=0)
+    np.save(tmp_path / "bed.npy", bed)
+    changes = (f"depth.file={tmp_path / 'bed.npy'}", "spacing=4", "rim=80", "shortest_wavelength=40")
+    return [*SIZE, *(word for change in changes for word in ("--set", f"coast.{change}"))]
+
+
+def test_info_tells_heights_offshore_at_breaking_and_at_the_shore(
+    coast: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["info", *coast, "--save", str(tmp_path / "sea.json")]) == 0
+    told = capsys.readouterr().out
+    assert "% of the energy" in told
+    assert "where waves begin to break" in told
+    assert "at the shore" in told
+    assert main(["info", "--json", *coast]) == 0
+    numbers = json.loads(capsys.readouterr().out)["ocean"]["coast"]
+    assert numbers["offshore"] > numbers["breaking"] > numbers["shore"]
+    saved = read_sea(tmp_path / "sea.json").parameters.coast
+    assert saved is not None
+    assert saved.depth is not None
+    assert saved.depth.shape == (51, 51, 1)
+
+
+def test_an_area_is_baked_and_a_tile_refused_in_words(
+    coast: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = ["bake", *coast, "--frames", "1", "--out", str(tmp_path / "out"), "--maps", "disp,foam"]
+    assert main(own) == 2
+    assert "ask for an Area" in capsys.readouterr().err
+    assert main([*own, "--area", "240", "48", "-20", "0"]) == 0
+    (image,) = (tmp_path / "out").glob("*/*/*_disp.0001.exr")
+    pixels, _ = read_image(image)
+    assert np.abs(pixels[:, -3:]).max() < 1e-5
+    assert np.abs(pixels[..., 2]).max() > 0.3
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("coast.depht.file=bed.npy", "did you mean depth?"),
+        ("coast.shore=+X", "give the bed"),
+        ("coast.depth.file=none.npy", "none.npy"),
+    ],
+)
+def test_a_slip_is_told_by_name(change: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info", *SIZE, "--set", change]) == 2
+    assert words in capsys.readouterr().err

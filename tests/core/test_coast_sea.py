@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sea over a bed: the open sea's waves before it, what the bed makes of them over it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from ocean_tweak.core import (
+    Area,
+    Coast,
+    Mask,
+    Ocean,
+    OceanParameters,
+    ParameterError,
+    Patch,
+    Places,
+    Raster,
+    Water,
+    WaveLayer,
+)
+from ocean_tweak.core.parameters.patch_seas import open_sea
+from ocean_tweak.core.parameters.shot import Animation, Shot
+from ocean_tweak.core.sea.coast_outlook import coast_outlook
+from ocean_tweak.core.waves.coast.breakers import broken_share
+
+SIDE, SAMPLES, DEEP = 200.0, 64, 20.0
+STEP = SIDE / SAMPLES
+#: a beach of 200 m from 12 m of water to land, along +x
+BEACH = np.repeat(np.linspace(12.0, -1.0, 101)[np.newaxis], 101, axis=0)
+ALL = ("displacement", "slope", "velocity", "strain")
+
+
+def sea(bed: np.ndarray = BEACH, patches: tuple[Patch, ...] = (), **of_coast: object) -> OceanParameters:
+    coast = Coast(
+        **{
+            "depth": Raster(bed),
+            "spacing": 2.0,
+            "x": 0.0,
+            "rim": 40.0,
+            "shortest_wavelength": 35.0,
+            **of_coast,
+        }
+    )
+    size = {} if patches else {"resolution": SAMPLES, "domain_size": SIDE}
+    layer = WaveLayer(wind_speed=11.0, fetch=60e3, wind_direction=0.2)
+    return OceanParameters(
+        water=Water(depth=DEEP), coast=coast, layers=(layer,), seed=3, patches=patches, **size
+    )
+
+
+def height(parameters: OceanParameters) -> float:
+    return Ocean(open_sea(parameters)).statistics().resolved.significant_wave_height
+
+
+@pytest.mark.parametrize("patches", [(), (Patch(SIDE, resolution=SAMPLES, rotation=0.4),)])
+def test_the_rim_has_the_open_sea_s_waves_and_before_it_their_bytes(patches: tuple[Patch, ...]) -> None:
+    parameters = sea(patches=patches)
+    # the axes of the patch: the bed's too
+    along, across = np.meshgrid(-160.0 - 0.0 * STEP + STEP * np.arange(96), STEP * np.arange(24))
+    along = STEP * np.round(along / STEP)
+    c, s = (np.cos(0.4), np.sin(0.4)) if patches else (1.0, 0.0)
+    there = Places(c * along - s * across, s * along + c * across)
+    ocean = Ocean(parameters)
+    over_bed, open_one = (each.surface(7.3, ALL, there) for each in (ocean, Ocean(open_sea(parameters))))
+    assert ocean.coast is not None
+    share = ocean.coast.shares(*(each.ravel() for each in (there.x, there.y)))
+    assert share.value.min() >= 0.0
+    before = along < -80.0 - STEP
+    # as far as derivatives reach before the rim's last quarter
+    comes_in = along < -80.0 + 0.75 * 40.0 - 4.0 * STEP
+    significant = height(parameters)
+    for name in ALL:
+        own, other = over_bed[name], open_one[name]
+        assert_array_equal(own[before] + 0.0, other[before] + 0.0)
+        scale = significant if name == "displacement" else np.abs(other).max()
+        assert np.abs(own - other)[comes_in].max() <= (1e-5 if name == "displacement" else 1e-4) * scale
+    assert np.abs(over_bed.displacement - open_one.displacement)[~comes_in].max() > 0.05 * significant
+
+
+def test_a_frame_alone_is_that_of_a_sequence_and_the_sea_repeats() -> None:
+    parameters, area = sea(), Area(150.0, 40, (-50.0, 3.0))
+    sequence = Ocean(parameters)
+    for time in (0.0, 1.0, 2.0):
+        last = sequence.surface(time, ALL, area)
+    alone = Ocean(parameters).surface(2.0, ALL, area)
+    for name in ALL:
+        assert_array_equal(alone[name], last[name])
+    later = Ocean(parameters).surface(514, ALL, area)
+    assert_array_equal(alone.displacement, later.displacement)
+    looped = replace(parameters, loop_duration=8)
+    one, other = (Ocean(looped).surface(time, ALL, area).displacement for time in (1, 9))
+    assert_array_equal(one, other)
+    assert np.abs(one).max() > 0.1
+
+
+def test_waves_turn_into_nothing_on_land_and_are_limited_by_depth() -> None:
+    parameters, ocean = sea(), Ocean(sea())
+    x = np.array([120.0, 150.0, 170.0, 180.0, 190.0, 199.0, 230.0])
+    y = np.linspace(0.0, SIDE, 60, endpoint=False)
+    heights = np.array(
+        [
+            ocean.surface(time, on=Places(x, y[:, np.newaxis])).displacement[..., 2]
+            for time in np.linspace(0.0, 300.0, 25)
+        ]
+    )
+    rms = 2.0 * np.sqrt(2.0) * heights.std(axis=(0, 1))
+    depth = 12.0 - 0.065 * x
+    wet = depth > 0.0
+    assert (rms[wet] <= 0.6 * depth[wet] + 0.02).all()
+    assert rms[1] > 0.7 * 0.7 * height(parameters)
+    assert_allclose(heights[..., ~wet & (x > 190.0)], 0.0, atol=1e-6)
+    assert np.abs(heights.mean(axis=(0, 1))).max() < 0.1 * height(parameters)
+
+
+def test_its_derivatives_are_those_of_its_displacement() -> None:
+    swell = Patch(SIDE, resolution=SAMPLES, shortest_wavelength=40.0)
+    ocean, d, dt = Ocean(sea(patches=(swell,)), "double"), STEP, 0.01
+    x, y = STEP * np.array([3.0, 20.0, 31.0, 38.0]), STEP * np.array([4.0, 17.0, 25.0, 40.0])
+    fields = ocean.surface(4.0, ALL, Places(x, y))
+
+    def moved(dx: float, dy: float, time: float = 4.0) -> np.ndarray:
+        return ocean.surface(time, on=Places(x + dx, y + dy)).displacement
+
+    velocity = (moved(0, 0, 4.0 + dt) - moved(0, 0, 4.0 - dt)) / (2.0 * dt)
+    assert_allclose(fields.velocity, velocity, atol=2e-3 * np.abs(velocity).max())
+    by_x, by_y = (moved(d, 0) - moved(-d, 0)) / (2.0 * d), (moved(0, d) - moved(0, -d)) / (2.0 * d)
+    assert_allclose(fields.slope[:, 0], by_x[:, 2], atol=0.08 * np.abs(by_x[:, 2]).max())
+    assert_allclose(fields.slope[:, 1], by_y[:, 2], atol=0.08 * np.abs(by_x[:, 2]).max())
+    assert_allclose(fields.strain[:, 0], by_x[:, 0], atol=0.08 * np.abs(by_x[:, 0]).max())
+    assert_allclose(fields.strain[:, 1], by_y[:, 1], atol=0.08 * np.abs(by_x[:, 0]).max())
+
+
+@pytest.mark.parametrize("shore", ["+X", "+Y", "-X", "-Y"])
+def test_a_bed_that_is_turned_has_the_same_waves_turned(shore: str) -> None:
+    turns = ["+X", "+Y", "-X", "-Y"].index(shore)
+    bed = np.rot90(BEACH, -turns)  # of [y, x] arrays, counter-clockwise in x and y
+    corner = {"+X": (0.0, 0.0), "+Y": (-200.0, 0.0), "-X": (-200.0, -200.0), "-Y": (0.0, -200.0)}[shore]
+    angle = 0.5 * np.pi * turns
+    parameters = sea(bed, shore=shore, x=corner[0], y=corner[1])
+    parameters = parameters.replace(
+        layers=(WaveLayer(wind_speed=11.0, fetch=60e3, wind_direction=angle),), amplitudes="DETERMINISTIC"
+    )
+    c, s = np.round(np.cos(angle)), np.round(np.sin(angle))
+    along, across = np.meshgrid(np.linspace(120.0, 190.0, 15), np.linspace(0.0, 200.0, 30, endpoint=False))
+    there = Places(c * along - s * across, s * along + c * across)
+    ocean = Ocean(parameters)
+    found = [ocean.surface(time, on=there).displacement[..., 2] for time in range(0, 60, 3)]
+    expected = 12.0 - 0.065 * along[0]
+    rms = 2.0 * np.sqrt(2.0) * np.std(found, axis=(0, 1))
+    assert (rms[:-4] > 0.25 * np.minimum(expected[:-4], height(parameters))).all()
+    assert rms[-1] < 0.5 * rms[0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"trough_damping": 0.5}, "damped by no others"),
+        ({"mask": Mask()}, "remove them"),
+        ({"dispersion": "DEEP"}, "FINITE_DEPTH or CAPILLARY"),
+    ],
+)
+def test_what_cannot_be_beside_a_coast_is_refused(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        sea().replace(**changes)
+
+
+@pytest.mark.parametrize(
+    ("of_coast", "words"),
+    [
+        ({"depth": None}, "give the bed"),
+        ({"depth": Raster(-BEACH)}, "land, .* positive downwards"),
+        ({"shore": "-X"}, "choose another side"),
+        ({"rim": 3.0}, "at least 37.5 m"),
+        ({"depth": Raster([[1.0, 2.0]])}, "2 samples a side"),
+    ],
+)
+def test_a_bed_that_waves_cannot_reach_is_refused(of_coast: dict[str, object], words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        Ocean(sea(**of_coast)).surface(0.0, on=Places(0.0, 0.0))
+
+
+def test_a_tile_is_refused_and_keyed_wind_too() -> None:
+    with pytest.raises(ParameterError, match=r"coast = 'given': .* ask for an Area or Places"):
+        Ocean(sea()).surface(0.0)
+    with pytest.raises(ParameterError, match=r"layers\.0\.wind_speed.* coast"):
+        Shot(sea(), Animation(1, (("layers.0.wind_speed", (1.0, 2.0)),)))
+    Shot(sea(), Animation(1, (("ocean_time", (1.0, 2.0)),)))
+
+
+def test_the_height_above_places_is_that_of_the_surface() -> None:
+    ocean = Ocean(sea())
+    at_rest = Places(np.array([20.0, 80.0, 140.0, 160.0]), np.array([10.0, 60.0, 110.0, 160.0]))
+    x, y = at_rest.rest_positions()
+    moved = ocean.surface(3.0, on=at_rest).displacement
+    points = ocean.points_at(x + moved[:, 0], y + moved[:, 1], 3.0, velocity=True)
+    assert points.found.all()
+    assert_allclose(points.height, moved[:, 2], atol=2e-3)
+    assert points.velocity is not None
+    with pytest.raises(ValueError, match="coast"):
+        ocean.points_at(0.0, 0.0, 0.0, "exact")
+
+
+def test_the_share_of_broken_waves() -> None:
+    heights, depths = np.array([0.0, 0.21, 0.42, 2.0, 1.0]), np.array([1.0, 1.0, 1.0, 1.0, 0.0])
+    assert_allclose(broken_share(heights, depths), [0.0, 1.0 / 16.0, 1.0, 1.0, 0.0])
+
+
+def test_it_is_told_how_high_waves_are_and_what_it_takes() -> None:
+    ocean = Ocean(sea())
+    told = coast_outlook(ocean)
+    assert told is not None
+    assert told.offshore == pytest.approx(height(sea()), rel=0.25)
+    assert told.offshore > told.breaking > told.shore >= 0.0
+    assert 0.2 < told.breaking / told.breaking_depth < 0.6
+    assert 0.5 < told.share < 1.0
+    assert coast_outlook(Ocean(open_sea(sea()))) is None
+
+
+def test_json_both_ways() -> None:
+    given = sea(shore="+Y", breaking=False)
+    assert OceanParameters.from_json(given.to_json()) == given
+    assert "coast" not in OceanParameters().to_dict()
