@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks.weights import Weights
+from ..masks.weights import Weights, unweighted, weighted
 from ..numerics.memo import MEMO, total_bytes
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.transforms import Synthesis, X, Y, Z
@@ -30,7 +30,7 @@ from ..waves.coast.ground import Ground
 from .coast_pictures import Incoming, Pictures, incoming, pictures
 from .part_waves import PartWaves, components, real_type
 from .placed_waves import as_field
-from .sampling import Grid, Key, closed, turned, unweighted, weighted
+from .sampling import Grid, Key, closed, turned
 from .surfaces import Field
 
 Array = NDArray[np.float64]
