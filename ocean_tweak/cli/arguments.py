@@ -174,6 +174,7 @@ def _add_job(commands: _Commands, in_blender: bool) -> None:
     _add_sea_arguments(parser, in_blender)
     _add_frames(parser, in_blender)
     _add_files_arguments(parser)
+    _add_spray(parser)
     _add_cache(parser, in_blender, "--cache")
     parser.add_argument(
         "--out",

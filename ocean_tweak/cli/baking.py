@@ -25,19 +25,28 @@ from ..core.sea.bake import bake as make_frames
 from ..core.sea.memory import check_memory
 from ..export import logs
 from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory
-from ..export.cache.folders import JOB_FILE, log_file, open_folder, read_job, recovered_job, write_job
+from ..export.cache.folders import (
+    JOB_FILE,
+    log_file,
+    open_folder,
+    read_job,
+    recovered_job,
+    refuse_links,
+    write_job,
+)
 from ..export.cache.job import CacheError, Job, NewerBakeError, made_with
 from ..export.cache.locks import Held, claimed, let_go
 from ..export.cache.records import CacheSink, Finding, give_up_writing, remove_leftovers, unfinished
 from ..export.exr import ExrError
 from ..export.files import writable_folder
+from ..export.spray import SpraySequence, WantedSpray, baked_spray
 from .checking import known_frames, wanted_frames
 from .outcome import DONE, FAILED, UsageError, message_of, remedy_of, shell_word
 from .progress import Progress, duration
 from .seas import FileSea
 from .spraying import bake_spray, spray_of
 from .stopping import end_now, stop_requested
-from .wanted_bake import cache_of, existing_folder, jobs_of, only_bake
+from .wanted_bake import cache_of, jobs_of, only_bake
 from .workers import make_in_processes
 
 _LOG = logging.getLogger(__name__)
@@ -48,16 +57,13 @@ def bake(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     jobs = jobs_of(arguments, seas)
     sprays = {name: spray_of(arguments, seas[name]) for name in jobs}  # what is wrong is told before any work
     for name, job in jobs.items():
-        spray = sprays[name]
-        code = _bake_sea(arguments, cache_of(arguments, seas[name]), job)
-        if code == DONE and spray is not None and not arguments.estimate:
-            code = bake_spray(arguments, existing_folder(cache_of(arguments, seas[name]), job), job, spray)
+        code = _bake_sea(arguments, cache_of(arguments, seas[name]), job, sprays[name])
         if code != DONE:
             return code
     return DONE
 
 
-def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job) -> int:
+def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job, spray: WantedSpray | None) -> int:
     frames = job.frames
     if not frames:
         raise UsageError("--frames: say which frames to bake")
@@ -67,7 +73,9 @@ def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job) -> int:
         raise UsageError(
             f"--only {format_frames(chosen)}: must be some of the frames {format_frames(frames)}"
         )
-    return _make(arguments, open_folder(writable_folder(cache), job), job, chosen)
+    folder = open_folder(writable_folder(cache), job)
+    files = None if spray is None else SpraySequence(folder, job.name, job.shot, spray.spray, spray.place)
+    return _make_all(arguments, folder, job, chosen, files)
 
 
 def _check_whole(job: Job) -> None:
@@ -102,7 +110,23 @@ def resume(arguments: argparse.Namespace) -> int:
     frames = wanted_frames(folder, job, arguments.frames)
     job = replace(job, frames=known_frames(folder, job) or frames)
     job.shot.check(frames)
-    return _make(arguments, folder, job, frames)
+    return _make_all(arguments, folder, job, frames, baked_spray(folder, job.name, job.shot))
+
+
+def _make_all(
+    arguments: argparse.Namespace,
+    folder: Path,
+    job: Job,
+    frames: Sequence[Frame],
+    spray: SpraySequence | None,
+) -> int:
+    """Make what is not whole of the frames and of their spray. Returns the exit code."""
+    if spray is None or arguments.estimate:
+        return _make(arguments, folder, job, frames)
+    refuse_links(folder)
+    spray.ask()  # first, so that a bake that is ended early goes on with it
+    code = _make(arguments, folder, job, frames)
+    return bake_spray(arguments, spray, frames) if code == DONE else code
 
 
 def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequence[Frame]) -> int:

@@ -12,7 +12,7 @@ from ..core.data.frames import Frame, format_frames
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import printable, readable_bytes
 from ..export.cache.clean import clean as clean_frames
-from ..export.cache.clean import foreign_images, remove_rest
+from ..export.cache.clean import cleanable_frames, foreign_images, remove_rest
 from ..export.cache.folders import is_bake, read_job
 from ..export.cache.job import CacheError, Job
 from ..export.cache.locks import claimed
@@ -104,7 +104,7 @@ def clean(arguments: argparse.Namespace) -> int:
         raise UsageError(f"{folder}: is not a folder")
     if not is_bake(folder.resolve()):
         raise CacheError(f"{folder}: is not a bake's folder, so nothing in it is deleted")
-    chosen = recorded_frames(folder) if frames is None else frames
+    chosen = cleanable_frames(folder) if frames is None else frames
     with claimed(folder, chosen, take_over=arguments.take_over):
         cleaned = clean_frames(folder, chosen)
     foreign = remove_rest(folder) if frames is None and not cleaned.left else ()

@@ -16,6 +16,7 @@ from ..export.files import writable_folder
 from .outcome import DONE, UsageError
 from .progress import Progress
 from .seas import FileSea
+from .spraying import spray_of
 from .wanted_bake import jobs_of, known_cache
 
 __all__ = ["BAKERS", "FORMS", "PYTHON", "job"]
@@ -29,7 +30,9 @@ PYTHON = "python" if os.name == "nt" else "python3"
 
 def job(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     """Write a job for a farm."""
-    bakes = tuple(jobs_of(arguments, seas).values())
+    jobs = jobs_of(arguments, seas)
+    bakes = tuple(jobs.values())
+    sprays = {each.name: spray_of(arguments, seas[name]) for name, each in jobs.items()}
     caches = {known_cache(arguments.cache, sea) for sea in seas.values()}
     frames = _frames(bakes)
     render = _render(arguments)
@@ -37,7 +40,8 @@ def job(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     try:
         shot = ShotJob(
             name, bakes, frames, arguments.chunk, caches.pop() if len(caches) == 1 else None,
-            arguments.bake_with, arguments.python, arguments.blender, arguments.workers,
+            arguments.bake_with, arguments.python, arguments.blender,
+            {name: spray for name, spray in sprays.items() if spray is not None}, arguments.workers,
             arguments.plain_ranges, render,
         )  # fmt: skip
         files = FORMS[arguments.form](writable_folder(arguments.out), shot)

@@ -5,27 +5,17 @@ from __future__ import annotations
 
 import argparse
 import time
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Sequence
 
-from ..core import Spray
+from ..core.data.frames import Frame
 from ..core.sea.bake import BakedFrame
 from ..core.sea.spray import ShotSpray, check_spray
-from ..export.cache.job import Job
 from ..export.cache.locks import claimed
-from ..export.spray import SpraySequence
+from ..export.spray import SpraySequence, WantedSpray
 from .outcome import DONE, FAILED, UsageError
 from .progress import Progress
 from .seas import FileSea
 from .stopping import stop_requested
-
-
-@dataclass(frozen=True)
-class WantedSpray:
-    """Spray that is asked for, and the place around which it is made; None for the sea's tile."""
-
-    spray: Spray
-    place: tuple[float, float] | None
 
 
 def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
@@ -53,19 +43,19 @@ def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
     return WantedSpray(spray, place if parameters.patches else None)
 
 
-def bake_spray(arguments: argparse.Namespace, folder: Path, job: Job, wanted: WantedSpray) -> int:
+def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequence[Frame]) -> int:
     """Make what is missing of the frames' spray. Returns the exit code."""
-    frames = arguments.only or job.frames
-    files = SpraySequence(folder, job.name, job.shot, wanted.spray, wanted.place)
-    progress = Progress(job.name, arguments.json, arguments.openjd)
+    progress = Progress(files.name, arguments.json, arguments.openjd)
     with (
         stop_requested() as stop,
-        claimed(folder, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark),
+        claimed(
+            files.directory, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark
+        ),
     ):
         todo = [frame for frame in frames if not files.is_whole(frame)]
         progress.say(f"{len(todo)} of {len(frames)} frames of spray to make", left=len(todo), phase="spray")
         progress.begin(len(todo))
-        maker = ShotSpray(job.shot, wanted.spray, wanted.place)
+        maker = ShotSpray(files.shot, files.spray, files.place)
         try:
             for frame in todo:
                 if stop.is_set():

@@ -17,6 +17,7 @@ from ..core.sea.regions import Area
 from ..core.sea.spray import ShotSpray
 from ..export.cache.folders import read_job
 from ..export.cache.records import recorded_frames
+from ..export.spray import baked_spray
 from ..export.usd.export import Export
 from ..export.usd.isolated import problems_of
 from ..export.usd.package import Package, asset_name, with_samples_between
@@ -157,7 +158,10 @@ def _of_bake(arguments: argparse.Namespace) -> tuple[FileSea, tuple[Frame, ...],
     frames = arguments.frames or job.frames or recorded_frames(folder)
     if not frames:
         raise UsageError(f"{folder}: holds no frames")
-    return FileSea(changed(job.shot, arguments)), frames, _on_its_texels(job.area)
+    spray = baked_spray(folder, job.name, job.shot)
+    shot = job.shot if spray is None else spray.wanted.of(job.shot)
+    place = None if spray is None else spray.place
+    return FileSea(changed(shot, arguments), place=place), frames, _on_its_texels(job.area)
 
 
 def _on_its_texels(area: Area | None) -> Area | None:

@@ -82,13 +82,17 @@ def _header(text: bytes, known: Collection[Sequence[str]]) -> tuple[list[str], i
     """Names of the columns, number of points and what the file tells. Raises ValueError."""
     head, end, _ = text.partition(b"end_header\n")
     lines = head.decode("ascii").splitlines()
-    if not end or lines[:2] != ["ply", f"format {_FORMAT}"] or not lines[2].startswith(_ABOUT):
+    is_ours = lines[:2] == ["ply", f"format {_FORMAT}"] and "".join(lines[2:3]).startswith(_ABOUT)
+    if not end or not is_ours:
         raise ValueError("its header is another one")
     (count,) = [line.rpartition(" ")[2] for line in lines if line.startswith("element vertex ")]
     names = [line.rpartition(" ")[2] for line in lines if line.startswith("property float ")]
     if names not in [list(each) for each in known]:
         raise ValueError("its columns are others")
-    about = json.loads(lines[2].removeprefix(_ABOUT))
+    try:
+        about = json.loads(lines[2].removeprefix(_ABOUT))
+    except RecursionError:
+        about = None
     if not isinstance(about, dict):
         raise ValueError("its header is another one")
     return names, int(count), about

@@ -2,25 +2,55 @@
 """Baked spray: spray/NAME_spray.####.ply beside the images of its sea, a file a frame.
 
 Each file tells what it was made from. One that tells the same is whole and stays; another amount, size, wind
-or life makes these files anew, and no image.
+or life makes these files anew, and no image. `spray.json` beside them is what was asked for last: by it the
+commands that are given a bake's folder know that it has spray.
 """
 
 from __future__ import annotations
 
+import contextlib
+import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..core.data import formats
 from ..core.data.frames import Frame
-from ..core.data.plain_data import to_plain
+from ..core.data.plain_data import from_plain, to_plain
 from ..core.parameters.fingerprint import fingerprint, frame_fingerprint
 from ..core.parameters.shot import Shot
 from ..core.parameters.spray import Spray
 from ..core.spray.columns import COLUMNS, columns
 from ..core.spray.particles import Particles
-from .frame_files import SPRAY, frame_file
-from .ply import told_by_ply, write_ply
+from .files import LARGEST_JSON, PART, is_link, read_bytes, write_text
+from .frame_files import SPRAY, files_start, frame_file
+from .ply import PlyError, read_ply, told_by_ply, write_ply
+
+#: in the folder of the files
+ASKED = "spray.json"
+
+
+@dataclass(frozen=True)
+class WantedSpray:
+    """Spray that is asked for.
+
+    place : x and y in m that it is made around; None for the sea's own tile
+    """
+
+    spray: Spray
+    place: tuple[float, float] | None = None
+
+    def of(self, shot: Shot) -> Shot:
+        """A shot with this spray."""
+        return Shot(shot.parameters.replace(spray=self.spray), shot.animation)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as it stands in `spray.json`."""
+        place = None if self.place is None else list(self.place)
+        return {"format": formats.SPRAY, "spray": to_plain(self.spray), "place": place}
 
 
 @dataclass(frozen=True)
@@ -41,10 +71,40 @@ class SpraySequence:
         """Where a frame's spray goes."""
         return self.directory / SPRAY / frame_file(self.name, SPRAY, frame)
 
+    @property
+    def wanted(self) -> WantedSpray:
+        """What is asked for."""
+        return WantedSpray(self.spray, self.place)
+
+    def ask(self) -> None:
+        """Let the folder tell that it has this spray. Raises OSError for what the disk refuses."""
+        path = self.directory / SPRAY / ASKED
+        path.parent.mkdir(exist_ok=True)
+        text = json.dumps(self.wanted.to_dict(), indent=1) + "\n"
+        if not path.is_file() or path.read_bytes() != text.encode():
+            write_text(path, text)
+
     def is_whole(self, frame: Frame) -> bool:
         """Whether a frame's file is there and made from this."""
         told = told_by_ply(self.path(frame), (COLUMNS,))
-        return told is not None and told.get("fingerprint") == self._about(frame)["fingerprint"]
+        return told is not None and self._is_of_this(frame, told)
+
+    def problem(self, frame: Frame) -> str:
+        """What is wrong with a frame's file, which is read; "" where all is well."""
+        path = self.path(frame)
+        told = told_by_ply(path, (COLUMNS,))
+        if not path.exists():
+            return f"{path.name} is missing"
+        if told is None:
+            return f"{path.name} is cut off or damaged"
+        if not self._is_of_this(frame, told):
+            return f"{path.name} is of other settings or another version"
+        try:
+            values = read_ply(path, (COLUMNS,))
+        except PlyError as error:
+            return str(error)
+        is_finite = all(np.isfinite(column).all() for column in values.values())
+        return "" if is_finite else f"{path.name} holds values that are not finite"
 
     def write(self, frame: Frame, particles: Particles) -> Path:
         """Write a frame. Returns the file's path. Raises OSError for what the disk refuses."""
@@ -53,6 +113,9 @@ class SpraySequence:
         write_ply(path, COLUMNS, columns(particles), self._about(frame))
         return path
 
+    def _is_of_this(self, frame: Frame, told: dict[str, Any]) -> bool:
+        return bool(told.get("fingerprint") == self._about(frame)["fingerprint"])
+
     def _about(self, frame: Frame) -> dict[str, Any]:
         made_from = {
             "sea": frame_fingerprint(self.shot, frame), "spray": to_plain(self.spray),
@@ -60,3 +123,39 @@ class SpraySequence:
             "foam": formats.FOAM, "version": formats.SPRAY,
         }  # fmt: skip
         return {**made_from, "fingerprint": fingerprint(made_from)}
+
+
+def baked_spray(directory: Path, name: str, shot: Shot) -> SpraySequence | None:
+    """The files of the spray that a bake's folder was asked for; None where it has none.
+
+    Raises PlyError where what was asked for cannot be read.
+    """
+    path = directory / SPRAY / ASKED
+    try:
+        data = json.loads(read_bytes(path, LARGEST_JSON))
+        formats.check_format(data, formats.SPRAY)
+        spray, place = from_plain(Spray, data["spray"]), data["place"]
+        x, y = (0.0, 0.0) if place is None else map(float, place)
+    except FileNotFoundError:
+        return None
+    except (OSError, AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
+        raise PlyError(f"{path}: is not readable ({error}): bake the sea with --spray again") from None
+    return SpraySequence(directory, name, shot, spray, None if place is None else (x, y))
+
+
+def spray_files(directory: Path, name: str) -> dict[Frame, Path]:
+    """The files of a bake's spray by their frames, ascending."""
+    own = re.compile(re.escape(files_start(name, SPRAY)) + r"(-\d{3,}|\d{4,})\.ply")
+    found = ((own.fullmatch(path.name), path) for path in (directory / SPRAY).glob("*.ply"))
+    return dict(sorted((int(match[1]), path) for match, path in found if match is not None))
+
+
+def remove_empty(directory: Path) -> None:
+    """Remove the folder of spray where no file of a frame is in it any more."""
+    folder = directory / SPRAY
+    if is_link(folder) or any(folder.glob("*.ply")):
+        return
+    for path in (folder / ASKED, *folder.glob(f".*{PART}")):  # also of processes that were killed
+        path.unlink(missing_ok=True)
+    with contextlib.suppress(OSError):
+        folder.rmdir()

@@ -18,6 +18,9 @@ Value = Any
 
 Triple = tuple[Socket, Socket, Socket]
 
+#: extinctions in the visibility of the air: what is so far away has 2 % of its contrast (Koschmieder 1924)
+VISIBILITY = 3.912
+
 
 class Shading:
     """Adds nodes to one shader tree: a group's, a material's or a world's."""

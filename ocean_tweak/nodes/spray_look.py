@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shader group "Ocean Tweak Spray": spume and drops that scatter light, and mist with soft rims.
+"""The shader group "Ocean Tweak Spray Look": spume and drops that scatter light, and mist with soft rims.
 
 Each particle stands for many drops. Light comes off them as off foam, and through them where the sun stands
 behind. The farther they are in haze, the more of what lies behind them is seen: that is in the same haze.
@@ -11,7 +11,7 @@ import bpy
 
 from ..core.spray.drops import DROPLET, MIST
 from .building import Panel, Plug
-from .shading import Shading
+from .shading import VISIBILITY, Shading
 from .spray import KIND, LEFT
 from .versioned import GroupKind
 
@@ -49,7 +49,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     spume = shade.mix(is_drop, sheet, shade.math("MULTIPLY", given["Drops"], facing))
     path = shade.math(
         "DIVIDE",
-        shade.math("MULTIPLY", shade.node("ShaderNodeCameraData").outputs["View Distance"], -3.912),
+        shade.math("MULTIPLY", shade.node("ShaderNodeCameraData").outputs["View Distance"], -VISIBILITY),
         shade.math("MAXIMUM", given["Visibility"], 1e-3),
     )
     is_hazy = shade.math("GREATER_THAN", given["Visibility"], 0.0)

@@ -16,7 +16,7 @@ import bpy
 
 from .building import Panel, Plug, Socket
 from .names import SHORTEST_WAVE, SLOPE_VARIANCE
-from .shading import Shading
+from .shading import VISIBILITY, Shading
 from .surface_detail import FEWEST_WAVES, MOST_WAVES
 from .versioned import GroupKind
 from .water_foam import foam_at, foam_cover, foam_shader
@@ -265,7 +265,7 @@ def _normal(shade: Shading, given: dict[str, Socket], slope: Socket) -> Socket:
 
 def _in_haze(shade: Shading, given: dict[str, Socket], at: Place, surface: Socket) -> Socket:
     """The surface behind as much air: contrast falls as exp(-3.9 d/visibility) (Koschmieder 1924)."""
-    path = shade.math("DIVIDE", shade.math("MULTIPLY", at.distance, -3.912), given["Visibility"])
+    path = shade.math("DIVIDE", shade.math("MULTIPLY", at.distance, -VISIBILITY), given["Visibility"])
     share = shade.math("SUBTRACT", 1.0, shade.math("EXPONENT", path))
     # division by zero gives zero, and then the share is zero
     share = shade.math("MULTIPLY", share, shade.node("ShaderNodeLightPath").outputs[0])

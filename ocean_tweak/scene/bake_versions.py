@@ -111,7 +111,7 @@ def delete(item: bpy.types.Object, names: Iterable[str] = ()) -> clean.Cleaned:
     files, size, left = 0, 0, []
     try:
         for folder in map(versions.__getitem__, wanted):
-            frames = recorded_frames(folder)
+            frames = clean.cleanable_frames(folder)
             with claimed(folder, frames):
                 cleaned = clean.clean(folder, frames)
             files, size = files + cleaned.files, size + cleaned.bytes

@@ -164,7 +164,7 @@ def _lost(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> Iterator
     if modifier.use_foam and modifier.foam_coverage != 0.0:
         yield f"Foam coverage {modifier.foam_coverage:.3g}: foam follows the wind"
     if modifier.use_spray:
-        yield "Spray: there is no spray map"
+        yield "Spray map: switch Spray on, which throws up particles"
     if modifier.wave_scale_min > 0.02:
         yield f"Smallest wave {modifier.wave_scale_min:.3g} m: use Short Wave Cutoff"
     if modifier.sharpen_peak_jonswap and modifier.spectrum in _WITH_FETCH:

@@ -53,7 +53,8 @@ def _take_away(item: bpy.types.Object) -> None:
 
 
 def is_made_for_oceans(item: bpy.types.Object) -> bool:
-    """Whether the extension gave an ocean this child: its horizon, a surface or a patch."""
+    """Whether the extension gave an ocean this child: its horizon, a surface, a patch
+    or its spray."""
     kinds = (HORIZON, CAMERA_SURFACE)
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
     is_part = patch_objects.is_ours(item) or spray.is_ours(item)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import bpy
 
@@ -11,6 +11,15 @@ from ..nodes.names import MAP_INPUTS
 from . import live_image
 from .modifiers import new_texture
 from .settings import all_oceans, settings_of
+
+
+def remove_with_meshes(items: Iterable[bpy.types.Object]) -> None:
+    """Remove objects of this file, and the meshes that nobody else has."""
+    for item in [item for item in items if item.library is None]:
+        mesh = item.data
+        bpy.data.objects.remove(item)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
 
 
 def own_image(item: bpy.types.Object, owner: str, name: str, label: str, samples: int) -> bpy.types.Image:

@@ -12,7 +12,7 @@ Waves that do not repeat are on one mesh more, over a square around the camera, 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
@@ -37,6 +37,7 @@ from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
 from . import evaluation, foam_rings, held_sea, patch_averages, patch_points, vertex_attributes
 from .grid_mesh import Grid
+from .ownership import remove_with_meshes
 from .patch_points import Points
 from .plan import COARSE, Plan, camera_surface_of, in_window, surface_modifier
 from .settings import OceanObjectError, is_ocean, link_beside, settings_of
@@ -88,7 +89,7 @@ def refresh(
     if surface is None:
         remove(ocean)
     elif not parameters.patches:
-        _remove(child for child in ocean.children if _NUMBER in child or _MASKS in child)
+        remove_with_meshes(child for child in ocean.children if _NUMBER in child or _MASKS in child)
     else:
         of_sea = parts(parameters)
         if len(of_sea) > len(PATCH_INPUTS):
@@ -186,13 +187,13 @@ def shows_area(ocean: bpy.types.Object) -> bool:
 
 def remove(ocean: bpy.types.Object) -> None:
     """Take the meshes of an ocean's patches and their weights away."""
-    _remove(child for child in ocean.children if is_ours(child))
+    remove_with_meshes(child for child in ocean.children if is_ours(child))
 
 
 def remove_left() -> None:
     """Take away those whose ocean was deleted: nobody can choose them."""
     own = (item for item in bpy.data.objects if is_ours(item))
-    _remove(item for item in own if not is_ocean(item.parent))
+    remove_with_meshes(item for item in own if not is_ocean(item.parent))
 
 
 def is_ours(item: bpy.types.Object) -> bool:
@@ -206,7 +207,7 @@ def _refreshed(
     """The patches by their number; those that are one too many go."""
     present = patches_of(ocean)
     kept = {present[number].name for number in range(1, len(of_sea) + 1) if number in present}
-    _remove(child for child in ocean.children if _NUMBER in child and child.name not in kept)
+    remove_with_meshes(child for child in ocean.children if _NUMBER in child and child.name not in kept)
     made = dict[int, bpy.types.Object]()
     wanted = list[_Filling]()
     for number, part in enumerate(of_sea, 1):
@@ -270,7 +271,7 @@ def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | N
     """The mesh of what does not repeat; None where there is nothing of it."""
     present = next((child for child in ocean.children if _AREA in child), None)
     if plan.placed is None:
-        _remove(iter((present,) if present is not None else ()))
+        remove_with_meshes((present,) if present is not None else ())
         return None
     item = present or _new(ocean, "Area", _AREA, "")
     if item.data.users > 1:  # of a duplicate
@@ -287,7 +288,7 @@ def _foam_object(ocean: bpy.types.Object, is_wanted: bool) -> bpy.types.Object |
     """The points of foam around the camera; None where there are none."""
     present = next((child for child in ocean.children if _FOAM in child), None)
     if not is_wanted:
-        _remove(iter((present,) if present is not None else ()))
+        remove_with_meshes((present,) if present is not None else ())
         return None
     item = present or _new(ocean, "Foam", _FOAM, "")
     if item.data.users > 1:  # of a duplicate
@@ -302,7 +303,7 @@ def _weights(
     present = next((child for child in ocean.children if _MASKS in child), None)
     masked = {WEIGHT.format(number): part.masks for number, part in enumerate(of_sea, 1) if part.masks}
     if not masked:
-        _remove(iter((present,) if present is not None else ()))
+        remove_with_meshes((present,) if present is not None else ())
         return None
     values = {name: [to_plain(mask, brief=True) for mask in masks] for name, masks in masked.items()}
     if not any(map(move, masked.values())):
@@ -371,11 +372,3 @@ def _in_units(channel: Channel, field: RealArray, plan: Plan) -> RealArray:
     """A field in Blender units, per second of the scene."""
     factor = (plan.scale if channel.scales else 1.0) * (plan.rate if channel.is_rate else 1.0)
     return field if factor == 1.0 else field * np.float32(factor)
-
-
-def _remove(items: Iterator[bpy.types.Object]) -> None:
-    for item in [item for item in items if item.library is None]:
-        mesh = item.data
-        bpy.data.objects.remove(item)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)

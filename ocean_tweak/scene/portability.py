@@ -13,7 +13,7 @@ from typing import NamedTuple
 import bpy
 
 from ..nodes.modifier_inputs import all_inputs
-from . import float_carrier, patch_objects
+from . import float_carrier, patch_objects, spray
 from .cache_place import shown_bake
 from .plan import camera_surface_of
 from .settings import all_oceans, is_ocean, oceans_in, settings_of, was_ocean
@@ -160,13 +160,19 @@ def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     surface = camera_surface_of(ocean)
     if settings_of(ocean).source == "LIVE":
         return (_live(ocean), *_readers(ocean))
+    dry = tuple(_dry(ocean))
     if surface is not None and patch_objects.shows_area(ocean):
         reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile does not have"
-        return (Need(surface.name, reason, "mute their layers"),)
+        return (Need(surface.name, reason, "mute their layers"), *dry)
     if surface is not None and patch_objects.lack_points(ocean):
         reason = f"shows the patches of {ocean.name}, whose bake has no points"
-        return (Need(surface.name, reason, f"bake {ocean.name} again"),)
-    return ()
+        return (Need(surface.name, reason, f"bake {ocean.name} again"), *dry)
+    return dry
+
+
+def _dry(ocean: bpy.types.Object) -> Iterator[Need]:
+    if spray.is_live(ocean):
+        yield Need(ocean.name, "has spray, which its bake has not", "bake it again")
 
 
 def _live(ocean: bpy.types.Object) -> Need:

@@ -7,11 +7,10 @@ of patches it is around the camera; of one that repeats, each particle is in the
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
-import glob
 import math
-import re
 import threading
 from collections.abc import Hashable
 from dataclasses import dataclass
@@ -23,7 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
+from ..core.data import formats
+from ..core.data.errors import ParameterError
 from ..core.data.frames import held_frame
+from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.printable import without_exponent
 from ..core.numerics.memo import MEMO
 from ..core.parameters.spray import Spray
@@ -35,6 +37,7 @@ from ..core.spray.particles import Particles
 from ..export.frame_files import SPRAY as SPRAY_FILES
 from ..export.frame_files import files_start
 from ..export.ply import told_by_ply
+from ..export.spray import spray_files
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.shading import Shading
 from ..nodes.shown_frame import frame_values
@@ -43,6 +46,7 @@ from ..nodes.spray_look import SPRAY_LOOK
 from ..nodes.versioned import is_of_kind, lay_out, node_group
 from . import failures, held_sea, water_material
 from .image_sequence import baked_stretch, shown_frame
+from .ownership import remove_with_meshes
 from .patch_points import files_of
 from .plan import Plan, camera_place, camera_surface_of, seconds_per_file, velocity_scale
 from .settings import OceanSettings, is_ocean, link_beside, settings_of
@@ -258,27 +262,17 @@ def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Place | None:
 
 def remove(ocean: bpy.types.Object) -> None:
     """Take an ocean's spray away."""
-    for item in [child for child in ocean.children if is_ours(child)]:
-        _remove(item)
+    remove_with_meshes(child for child in ocean.children if is_ours(child))
 
 
 def remove_left() -> None:
     """Take away that of deleted oceans: nobody can choose it."""
-    for item in [item for item in bpy.data.objects if is_ours(item) and not is_ocean(item.parent)]:
-        _remove(item)
+    remove_with_meshes(item for item in bpy.data.objects if is_ours(item) and not is_ocean(item.parent))
 
 
 def forget_all() -> None:
     """Take no mesh for filled: a file was opened, or a step undone."""
     _shown.clear()
-
-
-def _remove(item: bpy.types.Object) -> None:
-    if item.library is None:
-        mesh = item.data
-        bpy.data.objects.remove(item)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)
 
 
 def _time(plan: Plan, scene: bpy.types.Scene) -> Fraction:
@@ -339,7 +333,7 @@ def _tell_nodes(
     else:
         inputs |= {
             FILES: baked.start, "Scale": plan.scale, "Velocity Scale": velocity_scale(settings, plan, scene),
-            "Life": baked.life, "Viewport Share": _IN_WINDOW,
+            "Life": baked.spray.life, "Viewport Share": _IN_WINDOW,
             **frame_values(
                 baked.frames, float(baked_stretch(settings)), seconds_per_file(settings, scene)
             ),
@@ -353,12 +347,14 @@ class _Baked:
 
     start : of the files' paths, up to the frame
     frames : that have one, ascending
-    life : of mist, s
+    spray : what they were made from; the usual where they do not tell
+    is_older : whether an older version made them
     """
 
     start: str
     frames: tuple[int, ...]
-    life: float
+    spray: Spray
+    is_older: bool
 
 
 def _baked(settings: OceanSettings) -> _Baked | None:
@@ -378,17 +374,15 @@ def _baked(settings: OceanSettings) -> _Baked | None:
 @functools.lru_cache(maxsize=64)
 def _baked_in(folder: Path, name: str, stored: str, _changed: int) -> _Baked | None:
     """The spray in a folder, which is read anew when it has changed."""
-    start = files_start(name, SPRAY_FILES)
-    files = {}
-    for path in folder.glob(f"{glob.escape(start)}*.ply"):
-        number = path.name.removeprefix(start).removesuffix(".ply")
-        if re.fullmatch(r"-?\d+", number):
-            files[int(number)] = path
+    start, files = files_start(name, SPRAY_FILES), spray_files(folder.parent, name)
     if not files:
         return None
     told = told_by_ply(files[min(files)], (COLUMNS,)) or {}
-    life = told.get("spray", {}).get("life", Spray().life)
-    return _Baked(f"{stored}{SPRAY_FILES}/{start}", tuple(sorted(files)), life)
+    spray = Spray()
+    with contextlib.suppress(ParameterError):
+        spray = from_plain(Spray, told.get("spray", {}))
+    is_older = told.get("version", formats.SPRAY) != formats.SPRAY
+    return _Baked(f"{stored}{SPRAY_FILES}/{start}", tuple(files), spray, is_older)
 
 
 def is_live(ocean: bpy.types.Object) -> bool:
@@ -397,11 +391,14 @@ def is_live(ocean: bpy.types.Object) -> bool:
 
 
 def note_files(ocean: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Let the console hear that the present frame has no file of spray: then that of another is shown."""
+    """Let the console hear that the present frame has no file of spray, so that that of another is shown, or
+    that files are of an older bake."""
     settings = settings_of(ocean)
     baked = None if spray_of(ocean) is None else _baked(settings)
     if baked is None:
         return
+    if (text := _differs(baked, settings.to_parameters(scene).spray)) is not None:
+        failures.warned(ocean, "spray bake", f"{text}: bake it again to see yours")
     frame = shown_frame(settings, scene, scene.frame_current)
     if frame not in baked.frames:
         held = held_frame(baked.frames, frame)
@@ -410,6 +407,17 @@ def note_files(ocean: bpy.types.Object, scene: bpy.types.Scene) -> None:
             f"{Path(baked.start).name}{frame:04}.ply is missing, and the spray of frame {held} is shown: "
             "bake it again with spray",
         )  # fmt: skip
+
+
+def _differs(baked: _Baked, own: Spray | None) -> str | None:
+    """How baked spray is another one than the settings say; None where it is that."""
+    if baked.is_older:
+        return "its spray was baked by another version"
+    if own is None or baked.spray == own:
+        return None
+    was, now = to_plain(baked.spray), to_plain(own)
+    name = next(name for name in was if was[name] != now[name])
+    return f"its spray was baked with a {name} of {was[name]:g}, and the settings have {now[name]:g}"
 
 
 def _material(ocean: bpy.types.Object) -> bpy.types.Material:

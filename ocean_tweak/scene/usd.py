@@ -21,8 +21,9 @@ from . import ocean_object, stored_paths
 from .cache_place import bake_name, shown_bake
 from .command_process import CommandProcess, Running
 from .preferences import user_folder
-from .settings import VIEWPORT_RESOLUTION, OceanObjectError, settings_of
+from .settings import VIEWPORT_RESOLUTION, OceanObjectError, scene_of, settings_of
 from .shots import animate, check_keys
+from .spray import spray_arguments
 from .units import frame_rate, set_frame_rate, set_time_stretch, shortest_decimal, time_stretch
 
 _FOLDER = "usd"
@@ -49,6 +50,7 @@ class UsdExport(CommandProcess):
             "usd", f"--form={settings_of(item).usd.form}", f"--frames={format_frames(self.frames)}",
             f"--out={self.path}", *command_arguments(choices(item)),
         ]  # fmt: skip
+        arguments += spray_arguments(item, scene_of(item))
         if bake is None:
             super().__init__(item.name, arguments, shot)
         else:

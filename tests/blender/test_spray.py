@@ -382,3 +382,61 @@ def test_frames_of_spray_are_counted_by_themselves(extension, ocean, empty_scene
     assert list(dict.fromkeys(counts)) == [("", *count) for count in each] + [
         ("spray", *count) for count in each
     ]
+
+
+def test_a_bake_without_the_spray_that_is_on_needs_the_extension(extension, baked, empty_scene):
+    needs_of, spray = extension("scene.portability").needs_of, extension("scene.spray")
+    assert needs_of(baked) == ()
+    (folder,) = extension("scene.patch_points").files_of(baked.ocean_tweak)[2].glob("spray")
+    for path in folder.glob("*.ply"):
+        path.unlink()
+    empty_scene.frame_set(14)
+    assert spray.is_live(baked)
+    (need,) = needs_of(baked)
+    assert need.text == "Ocean has spray, which its bake has not: bake it again"
+    baked.ocean_tweak.use_spray = False
+    assert needs_of(baked) == ()
+
+
+@pytest.mark.parametrize(("name", "value"), [("amount", 2.0), ("life", 1.0)])
+def test_spray_of_an_older_bake_is_told_and_shown(baked, empty_scene, caplog, name, value):
+    empty_scene.frame_set(14)
+    before = points(spray_of(baked))
+    setattr(baked.ocean_tweak.spray, name, value)
+    was = getattr(Spray(), name)
+    assert f"its spray was baked with a {name} of {was:g}, and the settings have {value:g}" in caplog.text
+    for key, values in points(spray_of(baked)).items():
+        np.testing.assert_array_equal(values, before[key])
+    assert not baked.ocean_tweak.error
+
+
+def test_spray_of_another_version_is_told_and_shown(extension, baked, empty_scene, monkeypatch, caplog):
+    monkeypatch.setattr(extension("core.data.formats"), "SPRAY", 99)
+    extension("scene.spray")._baked_in.cache_clear()
+    empty_scene.frame_set(14)
+    assert "its spray was baked by another version" in caplog.text
+    assert len(points(spray_of(baked))["radius"]) > 10
+
+
+def test_the_farm_s_render_reads_spray_where_the_bake_is_now(extension, baked, tmp_path):
+    script, modifier = extension("export.farm.render_baked"), spray_of(baked).modifiers[0]
+    folder = tmp_path / "farm"
+    (tmp_path / "farm/spray").mkdir(parents=True)
+    here = SimpleNamespace(name="sea", folder=folder)
+    with pytest.raises(script.RenderError, match=r"sea_spray\.0012\.ply is missing: Ocean Spray reads spray"):
+        script.show_points(modifier, here, [12])
+    (folder / "spray/sea_spray.0012.ply").touch()
+    assert script.show_points(modifier, here, [12])
+    files = extension("nodes.modifier_inputs").get_input(modifier, "Files")
+    assert files == str(folder / "spray/sea_spray.")
+    assert not script.show_points(modifier, SimpleNamespace(name="other", folder=folder), [12])
+
+
+def test_usd_of_the_panel_has_it(extension, ocean, empty_scene, monkeypatch):
+    module, told = extension("scene.usd"), []
+    monkeypatch.setattr(module.CommandProcess, "__init__", lambda _, name, words, *__: told.append(words))
+    shot = extension("scene.shots").shot_of(ocean, empty_scene, (1,))
+    for is_on in (True, False):
+        ocean.ocean_tweak.use_spray = is_on
+        module.UsdExport(ocean, shot, (1,))
+        assert ("--spray" in told.pop()) is is_on

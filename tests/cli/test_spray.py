@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
+import json
+import os
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ocean_tweak.cli import FileSea, main
+from ocean_tweak.cli import FileSea, baking, main
 from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
 from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.core.sea.spray import TileSpray
 from ocean_tweak.core.spray.columns import COLUMNS, columns
-from ocean_tweak.export.ply import PlyError, read_ply
+from ocean_tweak.export.ply import PlyError, read_ply, told_by_ply
 
 SEA = OceanParameters(
     resolution=64, domain_size=100.0, seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=300e3),)
@@ -120,3 +123,154 @@ def test_no_sea_is_baked_where_another_has_no_spray(tmp_path: Path) -> None:
     seas = {name: FileSea(Shot(each), frames=(1,)) for name, each in (("storm", SEA), ("calm", calm))}
     assert main(["bake", "--out", str(tmp_path / "out"), "--spray"], lambda: seas) == 2
     assert not (tmp_path / "out").exists()
+
+
+@pytest.fixture
+def baked(sea: Path) -> Path:
+    """The folder of a bake of frames 12 and 13 with spray."""
+    assert bake(sea, "--spray") == 0
+    (folder,) = sea.parent.glob("out/*/v*")
+    return folder
+
+
+def spoil(path: Path, how: str) -> None:
+    content = path.read_bytes()
+    if how == "is missing":
+        path.unlink()
+    elif how == "is cut off or damaged":
+        path.write_bytes(content[:-1])
+    else:
+        path.write_bytes(content[:-4] + np.float32(np.nan).tobytes())
+
+
+@pytest.mark.parametrize("how", ["is missing", "is cut off or damaged", "holds values that are not finite"])
+def test_spray_that_is_not_whole_is_found_and_made_again(
+    baked: Path, capsys: pytest.CaptureFixture[str], how: str
+) -> None:
+    assert main(["verify", str(baked)]) == 0
+    path = baked / "spray/sea_spray.0013.ply"
+    before = path.read_bytes()
+    spoil(path, how)
+    capsys.readouterr()
+    assert main(["verify", str(baked)]) == 1
+    assert f"frame 13 is damaged: sea_spray.0013.ply {how}" in capsys.readouterr().out
+    if "finite" in how:  # only who reads all of it sees this
+        path.unlink()
+    assert main(["resume", str(baked)]) == 0
+    assert path.read_bytes() == before
+    assert main(["verify", str(baked)]) == 0
+
+
+def test_spray_of_other_settings_is_found_and_made_again(
+    sea: Path, baked: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert bake(sea, "--spray", "--only", "12", "--set", "spray.amount=0.5") == 0
+    assert main(["verify", str(baked)]) == 1
+    assert "sea_spray.0013.ply is of other settings or another version" in capsys.readouterr().out
+    assert main(["resume", str(baked)]) == 0
+    assert main(["verify", str(baked)]) == 0
+    sizes = [path.stat().st_size for path in sorted(baked.glob("spray/*.ply"))]
+    assert sizes[1] == pytest.approx(sizes[0], rel=0.2)
+
+
+def test_a_bake_that_ended_before_its_spray_goes_on_with_it(
+    sea: Path, baked: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = files(sea, "spray/*.ply")
+    shutil.rmtree(baked)
+    monkeypatch.setattr(baking, "_make", lambda *_: 1)
+    assert bake(sea, "--spray") == 1
+    monkeypatch.undo()
+    assert main(["resume", str(baked)]) == 0
+    assert files(sea, "spray/*.ply") == whole
+
+
+def test_what_was_asked_for_and_cannot_be_read_is_told(
+    baked: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for text in ("{", '{"format": 1}', '{"spray": {"amount": -1}, "place": null}', "[" * 10_000):
+        (baked / "spray/spray.json").write_text(text, encoding="utf-8")
+        assert main(["verify", str(baked)]) == 1
+        assert "bake the sea with --spray again" in capsys.readouterr().err
+
+
+def test_clean_takes_spray_away_and_nothing_else(baked: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own = baked / "spray/mine_spray.0012.ply"
+    own.write_bytes(b"ply")
+    assert main(["clean", str(baked), "--frames", "12"]) == 0
+    assert {path.name for path in baked.glob("spray/*")} == {
+        "sea_spray.0013.ply", "mine_spray.0012.ply", "spray.json",
+    }  # fmt: skip
+    assert main(["clean", str(baked)]) == 0
+    assert "kept what no record lists: spray/mine_spray.0012.ply" in capsys.readouterr().out
+    assert [path.name for path in baked.glob("spray/*.ply")] == [own.name]
+    own.unlink()
+    assert main(["clean", str(baked)]) == 0
+    assert not baked.exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
+def test_spray_elsewhere_is_left_alone(sea: Path, baked: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    elsewhere = baked.parent.parent / "elsewhere"
+    (baked / "spray").rename(elsewhere)
+    (baked / "spray").symlink_to(elsewhere)
+    kept = {path.name: path.read_bytes() for path in elsewhere.iterdir()}
+    assert main(["clean", str(baked)]) == 1
+    assert bake(sea, "--spray", "--set", "spray.amount=2") == 1
+    assert "is a link to something that may not belong to this bake" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in elsewhere.iterdir()} == kept
+
+
+def test_the_tasks_of_a_farm_bake_and_verify_it(sea: Path, tmp_path: Path) -> None:
+    arguments = ["--params", str(sea), "--frames", "12-13", "--chunk", "1", "--plain-ranges"]
+    wanted = [
+        "--spray",
+        "--set",
+        "spray.life=1.5",
+        "--plan",
+        "finest=4,area=150",
+        "--spray-place",
+        "-20",
+        "5",
+    ]
+    assert main(["job", *arguments, *wanted, "--maps", "disp", "--out", str(tmp_path / "job")]) == 0
+    template = json.loads((tmp_path / "job/template.json").read_text(encoding="utf-8"))
+    tasks = {step["name"]: step["script"]["actions"]["onRun"]["args"] for step in template["steps"]}
+    for frames in ("12", "13"):  # each on a machine of its own
+        assert main(task(tasks["Bake"], frames, tmp_path)) == 0
+    (path,) = tmp_path.glob("out/*/v*/spray/sea_spray.0013.ply")
+    told = told_by_ply(path, (COLUMNS,))
+    assert told is not None
+    assert told["spray"]["life"] == 1.5
+    assert told["place"] == [-20.0, 5.0]
+    assert main(task(tasks["Verify"], "13", tmp_path)) == 0
+    path.unlink()
+    assert main(task(tasks["Verify"], "13", tmp_path)) == 1
+
+
+def task(words: list[str], frames: str, folder: Path) -> list[str]:
+    """The arguments of a task, with what a farm fills in."""
+    values = {"Param.Seas": str(folder / "job/seas"), "Param.Cache": str(folder / "out")}
+    values |= {"Param.Frames": "12-13", "Task.Param.Frames": frames}
+    for name, value in values.items():
+        words = [word.replace(f"{{{{{name}}}}}", value) for word in words]
+    assert words[:2] == ["-m", "ocean_tweak"]
+    return [word for word in words[2:] if word != "--openjd"]
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"ply\nformat binary_little_endian 1.0\nend_header\n",
+        b"ply\nformat binary_little_endian 1.0\ncomment Ocean Tweak " + b"[" * 3000 + b"\nend_header\n",
+        b"ply\nformat binary_little_endian 1.0\ncomment Ocean Tweak {}\nelement vertex x\nend_header\n",
+        b"ply\nformat ascii 1.0\nelement vertex 0\nend_header\n", b"", b"\xff\xd8\xff",
+    ],
+)  # fmt: skip
+def test_a_file_of_others_is_none_of_ours(tmp_path: Path, head: bytes) -> None:
+    path = tmp_path / "sea_spray.0001.ply"
+    columns = b"".join(b"property float %s\n" % name.encode() for name in COLUMNS)
+    path.write_bytes(head.replace(b"element vertex x\n", b"element vertex x\n" + columns))
+    assert told_by_ply(path, (COLUMNS,)) is None
+    with pytest.raises(PlyError, match="not readable points of Ocean Tweak"):
+        read_ply(path, (COLUMNS,))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deletes baked frames: what their records list and lies inside the folder, nothing else."""
+"""Deletes baked frames: what their records list and lies inside the folder, and their spray; nothing else."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from ...core.data.frames import Frame
 from ..files import PART, is_link
-from ..frame_files import BAKED, POINTS, frame_file
-from .folders import ENTRY, JOB_FILE, LOCKS, RECORDS, is_bake, log_file, record_path, refuse_links
+from ..frame_files import BAKED, POINTS, SPRAY, frame_file
+from ..spray import ASKED, remove_empty, spray_files
+from .folders import ENTRY, JOB_FILE, LOCKS, RECORDS, is_bake, log_file, read_job, record_path, refuse_links
 from .job import CacheError
 from .locks import claims
 from .records import FileEntry, read_record, recorded_frames
@@ -37,30 +38,35 @@ def clean(folder: Path, frames: Iterable[Frame]) -> Cleaned:
     if not is_bake(home):
         raise CacheError(f"{folder}: is not a bake's folder, so nothing in it is deleted")
     refuse_links(home)
-    count, size, left = 0, 0, []
+    count, size, left, spray = 0, 0, [], _spray(home)
     for frame in frames:
         try:
             record = read_record(home, frame)
         except ValueError as error:
             left.append(f"{record_path(folder, frame)}: {error}, so its files are not known")
             continue
-        if record is None:
-            continue
-        problems = []
-        for entry in record.files:
+        problems, going = [], [spray[frame]] if frame in spray else []
+        for entry in () if record is None else record.files:
             problem = _why_not(home, frame, entry)
             if problem:
                 problems.append(f"{folder / entry.name}: {problem}")
-                continue
+            else:
+                going.append(home / entry.name)
+        for path in going:
             with contextlib.suppress(FileNotFoundError):
-                path = home / entry.name
-                length = path.stat().st_size
+                length = path.lstat().st_size
                 path.unlink()
                 count, size = count + 1, size + length
         left += problems
-        if not problems:
+        if record is not None and not problems:
             record_path(home, frame).unlink()
+    remove_empty(home)
     return Cleaned(count, size, tuple(left))
+
+
+def cleanable_frames(folder: Path) -> tuple[Frame, ...]:
+    """All frames that a bake's folder has anything of."""
+    return tuple(sorted({*recorded_frames(folder), *_spray(folder.resolve())}))
 
 
 def remove_rest(folder: Path) -> tuple[str, ...]:
@@ -72,6 +78,15 @@ def remove_rest(folder: Path) -> tuple[str, ...]:
     if not claims(home / LOCKS):
         _remove_rest(home)
     return tuple(_foreign(home))
+
+
+def _spray(home: Path) -> dict[Frame, Path]:
+    """The files of a bake's spray by frame."""
+    try:
+        name = read_job(home).name
+    except CacheError:  # as its folder tells
+        name = home.parent.name.rpartition("-")[0]
+    return {frame: path for frame, path in spray_files(home, name).items() if not path.is_dir()}
 
 
 def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
@@ -123,5 +138,10 @@ def _foreign(home: Path) -> Iterator[str]:
             record = read_record(home, frame)
             listed.update(entry.name for entry in (record.files if record is not None else ()))
     for path in sorted(home.iterdir()):
-        if path.name not in own | listed:
+        if path.name == SPRAY and path.is_dir():
+            spray = {file.name for file in _spray(home).values()}
+            yield from (
+                f"{SPRAY}/{each.name}" for each in sorted(path.iterdir()) if each.name not in spray | {ASKED}
+            )
+        elif path.name not in own | listed:
             yield path.name

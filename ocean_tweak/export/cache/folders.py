@@ -21,6 +21,7 @@ from ...core.parameters.shot import Shot
 from ...core.sea.regions import told_area
 from ..exr import ExrError, read_header
 from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
+from ..frame_files import SPRAY
 from .job import UID, CacheError, Job, NewerBakeError, maps_for, safe_name
 
 JOB_FILE = "bake.json"
@@ -164,7 +165,7 @@ def log_file(folder: Path) -> Path:
 
 def refuse_links(folder: Path) -> None:
     """Raise CacheError where what is written and removed in a bake's folder would be elsewhere."""
-    for part in (folder / RECORDS, folder / LOCKS):
+    for part in (folder / RECORDS, folder / LOCKS, folder / SPRAY):
         if is_link(part):
             raise CacheError(f"{part} is a link to something that may not belong to this bake: remove it")
 

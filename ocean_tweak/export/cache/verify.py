@@ -20,6 +20,7 @@ from ...core.synthesis.channels import MOVING_MAP, unit_of
 from ...core.synthesis.coefficients import propagate
 from ..exr import ExrError, ExrSequence, read_image
 from ..ply import PlyError
+from ..spray import baked_spray
 from .job import Job
 from .records import Finding, State, inspect_all
 
@@ -34,7 +35,7 @@ _FLAT = 1e-6
 
 def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]:
     """Read each frame back: record, hashes, header, finite pixels, wave height."""
-    surfaces = ShotSeas(job.shot, job.on)
+    surfaces, spray = ShotSeas(job.shot, job.on), baked_spray(folder, job.name, job.shot)
     for finding in inspect_all(folder, job, frames):
         frame = finding.frame
         if finding.state is State.WHOLE:
@@ -44,6 +45,7 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
                 if problem:
                     break
             problem = problem or _points_problem(job, folder, frame)
+            problem = problem or (spray.problem(frame) if spray is not None else "")
             if problem:
                 finding = Finding(frame, State.DAMAGED, problem)
         yield finding

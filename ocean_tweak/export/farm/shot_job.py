@@ -7,12 +7,14 @@ The seas travel as JSON files beside the job, so a farm bakes without Blender an
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...core.data.frames import Frame, format_frames
+from ...core.data.printable import without_exponent
 from ..cache.job import Job
+from ..spray import WantedSpray
 
 #: the Python script that renders, in a Blender with or without this extension
 RENDER_SCRIPT = Path(__file__).with_name("render_baked.py")
@@ -52,6 +54,7 @@ class ShotJob:
     cache : folder of all bakes; None for one in the job's own
     bake_with : a key of BAKERS
     python, blender : how the machines of the farm call these programs
+    sprays : to be baked too, by the names of the bakes
     workers : processes of one baking task; None for one a core
     plain_ranges : write tasks out, for farms that cannot divide frames into chunks themselves
     """
@@ -64,6 +67,7 @@ class ShotJob:
     bake_with: str
     python: str
     blender: str
+    sprays: Mapping[str, WantedSpray] = field(default_factory=dict)
     workers: int | None = None
     plain_ranges: bool = False
     render: Render | None = None
@@ -134,7 +138,8 @@ def bake_arguments(
     arguments = [*BAKERS[job.bake_with], "bake", *sea_arguments(bake, seas, cache), "--take-over"]
     if job.workers is not None:
         arguments.append(f"--workers={job.workers}")
-    return [*arguments, *_openjd(openjd), f"--frames={frames}", f"--only={only}"]
+    spray = _spray(job, bake)
+    return [*arguments, *spray, *_openjd(openjd), f"--frames={frames}", f"--only={only}"]
 
 
 def verify_arguments(job: ShotJob, bake: Job, seas: str, cache: str, only: str, openjd: bool) -> list[str]:
@@ -154,10 +159,24 @@ def _option(name: str, value: str) -> list[str]:
     return [f"{name}={value}"] if value.startswith("-") else [name, value]
 
 
+def _spray(job: ShotJob, bake: Job) -> list[str]:
+    wanted = job.sprays.get(bake.name)
+    if wanted is None:
+        return []
+    return [
+        "--spray",
+        *(() if wanted.place is None else ("--spray-place", *map(without_exponent, wanted.place))),
+    ]
+
+
 def _openjd(openjd: bool) -> list[str]:
     return ["--openjd"] if openjd else []
 
 
 def sea_files(folder: Path, job: ShotJob) -> dict[Path, str]:
     """The seas' parameters as the files of a job's folder."""
-    return {folder / SEAS / f"{bake.name}.json": bake.shot.to_json() + "\n" for bake in job.bakes}
+    shots = {
+        bake.name: job.sprays[bake.name].of(bake.shot) if bake.name in job.sprays else bake.shot
+        for bake in job.bakes
+    }
+    return {folder / SEAS / f"{name}.json": shot.to_json() + "\n" for name, shot in shots.items()}

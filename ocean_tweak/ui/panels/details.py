@@ -101,7 +101,7 @@ class OCEAN_PT_spray(SubPanel, bpy.types.Panel):
         draw_fields(column, settings.spray, "amount", "size", "wind", "life")
         sea = sea_of_settings(shown_ocean(context), context.scene)
         if settings.use_spray and sea is not None and (why := why_none(sea)) is not None:
-            message(layout, context, f"No spray: {why}")
+            message(layout, context, f"{why[0].upper()}{why[1:]}")
         if text := too_few_bounces(shown_ocean(context), context.scene):
             message(layout, context, f"{text[0].upper()}{text[1:]}")
 
