@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -97,10 +98,31 @@ class Pictures:
         """Bytes of all of them."""
         return total_bytes((self.elevation, self.potential))
 
-    def summed(self, factor: ComplexArray) -> tuple[RealArray, RealArray]:
-        """(wet samples,) float32 real parts of the sums of both, each picture times a factor."""
-        weights = np.concatenate((factor.real, -factor.imag)).astype(np.float32)
-        return weights @ self.elevation, weights @ self.potential
+    @cached_property
+    def energy(self) -> Array:
+        """(frequencies,) mean squares of their elevation over all wet samples, m²."""
+        squares = np.einsum("ij,ij->i", self.elevation, self.elevation).reshape(2, -1).sum(axis=0)
+        return squares.astype(np.float64) / max(self.elevation.shape[1], 1)
+
+    @cached_property
+    def rms_height(self) -> Array:
+        """(wet samples,) root mean square height in m."""
+        return 2.0 * np.sqrt(np.einsum("ij,ij->j", self.elevation, self.elevation).astype(np.float64))
+
+    def signal(self, factor: ComplexArray) -> ComplexArray:
+        """(wet samples,) complex64 sum of the elevation's pictures, each times a factor."""
+        real, imaginary = np.stack((_weights(factor), _weights(-1j * factor))) @ self.elevation
+        result: ComplexArray = real + 1j * imaginary
+        return result
+
+    def potential_sum(self, factor: ComplexArray) -> RealArray:
+        """(wet samples,) float32 real part of the sum of the potential's pictures, each times a factor."""
+        return _weights(factor) @ self.potential
+
+
+def _weights(factor: ComplexArray) -> NDArray[np.float32]:
+    """Of real and imaginary parts, in the real part of a product."""
+    return np.concatenate((factor.real, -factor.imag)).astype(np.float32)
 
 
 def pictures(

@@ -16,6 +16,7 @@ import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +24,12 @@ from numpy.typing import NDArray
 from ..masks.weights import Weights, unweighted, weighted
 from ..numerics.memo import MEMO, total_bytes
 from ..parameters.ocean_parameters import OceanParameters
-from ..synthesis.transforms import Synthesis, X, Y, Z
+from ..synthesis.transforms import Synthesis
 from ..waves.coast.breakers import broken_share
 from ..waves.coast.differences import Differences
 from ..waves.coast.ground import Ground
+from ..waves.contribution import OwnFoam
+from .coast_field import OverBed
 from .coast_pictures import Incoming, Pictures, incoming, pictures
 from .part_waves import PartWaves, components, real_type
 from .placed_waves import as_field
@@ -40,7 +43,8 @@ RealArray = NDArray[np.floating]
 _LARGEST = 0.6
 
 _PICTURES = "pictures of coasts"
-MEMO.limit("fields of coasts", 8)
+_FIELDS = "fields of coasts"
+MEMO.limit(_FIELDS, 4)
 
 
 class CoastWaves:
@@ -93,7 +97,7 @@ class CoastWaves:
             part = self._waves.part
             return Grid(components(self._open, time, keys, True), part.parameters.domain_size, part.rotation)
 
-        return MEMO.get("fields of coasts", (self._waves.parameters, self.ground, time, keys, "open"), make)
+        return MEMO.get(_FIELDS, (self._waves.parameters, self.ground, time, keys, "open"), make)
 
     @cached_property
     def _open(self) -> Synthesis:
@@ -102,39 +106,26 @@ class CoastWaves:
 
     def _field(self, time: float | Fraction, keys: frozenset[Key]) -> _BedGrid:
         key = (self._waves.parameters, self.ground, self._waves.precision, time, keys, "bed")
-        return MEMO.get("fields of coasts", key, lambda: self._made(time, keys))
+        return MEMO.get(_FIELDS, key, lambda: self._made(time, keys))
 
     def _made(self, time: float | Fraction, keys: frozenset[Key]) -> _BedGrid:
-        made = _Frame(self, time)
-        values = {key: made.component(*key) for key in keys}
+        values = self.over_bed.components(time, keys)
         return _BedGrid(self.ground, turned(values, self.ground.turn))
 
     @cached_property
-    def differences(self) -> Differences:
-        """Derivatives on the bed's samples."""
-        return Differences(self.ground.depth > 0.0, self.ground.step)
+    def over_bed(self) -> OverBed:
+        """What the pictures' waves are at a time."""
+        broken = self.broken_share if self.ground.coast.breaking else np.zeros(self.ground.depth.shape)
+        dtype = real_type(self._waves.precision)
+        return OverBed(self._sea, self.pictures, self.ground, broken, dtype)
 
-    @property
-    def choppiness(self) -> float:
-        """Of the sea."""
-        return self._sea.choppiness
-
-    def summed(self, time: float | Fraction, rate: bool) -> tuple[RealArray, RealArray]:
-        """(rows, columns) elevation and potential at a time, or their rates."""
-        made, period = self.pictures, self._sea.repeats_after
-        assert period is not None
-        share = float(Fraction(time) % period / period)
-        turns = made.numbers * share
-        factor = np.exp(-2j * np.pi * (turns - np.rint(turns)))
-        if rate:
-            factor *= -2j * np.pi / float(period) * made.numbers
-        wet = self.ground.depth > 0.0
-        fields: tuple[RealArray, RealArray] = tuple(
-            np.zeros(wet.shape, real_type(self._waves.precision)) for _ in range(2)
-        )  # type: ignore[assignment]
-        for field, values in zip(fields, made.summed(factor), strict=True):
-            field[wet] = values
-        return fields
+    def foam(self, x: Array, y: Array, time: float | Fraction) -> OwnFoam:
+        """Of waves that break for lack of depth, at rest positions in m, of one flat shape."""
+        key = (self._waves.parameters, self.ground, self._sea.foam, time, "foam")
+        foam, breaking, age = MEMO.get(_FIELDS, key, lambda: _FoamOverBed(self.over_bed.foam(time))).fields
+        where, share = self.ground.between(x, y), self._weights.read(1, x, y).value
+        here = [where.read(each).astype(np.float32) for each in (foam, breaking, age)]
+        return OwnFoam(here[0] * share.astype(np.float32), here[1] * share.astype(np.float32), here[2])
 
     @cached_property
     def _weights(self) -> _BedWeights:
@@ -168,8 +159,7 @@ class CoastWaves:
         """(rows, columns) m, of all waves over the bed, the long ones as this seed has them."""
         follow, every = self._energy
         variance = np.zeros(self.ground.depth.shape)
-        parts = self.pictures.elevation
-        variance[self.ground.depth > 0.0] = 0.5 * np.einsum("ij,ij->j", parts, parts)
+        variance[self.ground.depth > 0.0] = self.pictures.rms_height**2 / 8.0
         return 4.0 * np.sqrt(variance + max(every - follow, 0.0) * self._limit**2)
 
     @cached_property
@@ -187,36 +177,6 @@ class CoastWaves:
         return result
 
 
-class _Frame:
-    """Components over the bed at a time, in its own axes, each made when it is first asked for."""
-
-    def __init__(self, waves: CoastWaves, time: float | Fraction) -> None:
-        self._waves, self._time = waves, time
-        self._sums: dict[bool, tuple[RealArray, RealArray]] = {}
-        self._made: dict[Key, RealArray] = {}
-
-    def component(self, component: int, derivative: str) -> RealArray:
-        """The displacement's component or its derivative; x is along the march."""
-        key = component, derivative
-        if key not in self._made:
-            if derivative in ("x", "y"):
-                of = self.component(component, "")
-                self._made[key] = self._waves.differences.by(of, "xy".index(derivative))
-            else:
-                elevation, potential = self._sum(derivative == "t")
-                if component == Z:
-                    self._made[key] = elevation
-                else:
-                    along = self._waves.differences.by(potential, (X, Y).index(component))
-                    self._made[key] = along * elevation.dtype.type(self._waves.choppiness)
-        return self._made[key]
-
-    def _sum(self, rate: bool) -> tuple[RealArray, RealArray]:
-        if rate not in self._sums:
-            self._sums[rate] = self._waves.summed(self._time, rate)
-        return self._sums[rate]
-
-
 class _BedGrid:
     """Components (rows, columns) on the bed's samples, in the sea's axes."""
 
@@ -232,6 +192,17 @@ class _BedGrid:
         """At places in m, of one flat shape."""
         where = self._ground.between(x, y)
         return {key: where.read(field).astype(field.dtype) for key, field in self._values.items()}
+
+
+class _FoamOverBed(NamedTuple):
+    """Foam on the bed's samples."""
+
+    fields: OwnFoam
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of its fields."""
+        return total_bytes(self.fields)
 
 
 class _BedWeights:

@@ -311,7 +311,8 @@ class Ocean:
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
         sea = self.of_foam
         found = whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
-        return with_own_foam(self.parameters, found, x, y, time)
+        whole = with_own_foam(self.parameters, found, x, y, time)
+        return whole if self.coast is None else whole.over(*self.coast.foam(x, y, time))
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is

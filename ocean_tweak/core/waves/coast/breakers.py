@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which waves break for lack of depth."""
+"""The single wave over a bed: peaked and pitched forward before it breaks, and where it breaks.
+
+The sum of a coast's pictures is an analytic signal A, whose real part is the elevation: |A| is the envelope
+of the waves at a place and a time, and the angle of A the phase within the wave, 0 on its crest and growing
+towards the shore.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +14,18 @@ from numpy.typing import NDArray
 from .march import BREAKER_INDEX
 
 Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+#: Ruessink, Ramaekers and van Rijn (2012), p1 to p6 of eq. 9 and 10
+_NONLINEARITY = (0.0, 0.857, -0.471, 0.297)
+_FORWARD = (0.815, 0.672)
+#: kh beyond which water is deep for a wave
+_DEEP = np.pi
+#: rad of a wave's phase over which its front is white: none, all, all, none
+_FRONT = (-0.5, 0.0, 0.7, 1.5)
+#: envelope over that from which waves are broken: none is white below, all of the front is above
+_SOFT = (0.9, 1.1)
 
 
 def broken_share(rms_height: Array, depth: Array) -> Array:
@@ -19,4 +36,59 @@ def broken_share(rms_height: Array, depth: Array) -> Array:
     wet = depth > 0.0
     ratio = np.divide(rms_height, BREAKER_INDEX * depth, out=np.zeros(depth.shape), where=wet)
     result: Array = np.minimum(ratio**4, 1.0)
+    return result
+
+
+def least_broken(rms_height: Array, share: Array) -> Array:
+    """Envelope in m from which on a wave is broken, so that a share of all is: H_rms √(-ln Q_b)/2.
+
+    Of waves whose heights have Rayleigh's distribution, the highest break.
+    """
+    least = np.sqrt(-np.log(np.clip(share, 1e-300, 1.0)))
+    result: Array = 0.5 * rms_height * least
+    return result
+
+
+def whiteness(signal: ComplexArray, least: RealArray) -> RealArray:
+    """How strongly waves break, 0…1: those over the least envelope, on their fronts."""
+    phase, envelope = np.angle(signal), np.abs(signal)
+    begin, full, still, end = _FRONT
+    front = _rise((phase - begin) / (full - begin)) * (1.0 - _rise((phase - still) / (end - still)))
+    low, high = _SOFT
+    broken = _rise((envelope - low * least) / np.maximum((high - low) * least, 1e-3))
+    result: RealArray = front * broken * (envelope > 0.0)
+    return result
+
+
+def shaped(signal: ComplexArray, k: RealArray, depth: RealArray, share: RealArray) -> RealArray:
+    """Elevation in m of waves that are peaked and pitched forward as far as water is shallow for them.
+
+    k : rad/m, of the mean frequency; depth : m; share : 0…1, how much of the shape is wanted
+
+    Skewness and asymmetry by Ruessink, Ramaekers and van Rijn (2012) from the Ursell number ¾ a k/(kh)³, the
+    wave by Abreu, Silva, Sancho and Temperville (2010, eq. 7): as high from crest to trough as the sinusoid,
+    and without a mean.
+    """
+    envelope, kh = np.abs(signal), k * depth
+    wet = (kh < _DEEP) & (kh > 0.0) & (envelope > 0.0)
+    ursell = np.maximum(0.75 * envelope[wet] * k[wet] / kh[wet] ** 3, 1e-6)
+    low, high, middle, width = _NONLINEARITY
+    amount = low + (high - low) / (1.0 + np.exp((middle - np.log10(ursell)) / width))
+    amount *= share[wet] * (1.0 - _rise(4.0 * kh[wet] / _DEEP - 3.0))
+    lean = 0.5 * np.pi * (np.tanh(_FORWARD[0] / ursell ** _FORWARD[1]) - 1.0)
+    # the index of skewness (Malarkey and Davies 2012, eq. 26), and the waveform's angle
+    b = np.sqrt(2.0) * amount / np.sqrt(9.0 + 2.0 * amount * amount)
+    r, phi = 2.0 * b / (1.0 + b * b), -lean - 0.5 * np.pi
+    f = np.sqrt(1.0 - r * r)
+    # the sine's angle grows in time, the signal's falls
+    theta = 0.5 * np.pi - np.angle(signal[wet])
+    result: RealArray = signal.real.copy()
+    wave = np.sin(theta) + r * np.sin(phi) / (1.0 + f)
+    result[wet] = envelope[wet] * f * wave / (1.0 - r * np.cos(theta + phi))
+    return result
+
+
+def _rise(part: RealArray) -> RealArray:
+    share = np.clip(part, 0.0, 1.0)
+    result: RealArray = share * share * (3.0 - 2.0 * share)
     return result

@@ -121,6 +121,12 @@ class Ground:
             share *= 1.0 - _smooth((along - end + self.coast.rim) / (self.coast.rim - self.step))
         return share
 
+    @property
+    def bed_share(self) -> Array:
+        """(rows,) 0 over the flat rim, 1 over the bed, and smooth over what sinks from it."""
+        begin = _extent(self.coast)[0][0]
+        return _smooth((self._along(self.rows) - begin + self.coast.rim) / self.coast.rim)
+
     @cached_property
     def late_on_rim(self) -> Array:
         """(rim_rows,) 0 where the coast comes in, and from there to 1 at the last row of the flat rim."""

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Waves over a bed at a time: the weighted sum of their pictures, shaped as single waves are; their foam."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..foam.model import FAINTEST
+from ..numerics.memo import MEMO
+from ..parameters.ocean_parameters import OceanParameters
+from ..synthesis.transforms import X, Y, Z
+from ..waves.coast.breakers import least_broken, shaped, whiteness
+from ..waves.coast.differences import Differences
+from ..waves.coast.ground import Ground
+from ..waves.coast.march import wave_numbers
+from ..waves.contribution import OwnFoam
+from .coast_pictures import Pictures
+from .sampling import Key
+
+Array = NDArray[np.float64]
+RealArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
+
+#: moments in a second at which births of foam are looked for
+_LOOKS = 4
+#: s, by which the shape's rate is taken
+_MOMENT = 0.01
+
+_BIRTHS = "breakers on coasts"
+MEMO.limit(_BIRTHS, 8)
+
+
+class OverBed:
+    """The waves over a bed, on its samples (rows, columns), x along the march.
+
+    sea : whose waves they are
+    pictures, ground : what became of them
+    broken_share : (rows, columns) of waves
+    dtype : of the fields' numbers
+    """
+
+    def __init__(
+        self,
+        sea: OceanParameters,
+        pictures: Pictures,
+        ground: Ground,
+        broken_share: Array,
+        dtype: type,
+    ) -> None:
+        self._sea, self._pictures, self._ground, self._dtype = sea, pictures, ground, dtype
+        self._wet = ground.depth > 0.0
+        # of these waves as many are to break as of all
+        self._least = least_broken(pictures.rms_height, broken_share[self._wet]).astype(np.float32)
+        self._breaks = broken_share[self._wet] > FAINTEST**2
+
+    def components(self, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
+        """(rows, columns) of the displacement, and their derivatives."""
+        frame = _Frame(self, time)
+        return {key: frame.component(*key) for key in keys}
+
+    def signal(self, time: float | Fraction) -> ComplexArray:
+        """(wet samples,) complex64 m: its real part is the elevation of the waves as sinusoids."""
+        return self._pictures.signal(self._factor(time))
+
+    def elevation(self, time: float | Fraction) -> RealArray:
+        """(rows, columns) m."""
+        return self._spread(self._shaped(self.signal(time)))
+
+    def rise(self, time: float | Fraction) -> RealArray:
+        """(rows, columns) m/s: the rate of the elevation."""
+        signal = self.signal(time)
+        step = self._pictures.signal(self._factor(time) * self._rates) * np.float32(_MOMENT)
+        later, earlier = (self._shaped(signal + sign * step) for sign in (1.0, -1.0))
+        return self._spread((later - earlier) / np.float32(2.0 * _MOMENT))
+
+    def potential(self, time: float | Fraction, rate: bool) -> RealArray:
+        """(rows, columns) of the horizontal displacement, choppiness applied, or its rate."""
+        factor = self._factor(time) * (self._rates if rate else 1.0)
+        return self._spread(self._pictures.potential_sum(factor * self._sea.choppiness))
+
+    @cached_property
+    def differences(self) -> Differences:
+        """Derivatives on the samples."""
+        return Differences(self._wet, self._ground.step)
+
+    def foam(self, time: float | Fraction) -> OwnFoam:
+        """(rows, columns) of waves that break for lack of depth, and what earlier ones left where it lies.
+
+        As foam is anywhere, the largest of 2^(-age/T) c over the present and over moments before it.
+        """
+        foam = self._sea.foam
+        breaking = self._white(time)
+        left, age = breaking.copy(), np.zeros_like(breaking)
+        now = Fraction(time)
+        last = math.floor(now * _LOOKS)
+        memory = math.floor(-math.log2(FAINTEST) * foam.half_life * _LOOKS)
+        for index in range(last, last - memory, -1):
+            since = float(now - Fraction(index, _LOOKS))
+            then = self._births(index) * np.float32(2.0 ** (-since / foam.half_life))
+            more = then > left
+            np.copyto(left, then, where=more)
+            np.copyto(age, np.float32(since), where=more)
+        return OwnFoam(*(self._spread(each).astype(np.float32) for each in (left, breaking, age)))
+
+    def _births(self, index: int) -> RealArray:
+        """Breaking at a moment that all frames look back at, (wet samples,) float32."""
+        key = (self._pictures, index, self._sea.foam.coverage)
+        return MEMO.get(_BIRTHS, key, lambda: self._white(Fraction(index, _LOOKS)))
+
+    def _white(self, time: float | Fraction) -> RealArray:
+        white = np.zeros(len(self._least), np.float32)
+        there = self._breaks
+        strength = min(1.0, self._sea.foam.coverage)
+        white[there] = strength * whiteness(self.signal(time)[there], self._least[there])
+        return white
+
+    def _shaped(self, signal: ComplexArray) -> RealArray:
+        return shaped(signal, self._k, self._depth, self._shape)
+
+    @cached_property
+    def _depth(self) -> RealArray:
+        return self._ground.depth[self._wet].astype(np.float32)
+
+    @cached_property
+    def _k(self) -> RealArray:
+        """(wet samples,) rad/m of the mean frequency."""
+        omega = -np.imag(self._rates)
+        energy = self._pictures.energy
+        mean = float(energy @ omega) / max(float(energy.sum()), 1e-300)
+        depth = np.maximum(self._ground.depth[self._wet], 0.05)
+        return wave_numbers(np.array(mean), depth, self._sea.water.gravity).astype(np.float32)
+
+    @cached_property
+    def _shape(self) -> RealArray:
+        """(wet samples,) how much single waves have a shape of their own: none over the rim."""
+        share = np.broadcast_to(self._ground.bed_share[:, np.newaxis], self._wet.shape)
+        return share[self._wet].astype(np.float32)
+
+    @property
+    def _rates(self) -> ComplexArray:
+        """-iω of each picture, rad/s."""
+        period = self._sea.repeats_after
+        assert period is not None
+        return -2j * np.pi / float(period) * self._pictures.numbers
+
+    def _factor(self, time: float | Fraction) -> ComplexArray:
+        """e^(-iωt), exact after any number of repeats."""
+        period = self._sea.repeats_after
+        assert period is not None
+        turns = self._pictures.numbers * float(Fraction(time) % period / period)
+        factor: ComplexArray = np.exp(-2j * np.pi * (turns - np.rint(turns)))
+        return factor
+
+    def _spread(self, values: RealArray) -> RealArray:
+        """(rows, columns), 0 on land, from those of wet samples."""
+        field: RealArray = np.zeros(self._wet.shape, self._dtype)
+        field[self._wet] = values
+        return field
+
+
+class _Frame:
+    """Components at a time, each made when it is first asked for."""
+
+    def __init__(self, waves: OverBed, time: float | Fraction) -> None:
+        self._waves, self._time = waves, time
+        self._potentials: dict[bool, RealArray] = {}
+        self._made: dict[Key, RealArray] = {}
+
+    def component(self, component: int, derivative: str) -> RealArray:
+        """The displacement's component or its derivative."""
+        key = component, derivative
+        if key not in self._made:
+            self._made[key] = self._new(component, derivative)
+        return self._made[key]
+
+    def _new(self, component: int, derivative: str) -> RealArray:
+        if derivative in ("x", "y"):
+            return self._waves.differences.by(self.component(component, ""), "xy".index(derivative))
+        is_rate = derivative == "t"
+        if component == Z:
+            return self._waves.rise(self._time) if is_rate else self._waves.elevation(self._time)
+        if is_rate not in self._potentials:
+            self._potentials[is_rate] = self._waves.potential(self._time, is_rate)
+        return self._waves.differences.by(self._potentials[is_rate], (X, Y).index(component))
