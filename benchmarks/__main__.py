@@ -22,6 +22,7 @@ from . import (
     report,
     transforms,
     usd_rows,
+    wakes,
     wind_fields,
 )
 from .plan import FULL, SCRATCH, SMOKE, Plan
@@ -36,6 +37,7 @@ GROUPS: dict[str, Callable[[Plan], Iterator[Row]]] = {
         transforms,
         wind_fields,
         cascades,
+        wakes,
         foam_rows,
         growth,
         memory_use,

@@ -129,6 +129,8 @@ TARGETS = {
     "wind fields": Target(
         "20,000 wave particles, displacement, slopes and Jacobian, 1024²", 3.0, "× one six-field frame"
     ),
+    "wake alone": Target("six fields of a wake at 512², 60 s of path alone", 40.0, "× one six-field frame"),
+    "wake sequence": Target("six fields of a wake at 512², the next frame", 3.0, "× one six-field frame"),
     "cascades": Target("three 512² patches, 6 fields + minimum eigenvalue each", 3.2, "× one 512² patch"),
     "foam alone": Target(
         "foam of a frame by itself, 512² to 2048², one thread", 25.0, "× one six-field frame",

@@ -31,7 +31,7 @@ RealArray = NDArray[np.float32]
 ComplexArray = NDArray[np.complex64]
 
 #: below this |z|, e^z - 1 is taken from its series
-_SMALL = 1e-2
+_SMALL = 1e-3
 
 
 def wake_elevation(
@@ -150,6 +150,19 @@ class Basin:
         omega[half] = omega[:, half] = 0.0
         return omega
 
+    def turns(self, span: float) -> tuple[ComplexArray, ComplexArray]:
+        """e^((±iω - γ) span): how waves turn and fade in so many s."""
+        found = self._turns.get(span)
+        if found is None:
+            self._turns.clear()  # a path has few spans, one after the other
+            turn = np.exp((1j * self.omega - self.decay) * span).astype(np.complex64)
+            found = self._turns[span] = turn, turn.conj()
+        return found
+
+    @cached_property
+    def _turns(self) -> dict[float, tuple[ComplexArray, ComplexArray]]:
+        return {}
+
 
 class Past:
     """What the waves of an object have become by the end of its latest piece: two numbers a wave vector.
@@ -172,21 +185,19 @@ class Past:
         self._left = np.zeros((2, *basin.omega.shape), np.complex64)
         for rows in row_blocks(*basin.omega.shape):
             kv = self._along(first, rows)
-            source = self._source(first, rows)
+            source = self._place(first, rows) * self._draught(first, rows)
             for sign, left in zip((1.0, -1.0), self._left, strict=True):
                 left[rows] = source * self._inverse(kv + np.float32(sign) * self._omega[rows])
                 np.negative(left[rows], out=left[rows])
 
     def go_on(self, pieces: Sequence[Piece], workers: int = 1) -> None:
         """Go along pieces, of which each begins where the one before ended."""
+        begin = pieces[0].start if pieces else (0.0, 0.0)
 
         def work(rows: slice) -> None:
-            span, turns = -1.0, self._turns(rows, 0.0)
+            place = _wave(-begin[1] * self._basin.ky[rows], -begin[0] * self._basin.kx)
             for piece in pieces:
-                if piece.end - piece.begin != span:
-                    span = piece.end - piece.begin
-                    turns = self._turns(rows, span)
-                self._add(piece, rows, turns)
+                place = self._add(piece, rows, place)
 
         run_blocks(work, row_blocks(*self._omega.shape), workers)
 
@@ -199,21 +210,26 @@ class Past:
         turned = (-0.5 * self._omega**2) * (self._left[0] + self._left[1])
         return turned - np.float32(self._basin.decay) * self.elevation()
 
-    def _add(self, piece: Piece, rows: slice, turns: Sequence[ComplexArray]) -> None:
-        """left becomes left e^z + d̂ e^(-ik·x) (e^z' - 1)/z', z' = i(k·v ± ω) - γ over the span."""
-        basin, (vx, vy), span = self._basin, piece.velocity, piece.end - piece.begin
-        passed = _wave(vy * span * basin.ky[rows], vx * span * basin.kx)
-        source, kv = self._source(piece, rows), self._along(piece, rows)
-        for sign, left, turn in zip((1.0, -1.0), self._left, turns, strict=True):
-            integral = passed * turn
-            integral -= np.float32(1.0)
+    def _add(self, piece: Piece, rows: slice, begin: ComplexArray) -> ComplexArray:
+        """left becomes left e^z + d̂ e^(-ik·x) (e^z' - 1)/z', z' = i(k·v ± ω) - γ over the span.
+
+        begin : e^(-ik·x) where the piece begins; returns that of its end
+        """
+        basin, span = self._basin, piece.end - piece.begin
+        end, kv = self._place(piece, rows), self._along(piece, rows)
+        draught = self._draught(piece, rows)
+        for sign, left, turns in zip((1.0, -1.0), self._left, basin.turns(span), strict=True):
+            turn = turns[rows]
             rate = kv + np.float32(sign) * self._omega[rows]
+            integral = begin * turn
+            integral -= end
             integral *= self._inverse(rate)
             if basin.decay * span < _SMALL:
-                _mend(integral, rate, basin.decay, span)
-            integral *= source
+                _mend(integral, end, rate, basin.decay, span)
+            integral *= draught
             left[rows] *= turn
             left[rows] += integral
+        return end
 
     def copy(self) -> Past:
         """One that can go on by itself."""
@@ -226,23 +242,20 @@ class Past:
         """Bytes of the two numbers."""
         return self._left.nbytes
 
-    def _turns(self, rows: slice, span: float) -> tuple[ComplexArray, ComplexArray]:
-        """e^((±iω - γ) span)."""
-        turn = np.exp((1j * self._basin.omega[rows] - self._basin.decay) * span).astype(np.complex64)
-        return turn, turn.conj()
+    def _place(self, piece: Piece, rows: slice) -> ComplexArray:
+        """e^(-ik·x) of its end."""
+        x, y = piece.place
+        return _wave(-y * self._basin.ky[rows], -x * self._basin.kx)
 
-    def _source(self, piece: Piece, rows: slice) -> ComplexArray:
-        basin, (x, y) = self._basin, piece.place
-        place = _wave(-y * basin.ky[rows], -x * basin.kx)
-        place *= self._footprint.transform(basin.kx, basin.ky[rows], piece.heading)
-        if piece.immersion != 1.0:
-            place *= np.float32(piece.immersion)
-        return place
+    def _draught(self, piece: Piece, rows: slice) -> RealArray | ComplexArray:
+        """d̂ in m³."""
+        draught = self._footprint.transform(self._basin.kx, self._basin.ky[rows], piece.heading)
+        return draught if piece.immersion == 1.0 else draught * np.float32(piece.immersion)
 
     def _along(self, piece: Piece, rows: slice) -> RealArray:
         """k·v."""
         vx, vy = piece.velocity
-        return (vx * self._basin.kx + vy * self._basin.ky[rows]).astype(np.float32)
+        return (vx * self._basin.kx).astype(np.float32) + (vy * self._basin.ky[rows]).astype(np.float32)
 
     def _inverse(self, rate: RealArray) -> ComplexArray:
         """1/(i rate - γ)."""
@@ -261,8 +274,8 @@ def _wave(down: Array, along: Array) -> ComplexArray:
     return np.exp(1j * down).astype(np.complex64) * np.exp(1j * along).astype(np.complex64)
 
 
-def _mend(integral: ComplexArray, rate: RealArray, decay: float, span: float) -> None:
-    """Replace (e^z - 1)/z · span by its series where z is so small that the difference lost its digits."""
+def _mend(integral: ComplexArray, end: ComplexArray, rate: RealArray, decay: float, span: float) -> None:
+    """Replace end · span (e^z - 1)/z by its series where the difference has lost its digits."""
     small = np.abs(rate) * span < _SMALL
     z = (1j * rate[small] - decay) * span
-    integral[small] = span * (1.0 + z * (0.5 + z / 6.0))
+    integral[small] = end[small] * span * (1.0 + z * (0.5 + z / 6.0))

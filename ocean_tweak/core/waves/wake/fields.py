@@ -29,7 +29,7 @@ _Z = 2
 _RIM = 0.25
 #: of a path, how many pasts are kept at the ends of pieces, from which a frame goes on, and after how many
 #: pieces at least there is one
-_PASTS, _STRIDE = 8, 8
+_PASTS, _STRIDE = 8, 32
 
 #: fields, of which a frame wants up to twelve, and what they are made of
 _FIELDS, _MOMENTS = "wakes' fields", "wakes"

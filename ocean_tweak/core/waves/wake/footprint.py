@@ -13,14 +13,19 @@ from numpy.typing import ArrayLike, NDArray
 from ...numerics.interpolation import between
 
 Array = NDArray[np.float64]
+RealArray = NDArray[np.float32]
 ComplexArray = NDArray[np.complex64]
 
-#: samples of the transform for one of the footprint, along each side
-_FINER, _MOST = 16, 2048
+#: samples of the transform for one of the footprint, along each side; their number is a multiple of one that
+#: transforms are quick with, up to a largest
+_FINER, _WHOLE, _MOST = 12, 64, 2048
+
+#: of the largest number of a transform, up to which it has no imaginary part
+_ALIKE = 1e-9
 
 #: of a hull: samples across its beam, how soft its edges are in beams, and samples beyond them by which it
 #: has gone down to 0
-_FINE, _SOFTNESS, _SOFT_REACH = 8, 0.15, 8
+_FINE, _SOFTNESS, _SOFT_REACH = 8, 0.15, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,34 +47,47 @@ class Footprint:
             raise ValueError(f"spacing = {spacing!r}: must be a length above 0 m")
         return cls(d, float(spacing))
 
-    def transform(self, kx: Array, ky: Array, heading: float) -> ComplexArray:
+    def transform(self, kx: Array, ky: Array, heading: float) -> RealArray | ComplexArray:
         """∫ d e^(-ik·x) dx in m³ of the object turned to a heading; wave vectors (1, X) and (Y, 1) in rad/m.
 
-        What its own samples cannot hold is 0.
+        It is real where both halves of the object are alike. What its own samples cannot hold is 0.
         """
-        table, step = self._table
-        half, width = len(table) // 2, len(table)
-        c, s = math.cos(heading) / step, math.sin(heading) / step
-        column = (c * kx + s * ky).astype(np.float32)
-        row = (c * ky - s * kx).astype(np.float32)
+        cells, width, step = self._cells
+        c, s = np.float32(math.cos(heading) / step), np.float32(math.sin(heading) / step)
+        x, y, half = kx.astype(np.float32), ky.astype(np.float32), width // 2
+        column, row = c * x + s * y, c * y - s * x
         limit = np.float32(half - 1.01)
-        np.clip(column, -limit, limit, out=column)
-        np.clip(row, -limit, limit, out=row)
+        for place in (row, column):
+            np.clip(place, -limit, limit, out=place)
         i, j = np.floor(row), np.floor(column)
         row -= i
         column -= j
-        place = ((i + half) * width + (j + half)).astype(np.int32)
-        flat = table.ravel()
-        near, far = flat[place], flat[place + width]
-        near += column * (flat[place + 1] - near)
-        far += column * (flat[place + (width + 1)] - far)
-        near += row * (far - near)
-        return near
+        i *= np.float32(width)  # whole numbers up to 2^24 are exact
+        i += j
+        i += np.float32(half * width + half)
+        first = i.astype(np.intp)
+        parts = []
+        for numbers in cells:
+            corners = numbers.take(first, mode="clip").view(np.float32).reshape(*row.shape, 4)
+            near = corners[..., 1] - corners[..., 0]
+            near *= column
+            near += corners[..., 0]
+            far = corners[..., 3] - corners[..., 2]
+            far *= column
+            far += corners[..., 2]
+            far -= near
+            far *= row
+            near += far
+            parts.append(near)
+        return parts[0] if len(parts) == 1 else parts[0] + np.complex64(1j) * parts[1]
 
     @cached_property
-    def _table(self) -> tuple[ComplexArray, float]:
+    def _cells(self) -> tuple[list[NDArray[np.complex128]], int, float]:
+        """The four samples around each cell as one number, which is quicker to look up: of the transform's
+        real part, and of its imaginary part if it has one; samples along each side, and rad/m between.
+        """
         rows, columns = self.draught.shape
-        n = min(_MOST, 2 ** math.ceil(math.log2(_FINER * max(rows, columns, 8))))
+        n = min(_MOST, _WHOLE * math.ceil(_FINER * max(rows, columns, 8) / _WHOLE))
         padded = np.zeros((n, n))
         padded[:rows, :columns] = self.draught
         # the middle of the footprint is the object's origin
@@ -77,7 +95,14 @@ class Footprint:
         middle = np.exp(1j * k * (rows - 1) / 2.0)[:, np.newaxis] * np.exp(1j * k * (columns - 1) / 2.0)
         table = np.fft.fftshift(np.fft.fft2(padded) * middle) * self.spacing**2
         table[[0, 1, -1]] = table[:, [0, 1, -1]] = 0.0  # what lies beyond is clipped to here
-        return table.astype(np.complex64), 2.0 * math.pi / (n * self.spacing)
+        has_two = np.abs(table.imag).max() > _ALIKE * np.abs(table).max()
+        cells = []
+        for part in (table.real, table.imag) if has_two else (table.real,):
+            corners = np.zeros((n, n, 4), np.float32)
+            for place, (down, on) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+                corners[: n - down, : n - on, place] = part[down:, on:]
+            cells.append(corners.reshape(-1).view(np.complex128))
+        return cells, n, 2.0 * math.pi / (n * self.spacing)
 
 
 def hull_footprint(length: float, beam: float, draught: float, shape: Array | None = None) -> Footprint:

@@ -22,7 +22,7 @@ class Piece:
     """A straight stretch of a path.
 
     begin, end : s
-    place : x and y at its end, m
+    start, place : x and y where it begins and where it ends, m
     velocity : m/s
     heading : direction in which the object points, counter-clockwise from +x, rad
     immersion : what its draught is multiplied by
@@ -30,6 +30,7 @@ class Piece:
 
     begin: float
     end: float
+    start: tuple[float, float]
     place: tuple[float, float]
     velocity: tuple[float, float]
     heading: float
@@ -152,7 +153,7 @@ class Track:
     @property
     def first(self) -> Piece:
         """The object's way from ever to its first sample."""
-        return Piece(-np.inf, float(self.times[0]), *self._motion(0, self.positions[0]))
+        return Piece(-np.inf, float(self.times[0]), (-np.inf, -np.inf), *self._motion(0, self.positions[0]))
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
@@ -160,7 +161,8 @@ class Track:
         found: list[Piece] = []
         for index in range(len(self.times) - 1):
             begin, end = float(self.times[index]), float(self.times[index + 1])
-            piece = Piece(begin, end, *self._motion(index, self.positions[index + 1]))
+            start, motion = _pair(self.positions[index]), self._motion(index, self.positions[index + 1])
+            piece = Piece(begin, end, start, *motion)
             if found and _goes_on(found[-1], piece):
                 piece = replace(found.pop(), end=end, place=piece.place)
             found.append(piece)
@@ -173,7 +175,8 @@ class Track:
         if time <= begin:
             return done, None
         way = self.pieces[len(done)] if len(done) < len(self.pieces) else self._last
-        return done, replace(way.ending(time), begin=begin)
+        start = done[-1].place if done else self.first.place
+        return done, replace(way.ending(time), begin=begin, start=start)
 
     @property
     def _last(self) -> Piece:
@@ -185,7 +188,12 @@ class Track:
         """What a piece is beside its times."""
         vx, vy = self._velocities[index].tolist()
         heading, immersion = float(self._headings[index]), float(self._immersions[index])
-        return (float(place[0]), float(place[1])), (vx, vy), heading, immersion
+        return _pair(place), (vx, vy), heading, immersion
+
+
+def _pair(place: Array) -> tuple[float, float]:
+    x, y = place.tolist()
+    return x, y
 
 
 def _goes_on(one: Piece, other: Piece) -> bool:
