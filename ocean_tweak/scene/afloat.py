@@ -16,12 +16,15 @@ from . import boat_hull, buoy
 from .boat import new_boat
 from .buoy import new_buoy
 from .clear_water import sight
-from .floating import Ride, float_on
+from .float_carrier import carrier_of
+from .floating import Ride, float_on, ride_of
 from .moods import VIEW
 from .units import metres_per_unit
 
 _OFF_THE_SEA = math.radians(30.0)  # how far from straight into the waves it heads
 _ASIDE = (0.3, 0.55)  # of the way from the middle of the picture to its edge
+#: custom property of what ocean scenes let float
+_OURS = "ocean_tweak_afloat"
 _LEADS, _BEARINGS = 17, 5  # of the places that are tried
 
 
@@ -78,6 +81,7 @@ def add_afloat(
     metres, chosen = float(metres_per_unit(scene)), AFLOAT[kind]
     heading = _heading(parameters)
     item = chosen.new(chosen.label, metres)
+    item[_OURS] = kind
     x, y = _best_seen(chosen, place, camera.data.angle, heading, parameters)
     item.location = np.array(ocean.location) + np.array([x, y, 0.0]) / metres
     item.rotation_euler.z = heading
@@ -87,6 +91,12 @@ def add_afloat(
     ride = Ride(waterline=waterline, draft=draft, keel=keel, tilt=0.8)
     float_on(item, ocean, ride, is_wet=True)
     return item
+
+
+def own_afloat(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """What `add_afloat` let float on an ocean, and still does."""
+    ours = ((item, carrier_of(item)) for item in scene.objects if _OURS in item)
+    return [item for item, carrier in ours if carrier is not None and ride_of(carrier)[0] == ocean]
 
 
 def _heading(parameters: OceanParameters) -> float:

@@ -68,6 +68,13 @@ def has_sky(scene: bpy.types.Scene) -> bool:
     return world is not None and world.library is None and _MARK in world
 
 
+def keep_world(scene: bpy.types.Scene) -> None:
+    """Let the file keep a world of the artist's own that is about to be replaced."""
+    world = scene.world
+    if world is not None and world.library is None and not has_sky(scene):
+        world.use_fake_user = True
+
+
 def put(
     scene: bpy.types.Scene,
     sky: Sky,
@@ -78,7 +85,7 @@ def put(
     """Give a scene a sky, whatever it had: settings, world, lamps, haze and, if it follows, exposure.
 
     view : where the camera looks, rad counter-clockwise from +x; by default where the scene's does
-    name : of a new world; by default the scene's own goes on, where that is a sky
+    name : of the world; by default that of a sky stays
     collection : of new lamps
     """
     settings = settings_of(scene)
@@ -86,9 +93,11 @@ def put(
         settings.hdri = None
         for field in fields(Sky):
             setattr(settings, field.name, getattr(sky, field.name))
-    if name or not has_sky(scene):
+    if not has_sky(scene):
         scene.world = new_world(name or "Sky", sky)
         scene.world[_MARK] = True
+    elif name:
+        scene.world.name = name
     show(scene, view, collection)
 
 

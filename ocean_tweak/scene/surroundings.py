@@ -21,11 +21,12 @@ from ..nodes.horizon import HORIZON
 from ..nodes.modifier_inputs import set_input
 from ..nodes.versioned import node_group
 from . import middle, ocean_object, scene_sky, startup_file, water_material
-from .afloat import add_afloat
-from .camera_surface import add_camera_surface
+from .afloat import add_afloat, own_afloat
+from .camera_surface import add_camera_surface, remove_camera_surface
 from .clear_water import clear_place
+from .floating import sink
 from .moods import MOODS, VIEW, Mood
-from .settings import VIEWPORT_RESOLUTION, settings_of
+from .settings import VIEWPORT_RESOLUTION, OceanObjectError, settings_of
 from .spray import TRANSPARENT_BOUNCES
 from .units import frame_rate, metres_per_unit
 from .view_layers import evaluated
@@ -41,6 +42,8 @@ _FRAMES = 240
 _SAMPLES = 128  # of Cycles, whose denoiser does the rest: 4,096 take an hour for the first picture
 _EEVEE_RINGS = 2  # it draws every copy anew
 _WORLD_GREY = 0.0508761  # of a new file's world
+#: custom property of cameras that ocean scenes bring
+_OURS = "ocean_tweak_camera"
 
 
 @dataclass(frozen=True)
@@ -79,42 +82,119 @@ def build(
 
     Raises ValueError for an unknown mood, and what `ocean_object.add` raises; then nothing is made.
     """
-    if mood not in MOODS:
-        raise ValueError(f"mood = {mood!r}: must be one of {', '.join(MOODS)}")
-    chosen, target = MOODS[mood], collection or scene.collection
+    chosen, target = _mood(mood), collection or scene.collection
     # while the sea is made, and Blender's own data, for which there is one thread alone
     detail_image.make_ahead()
     left = startup_file.untouched_objects(scene)
     is_empty = len(left) == len(scene.objects)
-    parameters = chosen.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
-    parameters = parameters.on_one_grid(parameters.resolution)  # as an ocean object shows patches
+    parameters = _sea(chosen, scene)
     ocean = ocean_object.add(
         scene, parameters.replace(spray=None), collection=target, viewport_resolution=VIEWPORT_RESOLUTION
     )
-    place, metres = camera_place(chosen, parameters), float(metres_per_unit(scene))
-    x, y = clear_place(chosen, place, parameters)
-    middle.put(ocean, scene.cursor.location, (x / metres, y / metres))
     replaced = tuple(item.name for item in left)
     startup_file.remove(left)
-    material = water_material.water_material(chosen.water)
-    water_material.set_air(material, chosen.sky.visibility, chosen.sky.haze(VIEW))
-    water_material.assign(ocean, material)
-    water_material.describe(ocean, parameters, scene)
-    if chosen.rings:
-        rings = chosen.rings if wishes.engine == "CYCLES" else min(chosen.rings, _EEVEE_RINGS)
-        add_horizon(ocean, parameters, scene, target, rings)
-    camera = new_camera(chosen, place, ocean, scene)
-    target.objects.link(camera)
-    if chosen.eye < _BOAT:
-        ride(camera, place, parameters, scene)
-    kept = _set_up(scene, chosen, wishes, camera, target, is_empty)
-    if not chosen.rings:
-        add_camera_surface(ocean, scene, budget=chosen.vertices)
-    if parameters.spray is not None:  # of patches it is around the camera, once these are seen from there
-        _add_spray(ocean, parameters, scene)
+    camera, place = _compose(ocean, chosen, parameters, scene, target, wishes.engine)
+    if wishes.camera or scene.camera is None:
+        scene.camera = camera
+    kept = _set_up(scene, chosen, wishes, target, is_empty)
+    _finish(ocean, chosen, parameters, scene)
     if wishes.afloat:
         add_afloat(chosen.floats, place, camera, parameters, ocean, scene, target)
     return Made(ocean, camera, kept, replaced)
+
+
+def change(ocean: bpy.types.Object, mood: str, scene: bpy.types.Scene) -> None:
+    """Give an ocean the sea of another mood, and its scene that mood's sky and camera.
+
+    The scene's camera is moved where an ocean scene brought it; one of the artist's own makes room for a new
+    one, and is kept. What an ocean scene let float makes room for the new mood's.
+
+    Raises ValueError for an unknown mood, OceanObjectError for an ocean that shows a bake or is overridden;
+    then nothing is changed.
+    """
+    chosen, target = _mood(mood), ocean.users_collection[0] if ocean.users_collection else scene.collection
+    settings = settings_of(ocean)
+    if settings.source != "LIVE":
+        raise OceanObjectError(f"{ocean.name} shows a bake, which keeps its sea: switch it to Live first")
+    parameters = _sea(chosen, scene)
+    settings.from_parameters(parameters.replace(spray=None), scene)
+    remove_camera_surface(ocean)
+    for child in [child for child in ocean.children if water_material.is_far(child)]:
+        _remove(child)
+    was_afloat = own_afloat(ocean, scene)
+    for item in was_afloat:
+        sink(item)
+        _remove(item)
+    ocean.rotation_euler = (0.0, 0.0, 0.0)  # as the camera is placed
+    own = scene.camera if scene.camera is not None and _OURS in scene.camera else None
+    scene.camera, place = _compose(ocean, chosen, parameters, scene, target, _engine(scene), own)
+    scene_sky.put(scene, chosen.sky, VIEW, f"{chosen.label} Sky", target)
+    _finish(ocean, chosen, parameters, scene)
+    if was_afloat:
+        add_afloat(chosen.floats, place, scene.camera, parameters, ocean, scene, target)
+
+
+def _mood(key: str) -> Mood:
+    if key not in MOODS:
+        raise ValueError(f"mood = {key!r}: must be one of {', '.join(MOODS)}")
+    return MOODS[key]
+
+
+def _sea(mood: Mood, scene: bpy.types.Scene) -> OceanParameters:
+    parameters = mood.sea(Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
+    return parameters.on_one_grid(parameters.resolution)  # as an ocean object shows patches
+
+
+def _compose(
+    ocean: bpy.types.Object,
+    mood: Mood,
+    parameters: OceanParameters,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection,
+    engine: str,
+    camera: bpy.types.Object | None = None,
+) -> tuple[bpy.types.Object, NDArray[np.float64]]:
+    """Stand an ocean where the cursor is in the picture, with its water, its horizon and a camera.
+
+    camera : one that is moved; by default a new one
+
+    Returns the camera and its place in the patch, m.
+    """
+    place, metres = camera_place(mood, parameters), float(metres_per_unit(scene))
+    x, y = clear_place(mood, place, parameters)
+    middle.put(ocean, scene.cursor.location, (x / metres, y / metres))
+    material = water_material.water_material(mood.water)
+    water_material.set_air(material, mood.sky.visibility, mood.sky.haze(VIEW))
+    water_material.assign(ocean, material)
+    water_material.describe(ocean, parameters, scene)
+    if mood.rings:
+        rings = mood.rings if engine == "CYCLES" else min(mood.rings, _EEVEE_RINGS)
+        add_horizon(ocean, parameters, scene, collection, rings)
+    if camera is None:
+        camera = new_camera(mood, place, ocean, scene)
+        collection.objects.link(camera)
+    else:
+        camera.animation_data_clear()
+        _place_camera(camera, mood, place, ocean, scene, VIEW)
+    if mood.eye < _BOAT:
+        ride(camera, place, parameters, scene)
+    return camera, place
+
+
+def _finish(ocean: bpy.types.Object, mood: Mood, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
+    """Show an ocean around its camera, if that is the mood's way, and its spray."""
+    if not mood.rings:
+        add_camera_surface(ocean, scene, budget=mood.vertices)
+    if parameters.spray is not None:  # of patches it is around the camera, once these are seen from there
+        _add_spray(ocean, parameters, scene)
+
+
+def _remove(item: bpy.types.Object) -> None:
+    """Delete an object, and its mesh where nothing else uses it."""
+    mesh = item.data
+    bpy.data.objects.remove(item)
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)
 
 
 def _add_spray(ocean: bpy.types.Object, parameters: OceanParameters, scene: bpy.types.Scene) -> None:
@@ -193,14 +273,25 @@ def new_camera(
     view: float = VIEW,
 ) -> bpy.types.Object:
     """A camera at a place in the patch, in m, that looks along `view`; in no collection yet."""
-    metres = float(metres_per_unit(scene))
-    data = bpy.data.cameras.new("Ocean Camera")
+    camera = bpy.data.objects.new("Ocean Camera", bpy.data.cameras.new("Ocean Camera"))
+    camera[_OURS] = True
+    _place_camera(camera, mood, place, ocean, scene, view)
+    return camera
+
+
+def _place_camera(
+    camera: bpy.types.Object,
+    mood: Mood,
+    place: NDArray[np.float64],
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    view: float,
+) -> None:
+    metres, data = float(metres_per_unit(scene)), camera.data
     data.lens = mood.lens
     data.clip_start, data.clip_end = 0.1 / metres, 2.0 * _FAR / metres
-    camera = bpy.data.objects.new("Ocean Camera", data)
     camera.location = np.array(ocean.location) + place / metres
     camera.rotation_euler = (0.5 * math.pi - mood.tilt, 0.0, view - 0.5 * math.pi)
-    return camera
 
 
 def ride(
@@ -225,14 +316,11 @@ def _set_up(
     scene: bpy.types.Scene,
     mood: Mood,
     wishes: Wishes,
-    camera: bpy.types.Object,
     collection: bpy.types.Collection,
     is_empty: bool,
 ) -> tuple[str, ...]:
-    """Sky, camera and settings, where the scene has none or they are wished for; says what was kept."""
+    """Sky and settings, where the scene has none or they are wished for; says what was kept."""
     kept = []
-    if wishes.camera or scene.camera is None:
-        scene.camera = camera
     if wishes.world or is_plain(scene.world):
         scene_sky.settings_of(scene).use_exposure = is_empty
         scene_sky.put(scene, mood.sky, VIEW, f"{mood.label} Sky", collection)
@@ -262,6 +350,10 @@ def is_plain(world: bpy.types.World | None) -> bool:
         return False
     colour, strength = (backgrounds[0].inputs[name].default_value for name in ("Color", "Strength"))
     return strength == 1.0 and all(abs(part - _WORLD_GREY) < 1e-4 for part in colour[:3])
+
+
+def _engine(scene: bpy.types.Scene) -> str:
+    return "EEVEE" if "EEVEE" in scene.render.engine else "CYCLES"
 
 
 def set_engine(scene: bpy.types.Scene, engine: str) -> None:

@@ -5,10 +5,12 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty
 
-from ..scene import ocean_object, surroundings
+from ..scene import ocean_object, scene_sky, surroundings
 from ..scene.moods import MOODS
-from .active_ocean import refuse, shown_ocean
+from ..scene.settings import settings_of
+from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .adding import InObjectMode, make_active
+from .sky_operators import exposure_told
 
 _ENGINES = [
     ("CYCLES", "Cycles", "Path tracing, with motion blur from the water's velocity"),
@@ -66,8 +68,8 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         wishes = surroundings.Wishes(
             engine=self.engine, camera=self.use_new_camera, world=self.use_new_world, afloat=self.use_buoy
         )
-        if self.use_new_world and old.world is not None and not self.use_new_scene:
-            old.world.use_fake_user = True
+        if self.use_new_world and not self.use_new_scene:
+            scene_sky.keep_world(old)
         collection = scene.collection if self.use_new_scene else context.collection
         try:
             made = surroundings.build(scene, self.mood, wishes, collection)
@@ -107,6 +109,54 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         return "; ".join(parts)
 
 
+class OCEAN_OT_change_mood(OfActiveOcean, bpy.types.Operator):
+    """Give the ocean and its scene another mood."""
+
+    bl_idname = "ocean.change_mood"
+    bl_description = (
+        "Replace the sea of this ocean, the scene's sky and its camera by those of another mood. A camera "
+        "and a world of your own are kept in the file; what you let float stays"
+    )
+    bl_label = "Change Mood"
+    bl_options = {"REGISTER", "UNDO"}
+
+    mood: EnumProperty(
+        name="Mood",
+        items=[(key, mood.label, mood.description) for key, mood in MOODS.items()],
+        default="FRESH_BREEZE",
+        description="The sea, with its sky and water",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """There is an ocean of this file, and objects can be added."""
+        if not super().poll(context):
+            return False
+        cls.poll_message_set("Switch to Object Mode to change the mood")
+        return context.mode == "OBJECT"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Change it, as a whole or not at all."""
+        ocean, scene = shown_ocean(context), context.scene
+        camera = scene.camera
+        scene_sky.keep_world(scene)
+        try:
+            surroundings.change(ocean, self.mood, scene)
+        except ocean_object.EXPECTED_ERRORS as error:
+            return refuse(self, error)
+        settings_of(ocean).preset = ""
+        make_active(ocean, context.view_layer)
+        told = [translated(MOODS[self.mood].label)]
+        if camera is not None and camera != scene.camera:
+            told.append(
+                translated("the scene looks through a new camera, {own} is kept").format(own=camera.name)
+            )
+        if text := exposure_told(scene):
+            told.append(text)
+        self.report({"INFO"}, "; ".join(told))
+        return {"FINISHED"}
+
+
 def draw_add_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """Draw the entry in Add > Mesh."""
     text = "Ocean Scene" if shown_ocean(context) is None else "Ocean Scene (Another Ocean)"
@@ -122,4 +172,4 @@ def _new_scene(like: bpy.types.Scene) -> bpy.types.Scene:
     return scene
 
 
-CLASSES = (OCEAN_OT_add_scene,)
+CLASSES = (OCEAN_OT_add_scene, OCEAN_OT_change_mood)

@@ -12,6 +12,16 @@ from ..scene.skies import SKIES
 from .active_ocean import refuse, shown_ocean
 
 
+def exposure_told(scene: bpy.types.Scene) -> str:
+    """What to say of a scene that keeps its own exposure; "" where it follows the sky's."""
+    settings = scene_sky.settings_of(scene)
+    if settings.use_exposure:
+        return ""
+    return translated("exposure stays {own:.1f}, this sky is made for {wanted:.1f}").format(
+        own=scene.view_settings.exposure, wanted=settings.exposure
+    )
+
+
 class OCEAN_OT_use_sky(bpy.types.Operator):
     """Give the scene a sky."""
 
@@ -44,17 +54,11 @@ class OCEAN_OT_use_sky(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Put it, and say what stays as it is."""
         scene, preset = context.scene, SKIES[self.sky]
-        world = scene.world
-        if world is not None and not scene_sky.has_sky(scene):
-            world.use_fake_user = world.library is None or world.use_fake_user
+        scene_sky.keep_world(scene)
         scene_sky.put(scene, scene_sky.preset_sky(self.sky, scene))
         told = [translated(preset.label)]
-        if not scene_sky.settings_of(scene).use_exposure:
-            told.append(
-                translated("exposure stays {own:.1f}, this sky is made for {wanted:.1f}").format(
-                    own=scene.view_settings.exposure, wanted=preset.sky.exposure
-                )
-            )
+        if text := exposure_told(scene):
+            told.append(text)
         suns = scene_sky.other_suns(scene)
         if suns:
             told.append(translated("also lit by {list}").format(list=", ".join(suns)))

@@ -4,7 +4,7 @@
 import bpy
 
 from ...scene import scene_sky
-from .. import sky_operators
+from .. import scene_operators, sky_operators
 from .drawing import OceanPanel, message, split
 
 
@@ -19,9 +19,11 @@ class OCEAN_PT_sky(OceanPanel, bpy.types.Panel):
         scene = context.scene
         has_sky = scene_sky.has_sky(scene)
         text = "Change Sky" if has_sky else "Add Sky"
-        self.layout.operator_menu_enum(
+        buttons = self.layout.column(align=True)
+        buttons.operator_menu_enum(
             sky_operators.OCEAN_OT_use_sky.bl_idname, "sky", text=text, icon="LIGHT_SUN"
         )
+        buttons.operator_menu_enum(scene_operators.OCEAN_OT_change_mood.bl_idname, "mood", icon="SCENE_DATA")
         if not has_sky:
             if scene.world is not None:
                 message(self.layout, context, f"The scene has a world of its own, {scene.world.name}")
