@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ocean Tweak: directional wave spectra with true wave heights, for Blender and for batch rendering."""
+"""Ocean Tweak: directional wave spectra with physical wave heights, for Blender and batch rendering."""
 
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ __all__ = ["read_sea", "write_sea"]
 
 
 def __getattr__(name: str) -> object:
-    """What the package offers itself, loaded when it is asked for: Blender imports it when it starts."""
+    """Load the package's functions on first use, because Blender imports the package at startup."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from .export import sea_files

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender is told when the extension is enabled, and what is taken back when it is disabled."""
+"""Registers the extension with Blender when it is enabled, and unregisters it when it is disabled."""
 
 from __future__ import annotations
 
@@ -79,21 +79,21 @@ CLASSES = (
 _log = logging.getLogger(__name__)
 
 _COMMAND = "ocean_tweak"
-# what Blender gave for the command line's command, needed to take it back
+# handle of the registered command-line command, needed to unregister it
 _commands: list[object] = []
 
 
 class _SceneOceans(Mapping[str, cli.FileSea]):
-    """The oceans of the open file by object name; each sea is made when it is asked for.
+    """The oceans of the open file by object name; each sea is created on access.
 
-    That raises ParameterError for what is no sea.
+    Access raises ParameterError for invalid settings.
     """
 
     def __init__(self) -> None:
         shown = shown_oceans()
         self._oceans: dict[str, tuple[bpy.types.Object, bpy.types.Scene]] = {}
         for item in (item for item in all_oceans() if item in shown):
-            # one from another file may have the same name
+            # a linked object may have the same name
             name = item.name if item.name not in self._oceans else item.name_full
             self._oceans[name] = item, shown[item]
 
@@ -119,7 +119,7 @@ class _SceneOceans(Mapping[str, cli.FileSea]):
         return iter(self._oceans)
 
     def __len__(self) -> int:
-        """How many there are."""
+        """The number of oceans."""
         return len(self._oceans)
 
 
@@ -129,18 +129,18 @@ def scene_oceans() -> Mapping[str, cli.FileSea]:
 
 
 def run_command(argv: list[str]) -> int:
-    """What `blender --command ocean_tweak …` does. Returns the exit code."""
+    """Run `blender --command ocean_tweak …`. Returns the exit code."""
     return cli.main(argv, scene_oceans=scene_oceans)
 
 
 def register(package: str | None = None) -> None:
     """Enable the extension.
 
-    package : the name that Blender knows the extension by; a script that uses a checkout gives another
+    package : Blender's name for the extension; a script that uses a checkout passes another one
     """
     if not str(package).startswith("bl_ext."):
-        # Blender disables its extensions when it quits. Nobody does so for a script, and bpy 4.5 hangs or
-        # crashes at the end of a process in which Python classes are still registered
+        # Blender disables extensions when it quits, but not for a script, and bpy 4.5 hangs or crashes at the
+        # end of a process in which Python classes are still registered
         atexit.register(unregister)
     preferences.OCEAN_AP_preferences.bl_idname = package or _COMMAND
     for cls in CLASSES:

@@ -24,7 +24,7 @@ __all__ = ["FileSea", "SceneOceans", "command", "main"]
 
 _LOG = logging.getLogger(__name__)
 
-#: what a user, a disk or another process can cause; anything else is a bug and raises
+#: errors that a user, a disk or another process can cause; any other is a bug and is raised
 _EXPECTED = (ParameterError, UsageError, OSError, ExrError, CacheError, UsdError, Held, MemoryError)
 
 
@@ -32,14 +32,14 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
     """Run one command. Returns the exit code: 0 done, 1 failed, 2 wrong arguments or parameters.
 
     argv : the arguments after the program's name; those of the process by default
-    scene_oceans : inside Blender, gives the file's oceans by object name
+    scene_oceans : inside Blender, a function that returns the file's oceans by object name
     """
     _print_anything()
     try:
         arguments = make_parser(in_blender=scene_oceans is not None).parse_args(argv)
     except SystemExit as end:  # argparse has printed the reason; Blender wants the code as a result
         return int(end.code or 0)
-    if arguments.verbose or scene_oceans is None:  # in Blender the preferences say it else
+    if arguments.verbose or scene_oceans is None:  # otherwise set by the preferences in Blender
         logs.to_console(logs.LEVELS[min(arguments.verbose, len(logs.LEVELS) - 1)])
     try:
         return int(arguments.run(arguments, scene_oceans))
@@ -56,19 +56,19 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
 
 
 def command() -> list[str]:
-    """The start of a command that is the command line in a process of its own: its arguments follow."""
+    """The beginning of a command that runs this command line in a new process; arguments follow."""
     return module_command(__name__.rpartition(".")[0])
 
 
 def _print_anything() -> None:
-    """Where the terminal's alphabet lacks a letter, print its number instead of failing."""
+    """Print characters that the terminal's encoding lacks as escapes instead of failing."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def _flush() -> None:
-    """Where nobody reads what was printed, the interpreter must not stumble over it at its end."""
+    """Flush, so that the interpreter does not fail at exit if the reader of the output has gone."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands behind an option, as a value. Each raises ArgumentTypeError for a text that is none."""
+"""Converts option values. Each function raises ArgumentTypeError for invalid text."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from ..export.frame_files import BAKED
 from ..export.places import path_of
 
 _BYTES = {"": 1.0, "b": 1.0, "kb": 1e3, "mb": 1e6, "gb": 1e9, "tb": 1e12}
-#: m from the origin, beyond which positions of 32 bits no longer tell metres apart
+#: largest distance from the origin in m, beyond which 32-bit positions no longer resolve metres
 _FARTHEST = 1e7
 _WISHED = re.compile(r"(finest|area|memory)=(\d+(?:\.\d*)?|\.\d+)([a-z]*)", re.IGNORECASE)
 
 
 def path(text: str) -> Path:
-    """a path of this system; ~ is the user's home, also where no shell replaced it."""
+    """a path of this system; ~ is the user's home, even if no shell expanded it."""
     try:
         return path_of(text)
     except ValueError as error:
@@ -73,7 +73,7 @@ class AreaAction(argparse.Action):
     """SIZE SAMPLES, or SIZE SAMPLES X Y, as an Area."""
 
     def __call__(self, parser, namespace, values, option_string=None):  # type: ignore[no-untyped-def]
-        """Keep the area. Ends with the parser's own error for what is none."""
+        """Store the area. Exits with the parser's error for an invalid one."""
         try:
             setattr(namespace, self.dest, Area.of_words(values))
         except ValueError as error:

@@ -20,7 +20,8 @@ from .seas import chosen_seas
 
 
 def make_parser(in_blender: bool) -> argparse.ArgumentParser:
-    """The parser; each command's `run` takes its arguments and what gives the open file's oceans."""
+    """Create the parser; each command's `run` takes its arguments and a function that returns the open file's
+    oceans."""
     program = "blender --command ocean_tweak" if in_blender else "python -m ocean_tweak"
     parser = argparse.ArgumentParser(
         prog=program,
@@ -102,7 +103,7 @@ def _add_cache(parser: _Arguments, in_blender: bool, option: str) -> None:
 
 
 def _add_files_arguments(parser: _Arguments) -> None:
-    """What, beside the sea, decides which files a bake writes."""
+    """Arguments besides the sea that determine the files of a bake."""
     parser.add_argument(
         "--maps", type=argument_values.maps, metavar="LIST", default=(MOVING_MAP,),
         help=f"what to write, of {','.join(BAKED)}; {MOVING_MAP} by default",

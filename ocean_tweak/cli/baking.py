@@ -53,9 +53,9 @@ _LOG = logging.getLogger(__name__)
 
 
 def bake(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
-    """Bake each sea into its own folder of the cache; after one that fails or is stopped, no more."""
+    """Bake each sea into its own folder of the cache; stop after the first that fails or is stopped."""
     jobs = jobs_of(arguments, seas)
-    sprays = {name: spray_of(arguments, seas[name]) for name in jobs}  # what is wrong is told before any work
+    sprays = {name: spray_of(arguments, seas[name]) for name in jobs}  # report errors before any work
     for name, job in jobs.items():
         code = _bake_sea(arguments, cache_of(arguments, seas[name]), job, sprays[name])
         if code != DONE:
@@ -79,7 +79,7 @@ def _bake_sea(arguments: argparse.Namespace, cache: Path, job: Job, spray: Wante
 
 
 def _check_whole(job: Job) -> None:
-    """Refuse frames between two: what reads NAME_disp.####.exr would pass them over. Raises UsageError."""
+    """Refuse subframes, which readers of NAME_disp.####.exr would skip. Raises UsageError."""
     between = [Fraction(frame) for frame in job.frames if not isinstance(frame, int)]
     if not between:
         return
@@ -95,7 +95,7 @@ def _check_whole(job: Job) -> None:
 
 
 def resume(arguments: argparse.Namespace) -> int:
-    """Go on with a bake from what its folder tells."""
+    """Continue a bake from its folder."""
     folder = only_bake(arguments.folder, arguments.json)
     try:
         job = read_job(folder)
@@ -120,17 +120,17 @@ def _make_all(
     frames: Sequence[Frame],
     spray: SpraySequence | None,
 ) -> int:
-    """Make what is not whole of the frames and of their spray. Returns the exit code."""
+    """Bake incomplete frames and their spray. Returns the exit code."""
     if spray is None or arguments.estimate:
         return _make(arguments, folder, job, frames)
     refuse_links(folder)
-    spray.ask()  # first, so that a bake that is ended early goes on with it
+    spray.ask()  # first, so that a bake that is stopped early continues with it
     code = _make(arguments, folder, job, frames)
     return bake_spray(arguments, spray, frames) if code == DONE else code
 
 
 def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequence[Frame]) -> int:
-    """Make what is not whole of the frames. Returns the exit code."""
+    """Bake incomplete frames. Returns the exit code."""
     if arguments.log:
         logs.to_file(log_file(folder))
         _LOG.info(
@@ -208,7 +208,7 @@ def _frames(
         return
     sink = CacheSink(folder, job, tell)
     with closing(make_frames(job.shot, frames, sink, tell=tell, on=job.on)) as making:
-        while not stopped():  # what is under way is finished
+        while not stopped():  # frames in progress are finished
             baked = next(making, None)
             if baked is None:
                 return
@@ -216,7 +216,7 @@ def _frames(
 
 
 def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:
-    """Processes: as many as were asked for, or as cores and memory allow. Raises MemoryError."""
+    """Number of processes: as requested, or as cores and memory allow. Raises MemoryError."""
     most, need = max(len(frames), 1), process_memory(job)
     workers = fitting_workers(job, most) if wanted is None else min(wanted, most)
     check_memory(
@@ -229,7 +229,7 @@ def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:
 
 @contextmanager
 def _telling_how_to_go_on(folder: Path) -> Iterator[None]:
-    """Adds the remedy to what ended a bake, in the same line."""
+    """Append the remedy to the error that ended a bake."""
     try:
         yield
     except (OSError, ExrError, CacheError, Held, MemoryError) as error:

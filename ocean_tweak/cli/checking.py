@@ -24,12 +24,12 @@ from .seas import SceneOceans, chosen_seas
 from .stopping import stop_requested
 from .wanted_bake import cache_of, existing_folder, jobs_of, only_bake
 
-#: names of files in a line
+#: number of file names on a line
 _MOST_NAMES = 20
 
 
 def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> tuple[Frame, ...]:
-    """The frames that a command is about: those given, else all that were asked for or made."""
+    """The frames for a command: those given, or all that were requested or baked."""
     if frames is not None:
         return frames
     known = known_frames(folder, job)
@@ -39,12 +39,13 @@ def wanted_frames(folder: Path, job: Job, frames: tuple[Frame, ...] | None) -> t
 
 
 def known_frames(folder: Path, job: Job) -> tuple[Frame, ...]:
-    """All frames that were asked for or made."""
+    """All frames that were requested or baked."""
     return tuple(sorted({*job.frames, *recorded_frames(folder), *asked_frames(folder)}))
 
 
 def verify(arguments: argparse.Namespace, scene_oceans: SceneOceans | None = None) -> int:
-    """Read frames back and name each that is not whole: of a folder, or of what the sea's arguments bake."""
+    """Read frames back and report each that is not complete, for a folder or for the bake described by the
+    arguments."""
     if arguments.folder is not None:
         if arguments.params or arguments.preset or arguments.assignments or arguments.out:
             raise UsageError(f"{arguments.folder}: give either a folder, or a sea and --out")
@@ -66,7 +67,7 @@ def _verify_folder(arguments: argparse.Namespace, folder: Path) -> int:
         for frame, state, reason in verify_frames(folder, job, frames):
             states[state] += 1
             if state is State.MISSING and not arguments.json:
-                missing.append(frame)  # told together: often they are many
+                missing.append(frame)  # reported together, as there may be many
             elif state is not State.WHOLE or arguments.json:
                 label = format_frames((frame,))
                 text = f"frame {label} is {state.value}: {reason}"
@@ -98,7 +99,7 @@ def _first(names: Sequence[str]) -> str:
 
 
 def clean(arguments: argparse.Namespace) -> int:
-    """Delete frames, as far as nobody is baking them."""
+    """Delete frames that are not being baked."""
     folder, frames = arguments.folder, arguments.frames
     if not folder.is_dir():
         raise UsageError(f"{folder}: is not a folder")

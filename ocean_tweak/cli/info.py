@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`info`: what the sea will be."""
+"""`info`: statistics of a sea."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ from .seas import FileSea
 
 _LOG = logging.getLogger(__name__)
 
-#: kinds of what is kept that are told, the largest
+#: number of the largest cache entries to print
 _KINDS = 3
 
-#: samples times layers above which it is told what they take
+#: samples times layers above which memory and time are printed first
 _LARGE = 8 * 2048**2
 
 
 def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
-    """Print what each sea will be; an animated one at its first frame."""
+    """Print the statistics of each sea; for an animated one, at its first frame."""
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
     for name, of_sea in parameters.items():
         _foretell(name, of_sea)
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
 
 
 def _kept() -> str:
-    """What of all seas is kept, and of how much."""
+    """Cache use and budget."""
     sizes = MEMO.report()
     kinds = ", ".join(f"{kind} {readable_bytes(size)}" for kind, size in list(sizes.items())[:_KINDS])
     total = readable_bytes(sum(sizes.values()))
@@ -82,7 +82,8 @@ def _kept() -> str:
 
 
 def _foretell(name: str, parameters: OceanParameters) -> None:
-    """Say what the numbers of a large sea take, before they are made. Raises MemoryError for too much."""
+    """Print the cost of a large sea's statistics before computing them. Raises MemoryError if it is too
+    large."""
     need, layers = statistics_memory(parameters), len(parameters.active(WaveLayer))
     what = f"{name}: {parameters.resolution}² samples and {layers} layer{'s' if layers != 1 else ''}"
     check_memory(need, what)
@@ -103,7 +104,7 @@ def _save(path: Path, seas: Mapping[str, FileSea]) -> None:
 
 
 def _plain(statistics: Statistics) -> dict[str, object]:
-    """Of a sea of one patch only what is told of the whole."""
+    """For a sea of one patch, only the totals."""
     told = statistics.to_dict()
     if len(statistics.patches) == 1:
         del told["patches"]
@@ -111,7 +112,7 @@ def _plain(statistics: Statistics) -> dict[str, object]:
 
 
 def _outlooks(parameters: OceanParameters) -> list[tuple[type[Contribution], Outlook]]:
-    """What kinds of layers say of waves that the sea's heights are without."""
+    """Summaries of layers whose waves are not part of the sea's statistics."""
     shown = sorted(KINDS, key=lambda kind: kind.names.number)
     found = ((kind, kind.outlook(parameters)) for kind in shown)
     return [(kind, outlook) for kind, outlook in found if outlook is not None]
@@ -168,7 +169,7 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
 
 
 def _patch_rows(statistics: Statistics) -> list[str]:
-    """A table of the patches, where there are several."""
+    """A table of the patches, if there are several."""
     if len(statistics.patches) < 2:
         return []
     head = (
@@ -207,7 +208,7 @@ def _patch_rows(statistics: Statistics) -> list[str]:
 
 
 def _peak(parameters: OceanParameters, statistics: Statistics) -> str:
-    """What a line says of the waves at the peak; "" of a flat sea, which has none."""
+    """Text for the waves at the peak; "" for a flat sea."""
     if not math.isfinite(statistics.peak_wavelength):
         return ""
     return (
@@ -221,7 +222,7 @@ def _state_row(title: str, state: SeaState) -> str:
     slope = math.sqrt(state.mean_square_slope)
     direction, spread = math.degrees(state.mean_direction), math.degrees(state.directional_spread)
     row = f"  {title:<18}{state.significant_wave_height:>8.2f} m"
-    if not math.isfinite(state.peak_period):  # a flat sea has no more
+    if not math.isfinite(state.peak_period):  # a flat sea has no further numbers
         return f"{row}{'-':>10}{'-':>10}{slope:>8.3f}{'-':>9}{'-':>8}"
     return (
         f"{row}{state.peak_period:>8.2f} s{state.zero_crossing_period:>8.2f} s{slope:>8.3f}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`job`: what a render farm is given to bake, verify and render a shot."""
+"""`job`: writes a render farm job that bakes, verifies and renders a shot."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from .wanted_bake import jobs_of, known_cache
 
 __all__ = ["BAKERS", "FORMS", "PYTHON", "job"]
 
-#: kind of job → what writes it
+#: kind of job → function that writes it
 FORMS: dict[str, Callable[[Path, ShotJob], list[Path]]] = {"openjd": openjd.write, "flamenco": flamenco.write}
 
-#: what the machines of a farm call Python
+#: command for Python on the farm's machines
 PYTHON = "python" if os.name == "nt" else "python3"
 
 

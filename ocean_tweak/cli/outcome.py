@@ -12,7 +12,7 @@ from ..core.data.printable import LONGEST, printable
 DONE, FAILED, WRONG_ARGUMENTS = 0, 1, 2
 
 _NOT_ALLOWED = "get permission to write there, or choose another folder with --out"
-#: what to do about what a system refuses
+#: remedies for errors of the operating system
 _REMEDIES = {
     errno.ENOSPC: "make room on the disk",
     errno.EDQUOT: "make room, or ask for a larger quota",
@@ -30,7 +30,7 @@ class UsageError(ValueError):
 
 
 def message_of(error: BaseException) -> str:
-    """What is wrong, in a line."""
+    """The message of an error, on one line."""
     if isinstance(error, KeyboardInterrupt):
         return "interrupted; the frames written so far are complete"
     if isinstance(error, OSError) and error.filename:
@@ -41,12 +41,12 @@ def message_of(error: BaseException) -> str:
 
 
 def shell_word(path: Path) -> str:
-    """A path as a shell's command takes it: never as an option."""
+    """A path quoted for a shell, and never taken for an option."""
     text = str(path)
     return shlex.quote(f"./{text}" if text.startswith("-") else text)
 
 
 def remedy_of(error: BaseException) -> str:
-    """What to do about it, with a colon in front; nothing where the message says so itself."""
+    """The remedy, preceded by a colon; "" if the message already contains it."""
     remedy = _REMEDIES.get(error.errno or 0) if isinstance(error, OSError) else None
     return f": {remedy}" if remedy else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How progress is told: a bar on a terminal, a line a frame elsewhere, JSON, or a farm's own lines."""
+"""Progress output: a bar on a terminal, otherwise one line per frame, JSON, or a farm's own format."""
 
 from __future__ import annotations
 
@@ -22,34 +22,34 @@ _LOG = logging.getLogger(__name__)
 _BAR = 30
 
 
-#: s without a word, after which it is told what is being done for a frame
+#: time in s without output after which the progress of a frame is printed
 _SILENCE = 5.0
 
 
 class Seldom:
-    """Passes on what is being done for a frame when nothing has been said for a while."""
+    """Passes on the progress of a frame if there was no output for a while."""
 
     def __init__(self, tell: Callable[[Frame, str], None]) -> None:
         self._tell = tell
         self.was_heard()
 
     def was_heard(self) -> None:
-        """Something else has been said."""
+        """Record that something else was printed."""
         self._last = time.monotonic()
 
     def __call__(self, frame: Frame, doing: str) -> None:
-        """Say what is being done, unless something was said just now."""
+        """Print the progress, unless something was printed just now."""
         if time.monotonic() - self._last >= _SILENCE:
             self.was_heard()
             self._tell(frame, doing)
 
 
 class Progress:
-    """Tells what a command does.
+    """Prints the progress of a command.
 
     name : of the sea
-    machine : JSON, an object a line
-    openjd : also the lines that an Open Job Description worker understands
+    machine : print JSON, one object per line
+    openjd : also print lines for an Open Job Description worker
     """
 
     def __init__(
@@ -65,16 +65,16 @@ class Progress:
         self._started = time.monotonic()
         self._drawn = 0
         self._doing = ""
-        #: what is being done for a frame is said to it
+        #: receives the progress of a frame
         self.tell = Seldom(self._say_doing)
 
     @property
     def is_complete(self) -> bool:
-        """Whether all frames that were to be made are."""
+        """Whether all frames are done."""
         return self._done >= self._total
 
     def say(self, text: str, **data: Any) -> None:
-        """A line of text, or its data for a machine."""
+        """Print a line of text, or its data as JSON."""
         self._note(text)
         if self.machine:
             self._print(json.dumps({"sea": self.name, **data}))
@@ -83,18 +83,18 @@ class Progress:
             self._print("\n".join(printable(line, LONGEST) for line in lines))
 
     def remark(self, text: str) -> None:
-        """A line that says why nothing happens."""
+        """Print a line that explains a wait."""
         self.say(text, remark=text)
 
     def begin(self, total: int) -> None:
-        """Frames are made from now on."""
+        """Start counting frames."""
         self.tell.was_heard()
         self._total, self._done, self._started = total, 0, time.monotonic()
         if total == 0:
             self.share("nothing left to do")
 
     def frame(self, baked: BakedFrame) -> None:
-        """A frame has been made."""
+        """Report a finished frame."""
         self._done += 1
         self._doing = ""
         self.tell.was_heard()
@@ -115,7 +115,7 @@ class Progress:
         self.share(f"frame {label}")
 
     def _say_doing(self, frame: Frame, doing: str) -> None:
-        """Of a frame that takes long."""
+        """Print the progress of a slow frame."""
         label = format_frames((frame,))
         self._doing = f"frame {label} {doing}"
         if self._is_terminal:
@@ -125,24 +125,24 @@ class Progress:
         self.share(self._doing)
 
     def share(self, status: str) -> None:
-        """What part is done, for a farm."""
+        """Report the completed fraction to a farm."""
         if self.openjd:
             part = 100.0 * self._done / self._total if self._total else 100.0
             self._print(f"openjd_progress: {part:.1f}")
             self._print(f"openjd_status: {self.name}: {status} ({self._done}/{self._total})")
 
     def count(self, status: str) -> None:
-        """One more is done that needs no line of its own."""
+        """Count an item without printing a line."""
         self._done += 1
         self.share(status)
 
     def fail(self, reason: str) -> None:
-        """Tell a farm why."""
+        """Report the reason of a failure to a farm."""
         if self.openjd:
             self._print(f"openjd_fail: {self.name}: {reason}")
 
     def end(self) -> None:
-        """No more frames are made."""
+        """Finish the progress output."""
         if self._drawn:
             self._print("")
 
@@ -151,7 +151,7 @@ class Progress:
         passed = time.monotonic() - self._started
         left = duration(passed / self._done * (self._total - self._done)) if self._done else "?"
         bar = "#" * filled + "." * (_BAR - filled)
-        # a line that is longer than the terminal would not be drawn over by the next
+        # the next line would not overwrite one that is longer than the terminal
         columns = shutil.get_terminal_size().columns - 1
         line = f"{self._done}/{self._total} [{bar}] {left} left  {self.name}"
         line = f"{line}  {self._doing}".rstrip()[:columns]
@@ -160,7 +160,7 @@ class Progress:
         self._drawn = len(line)
 
     def _note(self, text: str) -> None:
-        """For the log's file."""
+        """Write to the log file."""
         _LOG.info("%s: %s", self.name, text, extra=PRINTED)
 
     def _print(self, line: str) -> None:

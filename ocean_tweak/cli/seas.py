@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which seas a command is about: those of a file of parameters or of the open .blend file, and changes."""
+"""The seas for a command: from a parameter file or the open .blend file, with changes from the command
+line."""
 
 from __future__ import annotations
 
@@ -27,14 +28,14 @@ from .outcome import UsageError
 
 
 class FileSea(NamedTuple):
-    """A sea of a file, and what a .blend file says of it.
+    """A sea from a file, with further data from a .blend file.
 
-    uid : tells it from other seas of the same name; None for one that has none of its own
+    uid : distinguishes it from other seas of the same name; None if it has none
     frames : of the scene
-    cache : where the file keeps its baked frames
-    maps : what the file needs of a bake, whatever else is asked for
-    needs : what of it stands still in a Blender without the extension, a line each
-    place : x and y in m of the camera around which spray is made; None for spray of the sea's tile
+    cache : the file's folder for baked frames
+    maps : maps that the file always needs in a bake
+    needs : what will not move in a Blender without the extension, one line each
+    place : position (x, y) in m of the camera around which spray is created; None for spray on the sea's tile
     """
 
     shot: Shot
@@ -46,19 +47,19 @@ class FileSea(NamedTuple):
     place: tuple[float, float] | None = None
 
     def first_parameters(self) -> OceanParameters:
-        """Those of the first frame that is animated, or of all."""
+        """Parameters at the first animated frame, or of all frames."""
         animation = self.shot.animation
         return self.shot.parameters if animation is None else self.shot.at(animation.first_frame).parameters
 
 
-#: `--params -`: what is piped in
+#: `--params -`: read from standard input
 _STDIN = Path("-")
 
 SceneOceans = Callable[[], Mapping[str, FileSea]]
 
 
 def chosen_seas(arguments: argparse.Namespace, scene_oceans: SceneOceans | None) -> dict[str, FileSea]:
-    """The seas that the command is about, by name. Raises ParameterError or UsageError."""
+    """The seas for the command, by name. Raises ParameterError or UsageError."""
     if arguments.preset is not None:
         seas = {arguments.preset: FileSea(Shot(built_in()[arguments.preset].parameters))}
     elif arguments.params is not None or scene_oceans is None:
@@ -101,7 +102,7 @@ def _chosen(oceans: Mapping[str, FileSea], name: str | None) -> dict[str, FileSe
 
 
 def changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
-    """The shot with the command line's changes, and with spray where that is asked for.
+    """The shot with the command line's changes, and with spray if requested.
 
     Raises ParameterError or UsageError.
     """
@@ -128,7 +129,7 @@ def changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
 
 
 def _value(text: str) -> Any:
-    """JSON where it is JSON, else the text itself: names of enumerations need no quotes."""
+    """Parse as JSON, or keep the text itself, so that enumeration names need no quotes."""
     try:
         return parse_json(text)
     except ParameterError:
@@ -136,13 +137,13 @@ def _value(text: str) -> Any:
 
 
 def _assign(data: Any, path: str, value: Any) -> None:
-    """Set data[a][0][b] for the path a.0.b; the parameters' own validation judges the result.
+    """Set data[a][0][b] for the path a.0.b; the result is validated with the parameters.
 
     What a sea may lack, such as its coast, is begun by what is set in it, and a file takes a raster's place.
     """
     *parents, last = path.split(".")
     metadata: Mapping[str, Any] = {"nested": OceanParameters}
-    is_begun = False  # which keys there may be, validation knows
+    is_begun = False  # keys are checked by validation
     for key in parents:
         if isinstance(data, dict):
             metadata = _metadata(metadata, data, key)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`bake --spray`: particles beside the images of a sea, made by one process in the order of frames."""
+"""`bake --spray`: particles beside the images of a sea, computed by one process in the order of frames."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ from .stopping import stop_requested
 
 
 def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
-    """The spray that a command asks for; None where it asks for none.
+    """The spray requested by a command, or None.
 
-    Raises UsageError or ParameterError for what cannot be, and for more than the memory holds.
+    Raises UsageError or ParameterError for an impossible combination, and for more particles than fit into
+    memory.
     """
     if not arguments.spray:
         if arguments.spray_place is not None:
@@ -38,13 +39,13 @@ def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
             "--spray: the sum of patches does not repeat: say where it is seen, --spray-place 0 0"
         )
     spray = parameters.spray
-    assert spray is not None  # the command's changes have given it one
+    assert spray is not None  # set by the command's changes
     check_spray(parameters, spray)
     return WantedSpray(spray, place if parameters.patches else None)
 
 
 def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequence[Frame]) -> int:
-    """Make what is missing of the frames' spray. Returns the exit code."""
+    """Bake missing spray frames. Returns the exit code."""
     progress = Progress(files.name, arguments.json, arguments.openjd)
     with (
         stop_requested() as stop,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ctrl-C and SIGTERM: what is under way is finished or, where that takes too long, given up; nothing more is
-begun.
+"""Ctrl-C and SIGTERM: frames in progress are finished or, if that takes too long, given up; no more are
+started.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from types import FrameType
 from typing import NoReturn
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
-#: no signal has this number
+#: not the number of a signal
 _OVER = 0
 
-#: s that what is under way has to end
+#: time in s for frames in progress to finish
 PATIENCE = 3.0
-#: s that it has in a worker: whoever started it waits for it
+#: the same time in a worker, shorter because its parent waits for it
 WORKERS_PATIENCE = 2.0
 
 
 @contextlib.contextmanager
 def stop_requested(give_up: Callable[[], object] | None = None) -> Iterator[threading.Event]:
-    """An event that is set by the first Ctrl-C or SIGTERM.
+    """Context manager for an event that is set by the first Ctrl-C or SIGTERM.
 
-    give_up : ends the process, whatever it does; called, on another thread, where this is still open
-        PATIENCE seconds later, or at a second signal. Without it a second signal does what it did before.
+    give_up : ends the process at once; called on another thread if this is still open PATIENCE seconds later,
+        or at a second signal. Without it, a second signal has its previous effect.
     """
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():
-        yield event  # signals are the main thread's
+        yield event  # signals are handled by the main thread
         return
     before = {number: signal.getsignal(number) for number in _SIGNALS}
 
@@ -56,7 +56,7 @@ def stop_requested(give_up: Callable[[], object] | None = None) -> Iterator[thre
 
 @contextlib.contextmanager
 def _watched(event: threading.Event, give_up: Callable[[], object]) -> Iterator[None]:
-    """Signals are seen by a thread: the main one does not come to them while it is in a long operation."""
+    """Watch for signals on a separate thread, as the main one cannot handle them during a long operation."""
 
     def watch() -> None:
         asked = False
@@ -89,7 +89,7 @@ def _watched(event: threading.Event, give_up: Callable[[], object]) -> Iterator[
 
 
 def end_now(code: int) -> NoReturn:
-    """End the process without waiting for its threads; what they have not finished is lost."""
+    """End the process without waiting for its threads; their unfinished work is lost."""
     logging.shutdown()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError, AttributeError):

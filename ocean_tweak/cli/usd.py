@@ -29,7 +29,7 @@ from .stopping import stop_requested
 
 _LOG = logging.getLogger(__name__)
 
-#: threads that make frames: one computes while another writes
+#: threads that compute frames: one computes while another writes
 _THREADS = 2
 
 
@@ -93,7 +93,7 @@ def _make(
     progress: Progress,
     stopped: Callable[[], bool],
 ) -> None:
-    """Make frames, and the spray of all frames where it is wanted and not left for the end."""
+    """Write frames, and the spray of all frames if requested and not left for later."""
     spray = arguments.spray and not arguments.only
     if not frames and not spray:
         return
@@ -124,7 +124,8 @@ def _stopped(package: Package) -> str:
 def _what(
     arguments: argparse.Namespace, scene_oceans: SceneOceans | None
 ) -> tuple[FileSea, tuple[Frame, ...], Area | None]:
-    """The sea, its frames and its area, of the arguments or of a bake. Raises UsageError or CacheError."""
+    """The sea, its frames and its area, from the arguments or from a bake. Raises UsageError or
+    CacheError."""
     if arguments.bake is not None:
         return _of_bake(arguments)
     seas = chosen_seas(arguments, scene_oceans)
@@ -165,7 +166,7 @@ def _of_bake(arguments: argparse.Namespace) -> tuple[FileSea, tuple[Frame, ...],
 
 
 def _on_its_texels(area: Area | None) -> Area | None:
-    """The area of a mesh that has a vertex a texel of a bake's images."""
+    """The area of a mesh with one vertex per texel of a bake's images."""
     if area is None:
         return None
     quads = area.resolution - 1
@@ -173,7 +174,7 @@ def _on_its_texels(area: Area | None) -> Area | None:
 
 
 def verify(arguments: argparse.Namespace) -> int:
-    """Read an asset back and say what is wrong with it."""
+    """Read an asset back and report what is wrong with it."""
     progress = Progress(arguments.file.stem, arguments.json)
     count = 0
     for frame, text in problems_of(arguments.file, arguments.frames):

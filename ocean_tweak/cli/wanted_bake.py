@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bake that a command's arguments describe, and where it is."""
+"""The bake described by a command's arguments, and its folder."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .seas import FileSea
 
 
 def jobs_of(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> dict[str, Job]:
-    """What would be baked of each sea, by its name in the file. Raises UsageError or ParameterError."""
+    """The bake job of each sea, by its name in the file. Raises UsageError or ParameterError."""
     if arguments.name and len(seas) > 1:
         raise UsageError("--name: the file has several oceans; choose one with --object")
     if arguments.uid and len(seas) > 1:
@@ -32,14 +32,14 @@ def _job(arguments: argparse.Namespace, name: str, sea: FileSea) -> Job:
         sea.shot.check(frames)
     name = safe_name(arguments.name or name)
     uid = arguments.uid or sea.uid or uid_of(name)
-    # no longer needed where --set made it a sea of one patch
+    # not needed if --set reduced it to one patch
     needed = sea.maps if sea.shot.parameters.patches and arguments.area is None else ()
     maps = (*arguments.maps, *needed)
     return Job(name, uid, sea.shot, maps, arguments.compression, frames, arguments.area)
 
 
 def cache_of(arguments: argparse.Namespace, sea: FileSea) -> Path:
-    """The folder of all bakes. Raises UsageError where nobody said which."""
+    """The cache folder. Raises UsageError if none was given."""
     cache = known_cache(arguments.out, sea)
     if cache is None:
         raise UsageError(f"--out: say where the frames go, or set the environment variable {CACHE_VARIABLE}")
@@ -47,9 +47,9 @@ def cache_of(arguments: argparse.Namespace, sea: FileSea) -> Path:
 
 
 def known_cache(chosen: Path | None, sea: FileSea) -> Path | None:
-    """The folder of all bakes: the chosen one, else the .blend file's, else the environment's.
+    """The cache folder: the chosen one, or the .blend file's, or the environment's.
 
-    Raises UsageError where the environment's is none of this system.
+    Raises UsageError if that of the environment is a path of another system.
     """
     if chosen or sea.cache:
         return chosen or sea.cache
@@ -60,7 +60,7 @@ def known_cache(chosen: Path | None, sea: FileSea) -> Path | None:
 
 
 def existing_folder(cache: Path, job: Job) -> Path:
-    """The folder of a bake. Raises CacheError where there is none."""
+    """The folder of a bake. Raises CacheError if it does not exist."""
     folder = find_folder(cache, job)
     if folder is None:
         raise CacheError(
@@ -71,11 +71,11 @@ def existing_folder(cache: Path, job: Job) -> Path:
 
 
 def only_bake(place: Path, machine: bool) -> Path:
-    """The folder of the only bake in a folder, which may be the bake's own or what was given to `--out`.
+    """The only bake in a folder, which may be the bake itself or the folder given to `--out`.
 
     machine : list several as JSON
 
-    Raises UsageError where there are several, after listing them. Where there is none, the folder itself.
+    If there are several, lists them and raises UsageError. If there is none, returns the folder itself.
     """
     found = bakes_in(place)
     if len(found) < 2:

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processes that share the frames of a bake. One that is killed is started again for what it left.
+"""Worker processes that share the frames of a bake. A killed one is restarted for its remaining frames.
 
-A process runs this module with the folder as its argument: it reads a JSON line that says which frames, makes
-them from what lies in the folder and prints a JSON line a frame. It locks nothing: whoever started it holds
-the lock. When its input is closed, as it is when whoever started it is gone, it ends: after its frame or,
-where that takes too long, in the middle of it.
+A worker runs this module with the folder as its argument. It reads a JSON line with its frames, bakes them
+from the job in the folder and prints a JSON line per frame. It does not lock: its parent holds the lock. When
+its input is closed, as happens when the parent dies, it ends after its frame or, if that takes too long, in
+the middle of it.
 
-Python's own pool of processes, `concurrent.futures.ProcessPoolExecutor`, does none of this. Where one process
-is killed, it ends the others in the middle of their frames and gives up all that was asked for. Where whoever
-started them is killed, even by SIGTERM, they stay and wait for ever. And they take modules from the folder
-that one stands in, which somebody else may have sent. Only threads are its: each minds one process.
+`concurrent.futures.ProcessPoolExecutor` does none of this. If a process is killed, it ends the others in the
+middle of their frames and fails entirely. If the parent is killed, even by SIGTERM, its processes wait for
+ever. And they import modules from the current folder, which may contain files from others. Only threads are
+used from it: each supervises one process.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from .stopping import WORKERS_PATIENCE, end_now
 
 _LOG = logging.getLogger(__name__)
 
-#: how often a process may die before its first frame
+#: number of times a process may die before its first frame
 _MOST_DEATHS = 3
 _LOOK = 0.2  # s
 
@@ -58,13 +58,13 @@ def make_in_processes(
     stopped: Callable[[], bool],
     tell: Callable[[Frame, str], None] = lambda frame, doing: None,
 ) -> Iterator[BakedFrame]:
-    """Make frames, each process a stretch of them; yields them as they are made.
+    """Bake frames, each process a contiguous part; yields them as they finish.
 
-    job : must be that of the folder
-    stopped : asked again and again; True lets every process end after its frame
-    tell : is told what is being done for a frame that takes long
+    job : that of the folder
+    stopped : polled; True lets every process end after its frame
+    tell : called with the progress of a slow frame
 
-    Raises what ended a process, as OSError or CacheError, or CacheError when one dies again and again.
+    Raises the error that ended a process, as OSError or CacheError, or CacheError if one dies repeatedly.
     """
     size = -(-len(frames) // workers)
     heard: queue.SimpleQueue[BakedFrame | tuple[Frame, str] | None] = queue.SimpleQueue()
@@ -77,7 +77,7 @@ def make_in_processes(
         under_way = len(stretches)
         try:
             while under_way:
-                # where one fails, the others end after their frame
+                # if one fails, the others end after their frame
                 if stopped() or any(each.done() and each.exception() for each in minding):
                     _end(stretches)
                 try:
@@ -103,10 +103,10 @@ def _end(stretches: Sequence[_Stretch]) -> None:
 
 @dataclass
 class _Stretch:
-    """Some frames, and the process that makes what is left of them.
+    """A part of the frames, and the process that bakes the rest of them.
 
-    heard : takes the frames, what is done for one that takes long, and None at the end
-    stopped : whether nobody wants them any more
+    heard : receives the frames, the progress of a slow one, and None at the end
+    stopped : whether they are no longer needed
     """
 
     folder: Path
@@ -120,7 +120,7 @@ class _Stretch:
     problem: CacheError | OSError | None = None
 
     def make(self) -> None:
-        """Make them, by one process after another where they are killed. Raises OSError or CacheError."""
+        """Bake them, starting a new process if one is killed. Raises OSError or CacheError."""
         deaths = 0
         try:
             while not self._is_over():
@@ -134,7 +134,7 @@ class _Stretch:
             self.heard.put(None)
 
     def end(self) -> None:
-        """Let the process end after its frame; there is no other one then."""
+        """Let the process end after its frame, and do not start another."""
         self.is_ended.set()
         self._close()
 
@@ -147,11 +147,11 @@ class _Stretch:
         return not self.left or self.is_ended.is_set() or self.stopped()
 
     def _refuse(self, code: int, deaths: int) -> None:
-        """Raise OSError or CacheError where another process would not help."""
+        """Raise OSError or CacheError if another process would not help."""
         said = " ".join(self.said).strip()
         if self.problem is not None:
             raise self.problem
-        if code == FAILED:  # Python's own end by an error, which would come again
+        if code == FAILED:  # Python's exit code for an error, which would occur again
             raise CacheError(f"a bake process failed: {said or 'without a word'}")
         if deaths >= _MOST_DEATHS:
             raise CacheError(
@@ -161,7 +161,7 @@ class _Stretch:
             )
 
     def _run(self) -> int:
-        """Let a process make what is left. Returns its code when it has ended."""
+        """Let a process bake the remaining frames. Returns its exit code."""
         self.said.clear()
         self.process = process = subprocess.Popen(
             [*module_command(__name__), str(self.folder)],
@@ -170,13 +170,13 @@ class _Stretch:
         )  # fmt: skip
         errors = threading.Thread(target=self._read_errors, args=(process.stderr,), daemon=True)
         errors.start()
-        # not among the arguments, whose length systems limit
+        # not as an argument, as systems limit their length
         order = {
             "frames": format_frames(self.left),
             "asked": format_frames(self.job.frames),
             "log": logs.level(),
         }
-        with contextlib.suppress(OSError, ValueError):  # it has ended already, or shall
+        with contextlib.suppress(OSError, ValueError):  # it has ended, or will
             assert process.stdin is not None
             process.stdin.write(json.dumps(order) + "\n")
             process.stdin.flush()
@@ -185,7 +185,7 @@ class _Stretch:
         for line in _lines(process.stdout):
             try:
                 said = json.loads(line)
-            except ValueError:  # what was being written when it was killed, or what a library had to say
+            except ValueError:  # an incomplete line of a killed process, or output of a library
                 continue
             if isinstance(said, dict):
                 self._take(said)
@@ -195,7 +195,7 @@ class _Stretch:
         return code
 
     def _take(self, line: dict[str, Any]) -> None:
-        """Take a line: a frame, what is done for one, or what ends the process."""
+        """Handle a line: a frame, the progress of one, or the error that ends the process."""
         if "failed" in line:
             code, path = line["errno"], line["path"]
             self.problem = OSError(code, os.strerror(code), path) if code else CacheError(line["failed"])
@@ -219,15 +219,15 @@ def _lines(stream: IO[str] | None) -> Iterator[str]:
 
 
 def main(argv: Sequence[str]) -> int:
-    """Make the frames that stdin tells in the folder argv[0]. Returns the exit code."""
+    """Bake the frames given on stdin in the folder argv[0]. Returns the exit code."""
     ended = threading.Event()
-    # Ctrl-C reaches the whole group: whoever started this process decides
+    # Ctrl-C reaches the whole process group: the parent decides
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda _number, _frame: ended.set())
     try:
         order = json.loads(sys.stdin.readline() or "{}")
         if not order:
-            return DONE  # nobody wants it any more
+            return DONE  # it is no longer needed
         threading.Thread(target=_watch, args=(ended,), daemon=True).start()
         threading.Thread(target=_give_up, args=(ended, Path(argv[0])), daemon=True).start()
         logs.to_console(order["log"])
@@ -235,7 +235,7 @@ def main(argv: Sequence[str]) -> int:
         job = read_job(folder, parse_frames(order["asked"]) if order["asked"] else ())
         _make(folder, job, parse_frames(order["frames"]), ended)
     except BrokenPipeError:
-        return DONE  # nobody wants to know
+        return DONE  # the parent has gone
     except (OSError, ExrError, CacheError, MemoryError) as error:
         code, path = (error.errno, error.filename) if isinstance(error, OSError) else (None, None)
         _say({"failed": message_of(error), "errno": code, "path": path and str(path)})
@@ -281,4 +281,4 @@ def _say(line: dict[str, Any]) -> None:
 
 if __name__ == "__main__":
     code = main(sys.argv[1:])
-    end_now(code)  # the thread that waits for stdin would hold up the interpreter's own way out
+    end_now(code)  # the thread waiting for stdin would block a normal exit

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files for other programs, from the core's fields. Never imports Blender."""
+"""Writes the core's fields to files for other programs. Never imports Blender."""

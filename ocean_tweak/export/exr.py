@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fields as OpenEXR images: one map a file, plain channel names, data rather than colour.
+"""Fields as OpenEXR images: one map per file, plain channel names, data instead of colour.
 
-Maps of which less is enough have 16 bits where the compression may lose something, others 32.
+With lossy compression, maps that need less precision have 16 bits, all others 32.
 
 Row 0 of an EXR image is its top row, so arrays [y, x] are written with their rows reversed.
 """
@@ -37,26 +37,26 @@ from .frame_files import frame_file
 
 METADATA_ATTRIBUTE = "oceanTweak"
 
-#: numbers of all channels together, all of which OpenEXR reads at once: a gigabyte
+#: largest number of values in all channels, which OpenEXR reads at once: a gigabyte
 MOST_NUMBERS = 2**28
 
 #: largest relative error of a stored value, by compression
 COMPRESSION_ERROR = {"PXR24": 2.0**-16, "ZIP": 0.0, "ZIPS": 0.0, "NONE": 0.0, "HTJ2K": 0.0}
 
-#: the compression that may lose something, and that of the maps which it lets have 16 bits
+#: the lossy compression, and the one used for its maps in 16 bits
 COMPACT, _OF_HALVES = "PXR24", "PIZ"
-#: largest error of a number in 16 bits, as a share of the power of two above its channel's largest: what is
-#: finer would be noise to a codec
+#: largest error of a value in 16 bits, relative to the power of two above its channel's maximum: finer detail
+# would be noise for the codec
 HALF_ERROR = 2.0**-11
 _LARGEST_HALF, _SMALLEST_HALF = (
     float(np.finfo(np.float16).max),
     float(np.finfo(np.float16).smallest_subnormal),
 )
 
-#: what damaged images give: wrong bytes, text that is no text, JSON that is none or too deep
+#: errors raised by damaged images: wrong bytes, undecodable text, invalid or too deeply nested JSON
 _UNREADABLE = (RuntimeError, KeyError, ValueError, TypeError, OSError, RecursionError)
 
-#: OpenEXR's names where they differ
+#: OpenEXR's names that differ from ours
 _OPENEXR_NAMES = {"NONE": "NO", "HTJ2K": "HTJ2K256"}
 
 
@@ -70,18 +70,18 @@ class NewerExrError(ExrError):
 
 @contextlib.contextmanager
 def silenced() -> Iterator[None]:
-    """Without what libraries print of files that they cannot read: the error says it in one line.
+    """Suppress what libraries print about unreadable files, as the error says it in one line.
 
-    In other threads than the main one their messages stay: what a process prints to is one thing for all
-    threads, and two at once could not put back what they find.
+    On other threads than the main one, messages are not suppressed: standard error is shared by all threads,
+    and two at once could not restore it.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     with contextlib.ExitStack() as stack:
-        # what Python prints may be read by machines
+        # Python's own output may be parsed by programs
         stack.enter_context(contextlib.redirect_stdout(io.StringIO()))
-        with contextlib.suppress(OSError):  # a program in a window may have no place for messages
+        with contextlib.suppress(OSError):  # a graphical program may have no standard error
             kept = os.dup(2)
             stack.callback(os.close, kept)
             stack.callback(os.dup2, kept, 2)
@@ -92,7 +92,7 @@ def silenced() -> Iterator[None]:
 
 
 def load_openexr() -> Any:
-    """The OpenEXR package. Raises ExrError, with the remedy, where there is none."""
+    """Import the OpenEXR package. Raises ExrError, with the remedy, if it is missing."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -105,13 +105,13 @@ def load_openexr() -> Any:
 
 @dataclass(frozen=True)
 class ExrSequence:
-    """A sink for frames: NAME_map.####.exr in a folder, one file a map; of a patch, NAME_p1_map.####.exr.
+    """Writes frames as NAME_map.####.exr into a folder, one file per map; for a patch, NAME_p1_map.####.exr.
 
-    parameters : what made the frames; stands in every header
-    patch : the number of the patch, from 0, whose frames these are, in a sea of several
+    parameters : of the frames; stored in every header
+    patch : index of the patch, from 0, in a sea of several
     compression : a key of COMPRESSION_ERROR
     maps : keys of `core.synthesis.channels.MAPS`
-    area : the square that they show, of the whole sea; None for the tile of the sea or of the patch
+    area : the square that is shown; None for the tile of the sea or of the patch
     encoding : version of `core.data.formats.ENCODING`
     """
 
@@ -130,13 +130,13 @@ class ExrSequence:
         return channels_of(self.maps)
 
     def path(self, frame: Frame, map_name: str = MOVING_MAP) -> Path:
-        """Where a frame's map goes."""
+        """Path of a frame's map."""
         patch = None if self.patch is None else self.patch + 1
         return self.directory / frame_file(self.name, map_name, frame, patch)
 
     @property
     def domain_size(self) -> float:
-        """Side of what an image shows, m."""
+        """Side of the square in an image, m."""
         if self.area is not None:
             return self.area.size
         return self.parameters.domain_size if self.patch is None else self._patch.domain_size
@@ -171,13 +171,13 @@ class ExrSequence:
         return _encoded(path, image, metadata, fps, self.compression, self.is_halved(name))
 
     def is_halved(self, name: str) -> bool:
-        """Whether a map has 16 bits."""
+        """Whether a map is stored in 16 bits."""
         return self.encoding > 1 and name in halved_maps(self.maps, self.compression)
 
     def _content(
         self, frame: Frame, fields: SurfaceFields, name: str
     ) -> tuple[NDArray[np.floating], dict[str, Any]]:
-        """A map's image and what its header tells."""
+        """A map's image and its header."""
         metadata = {
             "format": formats.IMAGE,
             "map": name,
@@ -197,7 +197,7 @@ class ExrSequence:
 
 
 def halved_maps(maps: Iterable[str], compression: str) -> frozenset[str]:
-    """Those of some maps that have 16 bits with a compression."""
+    """The maps stored in 16 bits with a compression."""
     return HALVED_MAPS.intersection(maps) if compression == COMPACT else frozenset()
 
 
@@ -209,14 +209,14 @@ def write_image(
     compression: str = "PXR24",
     halved: bool = False,
 ) -> None:
-    """Write an (N, M, 3) array [y, x] as R, G, B; the file appears whole or not at all.
+    """Write an (N, M, 3) array [y, x] as R, G, B; the file appears complete or not at all.
 
-    halved : whether they have 16 bits, and the compression of those
+    halved : whether to store 16 bits
 
-    Raises ExrError for a value that is not finite and OSError for what the disk refuses.
+    Raises ExrError for a value that is not finite, and OSError if it cannot be written.
     """
     encoded = _encoded(path, image, metadata, fps, compression, halved)
-    # not written by OpenEXR: of the last bytes that a disk refuses it says nothing
+    # not written by OpenEXR, which does not report a disk that refuses the last bytes
     with whole_file(path) as beside:
         beside.write_bytes(encoded)
 
@@ -240,7 +240,7 @@ def _encoded(
         "framesPerSecond": fps,
         METADATA_ATTRIBUTE: json.dumps(metadata),
     }
-    # OpenEXR writes arrays that are not contiguous wrongly, without a word
+    # OpenEXR silently writes non-contiguous arrays wrongly
     rows = np.asarray(image, np.float32)[::-1]
     channels = {name: np.ascontiguousarray(rows[..., index]) for index, name in enumerate("RGB")}
     if halved:
@@ -261,7 +261,7 @@ def _halved(path: Path, channel: NDArray[np.float32]) -> NDArray[np.float16]:
     result = np.zeros(channel.shape, np.float16)
     if largest < _SMALLEST_HALF / 2.0:
         return result
-    # there are so few numbers that a table turns them in a fraction of the time that NumPy's conversion takes
+    # there are so few different values that a lookup table is much faster than NumPy's conversion
     most = round(0.5 / HALF_ERROR)
     step = 2.0 ** math.ceil(math.log2(largest)) / most
     numbers = np.clip(step * np.arange(-most, most + 1), -_LARGEST_HALF, _LARGEST_HALF)
@@ -279,7 +279,7 @@ def read_image(
 ) -> tuple[NDArray[np.float32], dict[str, Any]]:
     """The (N, M, 3) array [y, x] and the metadata of an image written by `write_image`.
 
-    shape : (N, M) that it must have; otherwise its pixels, which may be very many, are not read
+    shape : (N, M) that it must have; if not, its pixels, which may be very many, are not read
 
     Raises ExrError for a file that is damaged, not one of ours or of another shape.
     """
@@ -333,7 +333,7 @@ def _raw_header(path: Path) -> dict[str, Any]:
     openexr = load_openexr()
     try:
         with silenced(), open_file(path) as stream, openexr.File(stream, header_only=True) as file:
-            header = dict(file.header())  # the file empties its own when it is closed
+            header = dict(file.header())  # copied, as the file frees its own when it is closed
     except _UNREADABLE as error:
         raise ExrError(f"{path}: not a readable image of Ocean Tweak ({printable(error, 200)})") from error
     if not {"type", "dataWindow"} <= header.keys():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files written so that nobody ever sees half of one, also from several machines at once, and read with care:
-what somebody sent may be a link, a pipe or without end.
+"""Atomic writing of files, also by several machines at once, and safe reading: a file from elsewhere may be a
+link, a pipe or endless.
 """
 
 from __future__ import annotations
@@ -15,39 +15,40 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
-#: ending of what is not whole yet
+#: suffix of unfinished files
 PART = ".part"
 
-#: bytes of a JSON file: far more than any sea has with its images
+#: largest size of a JSON file in bytes: far more than any sea with its images
 LARGEST_JSON = 64_000_000
 
-#: s for which a file is replaced again and again: on Windows that fails while somebody reads the old one
+#: time in s for which replacing a file is retried: on Windows it fails while another process reads the old
+# one
 _REPLACE_PATIENCE = 5.0 if os.name == "nt" else 0.0
-#: s to wait for a file lock, which nobody alive holds as long
+#: time in s to wait for a file lock, longer than any process holds one
 _LOCK_PATIENCE = 10.0
 
-#: what file systems without synced folders answer
+#: errors of file systems that cannot sync folders
 _NO_FOLDER_SYNC = {errno.EINVAL, errno.ENOTSUP, errno.EBADF, errno.EACCES, errno.EISDIR}
 
 
-#: of the names of what this process writes: no other has it, on this machine or another
+#: unique part of the names that this process writes, different on every machine and in every process
 _OWN = uuid.uuid4().hex
 
 
 def _beside(path: Path) -> Path:
-    """A name that nobody else has, even where process numbers agree."""
+    """A unique name beside a path, even if process ids are equal."""
     return path.with_name(f".{path.name}.{_OWN[:16]}{uuid.uuid4().hex[:16]}{PART}")
 
 
 def remove_begun(folder: Path) -> None:
-    """Remove what this process has begun to write in a folder; it is about to end."""
+    """Remove unfinished files of this process in a folder, before it ends."""
     for part in folder.glob(f".*.{_OWN[:16]}*{PART}"):
         with contextlib.suppress(OSError):
             part.unlink()
 
 
 def is_link(path: Path) -> bool:
-    """Whether a name leads elsewhere: a symbolic link, or a junction of Windows."""
+    """Whether a path is a symbolic link or a Windows junction."""
     try:
         status = path.lstat()
     except OSError:
@@ -59,8 +60,8 @@ def is_link(path: Path) -> bool:
 
 
 def open_file(path: Path) -> BinaryIO:
-    """A file's bytes, to be read. Raises OSError for what is no plain file."""
-    # a pipe would keep whoever opens it waiting for ever
+    """Open a file for reading. Raises OSError if it is not a regular file."""
+    # opening a pipe could block for ever
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
@@ -69,7 +70,7 @@ def open_file(path: Path) -> BinaryIO:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """A file's bytes. Raises OSError for what is no plain file, or has more of them than `most`."""
+    """A file's bytes. Raises OSError if it is not a regular file, or larger than `most`."""
     with open_file(path) as file:
         content = file.read(most + 1)
     if len(content) > most:
@@ -78,15 +79,15 @@ def read_bytes(path: Path, most: int) -> bytes:
 
 
 def begun_file(part: Path) -> str:
-    """The name that an unfinished file was to get."""
+    """The final name of an unfinished file."""
     return part.name[1:].rsplit(".", 2)[0]
 
 
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A path beside `path` to write to; on success it is synced and takes the place of `path`.
+    """Context manager for a temporary path beside `path`; on success it is synced and replaces `path`.
 
-    On any error the old file stays as it was and what was written is removed; an OSError names `path`.
+    On any error the old file is kept and the new one removed; an OSError names `path`.
     """
     beside = _beside(path)
     try:
@@ -103,12 +104,12 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file that appears whole; on any error the old one stays as it was."""
+    """Write a file atomically; on any error the old one is kept."""
     write_texts({path: text})
 
 
 def write_texts(texts: Mapping[Path, str]) -> list[Path]:
-    """Write files that belong together: none of them is replaced before the disk has taken all.
+    """Write files that belong together: none is replaced before all have been written.
 
     Returns their paths.
     """
@@ -135,9 +136,9 @@ def _replace(source: Path, target: Path) -> None:
 
 
 def new_file(path: Path, text: str) -> bool:
-    """Write a file that appears whole, unless there is one. Returns whether this one is there now.
+    """Create a file atomically unless it exists. Returns whether this call created it.
 
-    Of several that try at the same time, one succeeds.
+    If several processes try at the same time, one succeeds.
     """
     beside = _beside(path)
     try:
@@ -168,22 +169,22 @@ def _claim(beside: Path, path: Path) -> bool:
 
 @contextlib.contextmanager
 def alone(path: Path) -> Iterator[None]:
-    """Nobody else in here who asks for the same file; for a moment only.
+    """Context manager for exclusive access by a short file lock.
 
-    The system lets go of the lock of a process that dies. On a disk without file locks, or when one is held
-    for much too long, everybody gets in: what is done in here must not rely on it alone.
+    The system releases the lock of a process that dies. On a disk without file locks, or if one is held for
+    much too long, access is granted anyway: callers must not rely on it alone.
     """
-    # no link is followed to whatever it leads to
+    # links are not followed
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     with open(os.open(path, flags, 0o666), "r+b") as file:  # noqa: PTH123
         until = time.monotonic() + _LOCK_PATIENCE
         while not _locked(file) and time.monotonic() < until:
             time.sleep(0.01)
-        yield  # closing the file lets go
+        yield  # closing the file releases the lock
 
 
 def _locked(file: BinaryIO) -> bool:
-    """Whether the file's lock is held now, or there are none on this disk."""
+    """Try to lock a file; also True if this disk has no file locks."""
     try:
         if os.name == "nt":
             import msvcrt
@@ -202,7 +203,7 @@ def _locked(file: BinaryIO) -> bool:
 
 
 def sync_folder(path: Path) -> None:
-    """Make the names in a folder last, where the system can."""
+    """Sync a folder's entries to disk, if the system can."""
     if os.name == "nt":
         return
     descriptor = os.open(path, os.O_RDONLY)
@@ -216,7 +217,7 @@ def sync_folder(path: Path) -> None:
 
 
 def writable_folder(path: Path) -> Path:
-    """The folder, made if it is missing. Raises OSError naming it when files cannot be written there."""
+    """The folder, created if missing. Raises OSError, with its name, if files cannot be written there."""
     path.mkdir(parents=True, exist_ok=True)
     probe = _beside(path / "ocean_tweak")
     try:

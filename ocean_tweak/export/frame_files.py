@@ -9,20 +9,20 @@ from typing import NamedTuple
 from ..core.data.frames import Frame, frame_label
 from ..core.synthesis.channels import MAPS
 
-#: what stands in the place of a map's name in files of points: all samples, and means for windows
+#: in place of a map's name in point files: all samples, and averages for the viewport
 POINTS, SMALL_POINTS = "points", "small_points"
-#: the same of spray, whose files are in a folder of this name
+#: the same for spray, whose files are in a folder of this name
 SPRAY = "spray"
-#: what can be baked, as jobs list it: images, and points
+#: everything that can be baked, as listed in jobs: images, and points
 BAKED = (*MAPS, POINTS)
 
 _IMAGE = re.compile(rf"(?P<name>.+)_(?P<map>{'|'.join(MAPS)})\.(?P<frame>-\d{{3,}}|\d{{4,}})\.exr")
 
 
 class ImageFile(NamedTuple):
-    """What the name of a whole frame's image tells.
+    """The parts of an image's file name.
 
-    name : of the sea, and of the patch where it has several: storm, storm_p2
+    name : of the sea, and of the patch if it has several: storm, storm_p2
     """
 
     name: str
@@ -34,19 +34,19 @@ def frame_file(name: str, map_name: str, frame: Frame, patch: int | None = None)
     """The name of a frame's file.
 
     map_name : one of MAPS, POINTS, SMALL_POINTS or SPRAY
-    patch : its number, from 1, in a sea of several
+    patch : its number, from 1, in a sea of several patches
     """
     ending = "ply" if map_name in (POINTS, SMALL_POINTS, SPRAY) else "exr"
     return f"{files_start(name, map_name, patch)}{frame_label(frame)}.{ending}"
 
 
 def files_start(name: str, map_name: str, patch: int | None = None) -> str:
-    """What the names of all frames' files begin with."""
+    """The common start of the names of all frames."""
     of_patch = "" if patch is None else f"_p{patch}"
     return f"{name}{of_patch}_{map_name}."
 
 
 def image_file_of(file_name: str) -> ImageFile | None:
-    """What a file's name tells; None where it is none of an image of a whole frame."""
+    """The parts of a file name; None if it is not an image of a whole frame."""
     match = _IMAGE.fullmatch(file_name)
     return None if match is None else ImageFile(match["name"], match["map"], int(match["frame"]))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the package's log goes: to the console, a line each, and to a file where one is asked for.
+"""Output of the package's log: to the console, one line each, and optionally to a file.
 
-Modules speak through `logging.getLogger(__name__)`. All of those names begin with the package's, which has
-another name inside Blender, so what is set up here touches no other program's log.
+Modules log through `logging.getLogger(__name__)`. All these names begin with that of the package, which
+differs inside Blender, so other loggers are not affected.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 
 from ..core.data.printable import LONGEST, printable
 
-#: of the record of a line that a command has printed itself: it goes to the file alone
+#: attribute of a record that a command has already printed: it goes to the file only
 PRINTED = {"printed": True}
 #: from the quietest, as `--verbose` counts them
 LEVELS = (logging.WARNING, logging.INFO, logging.DEBUG)
@@ -27,7 +27,7 @@ LEVELS = (logging.WARNING, logging.INFO, logging.DEBUG)
 _CONSOLE, _FILE = "Ocean Tweak console", "Ocean Tweak file"
 _PACKAGE = logging.getLogger(__name__.rpartition(".export.")[0])
 _PREFIX = "ocean_tweak: "
-#: in front of what nobody hears who did not ask for it
+#: prefix of messages that are shown only on request
 _QUIET = {logging.INFO: "info: ", logging.DEBUG: "debug: "}
 
 
@@ -39,15 +39,15 @@ class _Console(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         if sys.stderr is not None and not getattr(record, "printed", False):
-            with contextlib.suppress(OSError, ValueError):  # nobody listens any more
+            with contextlib.suppress(OSError, ValueError):  # the reader has gone
                 print(self.format(record), file=sys.stderr, flush=True)
 
 
 class _File(logging.StreamHandler[Any]):
-    """A file that several processes may append to, also from several machines."""
+    """A log file to which several processes and machines may append."""
 
     def __init__(self, path: Path) -> None:
-        # a fifo would wait for a reader, and a link lead elsewhere
+        # a fifo would wait for a reader, and a link could lead elsewhere
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT
         flags |= getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
         descriptor = os.open(path, flags, 0o666)
@@ -63,7 +63,7 @@ class _File(logging.StreamHandler[Any]):
         return f"{line}\n{formatter.formatException(record.exc_info)}" if record.exc_info else line
 
     def handleError(self, record: logging.LogRecord) -> None:
-        """A bake goes on without its log: of a full disk its images tell."""
+        """A bake continues without its log; a full disk is reported by its images."""
 
     def close(self) -> None:
         with contextlib.suppress(OSError):
@@ -72,43 +72,43 @@ class _File(logging.StreamHandler[Any]):
 
 
 def to_console(level: int = logging.WARNING) -> None:
-    """Let what is said at a level or above be heard on standard error. May be called again and again."""
+    """Print messages of a level and above to standard error. May be called repeatedly."""
     _replace(_CONSOLE, _Console(), level)
 
 
 def to_file(path: Path) -> None:
-    """Append to a file what is said from now on, and to none that was named before.
+    """Append messages to a file from now on, instead of to any earlier one.
 
-    Raises OSError naming a path that cannot be written or is no file.
+    Raises OSError, with the path, if it cannot be written or is not a file.
     """
     _replace(_FILE, _File(path), min(logging.INFO, level()))
 
 
 def end() -> None:
-    """Let go of the console and of the file."""
+    """Close the console and the file."""
     _replace(_CONSOLE)
     end_file()
 
 
 def end_file() -> None:
-    """Let go of the file."""
+    """Close the file."""
     _replace(_FILE)
 
 
 def level() -> int:
-    """The level from which somebody hears: console or file."""
+    """The lowest level shown on the console or in the file."""
     return _PACKAGE.getEffectiveLevel()
 
 
 def verbose_arguments() -> list[str]:
-    """What makes another command of ours as loud as this process is."""
+    """Arguments that give another of our commands the same verbosity."""
     return ["--verbose"] * max(0, (logging.WARNING - level()) // 10)
 
 
 def relay(line: str, logger: logging.Logger) -> str:
-    """Say what another process of ours has printed to its console. Returns it as it was said.
+    """Log what another of our processes has printed. Returns the text unchanged.
 
-    What a library had to say is for those who look for more.
+    Output of libraries is logged at a lower level.
     """
     text, level = line.strip(), logging.DEBUG
     if text.startswith(_PREFIX):
@@ -126,7 +126,7 @@ def _line(record: logging.LogRecord) -> str:
 
 
 def _replace(name: str, handler: logging.Handler | None = None, level: int = logging.NOTSET) -> None:
-    """Put a handler in place of the one of its name, and keep the log down to what somebody hears."""
+    """Replace the handler of the same name, and set the log's level to the lowest one shown."""
     for old in [old for old in _PACKAGE.handlers if old.name == name]:
         _PACKAGE.removeHandler(old)
         old.close()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a path that somebody wrote means on this system, and the cache that the environment names."""
+"""Interprets paths on this system, and the cache folder from the environment."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _OF_WINDOWS = re.compile(r"[A-Za-z]:([\\/]|$)|\\\\")
 
 
 def is_foreign(text: str) -> bool:
-    """Whether a path begins with a drive or a server of Windows and this system has neither."""
+    """Whether a path begins with a Windows drive or server on another system."""
     return os.name != "nt" and _OF_WINDOWS.match(text) is not None
 
 
 def path_of(text: str) -> Path:
-    """The path, `~` being the user's home. Raises ValueError, in a line, for one of another system."""
+    """The path, with `~` expanded. Raises ValueError for a path of another system."""
     if is_foreign(text):
         raise ValueError(
             f"{text!r} is a Windows path, with a drive or server that this system does not have: "
@@ -34,7 +34,7 @@ def path_of(text: str) -> Path:
 
 
 def environment_cache() -> Path | None:
-    """The folder of all bakes that the environment names, absolute. Raises ValueError like `path_of`."""
+    """The absolute cache folder from the environment. Raises ValueError as `path_of`."""
     text = os.environ.get(CACHE_VARIABLE)
     if not text:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points with named numbers as PLY files, which Blender's nodes read: binary, little-endian, float."""
+"""Points with named attributes as PLY files for Blender's nodes: binary, little-endian, float."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from .files import open_file, whole_file
 
 _FORMAT = "binary_little_endian 1.0"
 _ABOUT = "comment Ocean Tweak "
-#: bytes of a header, at most
+#: largest size of a header in bytes
 LONGEST_HEADER = 4096
 
 
 class PlyError(ExrError):
-    """As of an image: points that cannot be written or read, with their path and the reason."""
+    """Points that cannot be written or read, with their path and the reason."""
 
 
 def write_ply(
     path: Path, names: Sequence[str], values: NDArray[np.floating], about: Mapping[str, object]
 ) -> None:
-    """Write (points, columns) as a file that is whole or not there.
+    """Write (points, columns) atomically.
 
     names : of the columns
-    about : plain data that the header tells
+    about : plain data for the header
 
-    Raises PlyError for a value that is not finite and OSError for what the disk refuses.
+    Raises PlyError for a value that is not finite, and OSError if it cannot be written.
     """
     if not np.all(np.isfinite(values)):
         raise PlyError(f"{path}: the points hold values that are not finite")
@@ -50,7 +50,7 @@ def read_ply(path: Path, known: Collection[Sequence[str]]) -> dict[str, NDArray[
 
     known : the columns that it may have, in their order
 
-    Raises PlyError for a file that is damaged or not one of ours.
+    Raises PlyError for a file that is damaged or was not written here.
     """
     try:
         with open_file(path) as file:
@@ -67,7 +67,7 @@ def read_ply(path: Path, known: Collection[Sequence[str]]) -> dict[str, NDArray[
 
 
 def told_by_ply(path: Path, known: Collection[Sequence[str]]) -> dict[str, Any] | None:
-    """What the header of a whole file tells; None for one that is not there, cut off or not one of ours."""
+    """The data in the header of a complete file; None if it is missing, truncated or was not written here."""
     try:
         with open_file(path) as file:
             text = file.read(LONGEST_HEADER)
@@ -79,7 +79,7 @@ def told_by_ply(path: Path, known: Collection[Sequence[str]]) -> dict[str, Any] 
 
 
 def _header(text: bytes, known: Collection[Sequence[str]]) -> tuple[list[str], int, dict[str, Any]]:
-    """Names of the columns, number of points and what the file tells. Raises ValueError."""
+    """Names of the columns, number of points and the header's data. Raises ValueError."""
     head, end, _ = text.partition(b"end_header\n")
     lines = head.decode("ascii").splitlines()
     is_ours = lines[:2] == ["ply", f"format {_FORMAT}"] and "".join(lines[2:3]).startswith(_ABOUT)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""New Python processes that find this package and what it needs, also from inside Blender.
+"""Starts Python processes that can import this package and its dependencies, also from inside Blender.
 
-They run no module of the current folder: whoever works in a folder that somebody sent has not chosen the
-Python files in it.
+They never import modules from the current folder, which may contain Python files from others.
 """
 
 from __future__ import annotations
@@ -13,12 +12,12 @@ from pathlib import Path
 
 PACKAGE = "ocean_tweak"
 _HOME = Path(__file__).resolve().parents[2]
-#: -I keeps the current folder and the environment out; what may be imported is said here instead
+#: -I excludes the current folder and the environment; the import path is passed explicitly instead
 _RUN = "import runpy, sys; sys.path[:0] = {path!r}; runpy.run_module({module!r}, None, '__main__', True)"
 
 
 def module_command(name: str) -> list[str]:
-    """The start of a command that runs a module of this package, or the package itself.
+    """The beginning of a command line that runs a module of this package, or the package itself.
 
     name : the module's or package's `__name__`, which inside Blender begins with other packages
     """
@@ -30,13 +29,13 @@ def module_command(name: str) -> list[str]:
 def environment() -> dict[str, str]:
     """The environment for that command.
 
-    Each process is one of several workers: threads of its own would only fight with the others'.
+    Each process is one of several workers, so it uses one thread.
     """
     return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def _is_current_folder(entry: str) -> bool:
-    """Whether an entry of `sys.path` depends on where the process stands: relative, or that very folder."""
+    """Whether an entry of `sys.path` is relative, or the current folder."""
     if not os.path.isabs(entry):  # noqa: PTH117  # an entry need not be a path
         return True
     try:

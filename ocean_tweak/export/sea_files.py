@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that hold a sea: JSON with images and winds beside it, and layers of USD that were exported."""
+"""Reads and writes files of a sea: JSON, with images and winds in files beside it, and exported USD
+layers."""
 
 from __future__ import annotations
 
@@ -19,12 +20,12 @@ from .usd.reading import SUFFIXES
 
 
 def read_sea(path: str | os.PathLike[str]) -> Shot:
-    """The sea of a file, and what of it changes from frame to frame.
+    """Read a sea and its animation from a file.
 
-    path : of JSON, in which {"file": "lee.png"} may stand for an image or a wind, or of a layer of USD
+    path : a JSON file, in which {"file": "lee.png"} may stand for an image or a wind, or a USD layer
 
-    Raises ParameterError, which names the field, its value and what is allowed, for what is no sea, OSError
-    or UnicodeDecodeError for a file that cannot be read, and UsdError, a RuntimeError, for a layer.
+    Raises ParameterError, which names the field, its value and what is allowed, for an invalid sea, OSError
+    or UnicodeDecodeError for a file that cannot be read, and UsdError, a RuntimeError, for an invalid layer.
 
     Examples
     --------
@@ -40,10 +41,10 @@ def read_sea(path: str | os.PathLike[str]) -> Shot:
 
 
 def sea_of_text(text: str, folder: Path, read: Reader = read_raster) -> Shot:
-    """The sea of a file's JSON.
+    """Parse a sea from JSON text.
 
-    folder : what the paths in it are relative to
-    read : what reads the images
+    folder : to which paths in the text are relative
+    read : function that reads images
 
     Raises ParameterError.
     """
@@ -51,10 +52,10 @@ def sea_of_text(text: str, folder: Path, read: Reader = read_raster) -> Shot:
 
 
 def write_sea(path: str | os.PathLike[str], sea: Shot | OceanParameters) -> None:
-    """Write a sea as JSON that `read_sea` reads back to an equal one; images and winds stand in it.
+    """Write a sea as JSON from which `read_sea` restores an equal one; images and winds are embedded.
 
-    The file appears whole: on any error an old one stays as it was. Raises ParameterError for the name of
-    a layer of USD, which the command `usd` writes, and OSError for what the disk refuses.
+    The file is written atomically: on any error an old one is kept. Raises ParameterError for the suffix of a
+    USD layer, which the command `usd` writes, and OSError if the file cannot be written.
 
     Examples
     --------

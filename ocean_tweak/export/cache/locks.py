@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who is making which frames of a folder, so that nobody makes them twice at the same time.
+"""Locks on frames of a bake's folder, so that they are not baked twice at the same time.
 
-A claim is a file with the frames, the host, the process and a counter that its holder keeps raising. It is
-written first and the others are looked at afterwards, so of two that come at the same time at least one sees
-the other, also on a disk without file locks and from machines that remember a folder's old contents for a
-while; the system's own file lock only sees to it that one of them always gets in.
+A claim is a file with the frames, the host, the process and a counter that its holder keeps incrementing. A
+process first writes its claim and then reads the others, so of two simultaneous ones at least one sees the
+other, also on a disk without file locks and on machines that cache folder contents; the system's file lock
+only ensures that one of them always succeeds.
 
-The claim of a process of this machine that has died counts for nothing, nor does one from before the machine
-was started again. Clocks are not compared: a holder elsewhere, which cannot be asked, counts as dead only
-when somebody wants it taken over and its counter stands still while it is watched. Should it be alive
-nevertheless, it notices that its claim is gone and stops.
+Claims of dead processes of this machine, and from before its last restart, are ignored. Clocks are not
+compared: a holder on another machine, whose state cannot be queried, counts as dead only if a takeover is
+requested and its counter does not change while it is watched. If it is alive after all, it notices that its
+claim is gone and stops.
 """
 
 from __future__ import annotations
@@ -33,30 +33,32 @@ from ..files import alone, read_bytes, write_text
 from .folders import ENTRY, LOCKS, refuse_links
 from .processes import boot, hardware, process_start, this_machine
 
-#: s between two beats
+#: interval in s at which the counter is incremented
 BEAT = 5.0
-#: s without one after which a watched holder is taken for dead: longer than network disks show old contents
+#: time in s without an increment after which a watched holder counts as dead: longer than network disks cache
+# contents
 SILENCE = 90.0
 
 _LARGEST_LOCK = 2**24
-#: of the counter, on a line of its own at the end: it is raised in place, which needs no room on a full disk
-#: and never brings back a claim that was removed
+#: digits of the counter, on a line of its own at the end: it is updated in place, which needs no space on a
+# full disk and cannot recreate a removed claim
 _DIGITS = 12
 
 
 class Held(RuntimeError):
-    """Frames that somebody else is making: says who."""
+    """Frames are being baked by another process; says which."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """Somebody's claim to frames.
+    """The claim of a process to frames.
 
-    machine : tells machines of one name apart, and what runs in containers; another after a restart
-    boot, hardware : which start of which machine it was; "" where that cannot be told
-    started : of the process in the system's own count, to tell it from a later one with the same number
-    frames : None for a claim that cannot be read: it may be to any
-    beat : how often its holder has said that it lives
+    machine : distinguishes machines of the same name, and containers; changes at a restart
+    boot, hardware : identify the machine and its last start; "" if unknown
+    started : start time of the process in the system's units, to distinguish it from a later one with the
+        same id
+    frames : None for an unreadable claim, which may be to any frame
+    beat : the counter
     """
 
     path: Path
@@ -71,7 +73,7 @@ class Claim:
 
     @property
     def holder(self) -> str:
-        """Who it is, for a message."""
+        """The holder, for messages."""
         if self.frames is None:
             return f"a process whose lock {self.path} cannot be read"
         return f"process {printable(self.process, 20)} on {printable(self.host, 60)}"
@@ -82,17 +84,17 @@ class Claim:
 
 
 class Hold:
-    """Frames that are held."""
+    """Claimed frames."""
 
     def __init__(self) -> None:
         self._lost = threading.Event()
 
     def is_lost(self) -> bool:
-        """Whether the claim is gone: taken over, or the folder was removed."""
+        """Whether the claim is lost: taken over, or the folder was removed."""
         return self._lost.is_set()
 
     def lose(self) -> None:
-        """Say that the claim is gone."""
+        """Mark the claim as lost."""
         self._lost.set()
 
 
@@ -105,14 +107,14 @@ def claimed(
     stopped: Callable[[], bool] = lambda: False,
     say: Callable[[str], None] = lambda text: None,
 ) -> Iterator[Hold]:
-    """Hold frames of a folder while this is open.
+    """Context manager that claims frames of a folder.
 
-    wait : until others have finished with them; otherwise refuse
-    take_over : also remove the claims of holders on other machines that are dead
-    stopped : asked while waiting; True ends it with Held
-    say : is told once whom it waits for, and of each claim that it removes
+    wait : wait until others have finished with them, instead of raising Held
+    take_over : also remove claims of dead holders on other machines
+    stopped : polled while waiting; True raises Held
+    say : called once with the holder it waits for, and with each claim that it removes
 
-    Raises Held naming who has them, CacheError where the folder's own parts are links.
+    Raises Held, which names the holder, and CacheError if parts of the folder are links.
     """
     refuse_links(folder)
     locks = folder / LOCKS
@@ -140,12 +142,12 @@ def claimed(
     finally:
         ended.set()
         heart.join()
-        with contextlib.suppress(OSError):  # what is wrong with the folder has been told
+        with contextlib.suppress(OSError):  # the problem with the folder has been reported
             own.path.unlink(missing_ok=True)
 
 
 def _refusal(own: Claim, other: Claim, wait: bool, take_over: bool, stopped: Callable[[], bool]) -> str:
-    """Why not to wait for the other claim."""
+    """The error for a conflicting claim."""
     if stopped():
         return "; stopped waiting for it"
     if wait:
@@ -158,7 +160,7 @@ def _refusal(own: Claim, other: Claim, wait: bool, take_over: bool, stopped: Cal
 
 
 def _enter(own: Claim) -> Claim | None:
-    """Write the claim, or return one that stands against it."""
+    """Write the claim, or return a conflicting one."""
     locks = own.path.parent
     with alone(locks / ENTRY):
         try:
@@ -185,13 +187,13 @@ def claims(locks: Path) -> list[Claim]:
     """All claims; one that cannot be read claims every frame."""
     found = []
     for path in sorted(locks.glob("*.lock")):
-        with contextlib.suppress(FileNotFoundError):  # it was let go meanwhile
+        with contextlib.suppress(FileNotFoundError):  # it was released meanwhile
             found.append(_read(path))
     return found
 
 
 def let_go(folder: Path) -> None:
-    """Remove the claims of this process to frames of a folder; it is about to end."""
+    """Remove this process's claims to frames of a folder, before it ends."""
     own = (this_machine(), os.getpid(), process_start(os.getpid()) or "")
     for claim in claims(folder / LOCKS):
         if (claim.machine, claim.process, claim.started) == own:
@@ -200,7 +202,7 @@ def let_go(folder: Path) -> None:
 
 
 def is_alive_here(claim: Claim) -> bool | None:
-    """Whether the claim's process runs, where that can be told: on its own machine."""
+    """Whether the claim's process is running, as far as this machine can know."""
     if claim.frames is None:
         return None
     if claim.machine != this_machine():
@@ -213,7 +215,7 @@ def is_alive_here(claim: Claim) -> bool | None:
 
 
 def _stands_still(claim: Claim, stopped: Callable[[], bool], say: Callable[[str], None]) -> bool:
-    """Whether its counter does, or the claim is let go, while it is watched."""
+    """Whether the counter stands still, or the claim is released, while it is watched."""
     say(f"watching {claim.holder} for {SILENCE:.0f} s")
     until = time.monotonic() + SILENCE
     while time.monotonic() < until:
@@ -251,14 +253,14 @@ def _write(claim: Claim) -> None:
 
 
 def _read(path: Path) -> Claim:
-    """The claim in a file. Raises FileNotFoundError where there is none."""
+    """Read a claim. Raises FileNotFoundError if there is none."""
     for _ in range(3):
         try:
             content = read_bytes(path, _LARGEST_LOCK)
             break
         except FileNotFoundError:
             raise
-        except OSError:  # network disks do so now and then for a file that changes
+        except OSError:  # network disks sometimes do so for a file that is changing
             time.sleep(0.05)
     else:
         content = b""
@@ -285,5 +287,5 @@ def _beat(claim: Claim, hold: Hold, ended: threading.Event) -> None:
         except (FileNotFoundError, NotADirectoryError):
             hold.lose()
             return
-        except OSError:  # of a disk that fails, the bake's own files tell
+        except OSError:  # a failing disk is reported by the bake's own files
             pass

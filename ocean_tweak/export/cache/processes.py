@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tells a process from all others, on this machine, on others, and after a restart."""
+"""Identifies processes across machines and restarts."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import uuid
 from functools import cache
 from pathlib import Path
 
-#: the process numbers of a machine itself, not of a container on it: the same in every Linux
+#: the machine's own process namespace, not that of a container: the same in every Linux
 _OF_THE_MACHINE = "pid:[4026531836]"
 
 
 @cache
 def this_machine() -> str:
-    """What tells this machine from others of its name, from itself restarted, and from a container."""
+    """Identifies this machine, as opposed to others of the same name, an earlier start, or a container."""
     identity = [platform.node(), boot(), _process_numbers()]
     known = [part for part in identity if part]
     return " ".join(known if len(known) > 1 else [*known, f"{uuid.getnode():012x}"])
@@ -26,7 +26,7 @@ def this_machine() -> str:
 
 @cache
 def boot() -> str:
-    """What is another after each start of this machine; "" where that cannot be told."""
+    """Identifies the last start of this machine; "" if unknown."""
     with contextlib.suppress(OSError):
         return Path("/proc/sys/kernel/random/boot_id").read_text().strip()
     return ""
@@ -34,10 +34,10 @@ def boot() -> str:
 
 @cache
 def hardware() -> str:
-    """What stays the same when this machine is started again, and no other machine has.
+    """Identifies this machine across restarts.
 
-    "" where that cannot be told: in a container, or without a network card. A copy of a machine has its name
-    and its system's number, but not the address of its card.
+    "" if unknown, in a container or without a network card. A cloned machine has the same name and system id,
+    but not the same network address.
     """
     if _process_numbers() != _OF_THE_MACHINE:
         return ""
@@ -53,9 +53,9 @@ def hardware() -> str:
 
 
 def process_start(process: int) -> str | None:
-    """When a process of this machine was started, in the system's own count.
+    """Start time of a process of this machine, in the system's units.
 
-    "" for one of which it cannot be told, not even whether it runs; None when there is none.
+    "" if it is unknown whether it runs; None if there is no such process.
     """
     if not 0 < process < 2**31:
         return None
@@ -66,12 +66,12 @@ def process_start(process: int) -> str | None:
     except ProcessLookupError:
         return None
     except PermissionError:
-        pass  # it runs, and is somebody else's
+        pass  # it runs, but belongs to another user
     return _told_by_ps(process) if sys.platform == "darwin" else _told_by_proc(process)
 
 
 def _process_numbers() -> str:
-    """Which processes the numbers are of: the machine's, or a container's."""
+    """The process namespace: the machine's, or a container's."""
     with contextlib.suppress(OSError):
         return str(Path("/proc/self/ns/pid").readlink())
     return ""
@@ -79,7 +79,7 @@ def _process_numbers() -> str:
 
 def _told_by_proc(process: int) -> str | None:
     try:
-        # after the last bracket: a program's name may hold spaces and brackets itself
+        # after the last bracket, as a program's name may contain spaces and brackets
         status = Path(f"/proc/{process}/stat").read_text(errors="replace").rpartition(")")[2].split()
     except OSError:
         return ""
@@ -97,7 +97,7 @@ def _told_by_ps(process: int) -> str:
 
 
 def _windows_start(process: int) -> str | None:
-    """Of a process that has ended nobody keeps the number, unless somebody still asks for its result."""
+    """The id of an ended process is only kept while a handle to it is open."""
     import ctypes
     from ctypes import wintypes
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was baked: a record a frame, written when all of its files are there.
+"""Records of baked frames, each written once all of its files exist.
 
-Nobody has to look at the images to know that a frame is whole; to know that it is still whole, their hashes
-are compared.
+A record shows that a frame is complete without opening its images; comparing their hashes shows that it still
+is.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from .job import Job, NewerBakeError, check_seal, made_with, sealed
 
 _LARGEST_RECORD = 2**20
 _BLOCK = 2**20
-#: characters: scattered frames by the thousand would fill every record
+#: largest length in characters, as thousands of separate frames would fill every record
 _LONGEST_RANGE = 4000
 
 
 class FileEntry(NamedTuple):
-    """A file of a frame: which map, its name in the folder, its bytes and their SHA-256."""
+    """A file of a frame: map, name in the folder, size in bytes and SHA-256."""
 
     map: str
     name: str
@@ -44,8 +44,8 @@ class FileEntry(NamedTuple):
 class FrameRecord:
     """A frame's own record.
 
-    fingerprint : of the parameters that made it
-    asked : the frames that were asked for with it, as `format_frames` writes them; "" where that is too long
+    fingerprint : of its parameters
+    asked : the frames requested together with it, in the form of `format_frames`; "" if that is too long
     """
 
     frame: Frame
@@ -54,7 +54,7 @@ class FrameRecord:
     asked: str = ""
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as it stands in the file."""
+        """Plain data, as in the file."""
         data = {
             "format": formats.RECORD,
             "frame": frame_label(self.frame),
@@ -67,7 +67,7 @@ class FrameRecord:
 
     @classmethod
     def from_dict(cls, data: Any) -> FrameRecord:
-        """A record from plain data. Raises ValueError for what is none."""
+        """A record from plain data. Raises ValueError for invalid data."""
         if not isinstance(data, dict):
             raise ValueError("it has another format")
         formats.check_format(data, formats.RECORD)
@@ -84,7 +84,7 @@ class FrameRecord:
 
 
 class State(Enum):
-    """Whether a frame must be made."""
+    """State of a frame."""
 
     WHOLE = "whole"
     MISSING = "missing"
@@ -93,7 +93,7 @@ class State(Enum):
 
 
 class Finding(NamedTuple):
-    """What was found of a frame, and why it is not whole."""
+    """State of a frame, and why it is not complete."""
 
     frame: Frame
     state: State
@@ -101,9 +101,9 @@ class Finding(NamedTuple):
 
 
 class CacheSink:
-    """A sink that writes a frame's maps into a job's folder, and its record last.
+    """Writes a frame's maps into a job's folder, and its record last.
 
-    tell : is told how many of a frame's files are written
+    tell : called with the number of files written
     """
 
     def __init__(
@@ -121,13 +121,14 @@ class CacheSink:
         return self.job.outputs
 
     def write(self, frame: Frame, *fields: SurfaceFields) -> tuple[Path, ...]:
-        """Write the frame from the fields of each patch, and of each part where points are wanted.
+        """Write the frame from the fields of each patch, and of each part if points are baked.
 
-        All or nothing. Returns the files' paths. Raises CacheError for a job whose frames are made no longer.
+        All files or none. Returns their paths. Raises CacheError for a job of a version that can no longer be
+        baked.
         """
         self.job.check_foam()
         record = record_path(self.folder, frame)
-        # an old record must not vouch for new files
+        # an old record must not refer to new files
         record.unlink(missing_ok=True)
         paths: list[Path] = []
         count = len(self.job.files(self.folder, frame))
@@ -146,7 +147,7 @@ class CacheSink:
 
 
 def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
-    """A frame's record; None when there is none. Raises ValueError for one that cannot be read."""
+    """A frame's record, or None. Raises ValueError if it cannot be read."""
     path = record_path(folder, frame)
     try:
         content = read_bytes(path, _LARGEST_RECORD)
@@ -164,7 +165,7 @@ def read_record(folder: Path, frame: Frame) -> FrameRecord | None:
 
 
 def recorded_frames(folder: Path) -> tuple[Frame, ...]:
-    """The frames that have a record, ascending, whatever is in it."""
+    """The frames that have a record, ascending, without reading it."""
     frames = []
     for path in (folder / RECORDS).glob("*.json"):
         try:
@@ -177,9 +178,9 @@ def recorded_frames(folder: Path) -> tuple[Frame, ...]:
 
 
 def asked_frames(folder: Path) -> set[Frame]:
-    """The frames that were asked for when those that have a record were made.
+    """The frames that were requested when the recorded ones were baked.
 
-    Raises ParameterError where these are more than a bake can have.
+    Raises ParameterError if there are more than a bake can have.
     """
     texts = set()
     for frame in recorded_frames(folder):
@@ -189,13 +190,13 @@ def asked_frames(folder: Path) -> set[Frame]:
     frames: set[Frame] = set()
     for text in texts - {""}:
         frames.update(parse_frames(text))
-        if len(frames) > MOST_FRAMES:  # of records that somebody else wrote
+        if len(frames) > MOST_FRAMES:  # for records written by others
             raise ParameterError("frames", f"more than {MOST_FRAMES}", "are asked for by the records")
     return frames
 
 
 def inspect(folder: Path, job: Job, frame: Frame) -> Finding:
-    """Whether a frame is whole: its record, its fingerprint and all bytes of its files.
+    """Whether a frame is complete: its record, its fingerprint and all bytes of its files.
 
     Raises NewerBakeError for the record of a newer version of the program.
     """
@@ -238,7 +239,7 @@ def _problem(path: Path, entry: FileEntry) -> str:
 def inspect_all(
     folder: Path, job: Job, frames: Iterable[Frame], stopped: Callable[[], bool] = lambda: False
 ) -> Iterator[Finding]:
-    """What each frame is; where most have no record, much quicker than one by one."""
+    """State of each frame; much faster than one by one if most have no record."""
     recorded = set(recorded_frames(folder))
     for frame in frames:
         if frame not in recorded or stopped():
@@ -250,9 +251,9 @@ def inspect_all(
 def unfinished(
     folder: Path, job: Job, frames: Iterable[Frame], stopped: Callable[[], bool] = lambda: False
 ) -> Iterator[Finding]:
-    """What of the frames must be made, and why.
+    """The frames that must be baked, and why.
 
-    stopped : asked before each frame; the rest then counts as missing
+    stopped : polled before each frame; if True, the rest count as missing
     """
     for finding in inspect_all(folder, job, frames, stopped):
         if finding.state is not State.WHOLE:
@@ -260,13 +261,13 @@ def unfinished(
 
 
 def give_up_writing(folder: Path) -> None:
-    """Remove what this process has begun to write of a bake; it is about to end."""
+    """Remove unfinished files of this process in a bake, before it ends."""
     for part in (folder, folder / RECORDS, folder / LOCKS):
         remove_begun(part)
 
 
 def remove_leftovers(folder: Path, job: Job, frames: Iterable[Frame]) -> None:
-    """Remove what a killed process had begun to write of these frames."""
+    """Remove unfinished files of killed processes for these frames."""
     names: set[str] = set()
     for frame in frames:
         names.update(name for _, name in job.files(folder, frame))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads baked frames back and says of each whether it can be rendered."""
+"""Reads baked frames back and reports whether each can be rendered."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from ..spray import baked_spray
 from .job import Job
 from .records import Finding, State, inspect_all
 
-#: wave heights that are believed, as shares of that of the waves of this moment: compression and another
-#: NumPy change it by far less than a thousandth
+#: accepted wave heights, relative to that of the waves at this moment: compression and NumPy versions change
+# it by far less than a thousandth
 WAVE_HEIGHTS = (0.999, 1.001)
-#: of seas whose troughs are damped after the waves were added up, so that their sum is only near
+#: for seas with trough damping, which is applied after the summation, so that the sum is only approximate
 DAMPED_WAVE_HEIGHTS = (0.3, 1.1)
-#: m; a difference that nobody sees, where small numbers have lost their digits
+#: an invisible difference in m, for values so small that digits are lost
 _FLAT = 1e-6
 
 
@@ -52,7 +52,7 @@ def verify(folder: Path, job: Job, frames: Iterable[Frame]) -> Iterator[Finding]
 
 
 def wave_height(sea: Ocean, moment: Moment, on: Tile | Area = TILE) -> float:
-    """Hs in m of the waves of a moment: of one sum from their amplitudes, or else of the surface."""
+    """Hs in m at a moment: from the amplitudes of a single sum of waves, or else from the surface."""
     if sea.parameters.needs_summation or on != TILE:
         return _height_of(sea.surface(moment.time, on=on).displacement)
     state = sea.initial_state
