@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sky of a scene: its settings, and the world, lamps, haze and exposure that show them.
 
-The settings are the scene's, `scene.ocean_tweak_sky`. What shows them are plain nodes and lamps, which need
+The settings are the scene's, `Scene.ocean_tweak_sky`. What shows them are plain nodes and lamps, which need
 no extension. Each change makes the world's nodes anew: settings are the one place of the truth.
 """
 

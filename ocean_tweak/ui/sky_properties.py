@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of a scene's sky, `scene.ocean_tweak_sky`."""
+"""The settings of a scene's sky, `Scene.ocean_tweak_sky`."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
