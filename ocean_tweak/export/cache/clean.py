@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deletes baked frames: what their records list and lies inside the folder, and their spray; nothing else."""
+"""Deletes baked frames: files inside the folder that their records list, and their spray; nothing else."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from .records import FileEntry, read_record, recorded_frames
 
 
 class Cleaned(NamedTuple):
-    """What was deleted, and what was left.
+    """The result of `clean`.
 
-    left : what records list and was left, and why
+    left : files that records list but that were kept, and why
     """
 
     files: int
@@ -30,9 +30,9 @@ class Cleaned(NamedTuple):
 
 
 def clean(folder: Path, frames: Iterable[Frame]) -> Cleaned:
-    """Delete frames of a bake's folder; whoever calls holds them.
+    """Delete frames of a bake's folder; the caller must hold their locks.
 
-    Raises CacheError for a folder that is no bake's, OSError where something cannot be deleted.
+    Raises CacheError if the folder is not a bake, OSError if something cannot be deleted.
     """
     home = folder.resolve()
     if not is_bake(home):
@@ -65,14 +65,14 @@ def clean(folder: Path, frames: Iterable[Frame]) -> Cleaned:
 
 
 def cleanable_frames(folder: Path) -> tuple[Frame, ...]:
-    """All frames that a bake's folder has anything of."""
+    """All frames of which a bake's folder contains anything."""
     return tuple(sorted({*recorded_frames(folder), *_spray(folder.resolve())}))
 
 
 def remove_rest(folder: Path) -> tuple[str, ...]:
-    """Delete the job, the lock files and the folders of a bake without frames, as far as nobody uses them.
+    """Delete the job, the lock files and the folders of a bake without frames, unless they are in use.
 
-    Returns what else is in the folder, which stays.
+    Returns what else is in the folder, which is kept.
     """
     home = folder.resolve()
     if not claims(home / LOCKS):
@@ -84,13 +84,13 @@ def _spray(home: Path) -> dict[Frame, Path]:
     """The files of a bake's spray by frame."""
     try:
         name = read_job(home).name
-    except CacheError:  # as its folder tells
+    except CacheError:  # from its folder
         name = home.parent.name.rpartition("-")[0]
     return {frame: path for frame, path in spray_files(home, name).items() if not path.is_dir()}
 
 
 def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
-    """Why a file that a record lists is not deleted."""
+    """Why a file listed by a record is not deleted; "" if it is."""
     what = "points are" if entry.map == POINTS else "image is"
     if entry.map not in BAKED or not entry.name.endswith(frame_file("", entry.map, frame)):
         return f"is not named like a frame's {what}"
@@ -101,10 +101,10 @@ def _why_not(home: Path, frame: Frame, entry: FileEntry) -> str:
 
 
 def _remove_rest(home: Path) -> None:
-    """The job, the lock files and the folders, as far as nothing else is in them."""
+    """Delete the job, the lock files and the folders, unless they contain something else."""
     for part in (home / LOCKS, home / RECORDS):
         if not is_link(part):
-            for begun in part.glob(f".*{PART}"):  # of processes that were killed
+            for begun in part.glob(f".*{PART}"):  # left by killed processes
                 begun.unlink(missing_ok=True)
     (home / LOCKS / ENTRY).unlink(missing_ok=True)
     for part in (home / LOCKS, home / RECORDS):
@@ -118,17 +118,17 @@ def _remove_rest(home: Path) -> None:
         log_file(home).unlink()
     if [path.name for path in home.parent.iterdir()] == [ENTRY]:
         (home.parent / ENTRY).unlink(missing_ok=True)
-        with contextlib.suppress(OSError):  # somebody has just begun another version
+        with contextlib.suppress(OSError):  # another version has just been started
             home.parent.rmdir()
 
 
 def foreign_images(folder: Path) -> list[str]:
-    """Images and points in a bake's folder that no record lists."""
+    """Images and points in a bake's folder that are in no record."""
     return [name for name in _foreign(folder) if name.endswith((".exr", ".ply"))]
 
 
 def _foreign(home: Path) -> Iterator[str]:
-    """What is in the folder and listed by no record."""
+    """Files in the folder that are in no record."""
     if not home.is_dir():
         return
     own = {JOB_FILE, LOCKS, RECORDS}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a bake lies: its folder `CACHE/NAME-UID/vNNN-hash8/`, and the job in it.
+"""A bake's folder, `CACHE/NAME-UID/vNNN-hash8/`, and the job in it.
 
-The folder's name holds the job's fingerprint, so frames of another sea are never overwritten, and whoever
-bakes the same job, on whatever machine, finds the same folder. `bake.json` in it is the job, written once;
-only one that was damaged is ever replaced.
+The folder's name contains the job's fingerprint, so frames of another sea are never overwritten, and the same
+job has the same folder on every machine. `bake.json` in it is the job, written once; it is only replaced if
+it is damaged.
 """
 
 from __future__ import annotations
@@ -26,28 +26,28 @@ from .job import UID, CacheError, Job, NewerBakeError, maps_for, safe_name
 
 JOB_FILE = "bake.json"
 RECORDS, LOCKS = "records", "locks"
-#: locked while versions are told apart, or claims are looked at
+#: locked while a version is chosen or claims are examined
 ENTRY = "entry"
 
 _VERSION = re.compile(r"v(\d{3,})-([0-9a-f]{8})")
-#: images that are asked for a lost job
+#: number of images from which a lost job is recovered
 _TELLING_IMAGES = 8
 
 
 def find_folder(cache: Path, job: Job) -> Path | None:
-    """The job's folder in a cache; None where nobody has begun to bake it."""
+    """The job's folder in a cache; None if it has not been started."""
     versions = _versions(cache / job.home)
     return next((path for path, (_, hash8) in versions if hash8 == job.hash8), None)
 
 
 def open_folder(cache: Path, job: Job) -> Path:
-    """The job's folder in a cache, made where it is missing.
+    """The job's folder in a cache, created if missing.
 
-    Raises CacheError where another job has its name, OSError for what the disk refuses.
+    Raises CacheError if another job has its name, OSError if it cannot be created.
     """
     home = cache / job.home
     home.mkdir(parents=True, exist_ok=True)
-    with alone(home / ENTRY):  # else two machines might number the same job differently
+    with alone(home / ENTRY):  # otherwise two machines might give the same job different numbers
         folder = find_folder(cache, job)
         if folder is None:
             number = max((number for _, (number, _) in _versions(home)), default=0) + 1
@@ -60,7 +60,7 @@ def open_folder(cache: Path, job: Job) -> Path:
 
 
 def write_job(folder: Path, job: Job) -> None:
-    """Write `bake.json`, or see that it is this job; one that cannot be read is replaced."""
+    """Write `bake.json`, or check that it is this job; an unreadable one is replaced."""
     path = folder / JOB_FILE
     text = json.dumps(job.to_dict(), indent=1) + "\n"
     if new_file(path, text):
@@ -79,7 +79,7 @@ def write_job(folder: Path, job: Job) -> None:
 
 
 def is_bake(folder: Path) -> bool:
-    """Whether a folder is one of baked frames: by its name, or by the job in it."""
+    """Whether a folder is a bake, by its name or by the job in it."""
     if _VERSION.fullmatch(folder.name) and (folder / RECORDS).is_dir():
         return True
     try:
@@ -90,7 +90,7 @@ def is_bake(folder: Path) -> bool:
 
 
 def bakes_in(place: Path) -> list[Path]:
-    """The folders of bakes in a cache, or in the folder that a sea has there; of a bake's folder, itself."""
+    """The bakes in a cache, or in a sea's folder there; for a bake's folder, the folder itself."""
     if is_bake(place):
         return [place]
     homes = [place, *sorted(path for path in place.iterdir() if path.is_dir())] if place.is_dir() else []
@@ -98,9 +98,9 @@ def bakes_in(place: Path) -> list[Path]:
 
 
 def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:
-    """The job of a folder, for these frames or else those asked for first.
+    """The job of a folder, with these frames, or with those requested first.
 
-    Raises CacheError when it is missing, damaged or of another version.
+    Raises CacheError if it is missing, damaged or of another version.
     """
     path = folder / JOB_FILE
     try:
@@ -117,9 +117,9 @@ def read_job(folder: Path, asked: tuple[Frame, ...] = ()) -> Job:
 
 
 def recovered_job(folder: Path) -> Job:
-    """The job of a folder whose `bake.json` is missing or damaged, from what its images tell.
+    """The job of a folder whose `bake.json` is missing or damaged, from the headers of its images.
 
-    Raises CacheError where they do not tell, or not the job that the folder's name holds.
+    Raises CacheError if they do not contain it, or if it does not match the folder's name.
     """
     match = _VERSION.fullmatch(folder.name)
     name, _, uid = folder.parent.name.rpartition("-")
@@ -158,18 +158,19 @@ def _versions(home: Path) -> Iterator[tuple[Path, tuple[int, str]]]:
 
 
 def log_file(folder: Path) -> Path:
-    """Where what happens to a bake is written, when that is asked for: beside its folder."""
+    """The path of a bake's optional log, beside its folder."""
     home = folder.resolve()
     return home.with_name(f"{home.name}.log")
 
 
 def refuse_links(folder: Path) -> None:
-    """Raise CacheError where what is written and removed in a bake's folder would be elsewhere."""
+    """Raise CacheError if parts of a bake's folder are links, so that files elsewhere would be written or
+    removed."""
     for part in (folder / RECORDS, folder / LOCKS, folder / SPRAY):
         if is_link(part):
             raise CacheError(f"{part} is a link to something that may not belong to this bake: remove it")
 
 
 def record_path(folder: Path, frame: Frame) -> Path:
-    """Where a frame's record lies."""
+    """The path of a frame's record."""
     return folder / RECORDS / f"{frame_label(frame)}.json"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is baked: a job, by whose fingerprint bakes are told apart, and as it stands in `bake.json`."""
+"""The job of a bake, as stored in `bake.json`; its fingerprint identifies the bake."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class CacheError(RuntimeError):
 
 
 class NewerBakeError(CacheError):
-    """A folder that a newer version of the program baked: nothing in it is to be replaced."""
+    """A bake of a newer version of the program, which must not be changed."""
 
 
 @dataclass(frozen=True)
@@ -47,15 +47,16 @@ class Job:
     """What is baked.
 
     name : of the sea, and of its files
-    uid : tells seas of the same name apart, letters and digits
-    maps : some of BAKED; in whatever order they are given, the job is the same
+    uid : distinguishes seas of the same name; letters and digits
+    maps : some of BAKED, in any order
     compression : a key of COMPRESSION_ERROR
-    frames : those that are asked for
-    area : the square where the sea is baked; None for its own tile, or those of its patches
-    foam : version of the foam in its maps; without such maps it is of no account
-    encoding : version of how its maps are encoded; where all have 32 bits it is of no account
+    frames : the requested frames
+    area : the square that is baked; None for the sea's own tile, or those of its patches
+    foam : version of the foam in its maps; ignored without such maps
+    encoding : version of the encoding of its maps; ignored if all have 32 bits
 
-    Raises ParameterError for what would name files elsewhere, and for maps that cannot be made.
+    Raises ParameterError for names that would lead to files elsewhere, and for maps that the sea does not
+    have.
     """
 
     name: str
@@ -74,7 +75,7 @@ class Job:
             raise ParameterError("name", self.name, "holds characters that file names cannot hold")
         if not UID.fullmatch(self.uid):
             raise ParameterError("uid", self.uid, "must be 1 to 32 letters and digits")
-        # it is no matter of the images: see `export.spray`
+        # it does not affect the images: see `export.spray`
         object.__setattr__(self, "shot", self.shot.without_spray)
         _check_maps(self.maps, self.shot.parameters, self.area)
         if not self.outputs & OF_MEMORY:
@@ -84,7 +85,7 @@ class Job:
 
     @cached_property
     def fingerprint(self) -> str:
-        """SHA-256 of all that the frames' files depend on, whichever frames are made."""
+        """SHA-256 of everything that the files depend on, except the choice of frames."""
         return fingerprint(
             {
                 "format": formats.JOB,
@@ -99,11 +100,11 @@ class Job:
         )
 
     def frame_fingerprint(self, frame: Frame) -> str:
-        """SHA-256 of what a frame is made from."""
+        """SHA-256 of everything that a frame depends on."""
         return frame_fingerprint(self.shot, frame, **self._told_area())
 
     def check_foam(self) -> None:
-        """Raise CacheError where its frames hold foam of an earlier version, which is made no longer."""
+        """Raise CacheError if its frames have foam of an earlier version, which can no longer be computed."""
         if self.foam != formats.FOAM:
             raise CacheError(
                 f"{self.home} was baked with foam of version {self.foam}, which this program "
@@ -122,12 +123,12 @@ class Job:
 
     @property
     def on(self) -> Tile | Area:
-        """Where the fields of a frame are made."""
+        """The region on which the fields of a frame are computed."""
         return self.area or TILE
 
     @property
     def resolution(self) -> int:
-        """Texels along each side of an image, the first patch's where it has several."""
+        """Texels along each side of an image, for several patches those of the first."""
         return self.shot.parameters.resolution if self.area is None else self.area.resolution
 
     @property
@@ -137,22 +138,22 @@ class Job:
 
     @property
     def hash8(self) -> str:
-        """What tells its folder from those of other versions."""
+        """The part of its folder's name that identifies the version."""
         return self.fingerprint[:8]
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The fields that its maps are made of; of points, PARTS."""
+        """The outputs needed for its maps; PARTS for points."""
         own = frozenset({PARTS}) if POINTS in self.maps else frozenset()
         return own | channels_of(self.images)
 
     @property
     def images(self) -> tuple[str, ...]:
-        """Those of its maps that are images."""
+        """Its maps that are images."""
         return tuple(name for name in self.maps if name in MAPS)
 
     def sequences(self, folder: Path, frame: Frame) -> tuple[ExrSequence, ...]:
-        """The sinks for a frame, whose headers tell its parameters: one a patch, or one of an area."""
+        """The image writers for a frame, one per patch, or one for an area."""
         parameters = self.shot.at(frame).parameters
         is_one = self.area is not None or not parameters.is_cascade
         patches: Iterable[int | None] = (None,) if is_one else range(len(parameters.patches))
@@ -164,14 +165,14 @@ class Job:
         )
 
     def points(self, folder: Path, frame: Frame) -> tuple[PointSequence, ...]:
-        """The sinks for a frame's points, one a part; none where they are not among the maps."""
+        """The writers for a frame's points, one per part; none if points are not baked."""
         if POINTS not in self.maps:
             return ()
         of_sea = parts(self.shot.at(frame).parameters)
         return tuple(PointSequence(folder, self.name, number, part) for number, part in enumerate(of_sea, 1))
 
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
-        """The sink for a frame of a sea of one patch, or of an area. Raises CacheError for another."""
+        """The image writer for a frame of one patch or of an area. Raises CacheError for several patches."""
         sequence, *others = self.sequences(folder, frame)
         if others:
             raise CacheError(f"{folder} holds the images of several patches, not of one")
@@ -185,9 +186,9 @@ class Job:
         return [*images, *((POINTS, name) for name in points)]
 
     def write(self, folder: Path, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[Path]:
-        """Write a frame's files, those that `files` names, in its order. Yields each path when it is whole.
+        """Write a frame's files in the order of `files`. Yields each path once it is complete.
 
-        fields : what `core.sea.bake.ShotSeas` makes for `outputs`
+        fields : computed by `core.sea.bake.ShotSeas` for `outputs`
         """
         sequences = self.sequences(folder, frame)
         for sequence, own in zip(sequences, fields, strict=False):
@@ -197,7 +198,7 @@ class Job:
             yield from points.write(frame, own)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as it stands in `bake.json`."""
+        """Plain data, as in `bake.json`."""
         data = {
             "format": formats.JOB,
             "synthesis": formats.SYNTHESIS,
@@ -217,7 +218,7 @@ class Job:
 
     @classmethod
     def from_dict(cls, data: Any) -> Job:
-        """A job from plain data. Raises ValueError naming what is wrong."""
+        """A job from plain data. Raises ValueError with the invalid part."""
         if not isinstance(data, dict):
             raise ValueError("is not a JSON object")
         versions = {
@@ -253,7 +254,7 @@ class Job:
 
 
 def maps_for(parameters: OceanParameters, area: Area | None = None) -> tuple[str, ...]:
-    """The maps that a sea can be baked to: of several patches those that add up, and their points."""
+    """The maps that can be baked from a sea: for several patches those that add up, and their points."""
     if area is not None:
         return tuple(MAPS)
     images = tuple(name for name in MAPS if not parameters.is_cascade or ADDING.issuperset(MAPS[name]))
@@ -285,29 +286,29 @@ def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area |
 
 
 def made_with() -> dict[str, str]:
-    """What may change last bits, and where it was: recorded, never compared."""
+    """What may affect the last bits, and the host: recorded, never compared."""
     return {"numpy": np.__version__, "machine": platform.machine(), "host": platform.node()}
 
 
 def sealed(data: dict[str, Any]) -> dict[str, Any]:
-    """The data with a SHA-256 of its contents, by which a changed byte is seen."""
+    """The data with a SHA-256 of its contents, to detect changes."""
     return {**data, _SEAL: fingerprint(data)}
 
 
 def check_seal(data: dict[str, Any]) -> None:
-    """Raise ValueError for data that were changed since they were sealed."""
+    """Raise ValueError if data were changed after they were sealed."""
     contents = {key: value for key, value in data.items() if key != _SEAL}
     if data.get(_SEAL) != fingerprint(contents):
         raise ValueError("was changed: its SHA-256 does not match its contents")
 
 
 def safe_name(name: str) -> str:
-    """The name without what file systems or frame patterns cannot hold, at most 100 bytes."""
-    # a Mac takes an accented letter apart, a farm's Linux does not: both must mean the same folder
+    """The name without characters that file systems or frame patterns do not allow, at most 100 bytes."""
+    # macOS decomposes accented letters and Linux does not: both must use the same folder
     clean = re.sub(r"[^\w\- ]+", "_", unicodedata.normalize("NFC", name)).strip()
     return clean.encode()[:100].decode(errors="ignore").strip() or "ocean"
 
 
 def uid_of(name: str) -> str:
-    """The uid of a sea that has none of its own: the same on every machine."""
+    """The uid of a sea without one of its own, the same on every machine."""
     return fingerprint(name)[:8]

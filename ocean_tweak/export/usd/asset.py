@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The asset's own layer, which a shot references, and the payload that it brings."""
+"""The asset's own layer, which a shot references, and its payload."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _KIND = "component"
 
 
 def prim_name(package: Package) -> str:
-    """The asset's name, as a prim may have it."""
+    """The asset's name as a valid prim name."""
     return str(pxr().Tf.MakeValidIdentifier(package.name))
 
 
@@ -34,9 +34,9 @@ def write_payload(
 ) -> None:
     """Write payload.usd: geometry and material under the asset's own prim.
 
-    geometry, material : names of the layers beside it
+    geometry, material : names of these layers in the same folder
     box : around one tile in all frames
-    spray : way to the layer of the spray; None for none
+    spray : path of the spray's layer; None for none
     """
     modules = pxr()
     root = f"/{prim_name(package)}"
@@ -58,10 +58,10 @@ def write_payload(
 
 
 def _add_sea(stage: Any, scope: Any, package: Package, geometry: str, box: Box) -> None:
-    """The sea itself, or a point instancer that shows it at each tile's place.
+    """Add the sea itself, or a point instancer that places it at each tile.
 
-    Not instanceable prims: through these, OpenUSD does not tell that clips move (as of 26.11), and Blender
-    loses what material they inherit.
+    Not instanceable prims: for these, OpenUSD does not report that clips are animated (as of 26.11), and
+    Blender loses inherited materials.
     """
     modules = pxr()
     path = scope.GetPath()
@@ -78,14 +78,14 @@ def _add_sea(stage: Any, scope: Any, package: Package, geometry: str, box: Box) 
 
 
 def sea_path(package: Package, prim: str) -> str:
-    """The prim of the sea, above its meshes, in the asset at `prim`."""
+    """Path of the sea's prim, the parent of its meshes, in the asset at `prim`."""
     return f"{prim}/{GEOMETRY}/{TILES}/{ROOT}" if package.tiles != (1, 1) else f"{prim}/{GEOMETRY}/{ROOT}"
 
 
 def write_asset(path: Path, package: Package, payloads: Mapping[int, str], box: Box) -> None:
-    """Write the asset's layer, last of all: it makes the rest visible.
+    """Write the asset's layer, last of all, as it makes the others visible.
 
-    payloads : by resolution, relative to the layer
+    payloads : paths by resolution, relative to the layer
     box : around one tile in all frames
     """
     modules = pxr()
@@ -119,7 +119,7 @@ def _add_variants(prim: Any, package: Package, payloads: Mapping[int, str]) -> N
 
 
 def _extents_hint(package: Package, box: Box) -> Any:
-    """Boxes by purpose: default, and, where the mesh has a coarse stand-in, render and proxy."""
+    """Extents by purpose: default and, if the mesh has a proxy, render and proxy."""
     full = np.stack(box).astype(np.float32)
     if not any(proxy_step(resolution, package.proxy) for resolution in package.resolutions):
         return full

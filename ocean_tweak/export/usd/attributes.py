@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves: the attributes of the mesh that change from frame to frame, from the core's fields.
+"""The animated attributes of the mesh, from the core's fields.
 
-All is 32-bit: USD's own schemas say so of points, velocities, normals and displayColor. Others may be halved:
-then they err by 2⁻¹² of a value at most, less than a step of an 8-bit image.
+All have 32 bits, as USD's schemas require for points, velocities, normals and displayColor. Others may be
+stored in 16 bits, with an error of at most 2⁻¹² of a value, less than a step of an 8-bit image.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .grid import UsdGrid
 
 RealArray = NDArray[np.floating]
 
-#: linear colours that a viewport without our material shows, of water and of foam
+#: linear display colours of water and foam, for viewports without our material
 WATER_COLOUR = (0.012, 0.045, 0.06)
 FOAM_COLOUR = (0.8, 0.83, 0.85)
 
@@ -27,9 +27,9 @@ class Attribute(NamedTuple):
     """An animated attribute of the mesh.
 
     name, type : in USD, the type a name of `Sdf.ValueTypeNames`
-    outputs : the fields that it is made of
-    values : from those and the grid to (vertices, …) float32 in the layer's units and axes
-    rest : the same of a flat sea
+    outputs : the fields that it is computed from
+    values : function of these and the grid that returns (vertices, …) float32 in the layer's units and axes
+    rest : the same for a flat sea
     halved : whether it may be stored in 16 bits
     """
 
@@ -67,7 +67,7 @@ def _of_channel(channel: Channel) -> Attribute:
 
     def rest(grid: UsdGrid) -> RealArray:
         flat = np.full(channel.shape(grid.quads + 1), channel.rest, np.float32)
-        return in_layer(grid, flat) + np.float32(0.0)  # no -0 where axes turn
+        return in_layer(grid, flat) + np.float32(0.0)  # avoid -0 in rotated axes
 
     name, type_name, halved = channel.usd
     return Attribute(name, type_name, frozenset({channel.name}), values, rest, halved)
@@ -81,11 +81,11 @@ _COLOURS = Attribute(
     lambda grid: _mixed(np.zeros((grid.vertices, 1), np.float32)),
 )  # fmt: skip
 
-#: in .blend files the attributes are flags by their order: others are to stand behind these
+#: in .blend files attributes are flags by their order: add new ones at the end
 _FIRST = ("velocity", "normal", "foam", "cusp")
 _OTHERS = tuple(name for name, channel in CHANNELS.items() if channel.usd and name not in _FIRST)
 
-#: what may be asked for beside points and extent → how it is made
+#: optional attributes, besides points and extent
 ATTRIBUTES: dict[str, Attribute] = {
     attribute.name.removeprefix("primvars:"): attribute
     for attribute in (
@@ -99,7 +99,7 @@ EXTENT = ("extent", "Float3Array")
 
 
 def chosen(names: tuple[str, ...]) -> tuple[Attribute, ...]:
-    """Points, and those that were asked for."""
+    """Points, and the requested attributes."""
     return (POINTS, *(ATTRIBUTES[name] for name in names))
 
 
@@ -109,12 +109,12 @@ def outputs_of(names: tuple[str, ...]) -> frozenset[str]:
 
 
 def type_name(attribute: Attribute, half: bool) -> str:
-    """Of `Sdf.ValueTypeNames`."""
+    """The type, from `Sdf.ValueTypeNames`."""
     return "HalfArray" if half and attribute.halved else attribute.type
 
 
 def to_vt(vt: Any, values: RealArray, half: bool = False) -> Any:
-    """An array of OpenUSD's own from (n,) or (n, 3), in 16 or 32 bits."""
+    """A `Vt` array from (n,) or (n, 3), in 16 or 32 bits."""
     array = np.ascontiguousarray(values, np.float16 if half else np.float32)
     if array.ndim == 1:
         return (vt.HalfArray if half else vt.FloatArray).FromNumpy(array)
@@ -124,7 +124,7 @@ def to_vt(vt: Any, values: RealArray, half: bool = False) -> Any:
 def mesh_values(
     vt: Any, grid: UsdGrid, attributes: tuple[Attribute, ...], half: bool, fields: SurfaceFields | None
 ) -> Mapping[str, Any]:
-    """Arrays of a mesh at a frame by attribute name, its extent among them; without fields those at rest.
+    """Arrays of a mesh at a frame by attribute name, including its extent; without fields, those at rest.
 
     Raises ValueError for numbers that are not finite.
     """

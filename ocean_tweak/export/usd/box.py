@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Boxes around points, in a layer's own units and axes."""
+"""Bounding boxes in a layer's units and axes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Corner = NDArray[np.float64]
 
 
 class Box(NamedTuple):
-    """The least and the greatest of each coordinate, (3,) each."""
+    """Minimum and maximum of each coordinate, (3,) each."""
 
     least: Corner
     greatest: Corner
@@ -25,7 +25,7 @@ class Box(NamedTuple):
 
 
 def union(boxes: Iterable[Box]) -> Box:
-    """Around all of them, of which there must be one."""
+    """The box around all of them; there must be at least one."""
     first, *others = boxes
     for other in others:
         first = first | other
@@ -33,7 +33,7 @@ def union(boxes: Iterable[Box]) -> Box:
 
 
 def tile_offsets(package: Package) -> Corner:
-    """(tiles, 3): where each tile stands, rows from south to north; the first is the sea's own place."""
+    """(tiles, 3): offset of each tile, in rows from south to north; the first is the sea itself."""
     size = package.size * package.scale
     across, along = package.tiles
     column, row = (part.reshape(-1) * size for part in np.meshgrid(np.arange(across), np.arange(along)))
@@ -42,6 +42,6 @@ def tile_offsets(package: Package) -> Corner:
 
 
 def of_tiles(package: Package, box: Box) -> Box:
-    """Around all tiles of a patch with this box."""
+    """The box around all tiles of a sea with this box."""
     offsets = tile_offsets(package)
     return Box(box.least + offsets.min(axis=0), box.greatest + offsets.max(axis=0))

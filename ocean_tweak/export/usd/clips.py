@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sea of value clips: a layer a frame, written in any order and anywhere, and what holds them together.
+"""A sea as value clips: one layer per frame, written in any order and on any machine, and the layers that
+combine them.
 
-The flat sea's defaults lie in topology.usd, below geo.usd: in geo.usd itself, which anchors the clips, they
-would win over them and nothing would move.
+Default values are in topology.usd, a sublayer of geo.usd: in geo.usd itself, which anchors the clips, they
+would override them and nothing would move.
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from .package import clip_name
 
 @dataclass(frozen=True)
 class ClipSink:
-    """A sink for frames: clips/NAME.####.usdc in an edition's folder.
+    """Writes frames as clips/NAME.####.usdc into an edition's folder.
 
-    Several threads may bring frames, but OpenUSD is asked by one at a time: its plugins load when they are
-    first needed, and two threads that need one at once can wait for each other for ever.
+    Several threads may write frames, but only one at a time uses OpenUSD: its plugins are loaded on first
+    use, and two threads that load one at the same time can deadlock.
     """
 
     folder: Path
@@ -40,7 +41,7 @@ class ClipSink:
         return outputs_of(self.edition.package.attributes)
 
     def path(self, frame: Frame) -> Path:
-        """Where a frame goes."""
+        """Path of a frame's clip."""
         return self.folder / clip_name(self.edition.package.name, frame)
 
     def write(self, frame: Frame, fields: SurfaceFields, *_others: SurfaceFields) -> tuple[Path, ...]:
@@ -61,12 +62,12 @@ class ClipSink:
         return {"fingerprint": fingerprint, "frame": frame_label(frame)}
 
     def is_current(self, frame: Frame) -> bool:
-        """Whether the frame's clip is there and was made of the same."""
+        """Whether the frame's clip exists and has the same fingerprint."""
         found = mark_of(self.path(frame)) if self.path(frame).exists() else None
         return found is not None and all(found.get(key) == value for key, value in self._mark(frame).items())
 
     def check_complete(self) -> None:
-        """Raise UsdError naming the frames that have no clip of this sea."""
+        """Raise UsdError with the frames that have no clip of this sea."""
         missing = [frame for frame in self.edition.package.frames if not self.is_current(frame)]
         if missing:
             raise UsdError(
@@ -76,21 +77,21 @@ class ClipSink:
 
 
 def write_manifest(path: Path, edition: Edition) -> None:
-    """Write what the clips hold, so that none has to be opened to know it."""
+    """Write the manifest of the clips, so that none has to be opened to list their attributes."""
     with whole_layer(path) as layer:
         write_header(layer, edition.package, edition.package.frames, ROOT)
         declare(layer, edition)
 
 
 def write_topology_layer(path: Path, edition: Edition) -> None:
-    """Write all that is the same in every frame, and defaults."""
+    """Write everything that is the same in every frame, and default values."""
     with whole_layer(path) as layer:
         write_header(layer, edition.package, (), ROOT)
         write_topology(layer, edition)
 
 
 def write_stitch(path: Path, edition: Edition, topology: str, manifest: str) -> None:
-    """Write geo.usd: which clip is read at which time, over the topology.
+    """Write geo.usd: the clip for each time, over the topology.
 
     topology, manifest : names of the layers beside it
     """
@@ -98,7 +99,7 @@ def write_stitch(path: Path, edition: Edition, topology: str, manifest: str) -> 
     with whole_layer(path, text=True) as layer:
         write_header(layer, package, package.frames, ROOT, {"clips": format_frames(package.frames)})
         layer.subLayerPaths.append(f"./{topology}")
-        # on the meshes, not on the prim above: where a shot makes that an instance, clips on it are not read
+        # on the meshes, not on their parent: if a shot makes that an instance, clips on it are not read
         for mesh, _ in edition.meshes():
             prim = sdf.CreatePrimInLayer(layer, mesh)
             prim.SetInfo("clips", {"default": _clip_set(package.name, mesh, package.frames, manifest)})
@@ -113,6 +114,6 @@ def _clip_set(name: str, mesh: str, frames: Iterable[Frame], manifest: str) -> d
         "manifestAssetPath": sdf.AssetPath(f"./{manifest}"),
         "active": vt.Vec2dArray([gf.Vec2d(float(frame), index) for index, frame in enumerate(frames)]),
         "times": vt.Vec2dArray([gf.Vec2d(float(frame), float(frame)) for frame in frames]),
-        # a clip that got lost shows its neighbours instead of the flat sea
+        # for a missing clip, its neighbours are interpolated instead of showing the flat sea
         "interpolateMissingClipValues": True,
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An export: checked, then its frames, then the layers that hold them together, the asset's own last."""
+"""The steps of an export: checks, frames, then the layers that combine them, the asset's own last."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from .points import points_sink
 from .spray import SPRAY_LAYER, write_spray
 
 TOPOLOGY, MANIFEST, PAYLOAD, MATERIAL = "topology.usd", "manifest.usda", "payload.usd", "mtl.usd"
-#: form → the layer of the geometry, and the others that belong to it alone
+#: form → name of the geometry's layer, and of the other layers of this form
 _GEOMETRY = {
     "points": ("geo.usdc",),
     "clips": ("geo.usd", TOPOLOGY, MANIFEST),
@@ -41,14 +41,14 @@ _GEOMETRY = {
 
 @dataclass(frozen=True)
 class Export:
-    """A package and where it goes.
+    """A package and its destination.
 
-    top : the asset's own layer; all others lie beside it
-    bake : folder of a bake whose images displace the sea; none to make one beside the asset
-    force : replace files of others, and clips that are there already
-    spray : to be shown beside the sea; None for none
+    top : the asset's own layer; all others are in the same folder
+    bake : folder of a bake whose images displace the sea; None to bake beside the asset
+    force : replace files of others, and existing clips
+    spray : exported with the sea; None for none
 
-    Raises UsdError where `pxr` is missing, ParameterError for a file that has no name of a layer.
+    Raises UsdError if `pxr` is missing, ParameterError if the file name is not that of a layer.
     """
 
     package: Package
@@ -76,7 +76,7 @@ class Export:
         )
 
     def paths(self) -> Iterator[Path]:
-        """All layers but the clips."""
+        """All layers except the clips."""
         yield self.top
         if self.spray is not None:
             yield self._spray_layer
@@ -85,9 +85,9 @@ class Export:
                 yield folder / name
 
     def check(self, frames: Sequence[Frame]) -> None:
-        """Raise UsdError or OSError, before anything is made, for what cannot be written.
+        """Raise UsdError or OSError, before any work, if the export cannot be written.
 
-        frames : those that will be made
+        frames : those that will be written
         """
         package = self.package
         if not set(frames) <= set(package.frames):
@@ -107,7 +107,7 @@ class Export:
             self.images  # noqa: B018  # names what is missing
 
     def left(self, frames: Sequence[Frame]) -> int:
-        """How many frames will be made, over all resolutions."""
+        """Number of frames to write, over all resolutions."""
         if self.package.form == "clips":
             return sum(len(self._todo(sink, frames)) for _, _, sink in self._clips())
         if self.package.form == "displacement":
@@ -116,22 +116,22 @@ class Export:
 
     @property
     def rounds(self) -> int:
-        """How often each frame is made: once a resolution, but images only once."""
+        """Number of times each frame is computed: once per resolution, but only once for images."""
         return 1 if self.package.form == "displacement" else len(self.editions)
 
     def written_bytes(self) -> int:
-        """What the asset takes on disk, without the images of a bake that somebody else made."""
+        """Size of the asset on disk, without images of an existing bake."""
         clips = [sink.path(frame) for _, _, sink in self._clips() for frame in self.package.frames]
         own = self.package.form == "displacement" and self.bake is None
         images = self.images.values() if own else ()
         return sum(path.stat().st_size for path in (*self.paths(), *clips, *images))
 
     def make(self, frames: Sequence[Frame], workers: int = 1) -> Iterator[BakedFrame]:
-        """Make frames; yields each when it is written. Those of points appear together at the end."""
+        """Write frames; yields each once written. Frames in the form "points" appear together at the end."""
         yield from _MAKERS[self.package.form](self, frames, workers)
 
     def make_spray(self) -> Iterator[BakedFrame]:
-        """Make the spray of all frames, if any is wanted; yields each. It appears at the end."""
+        """Write the spray of all frames, if there is any; yields each. It appears at the end."""
         if self.spray is not None:
             yield from write_spray(self._spray_layer, self.package, self.spray)
 
@@ -140,14 +140,14 @@ class Export:
         return self.top.with_name(SPRAY_LAYER)
 
     def check_clips(self) -> None:
-        """Raise UsdError where clips are missing."""
+        """Raise UsdError if clips are missing."""
         for _, _, sink in self._clips():
             sink.check_complete()
 
     def finish(self) -> None:
-        """Write the layers that hold the frames together.
+        """Write the layers that combine the frames.
 
-        Raises UsdError where frames or the spray are missing.
+        Raises UsdError if frames or the spray are missing.
         """
         package = self.package
         self.check_clips()
@@ -192,17 +192,17 @@ class Export:
 
     @cached_property
     def bake_folder(self) -> Path:
-        """Where the images are."""
+        """Folder of the images."""
         return self.bake or textures.own_bake(self.top, self.package)
 
     @cached_property
     def job(self) -> Job:
-        """What the bake holds."""
+        """The job of the bake."""
         return read_job(self.bake_folder)
 
     @cached_property
     def images(self) -> dict[Frame, Path]:
-        """The image of each frame, once all are there. Raises UsdError naming those that are not."""
+        """The image of each frame. Raises UsdError with those that are missing."""
         return textures.image_paths(self.bake_folder, self.job, self.package.frames)
 
     def _relative_images(self, layer: Path) -> dict[Frame, str]:
@@ -264,7 +264,7 @@ _FINISHERS: dict[str, Callable[[Export, Path, Edition], Box]] = {
 
 
 def extents(path: Path, frames: Sequence[Frame]) -> Iterator[Box]:
-    """The surface's box at frames, from a layer that holds them. Raises UsdError where there is none."""
+    """The surface's bounding box at each frame, from a layer. Raises UsdError if there is none."""
     sdf = pxr().Sdf
     layer = sdf.Layer.OpenAsAnonymous(str(path))
     for frame in frames:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mesh of a sea: quads between its samples, closed by the first row and column repeated a period on.
+"""The mesh of a sea: quads between its samples, with the first row and column repeated at the far sides.
 
-Vertices stand x fastest, from 0 to the domain's size, as in Blender.
+Vertices are in x-fastest order, from 0 to the domain's size, as in Blender.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ RealArray = NDArray[np.floating]
 
 
 def turned(vectors: RealArray, up_axis: str) -> RealArray:
-    """(…, 3) vectors along the axes of a layer: for Y they are turned by -90° about x."""
+    """(…, 3) vectors in the axes of a layer: for Y up, rotated by -90° about x."""
     if up_axis == "Y":
         return np.stack([vectors[..., 0], vectors[..., 2], -vectors[..., 1]], axis=-1)
     return vectors
@@ -29,10 +29,10 @@ class UsdGrid:
 
     size : side of the tile in m
     samples : along each side
-    texels : along each side of the images that may lie on it
-    step : how many samples from one vertex to the next
-    up_axis, scale : of the layer; units in a metre
-    corner : x and y of the first vertex in m, of an area that has a sample for each vertex; None for a tile
+    texels : along each side of images that cover it
+    step : samples from one vertex to the next
+    up_axis, scale : of the layer; scale in units per metre
+    corner : (x, y) of the first vertex in m, for an area with one sample per vertex; None for a tile
     """
 
     size: float
@@ -50,16 +50,16 @@ class UsdGrid:
 
     @property
     def vertices(self) -> int:
-        """How many there are."""
+        """Number of vertices."""
         return (self.quads + 1) ** 2
 
     def of_vertices(self, field: RealArray) -> RealArray:
-        """Samples as (quads + 1, quads + 1, …) of their own: a tile's first ones are once more at the end."""
+        """Samples at the vertices, (quads + 1, quads + 1, …): a tile's first ones are repeated at the end."""
         steps = field[:: self.step, :: self.step]
         return wrapped(steps, np.float32) if self.corner is None else np.array(steps, np.float32)
 
     def turned(self, vectors: RealArray, scale: float = 1.0) -> RealArray:
-        """(…, 3) vectors as (vertices, 3) along the layer's axes, times the scale; may change the array."""
+        """(…, 3) vectors as (vertices, 3) in the layer's axes, times the scale; may modify the array."""
         vectors = turned(vectors, self.up_axis)
         if scale != 1.0:
             vectors *= scale
@@ -85,9 +85,9 @@ class UsdGrid:
         return first + np.array([0, 1, row + 1, row], np.int32)
 
     def texture_coordinates(self) -> RealArray:
-        """(vertices, 2) float32: the centres of the texels that hold the samples.
+        """(vertices, 2) float32: the centres of the samples' texels.
 
-        x/size + ½/texels; the image of an area ends with the last vertex.
+        x/size + ½/texels; an image of an area ends at the last vertex.
         """
         whole = 1.0 if self.corner is None else 1.0 - 1.0 / self.texels
         along = np.arange(self.quads + 1) / self.quads * whole + 0.5 / self.texels
@@ -95,7 +95,8 @@ class UsdGrid:
 
 
 def proxy_step(samples: int, most: int) -> int:
-    """The least step that divides the samples and leaves at most so many quads along a side; 0 for none."""
+    """The smallest step that divides the samples and gives at most this many quads along a side; 0 for
+    none."""
     if most < 1 or samples <= most:
         return 0
     return next(step for step in range(2, samples + 1) if samples % step == 0 and samples // step <= most)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layers that anybody may have written, read in a process of their own.
+"""Reads layers from unknown sources in a separate process.
 
-OpenUSD is C++ and breaks off over some damaged layers; whoever asks, Blender with unsaved work perhaps, must
-not go down with it. The process is asked by a line of JSON and answers in lines of JSON.
+OpenUSD crashes on some damaged layers, and the caller, perhaps Blender with unsaved work, must not crash with
+it. The request is a line of JSON, and so is each answer.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _LOG = logging.getLogger(__name__)
 
 
 def read_package(path: Path) -> tuple[str, Package]:
-    """What `reading.read_package` returns and raises."""
+    """As `reading.read_package`."""
     (answer,) = _answers(path, {"path": str(path)})
     return answer["prim"], Package.from_record(answer["record"])
 
 
 def problems_of(path: Path, frames: Sequence[Frame] | None = None) -> Iterator[Problem]:
-    """What `verify.verify` yields and raises."""
+    """As `verify.verify`."""
     chosen = None if frames is None else format_frames(frames)
     for answer in _answers(path, {"path": str(path), "verify": True, "frames": chosen}):
         place = answer["frame"]
@@ -41,7 +41,7 @@ def problems_of(path: Path, frames: Sequence[Frame] | None = None) -> Iterator[P
 
 
 def answer(asked: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The answers of the process, the last of which may say why there are no more."""
+    """The answers of the process, the last of which may be an error."""
     path, frames = Path(asked["path"]), asked.get("frames")
     try:
         if asked.get("verify"):
@@ -57,7 +57,7 @@ def answer(asked: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _answers(path: Path, asked: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    pxr()  # where there is none, that is said at once
+    pxr()  # if there is none, report that at once
     for said in lines(path, asked):
         if "error" in said:
             raise UsdError(said["error"])
@@ -67,7 +67,7 @@ def _answers(path: Path, asked: dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def lines(path: Path, asked: dict[str, Any]) -> Iterable[dict[str, Any]]:
-    """What the process answers. Raises UsdError where it breaks off."""
+    """The answers of the process. Raises UsdError if it crashes."""
     done = subprocess.run(
         module_command(__name__), input=json.dumps(asked), env=environment(), capture_output=True,
         encoding="utf-8", errors="replace", check=False,
@@ -76,7 +76,7 @@ def lines(path: Path, asked: dict[str, Any]) -> Iterable[dict[str, Any]]:
         logs.relay(line, _LOG)
     if done.returncode not in (0, 1):
         raise UsdError(f"{path}: OpenUSD crashes on it: a layer is damaged, so export the sea again")
-    if done.returncode == 1:  # Python's own end by an error
+    if done.returncode == 1:  # Python's exit code for an error
         raise UsdError(f"{path}: reading it failed: {' '.join(done.stderr.splitlines()[-1:])}")
     return map(json.loads, done.stdout.splitlines())
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layers: written whole or not at all, marked as ours, and never over somebody else's."""
+"""USD layers, written atomically, with our mark, and never over files of others."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ from .package import Package
 
 #: key of customData and customLayerData
 MARK = "ocean_tweak"
-#: what OpenUSD raises for damaged layers: errors of its own, and Python's for values of other types than they
-#: should be, and for text that is none
+#: errors for damaged layers: OpenUSD's own, and Python's for values of the wrong type and undecodable text
 UNREADABLE = (RuntimeError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError)
-_LONGEST = 300  # characters of a reason
+_LONGEST = 300  # largest length of a reason, in characters
 _REPLACE = "replace it with --force (in Blender: Overwrite)"
 
 
@@ -29,15 +28,15 @@ _REPLACE = "replace it with --force (in Blender: Overwrite)"
 def whole_layer(
     path: Path, text: bool = False, alone: AbstractContextManager[Any] | None = None
 ) -> Iterator[Any]:
-    """A new layer to fill, an `Sdf.Layer`; at the end it is saved, synced and takes the place of `path`.
+    """Context manager for a new `Sdf.Layer`; at the end it is saved, synced and replaces `path`.
 
-    text : readable rather than binary, for a layer named .usd
-    alone : held while OpenUSD is at work; syncing goes on beside others
+    text : write text instead of binary, for a layer named .usd
+    alone : lock held while OpenUSD is used, but not while syncing
 
-    Raises UsdError where it cannot be written; then the old file is as it was.
+    Raises UsdError if it cannot be written; the old file is then kept.
     """
     with whole_file(path) as beside, alone or contextlib.nullcontext():
-        # OpenUSD chooses the format by the ending
+        # OpenUSD chooses the format by the suffix
         draft = beside.with_name(beside.name + path.suffix)
         try:
             with named_errors(path, (pxr().Tf.ErrorException,)):
@@ -49,20 +48,20 @@ def whole_layer(
 
 
 def _filled(draft: Path, path: Path, text: bool) -> Iterator[Any]:
-    """Give a layer, save it, and see that it can be opened."""
+    """Create a layer, save it, and check that it can be opened."""
     sdf = pxr().Sdf
     layer = sdf.Layer.CreateNew(str(draft), args=_format(path, text))
     try:
         yield layer
         save(layer, path)
     finally:
-        del layer  # or the next one to open this path would get this one
+        del layer  # otherwise the next opening of this path would return this layer
     if sdf.Layer.OpenAsAnonymous(str(draft), metadataOnly=True) is None:
         raise UsdError(f"{path}: what was written cannot be read back")
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove what a killed process had begun to write of a layer."""
+    """Remove unfinished files of a layer left by killed processes."""
     for part in path.parent.glob(f".{path.name}.*{PART}*"):
         if begun_file(part.with_suffix("") if part.suffix != PART else part) == path.name:
             part.unlink(missing_ok=True)
@@ -74,9 +73,9 @@ def _format(path: Path, text: bool) -> dict[str, str]:
 
 @contextlib.contextmanager
 def named_errors(path: Path, kinds: tuple[type[Exception], ...] = UNREADABLE) -> Iterator[None]:
-    """Turns what OpenUSD says of a layer into UsdError with the file's name, in a line.
+    """Context manager that converts errors of OpenUSD into UsdError with the file's name, on one line.
 
-    kinds : of errors; by default all that reading may give
+    kinds : of errors; by default all that reading may raise
     """
     try:
         yield
@@ -87,7 +86,7 @@ def named_errors(path: Path, kinds: tuple[type[Exception], ...] = UNREADABLE) ->
 
 
 def reason(error: Exception) -> str:
-    """What OpenUSD's error says, without the place in its source."""
+    """The message of an OpenUSD error, without the position in its source."""
     try:
         lines = str(error).splitlines()
     except UnicodeDecodeError:
@@ -97,7 +96,7 @@ def reason(error: Exception) -> str:
 
 
 def save(layer: Any, path: Path) -> None:
-    """Save a layer; what it held in memory is in the file afterwards. Raises UsdError."""
+    """Save a layer. Raises UsdError."""
     with named_errors(path, (pxr().Tf.ErrorException,)):
         saved = layer.Save()
     if not saved:
@@ -107,9 +106,9 @@ def save(layer: Any, path: Path) -> None:
 def write_header(
     layer: Any, package: Package, frames: tuple[Frame, ...], prim: str, mark: dict[str, Any] | None = None
 ) -> None:
-    """Units, axis, time and mark of a layer.
+    """Write units, up axis, time range and mark of a layer.
 
-    frames : what it covers; none for a layer that does not move
+    frames : its frames; none for a layer that does not move
     prim : its default prim
     """
     usd_geom = pxr().UsdGeom
@@ -124,7 +123,7 @@ def write_header(
 
 
 def mark_of(path: Path) -> dict[str, Any] | None:
-    """Our mark in a layer; None where there is none, or where it cannot be read."""
+    """Our mark in a layer; None if there is none or it cannot be read."""
     try:
         layer = pxr().Sdf.Layer.OpenAsAnonymous(str(path))
         mark = layer.customLayerData.get(MARK) if layer is not None else None

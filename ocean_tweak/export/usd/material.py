@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The water's material: its look, and what moves the mesh where images hold the sea."""
+"""The water's material, and displacement of the mesh by images."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ VECTOR_SPACE = (
 def write_material(path: Path, package: Package, textures: Mapping[Frame, str]) -> None:
     """Write mtl.usd.
 
-    textures : displacement images by frame, relative to the layer; none where the mesh itself moves
+    textures : displacement images by frame, relative to the layer; none if the mesh itself moves
     """
     modules = pxr()
     frames = tuple(sorted(textures))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is exported: a sea, its frames, and how they are laid out."""
+"""The description of an export: a sea, its frames and its layout."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FORMS = ("points", "clips", "displacement")
 UP_AXES = ("Z", "Y")
 #: names of the layers beside the asset's own
 LAYER_NAMES = ("payload", "geo", "mtl", "topology", "manifest", "spray")
-#: limits of resolutions to choose from, of tiles along a side, and of metres in a unit
+#: limits of the resolutions of variants, of tiles along a side, and of metres per unit
 MOST_VARIANTS, MOST_TILES, UNITS = 16, 64, (1e-6, 1e6)
 _NAME = re.compile(r"[\w\- ]+(\.[\w\- ]+)*")
 
@@ -36,19 +36,19 @@ class Package:
     """What is exported.
 
     name : of the asset and of its files
-    frames : ascending; those between whole numbers are samples for motion blur
-    up_axis : Z as in Blender, or Y: then all vectors are turned
+    frames : ascending; subframes are samples for motion blur
+    up_axis : Z as in Blender, or Y, for which all vectors are rotated
     metres_per_unit : of the layers; 0.01 gives centimetres
     attributes : keys of ATTRIBUTES
     half : foam, cusp, breaking and foam_age in 16 bits instead of 32
-    tiles : patches side by side along x and y, as instances
-    proxy : most quads along a side of the coarse mesh for viewports; 0 for none
-    variants : resolutions to choose from, the first one by default; none for the sea's own alone
-    area : the square that the mesh shows, with as many quads along each side as it has samples; None for the
+    tiles : number of copies along x and y, as instances
+    proxy : largest number of quads along a side of the coarse mesh for viewports; 0 for none
+    variants : resolutions to choose from, by default the first; none for the sea's own only
+    area : the square covered by the mesh, with as many quads along each side as it has samples; None for the
         sea's tile
-    foam : version of the foam in its attributes; without such attributes it is of no account
+    foam : version of the foam in its attributes; ignored without such attributes
 
-    Raises ParameterError naming what does not fit.
+    Raises ParameterError for settings that do not fit together.
     """
 
     name: str
@@ -96,24 +96,24 @@ class Package:
 
     @property
     def resolutions(self) -> tuple[int, ...]:
-        """Of the editions; the first one is shown by default."""
+        """Resolutions of the editions, the default one first."""
         return self.variants or ((self.area or self.shot.parameters).resolution,)
 
     def at(self, resolution: int) -> Shot:
-        """The sea of an edition: a tile has as many samples, and the waves that they can hold."""
+        """The sea of an edition: a tile with this many samples, and the waves that they resolve."""
         if self.area is not None:
             return self.shot
         return replace(self.shot, parameters=self.shot.parameters.at_resolution(resolution))
 
     def on(self, resolution: int) -> Tile | Area:
-        """Where an edition's samples are: in an area, one for each vertex, the last ones on its far sides."""
+        """The region of an edition's samples: in an area, one per vertex, the last ones on its far sides."""
         if self.area is None:
             return TILE
         size = self.area.size * (resolution + 1) / resolution
         return Area(size, resolution + 1, self.area.corner)
 
     def _check_area(self) -> None:
-        """Raise ParameterError for what an area cannot have."""
+        """Raise ParameterError for settings that an area does not support."""
         if self.tiles != (1, 1):
             raise ParameterError("tiles", self.tiles, "must be 1x1 of an area: it does not repeat")
         for resolution in self.resolutions:
@@ -123,23 +123,23 @@ class Package:
 
     @property
     def image_area(self) -> Area | None:
-        """What an image shows that lies on the mesh; None for the sea's tile."""
+        """The area of an image that covers the mesh; None for the sea's tile."""
         on = TILE if self.area is None else self.on(self.area.resolution)
         return on if isinstance(on, Area) else None
 
     @property
     def texels(self) -> int:
-        """Along each side of such an image."""
+        """Texels along each side of such an image."""
         return (self.image_area or self.shot.parameters).resolution
 
     @property
     def size(self) -> float:
-        """Of the mesh at rest, m."""
+        """Size of the mesh at rest, m."""
         return self.shot.parameters.domain_size if self.area is None else self.area.size
 
     @property
     def corner(self) -> tuple[float, float] | None:
-        """Its first vertex at rest, m; None of a tile, whose is at 0, 0."""
+        """Position of its first vertex at rest, m; None for a tile, where it is (0, 0)."""
         return None if self.area is None else self.area.corner
 
     @property
@@ -149,16 +149,16 @@ class Package:
 
     @property
     def scale(self) -> float:
-        """Units of the layers in a metre."""
+        """Layer units per metre."""
         return 1.0 / self.metres_per_unit
 
     @cached_property
     def fingerprint(self) -> str:
-        """That of the shot."""
+        """Fingerprint of the shot."""
         return shot_fingerprint(self.shot)
 
     def edition_fingerprint(self, resolution: int) -> str:
-        """SHA-256 of all that an edition's animated arrays depend on, whichever frames are made."""
+        """SHA-256 of everything that an edition's animated arrays depend on, except the choice of frames."""
         return fingerprint(
             {
                 "format": formats.LAYER,
@@ -181,7 +181,7 @@ class Package:
         return {} if self.area is None else {"area": " ".join(self.area.words())}
 
     def record(self) -> dict[str, Any]:
-        """What stands in the asset's customData: strings and plain numbers."""
+        """The asset's customData: strings and plain numbers."""
         return {
             "format": formats.LAYER,
             "name": self.name,
@@ -202,7 +202,7 @@ class Package:
 
     @classmethod
     def from_record(cls, data: dict[str, Any]) -> Package:
-        """The package that `record` described. Raises ValueError or KeyError for what is none."""
+        """The package described by a `record`. Raises ValueError or KeyError for invalid data."""
         formats.check_format(data, formats.LAYER)
         formats.check_format(data, formats.FOAM, "foam")
         across, along = str(data["tiles"]).split("x")
@@ -227,9 +227,9 @@ class Package:
 
 
 def with_samples_between(frames: Iterable[Frame], samples: int) -> tuple[Frame, ...]:
-    """Frames with as many samples from each one to the next as asked for; 1 leaves them as they are.
+    """Frames with a number of samples from each one to the next; 1 returns them unchanged.
 
-    Raises ParameterError for a number whose parts six decimals cannot write.
+    Raises ParameterError for a number whose fractions need more than six decimals.
     """
     frames = tuple(frames)
     if samples < 1:
@@ -244,17 +244,18 @@ def with_samples_between(frames: Iterable[Frame], samples: int) -> tuple[Frame, 
 
 
 def asset_name(file: Path) -> str:
-    """An asset's name, of its file's: sea.v001 for sea.v001.usd. What names cannot hold becomes _."""
+    """An asset's name from that of its file: sea.v001 for sea.v001.usd. Characters not allowed in names
+    become _."""
     return ".".join(re.sub(r"[^\w\- ]+", "_", part) or "_" for part in file.stem.split("."))
 
 
 def clip_name(name: str, frame: Frame) -> str:
-    """A clip's path beside its geo.usd."""
+    """Path of a clip relative to its geo.usd."""
     return f"clips/{name}.{frame_label(frame)}.usdc"
 
 
 def edition_folder(top: Path, package: Package, resolution: int) -> Path:
-    """Where the layers of a resolution lie: beside the asset, or in a folder each where it has several."""
+    """Folder of a resolution's layers: that of the asset, or one of its own if there are several."""
     return top.parent / str(resolution) if package.variants else top.parent
 
 
