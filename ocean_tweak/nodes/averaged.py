@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that read a surface at the vertices of a grid, averaged over the size of the grid's cells.
+"""Geometry nodes that sample a surface at the vertices of a grid, averaged over the grid's cell size.
 
-Between two averages where the level, how often the surface is halved, is a fraction: nothing pops.
+Values are blended between two levels of averages, as the level (number of halvings) is fractional, so nothing
+pops.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from .building import Builder, Plug, Socket, output
 from .fields import alone, coordinates, mixed, sample_index, whole_number
 from .versioned import GroupKind
 
-#: cells of the grid in a cell of the averages: what is left is at least four cells long
+#: grid cells per cell of the averages, so that remaining waves are at least four grid cells long
 _GRID_CELLS = 2.0
 
 _INPUTS = (
@@ -26,9 +27,9 @@ _INPUTS = (
     Plug("Size", "NodeSocketFloat", 1.0, "Of the grid's cells where a vertex is"),
     Plug("Fade", "NodeSocketBool", True, "Average; otherwise the surface is read as it is"),
 )
-#: names of what is averaged → sockets
+#: names of averaged values → sockets
 SOCKETS = {name: name.removeprefix("ocean_tweak_").title() for name in CARRIED}
-#: what was read at a vertex
+#: values sampled at a vertex
 READ = tuple(Plug(socket, "NodeSocketVector", None, "At the vertex") for socket in SOCKETS.values())
 
 
@@ -38,7 +39,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     number = cells(build, *counts)
     period = build.vector("MULTIPLY", build.given("Spacing"), number)
     periods = alone(build, "FRACTION", build.vector("DIVIDE", build.given("Place"), period))
-    # samples of averages stand for places half a cell in, those of the surface for its first corners
+    # samples of averages are at cell centres, those of the surface at cell corners
     periods = build.vector("ADD", periods, build.vector("DIVIDE", (0.5, 0.5, 0.0), number))
     most = halvings(build, *counts)
     level = _level(build, most)
@@ -54,7 +55,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _level(build: Builder, most: Socket) -> Socket:
-    """How often the surface is halved where a vertex is: a fraction, 0 where the grid is fine enough."""
+    """Number of halvings at a vertex: fractional, 0 where the grid is fine enough."""
     step_x, step_y, _ = coordinates(build, build.given("Spacing"))
     ratio = build.math("DIVIDE", build.given("Size"), build.math("MINIMUM", step_x, step_y))
     level = build.math("LOGARITHM", build.math("MULTIPLY", ratio, _GRID_CELLS), 2.0)
@@ -63,7 +64,7 @@ def _level(build: Builder, most: Socket) -> Socket:
 
 
 def _of_level(build: Builder, level: Socket, periods: Socket) -> dict[str, Socket]:
-    """What one of the averages is at a place in periods, bilinear between its four samples around."""
+    """Value of one level of averages at a place in periods, bilinear between four samples."""
     levels = build.given("Levels")
     place = output(build.add("GeometryNodeInputPosition"), "Position")
     fact = sample_index(build, levels, place, whole_number(build, level, "ROUND"), "FLOAT_VECTOR")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Geometry nodes that average an ocean's surface over larger and larger cells.
 
-A surface is held by a mesh as `nodes.surface` knows it: vertices stand x fastest, the last ones of a row and
-of a column are the first ones of the next period. It and its averages become points, one after the other, of
-which only the attributes count.
+A surface is a mesh in the layout of `nodes.surface`: vertices in x-fastest order, with the first ones of each
+row and column repeated at the end. It and its averages become points, one level after another, of which only
+the attributes matter.
 
-The next averages are those of two by two: sample j of nₖ stands for the place (j + ½)/nₖ of the period, and
-lies between two samples of the averages before. Numbers that cannot be halved are rounded up, and what
-lies between two samples is interpolated. Live patches come with averages made so, `core.numerics.halving`.
+Each level averages 2 × 2 samples of the level before: sample j of nₖ lies at (j + ½)/nₖ of the period,
+between two samples of that level. Odd counts are halved and rounded up, with interpolation between samples.
+Live patches bring averages computed in the same way by `core.numerics.halving`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .versioned import GroupKind, node_group
 #: what is averaged
 MOVING = (DISPLACEMENT, VELOCITY, SLOPES)
 CARRIED = (*MOVING, OTHERS)
-#: how far up a normal at least points, so that a fold does not count for a whole sea
+#: smallest z of a normal, so that a fold does not dominate an average
 _LEAST_UPWARDS = 0.2
 
 _MESH = (
@@ -58,7 +58,7 @@ _OUTPUTS = (
 
 
 def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
-    """An ocean's mesh with what is averaged: of its foam, and where that is wanted how it moves."""
+    """An ocean's mesh with the values to average: its foam and, if requested, its motion."""
     normal = output(build.add("GeometryNodeInputNormal"), "Normal")
     x, y, z = coordinates(build, normal)
     up = build.math("MAXIMUM", z, _LEAST_UPWARDS)
@@ -75,9 +75,9 @@ def ocean_carried(build: Builder, ocean: Socket, moving: Socket) -> Socket:
 
 
 def patch_carried(build: Builder, patch: Socket) -> Socket:
-    """The mesh of one patch of a sea with what is averaged: how it moves, and its strain.
+    """The mesh of one patch with the values to average: its motion and its strain.
 
-    Its attribute of slope variance is what its samples lack of the slopes' squares.
+    Its slope variance attribute holds the variance lost in its samples.
     """
     x, y, _ = coordinates(build, told(build, SLOPE))
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
@@ -90,10 +90,11 @@ def patch_carried(build: Builder, patch: Socket) -> Socket:
 def patch_averages(
     build: Builder, patch: Socket, counts: dict[str, Socket], fade: dict[str, Socket]
 ) -> tuple[Socket, Socket]:
-    """Points of a patch and of its averages, and those that tell where each begins: its own if it has them.
+    """Points of a patch and of its averages, and the points that give the start of each level; the patch's
+    own averages if it has them.
 
     patch : its mesh
-    counts : its columns and rows
+    counts : numbers of columns and rows
     """
     made = build.group(node_group(AVERAGES), {"Geometry": patch_carried(build, patch), **counts, **fade})
     table = named_attribute(build, AVERAGES_TABLE, "FLOAT_VECTOR")
@@ -119,12 +120,12 @@ def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:
 
 
 def told(build: Builder, name: str) -> Socket:
-    """An attribute of three numbers."""
+    """An attribute of three integers."""
     return output(named_attribute(build, name, "FLOAT_VECTOR"), "Attribute")
 
 
 def halvings(build: Builder, columns: Socket, rows: Socket) -> Socket:
-    """How often it takes until one cell is left."""
+    """Number of halvings until one cell is left."""
     most = build.integer("SUBTRACT", build.integer("MAXIMUM", columns, rows), 1)
     return alone(build, "CEIL", build.math("LOGARITHM", most, 2.0), "ShaderNodeMath")
 
@@ -193,7 +194,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _level(build: Builder, mesh: dict[str, Socket], first: Input) -> Socket:
-    """The point that tells of one of the averages."""
+    """The point that describes one level of averages."""
     place = combined(build, mesh["Columns"], mesh["Rows"], first)
     return output(build.add("GeometryNodePoints", {"Count": 1, "Position": place}), "Points")
 

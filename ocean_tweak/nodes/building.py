@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and links, made by name."""
+"""Creates nodes and links by name."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 import bpy
 
 Socket: TypeAlias = bpy.types.NodeSocket
-#: what a node's input can be given: another node's output, or a value
+#: a value for a node's input: another node's output, or a constant
 Input = Any
 
 
@@ -24,7 +24,7 @@ class Plug(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """Inputs that stand together in the modifier."""
+    """Inputs grouped in a panel of the modifier."""
 
     name: str
     inputs: tuple[Plug | tuple[str, str, Any, str], ...]
@@ -35,7 +35,7 @@ class Builder:
 
     tree : an empty geometry node tree
     inputs : besides the geometry: name, socket type, default, description, or a panel of such
-    outputs : of a group without geometry; those of one with geometry are the geometry alone
+    outputs : of a group without geometry; a group with geometry outputs only that
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class Builder:
         socket.hide_in_modifier = plug.hidden
 
     def add(self, kind: str, inputs: dict[str, Input] | None = None, **settings: Any) -> bpy.types.Node:
-        """A node with its settings, and with values or links on its inputs by their names."""
+        """Add a node with settings, and with values or links for its inputs by name."""
         node = self.tree.nodes.new(kind)
         for name, value in settings.items():
             setattr(node, name, value)
@@ -83,7 +83,7 @@ class Builder:
     def change(
         self, kind: str, geometry: Socket, inputs: dict[str, Input] | None = None, **settings: Any
     ) -> Socket:
-        """The geometry behind a node that changes one; nodes and versions call its socket differently."""
+        """The output geometry of a node that changes one; the socket's name depends on node and version."""
         node = self.add(kind, inputs, **settings)
         self.tree.links.new(geometry, node.inputs[0])
         return node.outputs[0]
@@ -98,7 +98,7 @@ class Builder:
         )  # fmt: skip
 
     def math(self, operation: str, first: Input, second: Input, kind: str = "ShaderNodeMath") -> Socket:
-        """The result of a node with two operands: Math, Vector Math, Integer Math or Boolean Math."""
+        """The output of a node with two operands: Math, Vector Math, Integer Math or Boolean Math."""
         node = self.add(kind, operation=operation)
         operands = [socket for socket in node.inputs if socket.enabled]
         for socket, value in zip(operands, (first, second), strict=False):
@@ -123,13 +123,13 @@ class Builder:
         return self.math(operation, first, second, "FunctionNodeBooleanMath")
 
     def compare(self, operation: str, first: Input, second: Input, data_type: str = "INT") -> Socket:
-        """Whether two numbers compare so."""
+        """Compare two numbers."""
         inputs = {"A": first, "B": second}
         node = self.add("FunctionNodeCompare", inputs, data_type=data_type, operation=operation)
         return output(node, "Result")
 
     def switch(self, input_type: str, switch: Input, false: Input, true: Input) -> Socket:
-        """One of two values; where the condition is one for all, only that one is computed."""
+        """One of two values; if the condition is the same everywhere, only that one is computed."""
         inputs = {"Switch": switch, "False": false, "True": true}
         return self.add("GeometryNodeSwitch", inputs, input_type=input_type).outputs["Output"]
 

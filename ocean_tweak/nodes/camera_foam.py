@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that read foam around a camera, as `core.sea.foam_rings` and `core.sea.foam_fan` make it.
+"""Geometry nodes that sample foam around a camera, from `core.sea.foam_rings` and `core.sea.foam_fan`.
 
-Rings lie in one another, ring n with cells 2ⁿ times as large as the first one's. Their places are the points
-of one mesh, ring after ring, x fastest, with foam, breaking and age as one vector. A fan's are its points,
-row after row, and the surface's own vertices too; their z is the size of the cells there. One point more,
-the last, has what is beyond all rings, and stands at x = the frame that the foam is of, y = the columns of a
-fan, z = the places along each side of a ring.
+Rings are nested; the cells of ring n are 2ⁿ times as large as the first one's. Their places are the points of
+one mesh, ring by ring, x fastest, with foam, breaking and age as one vector. The points of a fan are in rows,
+and are also the vertices of the surface; their z is the cell size. One further point, the last, has the
+values beyond all rings; its x is the frame of the foam, y the number of columns of a fan, z the number of
+places along a side of a ring.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .versioned import GroupKind, node_group
 
 #: attribute of the places: foam, breaking and age
 RING_FOAM = "ocean_tweak_ring_foam"
-#: cells of a ring, at the least, that a cell of the grid may be as large as without a coarser ring being read
+#: size of a grid cell in ring cells beyond which a coarser ring is sampled
 _GRID_CELLS = 2.5
 
 _POINTS = Plug("Foam", "NodeSocketGeometry", None, "The rings' places, and the point beyond them")
@@ -162,10 +162,10 @@ def _build_fan(tree: bpy.types.NodeTree) -> None:
 
 
 def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) -> Socket:
-    """Which ring counts at a vertex: a fraction is between two, the number of rings is beyond them all.
+    """The ring at a vertex, fractional between two rings; the number of rings means beyond all of them.
 
-    Ring n counts up to INNER of its side from the middle, and the next one alone from OUTER on; of a grid
-    that is coarse for that, a later one.
+    Ring n is used up to INNER of its side from its centre, and only the next one from OUTER; for a coarse
+    grid, a later one.
     """
     side = build.math("MULTIPLY", spacing, build.given("Samples"))
     half = build.math("MULTIPLY", side, 0.5)
@@ -185,7 +185,7 @@ def _ring_number(build: Builder, first: Socket, spacing: Socket, rings: Socket) 
 
 
 def _held(build: Builder, along: Socket, most: Socket) -> Socket:
-    """The whole number of a cell, within the ring."""
+    """The integer index of a cell, clamped to the ring."""
     low = build.math("MAXIMUM", alone(build, "FLOOR", along, "ShaderNodeMath"), 0.0)
     return whole_number(build, build.math("MINIMUM", low, most), "ROUND")
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that make a flat grid around a place: dense near it, coarse far away, without a crack.
+"""Geometry nodes that create a flat grid around a place: dense near it, coarse far away, without cracks.
 
-Square levels lie in one another. Level n has cells of the size s·2ⁿ, and its vertices stand on whole
-multiples of that: they stay where they are when the place moves. It is centred on the multiple of 2·s·2ⁿ
-nearest to the place, so that the square of the level before, which has the same number of half as large
-cells, covers whole cells of its own. These are left out.
+The grid consists of nested square levels. Level n has cells of size s·2ⁿ, and its vertices are on integer
+multiples of that, so they do not move with the place. It is centred on the multiple of 2·s·2ⁿ nearest to the
+place, so that the previous level, which has the same number of cells of half the size, covers whole cells of
+it. These are omitted.
 
-Where two levels meet, every other vertex of the finer one has none to stand on: it is drawn onto its
-neighbour, which makes triangles of half of the cells there, and what coincides is made one vertex.
+Where two levels meet, every other vertex of the finer one has no counterpart: it is moved onto its neighbour,
+which turns half of the cells there into triangles, and coincident vertices are merged.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from .building import Builder, Input, Plug, Socket, output
 from .fields import alone, combined, coordinates, whole_number
 from .versioned import GroupKind
 
-#: as many levels as one can wish: the last one is eight million times as coarse as the first
+#: largest number of levels: the last one is eight million times as coarse as the first
 MOST_LEVELS = 24
-#: cells from a level's middle to its edge, at least, where there are several levels
+#: least number of cells from the centre of a level to its edge, with several levels
 LEAST_HALF = 8
 _LEAST_SPACING = 1e-4
 
@@ -40,11 +40,11 @@ OUTPUTS = (
 
 
 def finest_spacing(wanted: float, budget: int, reach: float, half: int) -> float:
-    """The wanted size of the smallest cells, or a larger one with which levels keep enough cells.
+    """The requested size of the smallest cells, or a larger one if levels would have too few cells.
 
-    budget : vertices
-    reach : how far the grid goes
-    half : cells that a level keeps from its middle to its edge
+    budget : largest number of vertices
+    reach : distance covered by the grid
+    half : least number of cells from the centre of a level to its edge
     """
     # n levels of m cells have (3n + 1)m² + (6 - 2n)m + 1 vertices
     levels = (budget - 1 - half**2 - 6 * half) // (3 * half**2 - 2 * half)
@@ -53,12 +53,12 @@ def finest_spacing(wanted: float, budget: int, reach: float, half: int) -> float
 
 
 class _Level(NamedTuple):
-    """Of a vertex or a face: in which level, and where the levels' middles lie in its cells.
+    """The level of a vertex or face, and the centres of the levels in units of its cells.
 
     number : 0 is the finest
-    spacing : of its cells
-    middle : of the level
-    hole : of the level before
+    spacing : size of its cells
+    middle : centre of the level
+    hole : centre of the previous level
     """
 
     number: Socket
@@ -95,7 +95,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _same(build: Builder, spacing: Socket, reached: Socket) -> Socket:
-    """How near to each other vertices are one: Blender finds none nearer than a float's last digit there."""
+    """Merge distance of vertices: the resolution of floats there."""
     center = alone(build, "LENGTH", build.given("Center"))
     farthest = build.math("ADD", center, build.math("MULTIPLY", reached, 2.0))
     digit = build.math("MULTIPLY", farthest, 2.0**-23)
@@ -103,7 +103,7 @@ def _same(build: Builder, spacing: Socket, reached: Socket) -> Socket:
 
 
 def _levels(build: Builder, spacing: Socket) -> Socket:
-    """As many as reach far enough, or as the budget has vertices for."""
+    """Number of levels needed for the reach, or allowed by the budget."""
     line = build.add("GeometryNodeMeshLine", {"Count": MOST_LEVELS - 1})
     levels = build.integer("ADD", output(build.add("GeometryNodeInputIndex"), "Index"), 1)
     short = build.math("LESS_THAN", _reach(build, spacing, levels), build.given("Reach"))
@@ -120,8 +120,8 @@ def _levels(build: Builder, spacing: Socket) -> Socket:
 def _half(build: Builder, levels: Socket) -> Socket:
     """The largest even number m of cells from middle to edge that n levels can have.
 
-    A level alone has (2m + 1)² vertices; each one more adds 3m² - 2m, what the seams make one counted once:
-    (3n + 1)m² + (6 - 2n)m + 1 in all.
+    A single level has (2m + 1)² vertices; each further one adds 3m² - 2m, counting merged vertices once: (3n
+    + 1)m² + (6 - 2n)m + 1 in total.
     """
     a = build.math("ADD", build.math("MULTIPLY", levels, 3.0), 1.0)
     b = build.math("SUBTRACT", 6.0, build.math("MULTIPLY", levels, 2.0))
@@ -134,7 +134,7 @@ def _half(build: Builder, levels: Socket) -> Socket:
 
 
 def _reach(build: Builder, spacing: Socket, levels: Socket) -> Socket:
-    """(m - 1)·s·2ⁿ⁻¹: the place is up to a cell away from the last level's middle."""
+    """(m - 1)·s·2ⁿ⁻¹: the place is up to a cell away from the centre of the last level."""
     cells = build.integer("SUBTRACT", _half(build, levels), 1)
     size = _size(build, spacing, build.integer("SUBTRACT", levels, 1))
     return build.math("MULTIPLY", cells, size)
@@ -160,7 +160,7 @@ def _rounded(build: Builder, value: Socket) -> Socket:
 def _vertices(
     build: Builder, spacing: Socket, columns: Socket, last: Socket
 ) -> tuple[Socket, _Level, Socket]:
-    """Where a vertex stands in its level's cells; the level; and whether it is at a seam."""
+    """Position of a vertex in its level's cells, the level, and whether it is on a seam."""
     column, row, level = _in_strip(build, columns, columns, spacing)
     side = build.integer("SUBTRACT", columns, 1)
     at_x, at_y = _at_edge(build, column, side), _at_edge(build, row, side)
@@ -193,7 +193,7 @@ def _number(build: Builder, column: Socket, row: Socket, level: _Level, side: So
 
 
 def _left_out(build: Builder, spacing: Socket, side: Socket) -> Socket:
-    """Whether a face is where a finer level is, or leads from one level to the next in the strip."""
+    """Whether a face is covered by a finer level, or connects two levels in the strip."""
     columns = build.integer("ADD", side, 1)
     column, row, level = _in_strip(build, side, columns, spacing)
     number = _number(build, column, row, level, side)
@@ -214,7 +214,7 @@ def _true(build: Builder, value: Socket) -> Socket:
 def _in_strip(
     build: Builder, across: Input, columns: Socket, spacing: Socket
 ) -> tuple[Socket, Socket, _Level]:
-    """Column, and row in its level, of a vertex or a face by its number; x fastest, level after level."""
+    """Column, and row within its level, of a vertex or face by its index; x fastest, level by level."""
     index = output(build.add("GeometryNodeInputIndex"), "Index")
     column, strip_row = (build.integer(operation, index, across) for operation in ("MODULO", "DIVIDE_FLOOR"))
     row, number = (build.integer(operation, strip_row, columns) for operation in ("MODULO", "DIVIDE_FLOOR"))

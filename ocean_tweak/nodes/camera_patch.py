@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that add one patch of a sea of several to what a grid around the camera shows.
+"""Geometry nodes that add one of several patches to the sums for a grid around the camera.
 
-Sums of the patches before come in, for each of the grid's vertices: displacement, velocity, slopes with the
-variance that the averages lack, and strain, all in the ocean's axes. They are fields, so that all patches are
-read at once. A patch is read in its own space, averaged by its own spacing, turned, and multiplied by its
-weight w, whose own change is a part of slopes and strains: ∂(w d) = w ∂d + d ∂w.
+Inputs are the sums of the previous patches at each vertex: displacement, velocity, slopes with the variance
+lost by averaging, and strain, all in the ocean's axes. They are fields, so all patches are evaluated at once.
+A patch is sampled in its own space, averaged by its own spacing, rotated, and multiplied by its weight w,
+whose derivatives enter slopes and strains: ∂(w d) = w ∂d + d ∂w.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
-    """Whether a place, from a mesh's first vertex, is over the mesh."""
+    """Whether a place, relative to a mesh's first vertex, is within the mesh."""
     extent = build.vector("MULTIPLY", facts["Spacing"], cells(build, facts["Columns"], facts["Rows"]))
     from_middle = build.vector("SUBTRACT", build.vector("DIVIDE", place, extent), (0.5, 0.5, 0.5))
     x, y, _ = coordinates(build, alone(build, "ABSOLUTE", from_middle))
@@ -89,7 +89,7 @@ def _is_over(build: Builder, place: Socket, facts: dict[str, Socket]) -> Socket:
 
 
 def _weight(build: Builder) -> tuple[Socket, Socket]:
-    """Whether there is a weight, and at the vertex the weight with its changes along x and y."""
+    """Whether there is a weight, and its value and derivatives along x and y at the vertex."""
     points = build.given("Weights")
     attribute = build.add("GeometryNodeInputNamedAttribute", data_type="FLOAT")
     build.tree.links.new(build.given("Weight"), attribute.inputs["Name"])
@@ -113,7 +113,8 @@ def _weight(build: Builder) -> tuple[Socket, Socket]:
 def _turned(
     build: Builder, turned: Callable[[Socket | tuple[float, float, float]], Socket], read: Values
 ) -> Values:
-    """What was read in the ocean's axes: vectors R v, strain R G Rᵀ; of slopes, what they lack too."""
+    """Sampled values rotated to the ocean's axes: vectors R v, strain R G Rᵀ; slopes with their lost
+    variance."""
     x, y, squares = coordinates(build, read[SLOPES])
     slope_x, slope_y, _ = coordinates(build, turned(combined(build, x, y)))
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
@@ -127,7 +128,7 @@ def _turned(
 
 
 def _weighted(build: Builder, whole: Values, weight: Socket) -> Values:
-    """What is multiplied by a weight that changes."""
+    """Sampled values multiplied by a varying weight."""
 
     def product(a: Socket, b: Socket) -> Socket:
         return build.math("MULTIPLY", a, b)
@@ -150,7 +151,8 @@ def _weighted(build: Builder, whole: Values, weight: Socket) -> Values:
 
 
 def _turned_strain(build: Builder, strain: Socket, axis: Socket) -> Socket:
-    """R G Rᵀ of (Gxx, Gyy, Gxy) by the angle of an axis: half the difference and the shear turn twice."""
+    """R G Rᵀ of (Gxx, Gyy, Gxy) by the angle of an axis: half the difference and the shear rotate by twice
+    the angle."""
     xx, yy, xy = coordinates(build, strain)
     cosine, sine, _ = coordinates(build, alone(build, "NORMALIZE", axis))
 

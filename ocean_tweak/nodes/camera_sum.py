@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that say what a grid around the camera shows: the sum of an ocean's patches, or its mesh.
+"""Geometry nodes for the values on a grid around the camera: the sum of an ocean's patches, or its mesh.
 
-Foam is that around the camera where there is some, and otherwise that of the ocean's mesh.
+Foam is taken from the points around the camera if there are any, otherwise from the ocean's mesh.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from .sample import OCEAN_INPUT
 from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
 
-#: of the sea's patches, where it has several; under masks a patch may be several too
+#: meshes of the sea's patches, if it has several; with masks, a patch may have several too
 PATCH_INPUTS = tuple(f"Patch {number}" for number in range(1, 2 * MOST_PATCHES + 1))
 #: of what does not repeat
 AREA_INPUT = "Area"
-#: what may be added up
+#: values that add up
 OF_SUM = (
     *(
         Plug(
@@ -42,7 +42,7 @@ OF_SUM = (
     ),
     Plug(AREA_INPUT, "NodeSocketObject", None, "Mesh of what does not repeat, 0 along its sides"),
 )
-#: attributes and what is in the ocean's axes → sockets
+#: attributes, and values in the ocean's axes → sockets
 SUMMED = {**SOCKETS, FOAM: "Foam", BREAKING: "Breaking", FOAM_AGE: "Foam Age", CUSP: "Cusp"}
 
 _INPUTS = (
@@ -91,7 +91,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[str, Socket]:
-    """What the ocean's mesh has of foam, and where that moves the surface, how."""
+    """The foam of the ocean's mesh and, if it moves the surface, its motion."""
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     mesh = output(facts, "Geometry")
     counts = {name: output(facts, name) for name in ("Columns", "Rows")}
@@ -105,7 +105,7 @@ def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[s
     held = build.math("ADD", *(build.math("MULTIPLY", part, part) for part in (x, y)))
     lost = build.math("MAXIMUM", build.math("SUBTRACT", squares, held), 0.0)
     foam, cusp, breaking = coordinates(build, output(read, SOCKETS[OTHERS]))
-    # a mean of births would be the age of none of them
+    # the mean of several ages would be none of them
     read_there = {
         "Geometry": mesh,
         "Value": output(named_attribute(build, FOAM_AGE, "FLOAT"), "Attribute"),
@@ -117,7 +117,7 @@ def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[s
         DISPLACEMENT: output(read, SOCKETS[DISPLACEMENT]),
         VELOCITY: output(read, SOCKETS[VELOCITY]),
         SLOPES: combined(build, x, y, lost),
-        # a mesh's normals are of its present shape already
+        # a mesh's normals belong to its present shape
         OTHERS: build.scaled(output(read, SOCKETS[OTHERS]), 0.0),
         FOAM: foam,
         CUSP: cusp,
@@ -127,7 +127,7 @@ def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[s
 
 
 def _cusp(build: Builder, strain: Socket) -> Socket:
-    """How far the sum of the strains compresses the surface: what a cusp is, `core.synthesis.channels`."""
+    """Compression of the surface by the summed strains: the cusp of `core.synthesis.channels`."""
     xx, yy, shear = coordinates(build, strain)
     half_sum, half_difference = (
         build.math("MULTIPLY", build.math(operation, xx, yy), 0.5) for operation in ("ADD", "SUBTRACT")
@@ -137,7 +137,7 @@ def _cusp(build: Builder, strain: Socket) -> Socket:
 
 
 def _weights(build: Builder, own: bpy.types.Node) -> dict[str, Socket]:
-    """Points that have the patches' weights, and how they lie."""
+    """Points with the patches' weights, and their layout."""
     given = build.add(
         "GeometryNodeObjectInfo", {"Object": build.given("Weights")}, transform_space="ORIGINAL"
     )

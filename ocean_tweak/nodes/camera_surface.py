@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ocean Camera Surface: geometry nodes that show an ocean on a grid around the camera, up to the horizon.
 
-Vertices at rest stand on a fixed lattice and are moved as the ocean's water there is. Where the lattice is
-coarse, the displacement is an average over two of its cells, taken continuously from the distance: nothing
-pops. What the averages lack of the slopes' squares goes to the material as slope variance, so that near and
-far are equally rough (Olano & Baker 2010 keep both moments of the slopes for the same reason).
+Vertices at rest are on a fixed lattice and are displaced like the ocean's water there. Where the lattice is
+coarse, the displacement is averaged over two cells, blended continuously with the distance, so nothing pops.
+The slope variance lost by averaging is passed to the material, so that near and far water are equally rough
+(Olano & Baker 2010 keep both moments of the slopes for the same reason).
 """
 
 from __future__ import annotations
@@ -38,22 +38,21 @@ from .sample import OCEAN_INPUT, Spaces
 from .surface import GRID_FACTS
 from .versioned import GroupKind, node_group
 
-#: cells of the lattice in the shortest wave that is left
+#: lattice cells per shortest remaining wave
 SHORTEST_CELLS = 4.0
-#: power of how much larger cells are in a viewport that averages follow: what it shows differs least from
-#: what a render does
+#: exponent with which averaging follows larger cells in the viewport, chosen to look most like the render
 _FOLLOWED = 0.25
-#: smallest cells in a viewport, in the height of the camera
+#: smallest cells in the viewport, relative to the camera's height
 _CELLS_OF_HEIGHT = 24.0
-#: of the smallest cells in a lump of fresh foam
+#: smallest cells per lump of fresh foam
 _LUMP_CELLS = 80.0
-#: breaking from which on foam lies on the water: less is the mean of crests too far away to be seen
+#: breaking above which foam is piled up: smaller values are the mean of crests too far away to resolve
 _LEAST_BREAKING = 0.02
 #: inputs of the pile of foam → attributes of the surface
 _OF_PILE = {"Displacement": DISPLACEMENT, "Velocity": VELOCITY, "Breaking": BREAKING}
-#: of foam on rings around a camera
+#: attributes of foam around a camera
 FOAM_INPUT = "Foam"
-#: of fresh foam on it
+#: attributes of fresh foam
 PILE_INPUT = "Foam Pile"
 
 INPUTS = (
@@ -86,13 +85,13 @@ INPUTS = (
 
 
 class _Sea(NamedTuple):
-    """The ocean that is shown, in its own space.
+    """The ocean, in its own space.
 
-    facts : of its mesh
-    corner : its first vertex at rest
-    eye : the camera, from the corner
+    facts : properties of its mesh
+    corner : rest position of its first vertex
+    eye : the camera, relative to the corner
     foam : points around the camera
-    of_foam : what is known of them
+    of_foam : properties of these points
     is_fan : whether they are the surface's vertices
     """
 
@@ -119,8 +118,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     flat = build.change("GeometryNodeSetShadeSmooth", either)
     away = build.vector("SUBTRACT", output(build.add("GeometryNodeInputPosition"), "Position"), sea.eye)
     laid = build.store(flat, TEXTURE_COORDINATES, _texture_coordinates(build, sea), "FLOAT2", "CORNER")
-    # averages do not follow all of what cells are larger: the viewport rather shows waves of few cells than
-    # none
+    # averaging does not follow the cell size fully: the viewport shows waves of few cells instead of none
     size = build.math(
         "DIVIDE", _size(build, grid, away, finest), build.math("POWER", coarser, 1.0 - _FOLLOWED)
     )
@@ -130,7 +128,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     painted = build.change("GeometryNodeSetMaterial", shown, {"Material": build.given("Material")})
     reached = build.switch("FLOAT", sea.is_fan, output(grid, "Reached"), reach)
     warns = _warnings(build, sea, reach, reached)
-    # nobody asks a group for its warnings unless something hangs on them
+    # warnings are only evaluated if the output depends on them
     build.finish(build.switch("GEOMETRY", warns, painted, painted))
 
 
@@ -147,19 +145,19 @@ def _sea(build: Builder, spaces: Spaces) -> _Sea:
 
 
 def _camera(build: Builder) -> Socket:
-    """Where the camera is: the given one, the scene's, or the object's own place."""
+    """Position of the camera: the given one, the scene's, or the object's own."""
     active = output(build.add("GeometryNodeInputActiveCamera"), "Active Camera")
     given, scenes = (
         build.add("GeometryNodeObjectInfo", {"Object": item}, transform_space="RELATIVE")
         for item in (build.given("Camera"), active)
     )
-    # there is no node for it, but an object that is not there has no scale
+    # there is no node for this, but a missing object has a scale of 0
     is_given = build.compare("GREATER_THAN", alone(build, "LENGTH", output(given, "Scale")), 0.0, "FLOAT")
     return build.switch("VECTOR", is_given, output(scenes, "Location"), output(given, "Location"))
 
 
 def _texture_coordinates(build: Builder, sea: _Sea) -> Socket:
-    """As the ocean's own go on: told by its first vertex, the next one, and the one above."""
+    """Continuation of the ocean's own, from those of its first vertex, the next one, and the one above."""
     facts = sea.facts
     st = output(named_attribute(build, TEXTURE_COORDINATES, "FLOAT_VECTOR"), "Attribute")
     first, right, above = (
@@ -177,7 +175,7 @@ def _texture_coordinates(build: Builder, sea: _Sea) -> Socket:
 
 
 def _density(build: Builder) -> tuple[Socket, Socket]:
-    """Vertices of the grid, at most, and how much larger cells are in the viewport."""
+    """Largest number of vertices, and the factor of the cell size in the viewport."""
     whole = build.given("Vertex Budget")
     few = build.integer("MINIMUM", whole, build.given("Viewport Vertex Budget"))
     is_viewport = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
@@ -187,8 +185,8 @@ def _density(build: Builder) -> tuple[Socket, Socket]:
 
 
 def _finest(build: Builder, coarser: Socket, eye: Socket) -> Socket:
-    """Size of the cells near the camera. In a viewport of fewer vertices, none is finer than a share of the
-    camera's height: no water is nearer, and cells ahead look larger."""
+    """Size of the cells near the camera. In a viewport with fewer vertices, none is finer than a fraction of
+    the camera's height: no water is nearer, and cells ahead look larger."""
     wanted = build.math("MULTIPLY", build.given("Finest Spacing"), coarser)
     seen = build.math("DIVIDE", coordinates(build, eye)[2], _CELLS_OF_HEIGHT)
     is_coarser = build.compare("GREATER_THAN", coarser, 1.0, "FLOAT")
@@ -196,10 +194,10 @@ def _finest(build: Builder, coarser: Socket, eye: Socket) -> Socket:
 
 
 def _size(build: Builder, grid: bpy.types.Node, away: Socket, finest: Socket) -> Socket:
-    """Of the lattice's cells where a vertex is, without steps.
+    """Size of the lattice's cells at a vertex, without steps.
 
-    A level of the lattice begins where the distance is half of its m cells, less half a cell: so
-    2 distance/(m - 1) is never less than the cells' size, and has no step where the levels meet.
+    A level of the lattice begins at a distance of half of its m cells minus half a cell, so 2 distance/(m -
+    1) is never less than the cell size, and continuous where levels meet.
     """
     x, y, _ = coordinates(build, alone(build, "ABSOLUTE", away))
     cells = build.integer("SUBTRACT", output(grid, "Half"), 1)
@@ -208,8 +206,8 @@ def _size(build: Builder, grid: bpy.types.Node, away: Socket, finest: Socket) ->
 
 
 def _summed(build: Builder, sea: _Sea, size: Socket, foam: Socket) -> dict[str, Socket]:
-    """What is shown at a vertex: attributes, and in the ocean's axes slopes with the variance that they lack,
-    and strain."""
+    """Values at a vertex: attributes and, in the ocean's axes, slopes with their lost variance, and
+    strain."""
     inputs = {plug.name: build.given(plug.name) for plug in (OCEAN_INPUT, *OF_SUM)}
     inputs |= {"Fade": build.given("Fade"), "Size": size, "Foam": foam}
     inputs["Has Foam"] = output(sea.of_foam, "Is There")
@@ -260,7 +258,7 @@ def _finished(
         name: ("FLOAT_VECTOR", value)
         for name, value in (("Normal", normal), ("Place", spaces.point_of_asker(place)), ("Rest", position))
     }
-    # all at once: what several of them are made of is computed once
+    # all at once, so that shared inputs are computed once
     for name, (data_type, value) in {**shown, **moved}.items():
         node.capture_items.new(data_type.removeprefix("FLOAT_"), name)
         build.tree.links.new(value, node.inputs[name])
@@ -279,9 +277,9 @@ def _finished(
 
 
 def _piled(build: Builder, grid: Socket, captured: bpy.types.Node) -> Socket:
-    """The grid at rest with what fresh foam adds to it.
+    """The grid at rest, raised by fresh foam.
 
-    Only where there is some: its lumps would take as long at every vertex as a patch of the sea.
+    Only where there is some, as lumps at every vertex would take as long as a patch of the sea.
     """
     inputs = {name: captured.outputs[attribute] for name, attribute in _OF_PILE.items()}
     inputs |= {
@@ -296,7 +294,7 @@ def _piled(build: Builder, grid: Socket, captured: bpy.types.Node) -> Socket:
 
 
 def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Socket:
-    """Whether something is told: a short budget, a camera under water, foam of another frame."""
+    """Whether there is a warning: a small budget, a camera under water, foam of another frame."""
     whole = [whole_number(build, value, "ROUND") for value in (reached, reach)]
     short = joined_text(
         build,

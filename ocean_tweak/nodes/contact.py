@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where something touches the water: the wet band on it, and the collar of foam and ripples around it.
+"""Contact with the water: the wet band on an object, and the collar of foam and ripples around it.
 
-The wet band is a point attribute that geometry nodes write on what touches the water, and a shader group that
-reads it. The collar is a shader group in the water's material. It knows the thing by the coordinates of its
-object and its waterline as a superellipse: no mesh reads another, so nothing depends on itself, and whatever
-shows the water shows the collar.
+The wet band is a point attribute that geometry nodes write on the object, read by a shader group. The collar
+is a shader group in the water's material. It uses the object's coordinates and its waterline as a
+superellipse: no mesh reads another, so there are no dependency cycles, and every surface with the material
+shows the collar.
 
-Ripples of length λ run outwards as waves in deep water do, ω² = 2πg/λ. The distance from the waterline is
-that of the first order, (f - 1)/|∇f|, f being 1 on it (Taubin 1994, ACM Transactions on Graphics 13).
+Ripples of length λ travel outwards as waves in deep water, ω² = 2πg/λ. The distance from the waterline is to
+first order (f - 1)/|∇f|, f being 1 on it (Taubin 1994, ACM Transactions on Graphics 13).
 
 In a strong wind there is white water where waves break on the hull's windward end, and a wash down the wind.
 """
@@ -28,14 +28,15 @@ from .versioned import GroupKind, node_group
 from .water_pattern import METRES
 
 _GRAVITY = 9.81  # m/s²
-#: of ripples: wavelength as a share of the longest, and slope
+#: wavelengths of ripples relative to the longest, and their slopes
 _TRAINS = ((1.0, 0.2), (0.43, 0.13))
-_SCATTER = 5.0  # rad, by which they are out of step around the hull
-#: of the foam's width: how far it reaches where the noise is least, and how much farther where it is greatest
+_SCATTER = 5.0  # phase variation around the hull, rad
+#: reach of the foam where the noise is smallest, and the additional reach where it is largest, in units of
+# its width
 _NARROW, _WIDE = 0.25, 1.7
-#: how much wider it is at the windward end, and from which share of the hull on
+#: additional width at the windward end, and the position along the hull where it begins
 _BOW_WIDER, _BOW = 2.0, (0.4, 0.9)
-#: of the wash: where along the hull it begins and is whole, and how its breadth grows on the way
+#: wash: positions along the hull where it begins and is complete, and the growth of its breadth
 _WASH_BEGINS, _WASH_SPREADS = (-0.7, 0.6), 0.14
 
 CONTACT_INPUTS = (
@@ -48,7 +49,7 @@ _VERTEX_INPUTS = (
     ("Rotation", "NodeSocketVector", (0.0, 0.0, 0.0), "Makes it stand upright"),
     ("Scale", "NodeSocketVector", (1.0, 1.0, 1.0), "Makes metres of its units"),
 )
-#: of a collar, that an artist changes
+#: inputs of a collar that an artist adjusts
 LOOK_INPUTS = (
     ("Foam", "NodeSocketFloat", 0.7, "At the waterline, 0 to 1"),
     ("Foam Width", "NodeSocketFloat", 0.25, "In metres; it is thinned out over about twice as much"),
@@ -83,7 +84,7 @@ def _build_contact(tree: bpy.types.NodeTree) -> None:
     part = build.math(
         "DIVIDE", coordinates(build, above)[2], build.math("MAXIMUM", build.given("Wet Band"), 1e-6)
     )
-    # not clamped: between vertices far apart it is still right
+    # not clamped, so that interpolation between distant vertices is correct
     build.finish(build.store(build.given("Geometry"), WET, build.math("SUBTRACT", 1.0, part), "FLOAT"))
 
 
@@ -122,7 +123,7 @@ def _build_collar(tree: bpy.types.NodeTree) -> None:
         Panel("Chain", _CHAIN),
     )
     given = shade.interface(_COLLAR_OUTPUTS, panels).outputs
-    # where the object was deleted, Blender gives the water's own coordinates
+    # if the object was deleted, Blender returns the water's own coordinates
     own = shade.node("ShaderNodeTexCoord").outputs["Object"]
     is_there = shade.math("GREATER_THAN", shade.number("DISTANCE", own, given["Vector"]), 1e-4)
     mapped = {name: given[name] for name, *_ in _VERTEX_INPUTS}
@@ -140,7 +141,7 @@ def _build_collar(tree: bpy.types.NodeTree) -> None:
 
 
 def _distance(shade: Shading, given: dict[str, Socket], place: Socket) -> Socket:
-    """From the waterline in m, below 0 within."""
+    """Distance from the waterline in m, negative inside."""
     full = given["Fullness"]
     sizes = given["Half Length"], given["Half Beam"]
     shares = [
@@ -161,7 +162,7 @@ def _distance(shade: Shading, given: dict[str, Socket], place: Socket) -> Socket
 
 
 def _uneven(shade: Shading, given: dict[str, Socket], place: Socket) -> Socket:
-    """0…1, differs around the hull and from moment to moment."""
+    """Noise, 0…1, that varies around the hull and in time."""
     x, y, _ = shade.separate(shade.scale(place, shade.math("DIVIDE", 0.6, given["Ripple Length"])))
     moving = shade.combine(x, y, shade.math("MULTIPLY", given["Time"], 0.35))
     return shade.smooth(shade.noise(moving, 1.0, Detail=2.0), 0.3, 0.7)
@@ -198,7 +199,7 @@ def _dot(shade: Shading, x: Socket, y: Socket, of_x: Socket, of_y: Socket) -> So
 
 
 def _ripples(shade: Shading, given: dict[str, Socket], away: Socket, uneven: Socket) -> Socket:
-    """Their height, m."""
+    """Height of the ripples, m."""
     longest = shade.math("MAXIMUM", given["Ripple Length"], 1e-3)
     total: Socket | float = 0.0
     for share, slope in _TRAINS:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The images of the water material, packed into the file: what is finer than any grid, and gusts of wind.
+"""The images of the water material, packed into the file: detail finer than any grid, and gusts.
 
-They hold weights of cubic B-splines, which both engines draw alike. With any other interpolation EEVEE
-averages the pattern of far water before the shader has made foam of it, and Cycles does not.
+They contain cubic B-spline weights, which both engines interpolate alike. With any other interpolation, EEVEE
+mip-maps the pattern of distant water before the shader turns it into foam, and Cycles does not.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ _KEY, _CHANNELS = "ocean_tweak_image", "channels of images"
 _Maker = Callable[[], Iterable[NDArray[np.float64]]]
 _RESOLUTION = 512
 _GUST_RESOLUTION = 128
-#: of the root mean square: fewer digits than a float has, and the image takes a third of the room in a file
+#: rounding relative to the root mean square, which reduces the image's size in the file to a third
 _PRECISION = 1.0 / 64.0
 
 
 def make_ahead() -> None:
-    """Let another thread make what images that the file lacks will show."""
+    """Compute the patterns of missing images on another thread."""
     lacking = [each for each in (_RIPPLES, _LACE, _GUSTS) if _present(_tag(*each[:2])) is None]
 
     def make() -> None:
@@ -44,12 +44,12 @@ def ripple_image() -> bpy.types.Image:
 
 
 def lace_image() -> bpy.types.Image:
-    """The lace of foam in red, and in green and blue how it changes along x and y over a whole side."""
+    """The lace of foam in red, and its derivatives along x and y over a whole side in green and blue."""
     return _image(*_LACE)
 
 
 def gust_image() -> bpy.types.Image:
-    """Where gusts ruffle the water, in red, evenly distributed over 0…1."""
+    """Strength of gusts in red, uniformly distributed over 0…1."""
     return _image(*_GUSTS)
 
 
@@ -58,7 +58,7 @@ def _lace() -> Iterable[NDArray[np.float64]]:
     return lace, *gradient(lace)
 
 
-#: images by name, version and what makes their channels
+#: images: name, version, and functions for their channels
 _RIPPLES = ("Ocean Tweak Ripples", 1, partial(ripple_slopes, _RESOLUTION))
 _LACE = ("Ocean Tweak Lace", 2, _lace)
 _GUSTS = ("Ocean Tweak Gusts", 2, lambda: [gusts(_GUST_RESOLUTION)])
@@ -78,7 +78,7 @@ def _channels(make: _Maker) -> list[NDArray[np.floating]]:
 
 
 def _image(name: str, version: int, make: _Maker) -> bpy.types.Image:
-    """The file's image of this name and version; made when it has none."""
+    """The file's image of this name and version, created if missing."""
     tag = _tag(name, version)
     if (image := _present(tag)) is not None:
         return image

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A node group that tells a live ocean whether the extension, which alone moves it, runs here.
+"""A node group that detects whether the extension, without which a live ocean does not move, is running.
 
-While it runs, the group holds an image that no file keeps. In a file that is opened without the extension the
-image is gone: the modifier warns, and Blender's console has a line, once a session. A linked group cannot
-hold such an image; where it runs, the extension tells the modifier that its sea is not live.
-Nodes cannot print, but a file that cannot be opened is told there with its name, which may be a sentence.
+While it runs, the group has an image that is never saved. In a file opened without the extension, the image
+is missing: the modifier shows a warning, and Blender's console a line, once per session. A linked group
+cannot have such an image; there, the extension marks the modifier's sea as not live. Nodes cannot print, but
+Blender prints the name of a file that cannot be opened, and that name can be a sentence.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     size = build.add(
         "GeometryNodeAttributeDomainSize", {"Geometry": told.outputs["Output"]}, component="POINTCLOUD"
     )
-    # nobody asks for warnings or files unless something hangs on them
+    # warnings and files are only evaluated if the output depends on them
     rows = build.compare("GREATER_THAN", output(size, "Point Count"), 0)
     build.finish_with({"Is Absent": build.logic("OR", output(warning, "Show"), rows)})
 
@@ -54,14 +54,14 @@ ABSENCE = GroupKind("Ocean Tweak Absence", 2, _build)
 
 
 def show_that_it_runs() -> None:
-    """Let the live oceans of the file know that the extension runs: after a file is opened or appended."""
+    """Tell the live oceans of the file that the extension is running, after a file is opened or appended."""
     for node in _beacon_nodes():
         if node.inputs["Image"].default_value is None:
             node.inputs["Image"].default_value = _beacon()
 
 
 def show_that_it_ends() -> None:
-    """Let the live oceans of the file know that nobody moves them any more."""
+    """Tell the live oceans of the file that the extension has stopped."""
     for node in _beacon_nodes():
         node.inputs["Image"].default_value = None
     image = bpy.data.images.get((_BEACON, None))
@@ -70,7 +70,7 @@ def show_that_it_ends() -> None:
 
 
 def _beacon_nodes() -> list[bpy.types.Node]:
-    # Blender drops changes to what is linked
+    # Blender discards changes to linked data
     groups = (group for group in bpy.data.node_groups if group.library is None and is_of_kind(group, ABSENCE))
     return [group.nodes[_NODE] for group in groups if _NODE in group.nodes]
 

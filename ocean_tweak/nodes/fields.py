@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes that read points and reckon with vectors."""
+"""Helper nodes for points and vector arithmetic."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from .building import Builder, Input, Socket, output
 
 
 def named_attribute(build: Builder, name: str, data_type: str) -> bpy.types.Node:
-    """The node that reads an attribute; 0 where there is none."""
+    """The node that reads an attribute; 0 if there is none."""
     return build.add("GeometryNodeInputNamedAttribute", {"Name": name}, data_type=data_type)
 
 
 def sample_index(build: Builder, geometry: Socket, value: Socket, index: Input, data_type: str) -> Socket:
-    """The value of a point by its number; 0 where there is none."""
+    """The value of a point by its index; 0 if there is none."""
     node = build.add(
         "GeometryNodeSampleIndex", data_type=data_type, domain="POINT",
     )  # fmt: skip
@@ -44,18 +44,18 @@ def combined(build: Builder, x: Input, y: Input, z: Input = 0.0) -> Socket:
 
 
 def whole_number(build: Builder, value: Socket, rounding: str) -> Socket:
-    """A number as an integer: rounding is FLOOR or ROUND."""
+    """A number rounded to an integer; `rounding` is FLOOR or ROUND."""
     node = build.add("FunctionNodeFloatToInt", {"Float": value}, rounding_mode=rounding)
     return output(node, "Integer")
 
 
 def alone(build: Builder, operation: str, value: Socket, kind: str = "ShaderNodeVectorMath") -> Socket:
-    """The result of a node with one operand."""
+    """The output of a node with one operand."""
     return build.math(operation, value, None, kind)
 
 
 def mixed(build: Builder, first: Socket, second: Socket, share: Socket) -> Socket:
-    """The vector between two where the share of the second one is this; beyond them too."""
+    """Linear interpolation of two vectors, not clamped."""
     node = build.add("ShaderNodeMix", data_type="VECTOR", clamp_factor=False)
     for name, value in (("Factor", share), ("A", first), ("B", second)):
         connect(build, next(each for each in node.inputs if each.name == name and each.enabled), value)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What foam that is being made adds to the surface: a roll of white water on the crest, thrown forward.
+"""Fresh foam raises the surface: a roll of white water on the crest, thrown forward.
 
-It is shown on a surface around a camera alone. Whatever floats or is measured is on the water beneath it.
+Only a surface around a camera shows it. Floating objects and height queries use the water beneath.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, coordinates
 from .versioned import GroupKind
 
-#: how far the roll hangs forward of its height
+#: forward offset of the roll, relative to its height
 _FORWARD = 0.7
-#: strength of breaking with which it is as high as it gets; it begins without a step
+#: strength of breaking at which it has its full height; it grows smoothly from 0
 _WHOLE = 0.7
-#: how uneven it is: gently, as a lone lump would be a spike, and what is finer is a matter of shading
+#: unevenness, kept low, as a single lump would look like a spike and finer detail is left to shading
 _UNEVEN = 2.2
 
 _INPUTS = (
@@ -44,7 +44,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _lumps(build: Builder) -> Socket:
-    """Around 1; they lie on the water at rest, and so ride with it."""
+    """Factor around 1; a function of the rest position, so lumps move with the water."""
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     place = build.vector("DIVIDE", position, combined(build, *(build.given("Lump"),) * 3))
     noise = build.add("ShaderNodeTexNoise", {"Vector": place, "Scale": 1.0, "Detail": 0.5})

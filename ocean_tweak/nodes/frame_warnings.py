@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A node group that tells, in the modifier, which frames of a baked sequence have no file."""
+"""A node group that warns in the modifier about frames of a baked sequence without a file."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def joined_text(build: Builder, *words: Input) -> Socket:
             number = build.add("FunctionNodeValueToString", data_type="INT")
             build.tree.links.new(word, next(socket for socket in number.inputs if socket.enabled))
             strings.append(output(number, "String"))
-    for string in reversed(strings):  # what is linked last stands first
+    for string in reversed(strings):  # the last link comes first
         build.tree.links.new(string, join.inputs["Strings"])
     return output(join, "String")
 

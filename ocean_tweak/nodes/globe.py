@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The globe that a surface around a camera lies on: how far its horizon is, and how its water falls away."""
+"""The globe under a surface around a camera: distance of the horizon, and curvature."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from .fields import combined, connect, coordinates
 from .sample import Spaces
 
 EARTH_RADIUS = 6_371_000.0  # m
-#: m; a camera that is lower, or under water, sees as far as from there
+#: least height of the camera in m for the distance of the horizon
 LEAST_HEIGHT = 2.0
 
 
 def reach_of(build: Builder, eye: Socket) -> Socket:
-    """The distance √(2Rh) of the horizon from an eye over the water, or the one that is asked for."""
+    """The distance √(2Rh) of the horizon from an eye above the water, or the requested distance."""
     radius = build.given("Planet Radius")
     height = build.math(
         "MAXIMUM", coordinates(build, eye)[2], build.math("MULTIPLY", radius, LEAST_HEIGHT / EARTH_RADIUS)
@@ -26,7 +26,7 @@ def reach_of(build: Builder, eye: Socket) -> Socket:
 def curved_normal(
     build: Builder, shape: tuple[Socket, Socket], spaces: Spaces, away: Socket
 ) -> tuple[Socket, Socket]:
-    """How far the globe has fallen at a place away from the eye, and the asker's normal of the water on it.
+    """Offset of the globe at a place relative to the eye, and the normal of the water on it.
 
     shape : slopes along x and y, and strains xx, yy and xy, of the water in the ocean's axes
     """
@@ -42,7 +42,7 @@ def curved_normal(
 
 
 def _curved(build: Builder, away: Socket) -> tuple[Socket, Socket]:
-    """How far a globe has fallen at a distance d, d²/2R downwards, and the slopes of that."""
+    """Drop of a globe at a distance d, d²/2R, and its slopes."""
     flat = build.vector("MULTIPLY", away, (1.0, 1.0, 0.0))
     radius = build.math("MAXIMUM", build.given("Planet Radius"), 1e-3)
     amount = build.switch("FLOAT", build.given("Curvature"), 0.0, build.math("DIVIDE", -1.0, radius))

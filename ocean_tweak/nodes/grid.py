@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that put a grid of any density in the place of a mesh, as `scene.grid_mesh` would make it.
+"""Geometry nodes that replace a mesh by a grid of any density, in the layout of `scene.grid_mesh`.
 
-It keeps the materials. Vertices stand in the same order: x fastest.
+Materials are kept. Vertices are in the same order: x fastest.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     placed = build.change("GeometryNodeSetPosition", turned, {"Position": position})
     smooth = build.change("GeometryNodeSetShadeSmooth", placed)
     half = build.math("DIVIDE", 0.5, build.given("Samples"))
-    # numbers of vertices, not of corners, on which the result is stored
+    # indices of vertices, not of the corners on which the result is stored
     of_vertex = build.add(
         "GeometryNodeFieldOnDomain", {"Value": build.vector("ADD", place, half)},
         data_type="FLOAT_VECTOR", domain="POINT",
@@ -56,7 +56,7 @@ def _vertices_along(build: Builder, quads: Socket, repeats: Socket) -> Socket:
 
 
 def _place(build: Builder, columns: Socket, quads: Socket) -> Socket:
-    """Where a vertex lies by its number, in patches."""
+    """Position of a vertex by its index, in patches."""
     index = output(build.add("GeometryNodeInputIndex"), "Index")
     column, row = (build.integer(operation, index, columns) for operation in ("MODULO", "DIVIDE_FLOOR"))
     x, y = (build.math("DIVIDE", number, quads) for number in (column, row))
@@ -66,7 +66,7 @@ def _place(build: Builder, columns: Socket, quads: Socket) -> Socket:
 def _with_materials(build: Builder, grid: Socket) -> Socket:
     """The grid with the materials of the group's geometry.
 
-    Only joining brings materials over, so the geometry is joined and its vertices are taken away again.
+    Only joining transfers materials, so the geometry is joined and its vertices are deleted again.
     """
     geometry = output(build.input, "Geometry")
     joined = build.add("GeometryNodeJoinGeometry")

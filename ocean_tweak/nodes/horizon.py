@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that carry an ocean on to the horizon: copies of it around it, and flat water beyond.
+"""Geometry nodes that extend an ocean to the horizon: copies around it, and flat water beyond.
 
-The copies are instances: they cost next to nothing in memory. How large the ocean is follows from its own
-mesh at rest, so the horizon keeps fitting when the domain or the repeats change.
+The copies are instances and use hardly any memory. The size is that of the ocean's mesh at rest, so the
+horizon adapts when the domain or the repeats change.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _size(build: Builder, geometry: Socket) -> Socket:
 
 
 def _copies(build: Builder, instance: Socket, size: Socket, rings: Socket) -> Socket:
-    """Instances on every place of the rings but the ocean's own."""
+    """Instances at every place of the rings except the ocean's own."""
     side = build.integer("ADD", build.integer("MULTIPLY", rings, 2), 1)
     grid = build.add("GeometryNodeMeshGrid", {"Vertices X": side, "Vertices Y": side})
     column, row, index = _columns_and_rows(build, side)
@@ -88,7 +88,7 @@ def _far(build: Builder, size: Socket, rings: Socket) -> Socket:
 
 
 def _chosen(build: Builder, number: Socket, values: list[Socket]) -> Socket:
-    """Along each axis the value of this number: each is weighted by how near the number is."""
+    """Select a value by an index along each axis, as a weighted sum."""
     total = None
     for index, value in enumerate(values):
         away = build.vector("SUBTRACT", number, (float(index),) * 3)
@@ -102,7 +102,7 @@ def _chosen(build: Builder, number: Socket, values: list[Socket]) -> Socket:
 
 
 def _columns_and_rows(build: Builder, side: Socket | int) -> tuple[Socket, Socket, Socket]:
-    """Column, row and number of a vertex, x fastest."""
+    """Column, row and index of a vertex, x fastest."""
     index = output(build.add("GeometryNodeInputIndex"), "Index")
     return build.integer("MODULO", index, side), build.integer("DIVIDE_FLOOR", index, side), index
 

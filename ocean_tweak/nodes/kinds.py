@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All node groups that the extension can build, those inside of others first."""
+"""All node groups that the extension can build, nested ones first."""
 
 from __future__ import annotations
 

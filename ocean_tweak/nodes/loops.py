@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Repeat zones, and geometries that they collect."""
+"""Repeat zones, and joining of geometries."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .building import Builder, Socket
 
 
 def repeated(build: Builder, kinds: Mapping[str, str]) -> tuple[bpy.types.Node, bpy.types.Node]:
-    """Both ends of a repeat zone that hands on values of these names and socket types."""
+    """Both ends of a repeat zone that passes on values of these names and socket types."""
     end = build.add("GeometryNodeRepeatOutput")
     end.repeat_items.clear()
     for name, kind in kinds.items():

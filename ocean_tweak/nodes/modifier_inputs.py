@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inputs of a geometry nodes modifier by their name, in Blender 4.5 and 5.x."""
+"""Inputs of a geometry nodes modifier by name, in Blender 4.5 and 5.x."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NOT_VALUES = {"NodeSocketGeometry"}
 
 
 def input_sockets(group: bpy.types.NodeTree) -> dict[str, bpy.types.NodeTreeInterfaceSocket]:
-    """The inputs of a group by their names, the geometry not among them."""
+    """The inputs of a group by name, without the geometry."""
     return {
         item.name: item
         for item in group.interface.items_tree
@@ -25,7 +25,7 @@ def _identifiers(modifier: bpy.types.NodesModifier) -> dict[str, str]:
 
 
 def set_inputs(modifier: bpy.types.NodesModifier, values: Mapping[str, Any]) -> None:
-    """Set the inputs that differ; KeyError when the group has none of a name."""
+    """Set inputs that differ; KeyError if the group has no input of a name."""
     identifiers = _identifiers(modifier)
     for name, value in values.items():
         identifier = identifiers[name]
@@ -38,25 +38,25 @@ def set_inputs(modifier: bpy.types.NodesModifier, values: Mapping[str, Any]) -> 
 
 
 def set_input(modifier: bpy.types.NodesModifier, name: str, value: Any) -> None:
-    """Set an input where it differs; KeyError when the group has none of that name."""
+    """Set an input if it differs; KeyError if the group has no input of that name."""
     set_inputs(modifier, {name: value})
 
 
 def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
-    """The value of an input; KeyError when the group has none of that name."""
-    socket = modifier.node_group.interface.items_tree.get(name)  # many times quicker than a look at all
+    """The value of an input; KeyError if the group has no input of that name."""
+    socket = modifier.node_group.interface.items_tree.get(name)  # much faster than looking at all of them
     if getattr(socket, "in_out", "") == "INPUT":
         return _get(modifier, socket.identifier)
     return _get(modifier, _identifiers(modifier)[name])
 
 
 def all_inputs(modifier: bpy.types.NodesModifier) -> dict[str, Any]:
-    """The values of all inputs by their names, the geometry not among them."""
+    """The values of all inputs by name, without the geometry."""
     return {name: _get(modifier, identifier) for name, identifier in _identifiers(modifier).items()}
 
 
 def input_property(modifier: bpy.types.NodesModifier, name: str) -> tuple[Any, str]:
-    """What holds an input, and the name of its property there: for a panel to draw."""
+    """The owner and the name of an input's property, for drawing in a panel."""
     identifier = _identifiers(modifier)[name]
     if hasattr(modifier, "properties"):  # 5.x
         return getattr(modifier.properties.inputs, identifier), "value"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names that shots, materials and other tools hold on to: attributes of the mesh, inputs of the groups."""
+"""Names on which shots, materials and other tools depend: mesh attributes and group inputs."""
 
 from __future__ import annotations
 

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that move a grid as a sea and write what a shot reads of it.
+"""Geometry nodes that displace a grid like a sea and write its attributes.
 
-They read either attributes of the mesh, which is what a live sea in the viewport uses and the quickest, or
-images: of baked files, for a mesh that has not one vertex a sample, and for renders finer than the viewport.
-Images hold metres; `Scale` makes Blender units of them. They are read at the attribute `st`, which has the
-half texel in it already, or, on a mesh without one, at the position.
+They read either mesh attributes, which is fastest and used for a live sea in the viewport, or images: of
+baked files, for a mesh that does not have one vertex per sample, and for renders finer than the viewport.
+Images are in metres; `Scale` converts them to Blender units. They are sampled at the attribute `st`, which
+includes the half texel, or, without it, at the position.
 
-A sea of several patches is their sum, at the place of a vertex at rest:
+A sea of several patches is their sum at a vertex's rest position:
 
 - displacements and velocities are added;
-- of normals, the slopes n_xy / n_z are added, with n_z held at 0.01 or more: a sheet that hangs over counts
-  as very steep. One patch alone keeps its normals as they are;
-- foam, and crests that break, cover like independent layers: 1 - (1 - a)(1 - b);
+- normals are added by their slopes n_xy / n_z, with n_z at least 0.01: an overhanging sheet counts as very
+  steep. A single patch keeps its normals;
+- foam and breaking combine like independent layers: 1 - (1 - a)(1 - b);
 - the age of foam is that of the denser one;
-- compressions (cusp) are added: the most that two can make together, and what they make along one direction.
+- compressions (cusp) are added, as for compressions along the same direction, which is the maximum.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from .versioned import GroupKind, node_group
 _VERSION = 5
 _NAME = "Ocean Tweak"
 
-#: patches that a group can add, of whichever seas
+#: largest number of patches that a group can add
 MOST_ADDED = 8
 
-#: n_z of a slope is at least this
+#: smallest n_z for slopes
 _LEAST_UPWARDS = 0.01
 
 _SEA_INPUTS = (
@@ -84,13 +84,13 @@ _PATCH_INPUTS = (
 
 
 def numbered(name: str, patch: int) -> str:
-    """The name of a patch's input; the first patch has number 1 and the plain name."""
+    """The name of a patch's input; the first patch has the plain name."""
     return name if patch == 1 else f"{name} {patch}"
 
 
 @lru_cache
 def ocean_group(patches: int = 1) -> GroupKind:
-    """The group for a number of patches. Raises ValueError for one that is not from 1 to MOST_ADDED."""
+    """The group for a number of patches. Raises ValueError outside 1 to MOST_ADDED."""
     if not 1 <= patches <= MOST_ADDED:
         raise ValueError(f"patches = {patches}: must be from 1 to {MOST_ADDED}")
     name = _NAME if patches == 1 else f"{_NAME} {patches} Patches"
@@ -98,7 +98,7 @@ def ocean_group(patches: int = 1) -> GroupKind:
 
 
 class _Surface(NamedTuple):
-    """Fields over the mesh, and for each map whether there is one.
+    """Fields over the mesh, and whether each map is present.
 
     on_from_begun : the displacement since the last whole frame
     is_between : whether there is any
@@ -130,7 +130,7 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
     )
     build = Builder(tree, (*_SEA_INPUTS, _GRID_PANEL, *panels))
     geometry = build.given("Geometry")
-    # a live sea that nobody moves is what the mesh was saved with
+    # without the extension, a live sea stays as the mesh was saved
     is_live = {name: build.given(name) for name, *_ in ABSENCE_INPUTS}
     absent = output(build.group(node_group(ABSENCE), is_live), "Is Absent")
     make_grid = build.logic("NIMPLY", build.given("Make Grid"), absent)
@@ -155,7 +155,7 @@ def _build(tree: bpy.types.NodeTree, patches: int) -> None:
 
 
 def _moved_on(build: Builder, geometry: Socket, surface: _Surface) -> Socket:
-    """The geometry that Displace has moved, at a frame between two: Displace reads the one before."""
+    """The geometry moved by Displace, at a subframe: Displace reads the frame before."""
     moved = build.change("GeometryNodeSetPosition", geometry, {"Offset": surface.on_from_begun})
     is_behind = build.logic("AND", build.given("Displaced"), surface.is_between)
     return build.switch("GEOMETRY", is_behind, geometry, moved)
@@ -168,7 +168,7 @@ def _own_grid(build: Builder, geometry: Socket) -> Socket:
 
 
 def _captured(build: Builder, captured: bpy.types.Node, patch: int) -> Socket:
-    """Texture coordinates of a patch, made once for all that reads them: `st` stands on corners."""
+    """Texture coordinates of a patch, captured once for all uses, as `st` is on corners."""
     name = numbered("Coordinates", patch)
     captured.capture_items.new("VECTOR", name)
     build.tree.links.new(_texture_coordinates(build, patch), captured.inputs[name])
@@ -176,13 +176,13 @@ def _captured(build: Builder, captured: bpy.types.Node, patch: int) -> Socket:
 
 
 def _texture_coordinates(build: Builder, patch: int) -> Socket:
-    """Place at rest / domain size + ½ / resolution; the first patch reads `st` where there is one."""
+    """Rest position / domain size + ½ / resolution; the first patch uses `st` if there is one."""
     attribute = build.add(
         "GeometryNodeInputNamedAttribute", {"Name": TEXTURE_COORDINATES}, data_type="FLOAT_VECTOR"
     )
     exists, st = output(attribute, "Exists"), output(attribute, "Attribute")
     place = output(build.add("GeometryNodeInputPosition"), "Position")
-    if patch > 1:  # the mesh may have been moved already: `st` knows where it was
+    if patch > 1:  # the mesh may have been displaced already: `st` has its rest position
         at_rest = build.vector("SUBTRACT", st, _half_texel(build, 1))
         place = build.switch("VECTOR", exists, place, build.scaled(at_rest, build.given("Domain Size")))
     fraction = build.vector("DIVIDE", place, build.given(numbered("Domain Size", patch)))
@@ -242,7 +242,7 @@ def _patch(build: Builder, coordinates: Socket, patch: int, by_attributes: Socke
 
 
 def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
-    """The patches added; the rules stand at the top of this file."""
+    """The sum of the patches; the rules are at the top of this file."""
     total = surfaces[0]
     slope = _slope(build, total.normal) if len(surfaces) > 1 else None
     for other in surfaces[1:]:
@@ -272,7 +272,7 @@ def _sum(build: Builder, surfaces: list[_Surface]) -> _Surface:
 
 
 def _either(build: Builder, one: Socket, other: Socket) -> Socket:
-    """The share that is under one of two independent ones, or under both."""
+    """Combined coverage of two independent layers."""
     free = build.math("MULTIPLY", build.math("SUBTRACT", 1.0, one), build.math("SUBTRACT", 1.0, other))
     return build.math("SUBTRACT", 1.0, free)
 
@@ -286,7 +286,7 @@ def _slope(build: Builder, normal: Socket) -> Socket:
 
 
 def _written(build: Builder, geometry: Socket, surface: _Surface) -> Socket:
-    """The geometry with the surface on it. What has no map is left out."""
+    """The geometry with the surface's attributes; those without a map are omitted."""
     result = build.store(geometry, DISPLACEMENT, surface.displacement, "FLOAT_VECTOR")
     moving = build.store(result, VELOCITY, surface.velocity, "FLOAT_VECTOR")
     result = build.switch("GEOMETRY", surface.has_velocity, result, moving)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A node group that reads the maps of one patch of sea at a place and a frame."""
+"""A node group that samples the maps of one patch at a place and a frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ IMAGE_INPUTS = (
     Plug("Foam Age", "NodeSocketImage", None, "Red seconds since the foam was born"),
 )
 
-#: the images of frames before 0: Blender counts the files of a sequence upwards from 0
+#: images of frames before 0, as Blender counts the files of a sequence upwards from 0
 EARLY_IMAGE_INPUTS = tuple(
     plug._replace(
         name=f"{plug.name} Before 0",
@@ -33,7 +33,7 @@ EARLY_IMAGE_INPUTS = tuple(
     for plug in IMAGE_INPUTS
 )
 
-#: those that make Blender units of metres
+#: inputs that convert metres to Blender units
 SCALE_INPUTS = (
     Plug("Scale", "NodeSocketFloat", 1.0, "Blender units in a metre"),
     Plug(
@@ -96,14 +96,14 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def moved_on(build: Builder, displacement: Socket, velocity: Socket, seconds: Socket) -> Socket:
-    """The displacement some seconds later or earlier, as far as the velocity stays what it is."""
+    """The displacement some seconds later or earlier, for a constant velocity."""
     is_between = build.compare("NOT_EQUAL", seconds, 0.0, "FLOAT")
     later = build.vector("ADD", displacement, build.scaled(velocity, seconds))
     return build.switch("VECTOR", is_between, displacement, later)
 
 
 def _texel(build: Builder, image: Socket, number: Socket) -> Socket:
-    """What the image says, bilinear between texel centres; zero without an image."""
+    """The image, bilinear between texel centres; zero without an image."""
     texture = build.add(
         "GeometryNodeImageTexture",
         {
@@ -118,7 +118,7 @@ def _texel(build: Builder, image: Socket, number: Socket) -> Socket:
 
 
 def _has_texels(build: Builder, image: Socket, number: Socket) -> Socket:
-    """Whether there is an image and its file can be read: otherwise it has no width."""
+    """Whether there is an image with a readable file, which otherwise has no width."""
     information = build.add("GeometryNodeImageInfo", {"Image": image, "Frame": number})
     width = output(information, "Width")
     return build.compare("GREATER_THAN", width, 0)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that read the baked points of one patch, as `export.points` writes them.
+"""Geometry nodes that read the baked points of one patch, written by `export.points`.
 
-They make what a live patch is: vertices x fastest whose last ones of a row and of a column are the first ones
-of the next period, with displacement, velocity, slope and strain. A window reads the files of fewer samples.
+The result has the form of a live patch: vertices in x-fastest order, with the first ones of each row and
+column repeated at the end, and displacement, velocity, slope and strain. The viewport reads the files with
+fewer samples.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from .patch import SCALE_INPUTS, moved_on
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
-#: the inputs that hold paths
+#: inputs with paths
 FILES = ("Files", "Viewport Files")
 
 INPUTS = (
@@ -28,7 +29,7 @@ INPUTS = (
     Plug("Resolution", "NodeSocketInt", 512, "All samples along each side"),
     *SCALE_INPUTS,
 )
-#: attribute of the result → the files' numbers
+#: attribute of the result → columns of the files
 _NUMBERS = {
     VELOCITY: CHANNELS["velocity"].columns,
     SLOPE: CHANNELS["slope"].columns,
@@ -73,7 +74,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
 
 
 def _read(build: Builder, frame: Socket) -> Socket:
-    """The points of a frame."""
+    """Read the points of a frame."""
     is_window = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
     files = build.switch("STRING", is_window, *(build.given(name) for name in FILES))
     path = build.add("FunctionNodeFormatString", {"Format": "{files}{frame:04}.ply"})
@@ -88,7 +89,7 @@ def _number(build: Builder, name: str) -> Socket:
 
 
 def _at_rest(build: Builder, column: Socket, row: Socket, along: Socket) -> Socket:
-    """Where the water of a sample is at rest, m: that of a mean of several in the middle of its cell."""
+    """Rest position of a sample, m; for an average, the centre of its cell."""
     size = build.given("Domain Size")
     spacing = build.math("DIVIDE", size, along)
     own = build.math("DIVIDE", size, build.given("Resolution"))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ocean Sample: geometry nodes that tell height, normal, foam and motion of an ocean above any position.
+"""Ocean Sample: geometry nodes that return height, normal, foam and motion of an ocean above any position.
 
-They read what the ocean's modifiers made of its mesh, so they hold for live and baked seas, in the viewport
-and in renders. The ocean and the object that asks may stand anywhere: answers are in the asker's own space.
+They read the ocean's evaluated mesh, so they work for live and baked seas, in the viewport and in renders.
+The ocean and the sampling object may be anywhere: results are in the sampling object's space.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ OUTPUTS = (
 
 
 class Spaces:
-    """The ocean's mesh, and the way between its space and that of the object that asks."""
+    """The ocean's mesh, and conversions between its space and that of the sampling object ("asker")."""
 
     def __init__(self, build: Builder, ocean: Socket) -> None:
         self._build = build
@@ -51,7 +51,7 @@ class Spaces:
 
     @cached_property
     def mesh(self) -> Socket:
-        """The mesh in the ocean's own space: moving it would copy it."""
+        """The mesh in the ocean's own space, as transforming it would copy it."""
         inputs = {"Object": self._ocean}
         own = self._build.add("GeometryNodeObjectInfo", inputs, transform_space="ORIGINAL")
         return output(own, "Geometry")
@@ -67,7 +67,7 @@ class Spaces:
         return output(self._build.add("FunctionNodeTransformPoint", inputs), "Vector")
 
     def size_of_ocean(self, direction: tuple[float, float, float]) -> Socket:
-        """How long a unit of the asker's is in the ocean's space."""
+        """Length of the asker's unit in the ocean's space."""
         return alone(self._build, "LENGTH", self.direction_of_ocean(direction))
 
     def direction_of_asker(self, direction: Socket | tuple[float, float, float]) -> Socket:
@@ -85,10 +85,10 @@ class Spaces:
         along_x: Socket | tuple[float, float, float] = (1.0, 0.0, 0.0),
         along_y: Socket | tuple[float, float, float] = (0.0, 1.0, 0.0),
     ) -> Socket:
-        """The unit normal, in the asker's space, of a surface with these tangents in the ocean's.
+        """The unit normal, in the asker's space, of a surface with these tangents in the ocean's space.
 
-        It is on the side of the ocean's z axis, even where the surface has folded or the ocean is mirrored.
-        Without tangents that of the sea at rest.
+        It points to the side of the ocean's z axis, even if the surface has folded or the ocean is mirrored.
+        Without tangents, that of the sea at rest.
         """
         build = self._build
         tangents = self.direction_of_asker(along_x), self.direction_of_asker(along_y)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader trees written as expressions: every helper adds one node and returns its output socket.
 
-Sockets are taken by their number where Blender 4.5 and 5.x call them differently.
+Sockets are addressed by index where their names differ between Blender 4.5 and 5.x.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Value = Any
 
 Triple = tuple[Socket, Socket, Socket]
 
-#: extinctions in the visibility of the air: what is so far away has 2 % of its contrast (Koschmieder 1924)
+#: optical depth at the visibility of the air, at which 2 % of the contrast remains (Koschmieder 1924)
 VISIBILITY = 3.912
 
 
@@ -105,11 +105,11 @@ class Shading:
         return self.node("ShaderNodeMix", inputs, data_type="VECTOR").outputs[1]
 
     def mix_shaders(self, factor: Value, first: Socket, second: Socket) -> Socket:
-        """One shader over another."""
+        """Mix two shaders."""
         return self.node("ShaderNodeMixShader", {0: factor, 1: first, 2: second}).outputs[0]
 
     def attribute(self, name: str, of: str = "GEOMETRY") -> bpy.types.Node:
-        """An attribute of the geometry, or with "OBJECT" a custom property; zero where there is none."""
+        """An attribute of the geometry, or with "OBJECT" a custom property; zero if there is none."""
         return self.node("ShaderNodeAttribute", attribute_type=of, attribute_name=name)
 
     def value(self, name: str, of: str = "GEOMETRY") -> Socket:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A node group for the file of an image sequence that the scene's frame shows.
+"""A node group that selects the file of an image sequence for the scene's frame.
 
-It is the nearest one. Between two, as motion blur looks at them, the water of the nearest one is moved by its
-velocity for as long as its frame is away: then it swims smoothly while every file is of a whole frame.
+It is the nearest one. At subframes, as used for motion blur, the water of the nearest file is moved by its
+velocity for the remaining time, so it moves smoothly although files are of whole frames.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ FRAME_INPUTS = (
     ),
 )  # fmt: skip
 
-# Of a file: a product of two float32 may lie beside the whole number that it stands for
+# tolerance of a file's index, as a product of two float32 values may be slightly off an integer
 _TOLERANCE = 1.0 / 128.0
 
 
@@ -53,7 +53,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     )
     build = Builder(tree, FRAME_INPUTS, outputs)
     time = build.add("GeometryNodeInputSceneTime")
-    # Blender's scene time is stretched already
+    # Blender's scene time already includes the stretch
     file = build.math("MULTIPLY", output(time, "Frame"), build.given("Files per Frame"))
     whole = _whole(build, file, 0.5 + _TOLERANCE)
     limited = _limited(build, whole)
@@ -79,13 +79,13 @@ def _whole(build: Builder, file: Socket, more: float) -> Socket:
 
 
 def _limited(build: Builder, frame: Socket) -> Socket:
-    """The frame, or the end of the sequence: beyond it the image node gives zero without a word."""
+    """The frame, clamped to the sequence, beyond which the image node silently returns zero."""
     begun = build.integer("MAXIMUM", frame, build.given("First Frame"))
     return build.integer("MINIMUM", begun, build.given("Last Frame"))
 
 
 def _frames_back(build: Builder, frame: Socket) -> Socket:
-    """How far before a frame the last one with a file is: 0 where it has one itself."""
+    """Distance to the last frame with a file; 0 if the frame has one itself."""
     frames = build.given("Baked Frames")
     start = build.integer("SUBTRACT", build.given("Last Frame"), frame)
     length = build.add("FunctionNodeStringLength", {"String": frames})
@@ -98,13 +98,13 @@ def _frames_back(build: Builder, frame: Socket) -> Socket:
 def frame_values(
     frames: Sequence[int], files_per_frame: float = 1.0, seconds_per_file: float = 0.0
 ) -> dict[str, object]:
-    """What FRAME_INPUTS are given for a sequence of ascending frames."""
+    """Values of FRAME_INPUTS for a sequence of ascending frames."""
     values = (frames[0], frames[-1], baked_text(frames), files_per_frame, seconds_per_file)
     return {plug.name: value for plug, value in zip(FRAME_INPUTS, values, strict=True)}
 
 
 def baked_text(frames: Sequence[int]) -> str:
-    """What ascending frames are in the input Baked Frames."""
+    """The value of the input Baked Frames for ascending frames."""
     present, last = set(frames), frames[-1]
     if len(present) == last - frames[0] + 1:
         return ""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes that find the surface of an ocean's mesh above a place, in the ocean's own space.
 
-They know the mesh by its attribute `displacement` alone: vertices stand x fastest on a regular grid, and
-position - displacement is that grid at rest. Its first, second and last vertices tell how it is divided. The
-mesh covers whole periods, so that places beyond it are looked up a few periods nearer: the sea has no end.
+They only need the attribute `displacement`: vertices are in x-fastest order on a regular grid, and position -
+displacement is that grid at rest. Its first, second and last vertices determine its layout. The mesh covers
+whole periods, and places beyond it are wrapped.
 
 Places are counted in cells, the quads of the grid at rest.
 """
@@ -19,9 +19,9 @@ from .versioned import GroupKind, node_group
 
 #: Newton's steps. A storm with choppiness 1 takes 6, a sea that all but folds (minimum eigenvalue 0.1) 8
 STEPS = 12
-#: cells that a step may always be long, however near the place it starts
+#: smallest limit of a step's length, in cells
 LONGEST_STEP = 2.0
-#: the least determinant of the map from rest to surface that a step reckons with
+#: smallest determinant of the map from rest position to surface used in a step
 LEAST_DETERMINANT = 0.05
 
 _GEOMETRY = Plug("Geometry", "NodeSocketGeometry", None, "An ocean's evaluated mesh in its own space")
@@ -66,7 +66,7 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
     complete = build.compare("EQUAL", build.integer("MULTIPLY", columns, rows), count)
     extent = build.compare("GREATER_THAN", build.math("MINIMUM", step, depth), 0.0, "FLOAT")
     usable = build.logic("AND", build.logic("AND", known, complete), extent)
-    # another object, or a mesh with modifiers that change its vertices behind ours
+    # not an ocean, or a mesh whose vertices are changed by later modifiers
     _, step_y, _ = coordinates(build, spacing)
     for index, offset in (
         (build.integer("SUBTRACT", columns, 1), combined(build, width, 0.0)),
@@ -87,7 +87,7 @@ def _build_grid_facts(tree: bpy.types.NodeTree) -> None:
 
 
 def _count(build: Builder, geometry: Socket) -> Socket:
-    """Of the grid's vertices: all there are, but for averages behind them."""
+    """Number of the grid's vertices, without the averages that may follow them."""
     whole = output(build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}), "Point Count")
     table = named_attribute(build, AVERAGES_TABLE, "FLOAT_VECTOR")
     has_averages = sample_index(build, geometry, output(table, "Exists"), 0, "BOOLEAN")
@@ -98,7 +98,7 @@ def _count(build: Builder, geometry: Socket) -> Socket:
 
 
 def _is_short(build: Builder, off: Socket, step: Socket) -> Socket:
-    """Whether a vertex is no more than rounding away from where a grid of this step has it."""
+    """Whether a vertex is, up to rounding, where a grid with this step has it."""
     return build.compare("LESS_THAN", alone(build, "LENGTH", off), build.math("MULTIPLY", step, 0.1), "FLOAT")
 
 
@@ -142,7 +142,7 @@ def _build_cell(tree: bpy.types.NodeTree) -> None:
 
 
 def _wrapped(build: Builder, place: Socket, vertices: Socket) -> Socket:
-    """The cell's number along one axis; the last vertex is the first one of the next period."""
+    """The cell's index along one axis, wrapped."""
     cells = build.integer("SUBTRACT", vertices, 1)
     return build.integer("FLOORED_MODULO", whole_number(build, place, "FLOOR"), cells)
 
@@ -201,7 +201,7 @@ def _displacement(build: Builder) -> bpy.types.Node:
 
 
 def _place(build: Builder, facts: bpy.types.Node) -> Socket:
-    """The position in cells, moved into the mesh by whole periods: nearer the origin numbers are finer."""
+    """The position in cells, wrapped into the mesh, where floats are more precise."""
     position = build.vector("SUBTRACT", build.given("Position"), output(facts, "Corner"))
     place = build.vector("DIVIDE", position, output(facts, "Spacing"))
     period = combined(
@@ -221,7 +221,7 @@ def _looked_up(build: Builder, facts: bpy.types.Node, place: Socket, value: Sock
 
 
 def _inverted(build: Builder, facts: bpy.types.Node, wanted: Socket, steps: Socket) -> Socket:
-    """The place at rest whose water is above the wanted place now, by Newton's method."""
+    """The rest position of the water now above a place, by Newton's method."""
     end = build.add("GeometryNodeRepeatOutput")
     end.repeat_items.clear()
     end.repeat_items.new("VECTOR", "Rest")
@@ -245,7 +245,7 @@ def _inverted(build: Builder, facts: bpy.types.Node, wanted: Socket, steps: Sock
 def _newton_step(
     build: Builder, off: Socket, along_x: tuple[Socket, Socket], along_y: tuple[Socket, Socket]
 ) -> Socket:
-    """What would bring `off` to zero if the surface were as flat as it is right here."""
+    """The step that would bring `off` to zero for a locally linear surface."""
     off_x, off_y, _ = coordinates(build, off)
     xx, yy = build.math("ADD", along_x[0], 1.0), build.math("ADD", along_y[1], 1.0)
     yx, xy = along_x[1], along_y[0]
@@ -259,7 +259,7 @@ def _newton_step(
 
 
 def _bounded(build: Builder, step: Socket, off: Socket) -> Socket:
-    """The step, no longer than the way that is left or than a few cells."""
+    """The step, limited to the remaining distance or to a few cells."""
     longest = build.math("MAXIMUM", alone(build, "LENGTH", off), LONGEST_STEP)
     share = build.math("DIVIDE", longest, build.math("MAXIMUM", alone(build, "LENGTH", step), 1e-12))
     return build.scaled(step, build.math("MINIMUM", share, 1.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node groups of an older version, from another file, are replaced where they are used."""
+"""Replaces node groups of older versions where they are used."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from .versioned import GroupKind, check_not_newer, is_stale, node_group
 
 
 def upgrade_groups(kinds: Iterable[GroupKind]) -> bool:
-    """Put the present version of each group in the place of an older, on modifiers and inside other groups.
+    """Replace older versions of groups by the present one, on modifiers and inside other groups.
 
-    A file with newer groups stays as it is: whoever shows its oceans says so. Inputs and links keep what they
-    have by their names, where the type of the socket is still the same; new inputs get their defaults.
-    Returns whether there was any.
+    Newer groups are kept, and reported when their oceans are shown. Inputs and links are kept by name if the
+    type of the socket is the same; new inputs get their defaults. Returns whether any group was replaced.
     """
     kinds = tuple(kinds)
     own = [group for group in bpy.data.node_groups if group.library is None]
@@ -47,7 +46,7 @@ def _renew_modifier(modifier: bpy.types.NodesModifier, group: bpy.types.NodeTree
     before, values = input_sockets(modifier.node_group), all_inputs(modifier)
     modifier.node_group = group
     after = input_sockets(group)
-    # all of them: Blender keeps values by the number of a socket, which may be another one's now
+    # all of them, as Blender keeps values by the index of a socket, which may have changed
     set_inputs(modifier, {name: socket.default_value for name, socket in after.items()})
     kept = {name for name in after if name in before and before[name].socket_type == after[name].socket_type}
     set_inputs(modifier, {name: values[name] for name in kept})

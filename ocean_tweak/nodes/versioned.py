@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node groups of this extension, found by what made them rather than by their name."""
+"""Node groups of this extension, identified by a tag instead of their name."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import bpy
 from ..core.data.formats import NewerFormatError
 
 _KEY = "ocean_tweak_group"
-# of nodes side by side: how far apart, and how many above each other
+# layout of nodes: distances, and number per column
 _WIDE, _HIGH, _IN_COLUMN = 180, 160, 6
 
 
@@ -20,7 +20,7 @@ class GroupKind:
     """One node group that the extension can build.
 
     name : shown to the user
-    version : raised whenever `build` changes, so that a group from an older file is not taken for this one
+    version : raised whenever `build` changes, so that groups from older files are recognised
     build : fills an empty group with sockets and nodes
     tree_type : GeometryNodeTree or ShaderNodeTree
     """
@@ -32,14 +32,14 @@ class GroupKind:
 
     @property
     def tag(self) -> str:
-        """What stands in the group's custom property."""
+        """The value of the group's custom property."""
         return f"{self.name} {self.version}"
 
 
 def node_group(kind: GroupKind) -> bpy.types.NodeTree:
-    """The group of this kind and version in the file; made when there is none.
+    """The file's group of this kind and version, created if missing.
 
-    Raises NewerFormatError where the file has one of a newer version in its place.
+    Raises NewerFormatError if the file has one of a newer version.
     """
     own = [group for group in bpy.data.node_groups if group.library is None and is_of_kind(group, kind)]
     for group in own:
@@ -54,9 +54,9 @@ def node_group(kind: GroupKind) -> bpy.types.NodeTree:
 
 
 def lay_out(tree: bpy.types.NodeTree) -> None:
-    """Put a tree's nodes side by side, in the order in which they were made.
+    """Arrange a tree's nodes in columns, in the order of their creation.
 
-    All at once: Blender looks through the whole tree whenever a node is moved.
+    All at once, as Blender traverses the whole tree whenever a node is moved.
     """
     places = [
         (_WIDE * (number // _IN_COLUMN), -_HIGH * (number % _IN_COLUMN)) for number in range(len(tree.nodes))
@@ -65,27 +65,27 @@ def lay_out(tree: bpy.types.NodeTree) -> None:
 
 
 def beside(node: bpy.types.Node, number: int) -> tuple[float, float]:
-    """Where to put a node to the left of one that reads it, one of several beneath each other."""
+    """Position of a node to the left of the one that it is linked to, below its siblings."""
     return node.location.x - _WIDE, node.location.y - _HIGH * number
 
 
 def kind_name(group: bpy.types.NodeTree | None) -> str:
-    """The name of the kind that a group was built as, in any version; "" for a group of somebody else."""
+    """The name of a group's kind, in any version; "" for other groups."""
     return str(group.get(_KEY, "")).rpartition(" ")[0] if group is not None else ""
 
 
 def is_of_kind(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
-    """Whether a group was built as this kind, in any version."""
+    """Whether a group is of this kind, in any version."""
     return kind_name(group) == kind.name
 
 
 def is_stale(group: bpy.types.NodeTree | None, kind: GroupKind) -> bool:
-    """Whether a group was built as this kind, but by an older version of the extension."""
+    """Whether a group is of this kind, but of an older version."""
     return group is not None and is_of_kind(group, kind) and _version(group) < kind.version
 
 
 def check_not_newer(groups: Iterable[bpy.types.NodeTree], kind: GroupKind) -> None:
-    """Raise NewerFormatError where a group of this kind is of a newer version of the extension."""
+    """Raise NewerFormatError if a group of this kind has a newer version."""
     newest = max((_version(group) for group in groups if is_of_kind(group, kind)), default=0)
     if newest > kind.version:
         raise NewerFormatError(f"node group {kind.name}", newest, kind.version)
