@@ -62,7 +62,10 @@ class Shot(NamedTuple):
 
 SHOTS = {
     "calm": Shot("CALM"),
-    "fresh-breeze": Shot("FRESH_BREEZE"),
+    "fresh-breeze": Shot(
+        "FRESH_BREEZE", (10.5, 120e3), foam=3.0,
+        changes={"rings": 0, "eye": 4.2, "crest_distance": 13.0, "vertices": 600_000},
+    ),
     "storm": Shot("STORM"),
     "backlit-crest": Shot(
         "FRESH_BREEZE", (14.0, 80e3), is_afloat=False,
@@ -83,8 +86,8 @@ SHOTS = {
         "STORM", away=(780.0, 950.0), shadows=CloudShadows(size=2200.0, left=0.15),
         changes={"eye": 300.0, "tilt": math.radians(11.5), "lens": 35.0},
         light={
-            "sun_azimuth": math.radians(44.0), "sun_elevation": math.radians(26.0), "clouds": 0.65,
-            "overcast": 0.12, "exposure": -0.3, "visibility": 90e3,
+            "sun_azimuth": math.radians(12.0), "sun_elevation": math.radians(24.0), "clouds": 0.65,
+            "overcast": 0.12, "exposure": -0.3, "visibility": 30e3,
         },
     ),
 }  # fmt: skip

@@ -159,15 +159,18 @@ def _build(tree: bpy.types.NodeTree) -> None:
     absorption, backscatter = coefficients(shade, given, foam, cover)
     through = given["Transmission"]
     normal = _normal(shade, given, slope)
+    below = body(shade, given, absorption, backscatter)
+    lit = shade.math("SUBTRACT", 1.0, cover.shaded)
     inputs = {
-        "Base Color": shade.mix_vectors(through, body(shade, given, absorption, backscatter), (1.0,) * 3),
-        "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"],
-        "Normal": normal, "Specular IOR Level": _mirrored(shade, normal),
+        "Base Color": shade.mix_vectors(through, shade.scale(below, lit), (1.0,) * 3),
+        "Transmission Weight": through, "Roughness": roughness, "IOR": given["IOR"], "Normal": normal,
+        "Specular IOR Level": shade.math("MULTIPLY", _mirrored(shade, normal), lit),
         "Emission Color": crest_glow(shade, given, absorption), "Emission Strength": 1.0,
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     piled = _normal(shade, given, cover.slope)
-    shown = shade.mix_shaders(cover.amount, water, foam_shader(shade, given, cover, piled))
+    foam_shown = foam_shader(shade, given, cover, below, piled)
+    shown = shade.mix_shaders(cover.amount, water, foam_shown)
     hazy = _in_haze(shade, given, at, shown)
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
 
@@ -284,4 +287,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 9, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 10, _build, "ShaderNodeTree")

@@ -21,13 +21,13 @@ from .shading import Shading
 from .water_pattern import WIND_SPEED, Place, lace
 
 #: laces: length of their cells in Foam Sizes, turn away from the wind in rad, and how much narrower they are
-#: across; three for foam as it was made, and two for what the wind has drawn out
-_LACES = ((0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (0.5, 0.04, 3), (1.4, 0.0, 5))
+#: across; four for foam as it was made, and two for what the wind has drawn out
+_LACES = ((0.013, 1.1, 1), (0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (0.7, 0.04, 5), (3.0, 0.0, 9))
 #: variances of the laces: of foam that is being made, of some seconds and old; and in a wind that draws it
 #: out, down the crests' fronts while it is young
-_FRESH = (0.20, 0.60, 0.20, 0.0, 0.0)
-_YOUNG, _OLD = (0.11, 0.36, 0.53, 0.0, 0.0), (0.04, 0.17, 0.79, 0.0, 0.0)
-_SPILLED, _DRAWN_OUT = (0.12, 0.22, 0.16, 0.50, 0.0), (0.035, 0.115, 0.05, 0.36, 0.44)
+_FRESH = (0.05, 0.17, 0.58, 0.20, 0.0, 0.0)
+_YOUNG, _OLD = (0.01, 0.06, 0.37, 0.56, 0.0, 0.0), (0.005, 0.025, 0.17, 0.8, 0.0, 0.0)
+_SPILLED, _DRAWN_OUT = (0.04, 0.10, 0.24, 0.17, 0.45, 0.0), (0.02, 0.06, 0.15, 0.09, 0.33, 0.35)
 _YOUTH = 0.8  # s, in which foam loses half of what it had while it was made
 _BREAKS = 0.2  # strength of breaking from which foam is new
 _GROWTH = (0.5, 9.0)  # s, between which holes grow
@@ -35,23 +35,33 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.22, 0.12)
+_SOFT = (0.22, 0.13)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.25, 1.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
 _PAGE = (1.5976, 0.070566)
-#: from a rim inwards, in standard deviations of the laces: until foam is thick, and how far its slope reaches
-_THICK, _SLOPING = 1.2, 0.6
-#: how far inside foam its points are where no lace is seen, by the share's quantile: constant and slope
-_INSIDE = (0.55, 0.22)
+#: how dense foam is at its rim, and until where inwards, in standard deviations of the laces, it lets 1/e of
+#: that through which it does at its rim; of old and of fresh foam
+_RIM, _FILM = (0.38, 0.68), (0.42, 0.24)
+#: how far inside foam its points are where no lace is seen, whose density is the mean: at the share ½, of old
+#: and of fresh foam, and how its logarithm grows with the share's quantile
+_INSIDE, _INSIDE_GROWTH = (0.50, 0.42), 0.4
+#: density of old foam in its thickest places, as its bubbles burst
+_THINNED = 0.8
+#: weights of the laces in the grain of foam, whose variance is 1
+_GRAIN = (0.30, 0.40, 0.50, 0.50, 0.50, 0.0)
+#: from which height of the grain downwards to its opposite foam is thinner, and by how much, old and fresh
+_GRAINY, _GRAIN_DEPTH = 1.5, (0.24, 0.10)
+#: from a rim inwards, in standard deviations of the laces: how far the slope of foam reaches
+_SLOPING = 0.6
 #: height of foam at its rim in cells, of old and of fresh foam, and of the billows of fresh foam
-_EDGE, _BILLOW = (0.03, 0.05), 0.03
+_EDGE, _BILLOW = (0.035, 0.07), 0.05
 #: light that creases of fresh foam keep from themselves, and of piles that are too small to be seen
-_CREASED, _SHADOW = 0.24, 0.17
+_CREASED, _SHADOW = 0.27, 0.205
+#: from a rim outwards, in standard deviations of the laces: where water is shaded by foam, and how much
+_BESIDE, _SHADED = 0.25, (0.2, 0.5)
 #: how far bubbles reach beyond the foam above them, and how softly, in standard deviations of the laces
 _HALO, _HALO_SOFT = 0.7, 0.6
-#: brightness of a rim, which is thin and wet, of old and of fresh foam
-_RIM_LIGHT = (0.6, 0.85)
 
 
 class Foam(NamedTuple):
@@ -71,13 +81,17 @@ class Cover(NamedTuple):
     """Foam as it is drawn.
 
     amount : 0…1, how much of the point is covered
-    light : 0…1, what rims and creases, and piles too small to be seen, leave of its brightness
+    density : 0…1, how much of the water under it it hides
+    light : 0…1, what creases, and piles too small to be seen, leave of its brightness
+    shaded : 0…1, how much of the light on water beside it it keeps away
     slope : of its piles, along the ocean's x and y
     bubbles : 0…1, of those in the water below, which reach beyond it
     """
 
     amount: Socket
+    density: Socket
     light: Socket
+    shaded: Socket
     slope: Socket
     bubbles: Socket
 
@@ -107,11 +121,13 @@ class _Laid(NamedTuple):
     height : sum of what is seen of them
     slope : of that, over the size of their cells
     unseen : variance of the rest
+    grain : sum of what is seen by other weights; even beside 0 where little is
     """
 
     height: Socket
     slope: Socket
     unseen: Socket
+    grain: Socket
 
 
 def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> Cover:
@@ -127,7 +143,9 @@ def foam_cover(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) 
     has_any = shade.math("GREATER_THAN", foam.share, 1e-4)
     return Cover(
         amount=shade.math("MULTIPLY", amount, has_any),
-        light=_light(shade, foam, laid, inwards),
+        density=_density(shade, foam, laid, inwards),
+        light=_light(shade, foam, laid),
+        shaded=shade.math("MULTIPLY", _shaded(shade, foam, laid, inwards), has_any),
         slope=shade.scale(laid.slope, _steepness(shade, given, foam, inwards)),
         bubbles=shade.math("MULTIPLY", _bubbles(shade, laid, kept, inwards), has_any),
     )
@@ -143,16 +161,23 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
     height: Socket | float = 0.0
     unseen: Socket | float = 0.0
     slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
-    for variance, (size, turn, stretch) in zip(_variances(shade, given, foam), _LACES, strict=True):
+    grain: Socket | float = 0.0
+    variances = _variances(shade, given, foam)
+    for number, (size, turn, stretch) in enumerate(_LACES):
+        variance = variances[number]
         cell = shade.math("MULTIPLY", given["Foam Size"], size)
         layer = lace(shade, at, cell, turn, stretch)
         cells = shade.math("DIVIDE", shade.math("MULTIPLY", at.footprint, float(stretch)), cell)
-        hidden = shade.math("MULTIPLY", variance, shade.smooth(cells, *_FADE))
+        fading = shade.smooth(cells, *_FADE)
+        hidden = shade.math("MULTIPLY", variance, fading)
         weight = shade.math("SQRT", shade.math("SUBTRACT", variance, hidden))
         height = shade.math("MULTIPLY_ADD", layer.height, weight, height)
         slope = shade.vector("ADD", slope, shade.scale(layer.slope, weight))
         unseen = shade.math("ADD", unseen, hidden)
-    return _Laid(height, slope, unseen)
+        if _GRAIN[number] > 0.0:
+            seen = shade.math("SUBTRACT", _GRAIN[number], shade.math("MULTIPLY", fading, _GRAIN[number]))
+            grain = shade.math("MULTIPLY_ADD", layer.height, seen, grain)
+    return _Laid(height, slope, unseen, grain)
 
 
 def _variances(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, ...]:
@@ -162,12 +187,12 @@ def _variances(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[So
     streaks = shade.mix(shade.math("LESS_THAN", asked, 0.0), asked, by_wind)
     grown = shade.smooth(foam.age, *_GROWTH)
     variances = []
-    for part in (slice(0, 3), slice(2, 5)):
+    for part in (slice(0, 3), slice(3, 6)):
         young = shade.mix_vectors(streaks, _YOUNG[part], _SPILLED[part])
         old = shade.mix_vectors(streaks, _OLD[part], _DRAWN_OUT[part])
         aged = shade.mix_vectors(grown, young, old)
         variances.append(shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part])))
-    return *variances[0], *variances[1][1:]
+    return *variances[0], *variances[1]
 
 
 def _normal_share(shade: Shading, value: Socket) -> Socket:
@@ -194,16 +219,35 @@ def _quantile(shade: Shading, share: Socket) -> Socket:
     return shade.math("MULTIPLY", shade.math("SINH", third), 2.0 * math.sqrt(a / (3.0 * b)))
 
 
-def _light(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
-    """What is left of the brightness: rims are thin, and fresh foam has deep creases between its billows."""
-    inside = shade.math("MULTIPLY_ADD", inwards, _INSIDE[1], _INSIDE[0])
-    thick = shade.smooth(shade.mix(laid.unseen, inwards, inside), 0.0, _THICK)
-    light = shade.mix(thick, shade.mix(foam.youth, *_RIM_LIGHT), 1.0)
+def _density(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
+    """How much of the water foam hides: a film at its rims, more inside, less in its cells and with age."""
+    mean = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, _INSIDE_GROWTH))
+    mean = shade.math("MULTIPLY", mean, shade.mix(foam.youth, *_INSIDE))
+    inside = shade.mix(laid.unseen, shade.math("MAXIMUM", inwards, 0.0), mean)
+    part = shade.math("DIVIDE", inside, shade.mix(foam.youth, *_FILM))
+    film = shade.math("EXPONENT", shade.math("MULTIPLY", part, -1.0))
+    clear = shade.math("SUBTRACT", 1.0, shade.mix(foam.youth, *_RIM))
+    dense = shade.math("SUBTRACT", 1.0, shade.math("MULTIPLY", film, clear))
+    thinned = shade.smooth(foam.age, *_GROWTH, 1.0, _THINNED)
+    dense = shade.math("MULTIPLY", dense, shade.mix(foam.youth, thinned, 1.0))
+    depth = shade.mix(foam.youth, *_GRAIN_DEPTH)
+    grain = shade.smooth(laid.grain, -_GRAINY, _GRAINY, 0.0, depth)
+    return shade.math("MULTIPLY", dense, shade.math("SUBTRACT", 1.0, grain))
+
+
+def _light(shade: Shading, foam: Foam, laid: _Laid) -> Socket:
+    """What is left of the brightness: fresh foam has deep creases between its billows."""
     creased = shade.smooth(laid.height, -1.6, 0.4, _CREASED, 0.0)
     lost = shade.mix(laid.unseen, creased, _SHADOW)
-    return shade.math(
-        "MULTIPLY", light, shade.math("MULTIPLY_ADD", lost, shade.math("MULTIPLY", foam.youth, -1.0), 1.0)
-    )
+    return shade.math("MULTIPLY_ADD", lost, shade.math("MULTIPLY", foam.youth, -1.0), 1.0)
+
+
+def _shaded(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
+    """Water beside foam that is piled up lies in its shade."""
+    part = shade.math("DIVIDE", inwards, _BESIDE)
+    bell = shade.math("EXPONENT", shade.math("MULTIPLY", shade.math("MULTIPLY", part, part), -1.0))
+    seen = shade.math("MULTIPLY", bell, shade.math("SUBTRACT", 1.0, laid.unseen))
+    return shade.math("MULTIPLY", seen, shade.mix(foam.youth, *_SHADED))
 
 
 def _steepness(shade: Shading, given: dict[str, Socket], foam: Foam, inwards: Socket) -> Socket:
@@ -220,10 +264,15 @@ def _steepness(shade: Shading, given: dict[str, Socket], foam: Foam, inwards: So
     return shade.math("MULTIPLY", shade.math("SUBTRACT", billow, edge), given["Foam Relief"])
 
 
-def foam_shader(shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket) -> Socket:
-    """Bubbles scatter all light that meets them; a thin, wet rim keeps some."""
+def foam_shader(
+    shade: Shading, given: dict[str, Socket], cover: Cover, below: Socket, normal: Socket
+) -> Socket:
+    """Bubbles scatter all light that meets them; a film lets water through, which is coloured by what is
+    `below`.
+    """
+    white = shade.scale(given["Foam Color"], cover.light)
     inputs = {
-        "Base Color": shade.scale(given["Foam Color"], cover.light), "Roughness": given["Foam Roughness"],
+        "Base Color": shade.mix_vectors(cover.density, below, white), "Roughness": given["Foam Roughness"],
         "IOR": given["IOR"], "Normal": normal,
     }  # fmt: skip
     return shade.node("ShaderNodeBsdfPrincipled", inputs).outputs[0]

@@ -3,7 +3,8 @@
 
 Rolls of water with axes along the wind (Langmuir 1938) stretch and gather foam. Old foam is therefore not
 read where it was born but closer to the centre of a cell elongated along the wind, which stretches it about
-that centre. Neighbouring cells across the wind are offset.
+that centre. Cells lie in lanes of all widths; those of neighbouring lanes are offset, so that the ends of
+streaks never line up across the wind.
 
 The stretched foam is gathered by a pattern of lines g, normally distributed over the water: a coverage F
 becomes F' with F'/(1 - F') = o(F) exp(σg). The odds o(F) are chosen such that the mean of F' over g is F, so
@@ -36,9 +37,14 @@ RealArray = NDArray[np.floating]
 #: wind in m/s at 10 m at which windrows appear, 7 Bft, and at which they are fully formed, 9 Bft
 _FROM, _WHOLE = 13.9, 20.8
 
-#: length of a cell along the wind in m, the stretch of foam in it, and the offset of neighbours in rad. A sea
-# smaller than two cells has no windrows
-_CELL, _STRETCH, _SHIFT = 50.0, 4.0, 2.0
+#: length of a cell along the wind in m, and the stretch of foam in it. A sea smaller than two cells has no
+# windrows
+_CELL, _STRETCH = 50.0, 4.0
+#: lanes per standard deviation of the waves that define them; offset between neighbouring lanes in cells (by
+# the golden section lanes never line up again); offset within a lane, in cells per standard deviation
+_LANES, _SHIFT, _UNLIKE = 1.0, 0.618, 0.12
+#: fraction of the variance of g that thins out foam towards the ends of cells, instead of cutting it off
+_THINNING = 0.06
 #: fraction of the variance of foam that fully resolved lines account for; and σ² over the ratio of that
 # fraction to the rest: a logistic distribution against a normal one
 _GATHERED, _LOGISTIC = 0.7, 2.9
@@ -78,8 +84,8 @@ class _Kind(NamedTuple):
     threads: bool
 
 
-#: offsets of cells
-_SHIFTING = _Kind((12.0, 60.0), 8.0, 12, 1.0, False)
+#: waves that define the lanes of cells
+_IN_LANES = _Kind((14.0, 90.0), 20.0, 12, 1.0, False)
 #: wide lines, narrow lines in between, streaks, and large areas with more or fewer lines
 _LINES = (
     _Kind((60.0, 300.0), 14.0, 12, 0.34, True),
@@ -132,10 +138,14 @@ class Windrows:
         along_x, along_y = pattern.cell
         # offset from the centre of the place's cell, in cells
         off = _turn(along_x * x) + _turn(along_y * y)
-        off += np.float32(_SHIFT / (2.0 * math.pi)) * pattern.shift.at(x, y)
+        lanes = pattern.lanes.at(x, y)
+        off += np.float32(_SHIFT) * np.rint(np.float32(_LANES) * lanes) + np.float32(_UNLIKE) * lanes
         off -= np.rint(off)
+        ends = np.take(_ends(), (np.abs(off) * np.float32(2 * _AWAY)).astype(np.int32), mode="clip")
         off *= np.float32((1.0 - 1.0 / _STRETCH) * 2.0 * math.pi / (along_x**2 + along_y**2))
-        lines = np.exp(np.float32(pattern.contrast) * pattern.lines_at(x, y))
+        lines = np.float32(math.sqrt(1.0 - _THINNING)) * pattern.lines_at(x, y)
+        lines += np.float32(math.sqrt(_THINNING)) * ends
+        lines = np.exp(np.float32(pattern.contrast) * lines)
         return off * np.float32(along_x), off * np.float32(along_y), lines
 
     def gathered(self, foam: RealArray, lines: RealArray) -> RealArray:
@@ -218,12 +228,12 @@ class _Pattern:
     """The windrows as resolved by the samples.
 
     cell : wave vector of the cells, rad/m
-    shift : offset of neighbouring cells
+    lanes : waves whose rounded height numbers the lanes of cells
     lines : waves of each kind of lines
     """
 
     cell: tuple[float, float]
-    shift: _Waves
+    lanes: _Waves
     lines: tuple[_Waves, ...]
 
     @property
@@ -279,7 +289,7 @@ def _pattern(direction: float, side: float, seed: int, spacing: float) -> _Patte
 
     (cell_x,), (cell_y,) = fitting(np.array([2.0 * math.pi / _CELL]), np.zeros(1))
     lines = tuple(waves(stream, kind) for stream, kind in enumerate(_LINES, 2))
-    return _Pattern((float(cell_x), float(cell_y)), waves(1, _SHIFTING), lines)
+    return _Pattern((float(cell_x), float(cell_y)), waves(1, _IN_LANES), lines)
 
 
 @lru_cache(maxsize=1)
@@ -290,6 +300,14 @@ def _threads() -> RealArray:
     known = [-normal.inv_cdf(2.0 * normal.cdf(each) - 1.0) for each in away.tolist()]
     middle = (np.arange(_AWAY) + 0.5) * (_FARTHEST / _AWAY)
     return np.asarray(np.interp(middle, away, known).astype(np.float32))
+
+
+@lru_cache(maxsize=1)
+def _ends() -> RealArray:
+    """Normally distributed, by the distance from the centre of a cell in steps: highest in the centre."""
+    quantile = NormalDist().inv_cdf
+    away = (np.arange(_AWAY) + 0.5) / _AWAY
+    return np.array([-quantile(each) for each in away.tolist()], np.float32)
 
 
 @lru_cache(maxsize=16)
