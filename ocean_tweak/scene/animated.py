@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Oceans whose settings are animated or driven.
 
-Blender evaluates animation after the handlers of a new frame and writes it back to the settings in the
-viewport only, so an animated ocean is shown after the evaluation, from the evaluated object.
+Blender evaluates animation after the frame-change handlers and copies it back to the settings in the viewport
+only, so an animated ocean is updated after the evaluation, from the evaluated object.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .settings import OceanSettings, settings_of
 from .units import frame_rate, frame_with_subframe, shortest_decimal, time_stretch
 
 _GROUP = "ocean_tweak."
-#: path of the waves' own time
+#: path of the ocean time
 OCEAN_TIME = "ocean_tweak.ocean_time"
 _LAYER = re.compile(r"ocean_tweak\.layers\[(\d+)\]")
 
@@ -28,7 +28,7 @@ class Clock(NamedTuple):
     """An ocean's time at a moment of the scene.
 
     time : s, exact
-    rate : seconds of it in a second of the scene; None where a driver leaves that open
+    rate : seconds of it per second of the scene; None if a driver makes that unknown
     """
 
     time: Fraction
@@ -36,7 +36,7 @@ class Clock(NamedTuple):
 
 
 def is_animated(item: bpy.types.Object) -> bool:
-    """Whether keys, drivers or the nonlinear animation change an ocean's settings."""
+    """Whether keys, drivers or NLA strips change an ocean's settings."""
     data = item.animation_data
     if data is None:
         return False
@@ -46,19 +46,19 @@ def is_animated(item: bpy.types.Object) -> bool:
 
 
 def has_own_time(settings: OceanSettings) -> bool:
-    """Whether the waves' time is another than the scene's frames tell."""
+    """Whether the ocean time does not simply follow the scene's frames."""
     return settings.use_ocean_time or settings.time_scale != 1.0
 
 
 def shown_settings(item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None) -> OceanSettings:
-    """The settings with what animation makes of them in this evaluation."""
+    """The settings as animated in this evaluation."""
     if depsgraph is None or not is_animated(item):
         return settings_of(item)
     return settings_of(item.evaluated_get(depsgraph))
 
 
 def clock_of(settings: OceanSettings, scene: bpy.types.Scene, start_frame: int) -> Clock:
-    """The ocean's time at the scene's frame, sub-frame included."""
+    """The ocean time at the scene's frame or subframe."""
     # as Blender does with keys
     frame, rate = frame_with_subframe(scene) / time_stretch(scene), 1 / time_stretch(scene)
     fps = frame_rate(scene)
@@ -72,7 +72,7 @@ def clock_of(settings: OceanSettings, scene: bpy.types.Scene, start_frame: int) 
 
 
 def _change(item: bpy.types.Object, frame: Fraction) -> float | None:
-    """Seconds of ocean time in a frame of the animation, from the keys on both sides of one."""
+    """Seconds of ocean time per frame of the animation, from the keys around a frame."""
     data = item.animation_data
     if data is not None and any(driver.data_path == OCEAN_TIME for driver in data.drivers):
         return None
@@ -86,7 +86,7 @@ def _change(item: bpy.types.Object, frame: Fraction) -> float | None:
 def set_keys(
     item: bpy.types.Object, scene: bpy.types.Scene, first_frame: int, samples: Mapping[str, Sequence[float]]
 ) -> None:
-    """Give an ocean's settings a key a frame of the scene, linear between; other keys and drivers go.
+    """Key an ocean's settings in each frame, with linear interpolation; other keys and drivers are removed.
 
     samples : values in Blender units, by path as in `core.parameters.shot.ANIMATED`; none takes the animation
         off
@@ -104,11 +104,11 @@ def key_each_frame(
     values: Sequence[float],
     index: int = -1,
 ) -> None:
-    """Give a property a key a frame of the scene, linear between.
+    """Key a property in each frame, with linear interpolation.
 
     index : of a property that is several numbers
     """
-    # makes action, slot and curve where there are none
+    # creates action, slot and curve if missing
     item.keyframe_insert(data_path, index=index, frame=first_frame)
     known = (data_path, max(index, 0))
     points = next(
@@ -123,9 +123,9 @@ def key_each_frame(
 
 
 def move_keys(item: bpy.types.Object, places: Mapping[int, int | None]) -> None:
-    """Let keys and drivers of wave layers follow these to other places in the list.
+    """Move keys and drivers of wave layers along with these in the list.
 
-    places : number of a layer before and after; None takes its keys away
+    places : index of a layer before and after; None removes its keys
     """
     data = item.animation_data
     if data is None or all(old == new for old, new in places.items()):
@@ -162,7 +162,7 @@ def _remove_animation(item: bpy.types.Object) -> None:
 
 
 def curves_of(item: bpy.types.Object) -> Iterator[bpy.types.FCurve]:
-    """All curves of an object: those of its action, and of the strips of its nonlinear animation."""
+    """All curves of an object, of its action and of its NLA strips."""
     data = item.animation_data
     if data is None:
         return
@@ -182,7 +182,7 @@ def _action_curves(
 def channel_bags(
     action: bpy.types.Action | None, slot: bpy.types.ActionSlot | None
 ) -> Iterator[bpy.types.ActionChannelbag]:
-    """What holds the curves of an action's slot."""
+    """The channel bags of an action's slot."""
     if action is None or slot is None:
         return
     for layer in action.layers:

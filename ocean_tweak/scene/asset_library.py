@@ -25,7 +25,7 @@ from .sea_picture import SIZE, SeaView, draw_ball
 #: what Blender's asset browser calls it
 LIBRARY = "Ocean Tweak"
 _FILE = "ocean_tweak.blend"
-#: catalogues: name and what tells it from others, for ever
+#: catalogues: name and permanent UUID
 _NODES = ("Nodes", "0e0a7c52-6f0b-4f0e-9d0a-5a2f1c6b7e01")
 _WATERS = ("Water", "0e0a7c52-6f0b-4f0e-9d0a-5a2f1c6b7e02")
 _CATALOGUES = "blender_assets.cats.txt"
@@ -37,14 +37,14 @@ _GROUPS = {
     WATER: "Shader of sea water with foam",
     WET_BAND: "Shader values for wet surfaces",
 }
-#: what lies in the water in a group's picture: colour, and the share of it that is wet
+#: the ball in a group's picture: colour, and its wet fraction
 _MARKS = {
     SAMPLE: ((0.85, 0.12, 0.08), 0.0), FLOAT: ((0.95, 0.45, 0.05), 0.35), WET_BAND: ((0.60, 0.58, 0.55), 0.6),
 }  # fmt: skip
 
 
 class _Asset(NamedTuple):
-    """What the asset browser shows of a datablock."""
+    """A datablock with its data for the asset browser."""
 
     description: str
     catalogue: str
@@ -57,7 +57,7 @@ def is_installed() -> bool:
 
 
 def install() -> Path:
-    """Write the library and add its folder to the preferences; the open file stays as it is.
+    """Write the library and add its folder to the preferences; the open file is not changed.
 
     Raises OSError for what the disk refuses.
     """
@@ -88,7 +88,7 @@ def install() -> Path:
 
 
 def _assets() -> dict[bpy.types.ID, _Asset]:
-    """What goes into the library: node groups, and a material of each water."""
+    """The contents of the library: node groups, and a material for each kind of water."""
     view = SeaView(built_in()["open_sea"].parameters)
     assets: dict[bpy.types.ID, _Asset] = {}
     for kind, description in _GROUPS.items():
@@ -112,7 +112,7 @@ def _mark(block: bpy.types.ID, asset: _Asset) -> None:
 
 
 def _refresh_browsers() -> None:
-    """Let open asset browsers look again."""
+    """Refresh open asset browsers."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.ui_type == "ASSETS":
@@ -121,7 +121,7 @@ def _refresh_browsers() -> None:
 
 
 def remove() -> None:
-    """Take the folder out of the preferences; the files stay, for scenes that link them."""
+    """Remove the folder from the preferences; the files are kept, as scenes may link them."""
     libraries, listed = bpy.context.preferences.filepaths.asset_libraries, _listed()
     if listed is not None:
         libraries.remove(listed)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A bake in processes of its own: the window stays free, and Blender need not be there at the end.
+"""A bake in separate processes: the window stays responsive, and the bake survives Blender.
 
-They are the command line's `bake`, fed with the ocean's shot as JSON. Frames that are whole already stay, so
-a bake that was stopped goes on where it was.
+It runs the command line's `bake` with the ocean's shot as JSON. Complete frames are kept, so a stopped bake
+continues where it was.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which sea the bake of an ocean is, and whether the ocean's settings still are that sea."""
+"""The sea of an ocean's bake, and how the ocean's settings differ from it."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from .image_sequence import SequenceError, baked_frames, file_of, folder_of, sho
 from .modifiers import set_changed
 from .settings import OceanSettings, settings_of
 
-#: s: times that are nearer are the same; Blender keeps them as float32
+#: tolerance for times in s, as Blender stores them as float32
 _SAME_TIME = 1e-3
 
 
 class Difference(NamedTuple):
-    """A number that is another one in the bake than in the settings, by its path in the parameters."""
+    """A value that differs between bake and settings, with its path in the parameters."""
 
     path: str
     baked: Any
@@ -41,7 +41,7 @@ class Difference(NamedTuple):
 def parameters_of(path: Path, frame: int) -> OceanParameters:
     """The sea that an image of a frame was baked from.
 
-    Raises ExrError, ParameterError or SequenceError where the image does not tell.
+    Raises ExrError, ParameterError or SequenceError if the image does not contain it.
     """
     metadata = read_header(path)
     if "parameters" not in metadata:
@@ -70,7 +70,7 @@ def parameters_of(path: Path, frame: int) -> OceanParameters:
 def baked_shot(settings: OceanSettings) -> Shot | None:
     """The shot that an ocean's files are of, from the job beside them or else from the header of the first.
 
-    None for a live ocean, and where neither tells. What was read is kept as long as the file is the same.
+    None for a live ocean, or if neither contains it. Cached until the file changes.
     """
     frames = baked_frames(settings)
     path = file_of(settings, frames[0]) if settings.source == "SEQUENCE" else None
@@ -82,9 +82,9 @@ def baked_shot(settings: OceanSettings) -> Shot | None:
 
 @dataclass(frozen=True)
 class Told:
-    """What a file of a bake tells.
+    """The data in a file of a bake.
 
-    shot : None where it tells none
+    shot : None if it contains none
     maps : that a job has
     nbytes : of the images in the shot
     """
@@ -95,7 +95,7 @@ class Told:
 
 
 def told_by(path: Path, frame: int = 0) -> Told:
-    """What a job tells, or the image of a frame; it is read once as long as the file is the same."""
+    """The data of a job or of a frame's image, cached until the file changes."""
     try:
         written = path.stat()
     except OSError:
@@ -117,7 +117,8 @@ def _read(path: Path, frame: int, _written: tuple[int, int]) -> Told:
 
 
 def shown_parameters(settings: OceanSettings, scene: bpy.types.Scene) -> OceanParameters:
-    """The sea that an ocean shows: the bake's at the present frame where one moves it, else its settings'.
+    """The sea that an ocean shows: that of the bake at the present frame if it is baked, else that of its
+    settings.
 
     Raises ParameterError for settings that are no sea.
     """
@@ -128,7 +129,7 @@ def shown_parameters(settings: OceanSettings, scene: bpy.types.Scene) -> OceanPa
 
 
 def check(item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings | None = None) -> None:
-    """Keep for the panel what the bake of an ocean is, and how its settings differ from that.
+    """Store for the panel the sea of an ocean's bake, and the differences of its settings.
 
     shown : the settings as animation makes them, where it does
     """
@@ -143,11 +144,11 @@ def check(item: bpy.types.Object, scene: bpy.types.Scene, shown: OceanSettings |
     sea = _moment(shot, frame).parameters.to_dict(brief=True)
     set_changed(settings, baked_sea=json.dumps(sea, sort_keys=True))
     if moves(item) and unbaked_frames(settings, scene, (scene.frame_current,)):
-        return  # another frame is held, whose numbers are others anyway
+        return  # another frame is held, whose values differ anyway
     try:
         found = differences(shot, frame, shown or settings, scene)
     except ParameterError:
-        found = []  # the panel tells that the settings are no sea at all
+        found = []  # the panel already reports that the settings are invalid
     set_changed(settings, bake_differs=json.dumps(found) if found else "")
 
 
@@ -158,7 +159,7 @@ def moves(item: bpy.types.Object) -> bool:
 
 
 def warn(item: bpy.types.Object) -> None:
-    """Let the console hear, once a shot, that the settings of a baked ocean are not those of its bake."""
+    """Warn on the console, once per shot, that the settings of a baked ocean differ from its bake."""
     settings = settings_of(item)
     if settings.bake_differs:
         found = [Difference(*entry) for entry in json.loads(settings.bake_differs)]
@@ -171,7 +172,7 @@ def warn(item: bpy.types.Object) -> None:
 
 
 def differences(shot: Shot, frame: int, settings: OceanSettings, scene: bpy.types.Scene) -> list[Difference]:
-    """Where settings are another sea than a frame of a bake. Raises ParameterError for what is no sea."""
+    """The differences between settings and a frame of a bake. Raises ParameterError for invalid settings."""
     moment, parameters = _moment(shot, frame), settings.to_parameters(scene)
     baked, own = (sea.replace(spray=None).to_dict(brief=True) for sea in (moment.parameters, parameters))
     found = sorted(_different("", baked, own))

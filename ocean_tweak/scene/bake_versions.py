@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bakes of an ocean on disk, and the next one: looked at when something happens, kept for the panel."""
+"""The versions of an ocean's bake on disk, and an estimate of the next one, updated on events and cached for
+the panel."""
 
 from __future__ import annotations
 
@@ -41,31 +42,31 @@ class Listing(NamedTuple):
     """What was found of an ocean's bakes.
 
     versions : from the oldest number to the newest
-    to_come : what its next bake takes; None where the settings changed since
+    to_come : estimate of its next bake; None if the settings have changed since
     """
 
     versions: tuple[Version, ...]
     to_come: Estimate | None
 
 
-# by session uid; what is on disk and how long a frame takes is no data of the file
+# by session uid, as the state of the disk and the time per frame are not data of the file
 _listings: dict[int, Listing] = {}
 
 
 def known(item: bpy.types.Object) -> Listing | None:
-    """What was found when it was looked at last."""
+    """The listing of the last look at the disk."""
     return _listings.get(item.session_uid)
 
 
 def look(item: bpy.types.Object) -> None:
-    """Look at the disk for what is there of an ocean's bakes. Raises OSError."""
+    """List an ocean's bakes on disk. Raises OSError."""
     before = known(item)
     versions = tuple(map(_version, _own(item)))
     _listings[item.session_uid] = Listing(versions, None if before is None else before.to_come)
 
 
 def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Try out what a frame of the next bake takes, and look at the disk.
+    """Estimate the next bake by computing a frame, and list the bakes on disk.
 
     Raises ParameterError for settings that are no sea, OSError.
     """
@@ -81,7 +82,7 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
 
 
 def settings_changed(item: bpy.types.Object) -> None:
-    """What was foreseen is of other settings."""
+    """Discard the estimate, as the settings have changed."""
     listing = known(item)
     if listing is not None and listing.to_come is not None:
         _listings[item.session_uid] = listing._replace(to_come=None)
@@ -94,10 +95,11 @@ def shown_folders() -> dict[Path, str]:
 
 
 def delete(item: bpy.types.Object, names: Iterable[str] = ()) -> clean.Cleaned:
-    """Delete versions of an ocean's bakes by the names of their folders; without names, all that none shows.
+    """Delete versions of an ocean's bakes by the names of their folders; without names, all that no ocean
+    shows.
 
-    Only what records list goes, as by the command `clean`. Raises OceanObjectError for a version that is not
-    there or is shown, CacheError, Held where somebody bakes it, OSError.
+    Only files listed in records are deleted, as by the command `clean`. Raises OceanObjectError for a version
+    that is missing or shown, CacheError, Held if it is being baked, OSError.
     """
     shown = shown_folders()
     versions = {folder.name: folder for folder in _own(item)}
@@ -127,14 +129,14 @@ def _home(item: bpy.types.Object) -> Path:
 
 
 def _own(item: bpy.types.Object) -> list[Path]:
-    """The folders of an ocean's bakes; one that is a link leads to a bake of somebody else."""
+    """The folders of an ocean's bakes, without links, which lead to bakes of others."""
     return [folder for folder in bakes_in(_home(item)) if not is_link(folder)]
 
 
 def _version(folder: Path) -> Version:
     size, time = 0, 0.0
     for path in folder.rglob("*"):
-        with suppress(OSError):  # what goes meanwhile takes no room
+        with suppress(OSError):  # files deleted meanwhile count as 0
             found = path.lstat()
             size += found.st_size if stat.S_ISREG(found.st_mode) else 0
             time = max(time, found.st_mtime)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where an ocean's baked frames lie, and what tells them from those of other oceans."""
+"""The cache folder of an ocean, and the uid that identifies its bakes."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ DEFAULT_CACHE = "//cache"
 def cache_folder(item: bpy.types.Object) -> Path:
     """The cache of an ocean: what its settings say, or the environment, or beside its .blend file.
 
-    A path that begins with // is relative to the file that the ocean is stored in, a library's too. While
-    that file has never been saved, the user's own folder takes its place. Raises OSError where that cannot
-    be made, OceanObjectError for a path of another system.
+    A path that begins with // is relative to the file in which the ocean is stored, which may be a library.
+    If that file has never been saved, the user's folder is used instead. Raises OSError if that cannot be
+    created, OceanObjectError for a path of another system.
     """
     path = settings_of(item).cache_folder or DEFAULT_CACHE
     if path == DEFAULT_CACHE:
@@ -46,10 +46,10 @@ def cache_folder(item: bpy.types.Object) -> Path:
 
 
 def own_uid(item: bpy.types.Object) -> str:
-    """What tells the ocean from all others: a duplicate gets another one than the ocean it was made from.
+    """The ocean's uid: a duplicate gets a different one from the original.
 
-    It follows from what is stored in the file, so that every machine of a farm finds the same. One that
-    could name a folder elsewhere, as a file of somebody else may hold it, counts as taken.
+    It is derived from data stored in the file, so that every machine of a farm finds the same. One that could
+    lead to another folder, as in a manipulated file, counts as taken.
     """
     settings = settings_of(item)
     taken = {
@@ -66,7 +66,7 @@ def own_uid(item: bpy.types.Object) -> str:
 
 
 def new_uid() -> str:
-    """One that no other ocean has, in any file."""
+    """A new, globally unique uid."""
     return uuid.uuid4().hex[:8]
 
 
@@ -76,7 +76,7 @@ def bake_name(item: bpy.types.Object) -> str:
 
 
 def shown_bake(item: bpy.types.Object) -> Path | None:
-    """The folder of the bake that the ocean reads, None where it reads none of ours."""
+    """The folder of the bake that the ocean reads; None if it reads none of ours."""
     folder = folder_of(settings_of(item))
     return folder if folder is not None and (folder / JOB_FILE).is_file() else None
 
@@ -114,10 +114,10 @@ def find_moved(item: bpy.types.Object) -> bool:
 
 
 def take_along(item: bpy.types.Object) -> ImageSequence:
-    """Copy the bake that the ocean reads into its cache. Returns the copy.
+    """Copy the bake that the ocean reads into its cache. Returns the copy's folder.
 
-    Raises OceanObjectError where there is nothing to copy or something leads elsewhere, OSError for what the
-    disk refuses.
+    Raises OceanObjectError if there is nothing to copy or the bake contains links, OSError if it cannot be
+    copied.
     """
     folder = shown_bake(item)
     if folder is None:
@@ -129,7 +129,7 @@ def take_along(item: bpy.types.Object) -> ImageSequence:
         shutil.rmtree(beside, ignore_errors=True)
         beside.parent.mkdir(parents=True, exist_ok=True)
         try:
-            # a link that came meanwhile stays one
+            # a link created meanwhile is copied as a link
             shutil.copytree(folder, beside, symlinks=True, ignore=shutil.ignore_patterns("*.lock", ".*"))
             beside.rename(goal)
         except BaseException:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surface around the camera that shows an ocean up to the horizon, in the place of the ocean's own mesh."""
+"""A surface around the camera that shows an ocean up to the horizon, instead of the ocean's own mesh."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ def add_camera_surface(
     camera: bpy.types.Object | None = None,
     budget: int = _BUDGET,
 ) -> bpy.types.Object:
-    """Show an ocean around a camera; its own mesh and its horizon make room for it.
+    """Show an ocean around a camera, instead of by its own mesh and its horizon.
 
-    In renders both are hidden. In the viewport the ocean is a box, so that it can still be chosen.
+    Both are hidden in renders. In the viewport the ocean is drawn as a box, so that it can still be selected.
 
     The surface is the ocean's child, in the same collections, with the same material. Near the camera it
     has two cells a sample of the ocean, or of the finest of its patches: all of its waves. Where the budget
     is too small for that and the horizon, its cells are larger, up to two a sample of the first patch.
 
-    camera : None for the scene's, whichever that is
-    budget : vertices, at most
+    camera : None for the scene's active camera
+    budget : largest number of vertices
 
-    Raises OceanObjectError for an object that is no ocean.
+    Raises OceanObjectError if the object is not an ocean.
     """
     if not is_ocean(ocean):
         raise OceanObjectError(f"{ocean.name} is not an ocean: choose one to show around the camera")
@@ -70,7 +70,7 @@ def add_camera_surface(
     if inputs["Material"] is not None:
         solid_foam.show(surface, inputs["Material"])
     _make_room(ocean)
-    # its own mesh is without what does not repeat from now on
+    # its own mesh no longer has waves that do not repeat
     own = Wanted.SURFACE if repeating(parameters) is not parameters else Wanted(0)
     show_new(ocean, scene, own | AROUND_CAMERA | Wanted.NEIGHBOURS)
     return surface
@@ -84,7 +84,7 @@ def _finest_spacing(parameters: OceanParameters, budget: int) -> float:
 
 
 def remove_camera_surface(ocean: bpy.types.Object) -> None:
-    """Let an ocean's own mesh and its horizon show it again."""
+    """Show an ocean by its own mesh and horizon again."""
     surface = camera_surface_of(ocean)
     if surface is not None:
         mesh = surface.data

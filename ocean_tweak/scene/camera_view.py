@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a camera sees of an ocean."""
+"""The view of a camera over an ocean."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from ..nodes.globe import LEAST_HEIGHT
 from ..nodes.modifier_inputs import get_input
 from .plan import camera_matrix, camera_of, surface_modifier
 
-#: m, from which on a camera is up in the air; lower ones are among the waves, which come as near as that
+#: height in m above which a camera counts as aerial; lower ones are among the waves, which come as near as
+# that
 AERIAL, _NEAR = 20.0, 5.0
 #: rad below the horizon, between which the lowest line of sight is for a fan to be before the camera
 _LOWEST = math.radians(2.0), math.radians(60.0)
@@ -25,9 +26,9 @@ _ALONG = 9
 
 
 def view_of(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> View | None:
-    """What the camera of a surface sees of the water, at rest and in m, in the ocean's space.
+    """The view of a surface's camera over the water at rest, in m, in the ocean's space.
 
-    None for one that looks down, or up, or is not one with a perspective.
+    None for a camera that looks down or up, or is not perspective.
 
     scale : Blender units in a metre
     """
@@ -43,7 +44,7 @@ def view_of(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> 
         return None
     middle = sight.mean(axis=0)
     azimuth = math.atan2(middle[1], middle[0])
-    # crests rise above the horizon of one among them
+    # crests rise above the horizon of a camera among them
     on_water = sight if is_low else sight[sight[:, 2] <= 0.0]
     aside = np.angle((on_water[:, 0] + 1j * on_water[:, 1]) * np.exp(-1j * azimuth))
     half_angle = float(np.abs(aside).max())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A command of the command line in a process of its own: the window stays free while it works."""
+"""Runs the command line in a separate process, so that the window stays responsive."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _LOG = logging.getLogger(__name__)
 
 
 class CommandProcess:
-    """A command under way.
+    """A running command.
 
-    command_line : how the command line is started: this layer knows none, registration says it
+    command_line : how to start the command line, set by registration, as this layer does not know it
     name : of the ocean that it is about
     phase : what is being made, where that is no longer the sea itself: "spray"
-    left, done : frames that were to be made in this phase, and that have been
-    error : the last line that told of a failure
+    left, done : total and finished frames of this phase
+    error : the last line that reported a failure
     """
 
     command_line: ClassVar[Sequence[str]] = ()
@@ -45,7 +45,7 @@ class CommandProcess:
         self.error = ""
         self.is_stopped = False
         self._began = time.monotonic()
-        # no file holds the sea: whoever is killed, and whenever, leaves none behind
+        # the sea is passed through a pipe, so that a killed process leaves no file behind
         sea = () if shot is None else ("--params=-",)
         self._process = subprocess.Popen(
             [*self.command_line, *arguments, "--json", *logs.verbose_arguments(), *sea],
@@ -66,12 +66,12 @@ class CommandProcess:
 
     @property
     def factor(self) -> float:
-        """The share that is done, 0…1."""
+        """The completed fraction, 0…1."""
         return self.done / self.left if self.left else 0.0
 
     @property
     def seconds_left(self) -> float | None:
-        """How long it will take, as far as that is known."""
+        """Remaining time in s, if known."""
         if not 0 < self.done < self.left:
             return None
         return (time.monotonic() - self._began) / self.done * (self.left - self.done)
@@ -86,11 +86,11 @@ class CommandProcess:
 
     @property
     def is_complete(self) -> bool:
-        """Whether it has ended and did all that it should."""
+        """Whether it has ended successfully."""
         return self._process.returncode == 0
 
     def stop(self) -> None:
-        """Let it end after the frames that are under way."""
+        """Let it end after the frames in progress."""
         self.is_stopped = True
         if self._process.poll() is None:
             self._process.terminate()
@@ -101,7 +101,7 @@ class CommandProcess:
         self.has_ended()
 
     def take(self, said: dict[str, Any]) -> None:
-        """What a line of its output says."""
+        """Handle a line of its output."""
         if "left" in said:
             self.phase, self.left, self.done = said.get("phase", ""), said["left"], 0
             self._began = time.monotonic()
@@ -111,7 +111,7 @@ class CommandProcess:
     def _read_progress(self, stream: IO[str]) -> None:
         with stream:
             for line in stream:
-                with contextlib.suppress(ValueError):  # what a library had to say
+                with contextlib.suppress(ValueError):  # output of a library
                     said = json.loads(line)
                     if isinstance(said, dict):
                         self.take(said)
@@ -123,14 +123,14 @@ class CommandProcess:
 
 
 def _write(stream: IO[str], text: str) -> None:
-    with contextlib.suppress(OSError), stream:  # it may have ended already, and says why
+    with contextlib.suppress(OSError), stream:  # it may have ended already, and its output says why
         stream.write(text)
 
 
 class Running(dict[int, CommandProcess]):
-    """Processes of a kind, by the ocean's session uid: they are no data of the file and outlive undo.
+    """Processes of one kind, by the ocean's session uid: they are not part of the file and survive undo.
 
-    kinds : all there are
+    kinds : all instances
     """
 
     kinds: ClassVar[list[Running]] = []
@@ -140,17 +140,17 @@ class Running(dict[int, CommandProcess]):
         self.kinds.append(self)
 
     def of(self, item: bpy.types.Object) -> CommandProcess | None:
-        """The process that works for an ocean."""
+        """The process of an ocean."""
         return self.get(item.session_uid)
 
     def forget(self, process: CommandProcess) -> None:
-        """It has ended, and its result has been taken."""
+        """Remove a process that has ended and whose result has been taken."""
         for uid in [uid for uid, other in self.items() if other is process]:
             del self[uid]
 
 
 def stop_all() -> None:
-    """Another file is opened, or the extension is disabled."""
+    """Stop all processes: another file is opened, or the extension is disabled."""
     for running in Running.kinds:
         for process in running.values():
             process.stop()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's own Ocean modifier says, as a sea of ours: what carries over, and what cannot."""
+"""Converts Blender's Ocean modifier to a sea, and lists settings that cannot be converted."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ class Conversion(NamedTuple):
 
 
 def ocean_modifier(item: bpy.types.Object | None) -> bpy.types.OceanModifier | None:
-    """An object's first Ocean modifier, None when it has none."""
+    """An object's first Ocean modifier, or None."""
     if item is None:
         return None
     return next((modifier for modifier in item.modifiers if modifier.type == "OCEAN"), None)
 
 
 def convert(item: bpy.types.Object, modifier: bpy.types.OceanModifier, scene: bpy.types.Scene) -> Conversion:
-    """The sea that a modifier's settings mean. Raises ParameterError for settings that mean none."""
+    """The sea that corresponds to a modifier's settings. Raises ParameterError if there is none."""
     metres = float(metres_per_unit(scene))
     layer = {
         "spectrum": _SPECTRA[modifier.spectrum],
@@ -80,7 +80,7 @@ def convert(item: bpy.types.Object, modifier: bpy.types.OceanModifier, scene: bp
 
 
 class Made(NamedTuple):
-    """What a conversion made.
+    """The result of a conversion.
 
     original : still as it was
     lost : a sentence for each setting that has no counterpart
@@ -92,10 +92,10 @@ class Made(NamedTuple):
 
 
 class Converting:
-    """A conversion that can be given up as long as its waves are made, which another thread does.
+    """A conversion that can be cancelled while its waves are computed on another thread.
 
-    `finish` adds the ocean in the place of the object, once `done` is `steps`. Raises ParameterError for
-    settings that mean no sea.
+    `finish` replaces the object by the ocean, once `done` is `steps`. Raises ParameterError for settings that
+    cannot be converted.
     """
 
     steps = 1
@@ -110,7 +110,7 @@ class Converting:
         self._waves = self._worker.submit(surfaces_of(sea).ocean.prepare)
 
     def advance(self) -> None:
-        """Wait for the waves for a moment. Raises MemoryError for a sea too large."""
+        """Wait briefly for the waves. Raises MemoryError for a sea too large."""
         wait([self._waves], _MOMENT)
         if self._waves.done():
             self._waves.result()
@@ -132,18 +132,18 @@ class Converting:
         return Made(original, item, result.lost)
 
     def cancel(self) -> None:
-        """Nothing was changed."""
+        """Cancel; nothing was changed."""
         self.abandon()
 
     def abandon(self) -> None:
-        """End the thread; waves that are being made are not waited for."""
+        """End the thread without waiting for it."""
         self._worker.shutdown(wait=False, cancel_futures=True)
 
 
 def corner(modifier: bpy.types.OceanModifier) -> tuple[float, float]:
-    """Where the generated surface begins, in the object's own units.
+    """The corner of the generated surface, in the object's own units.
 
-    Blender lays the centre of the first patch at the origin and the others beyond it.
+    Blender puts the centre of the first patch at the origin and the others beyond it.
     """
     half = 0.5 * modifier.spatial_size * modifier.size
     return -half, -half
@@ -174,7 +174,7 @@ def _lost(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> Iterator
 
 
 def carry_time(original: bpy.types.Object, modifier: bpy.types.OceanModifier, item: bpy.types.Object) -> None:
-    """Let keys or a driver of a modifier's time, which is in seconds as ours, be those of an ocean's time."""
+    """Copy keys or a driver from a modifier's time, which is in seconds like ours, to an ocean's time."""
     data, path = original.animation_data, _time_path(modifier)
     if data is None:
         return
@@ -206,7 +206,7 @@ def _is_keyed(data: bpy.types.AnimData, path: str) -> bool:
 
 
 def _has_layered_time(item: bpy.types.Object, modifier: bpy.types.OceanModifier) -> bool:
-    """Whether strips of the nonlinear animation move the time, and nothing above them does."""
+    """Whether NLA strips animate the time, and nothing overrides them."""
     data, path = item.animation_data, _time_path(modifier)
     if data is None or _is_keyed(data, path) or any(driver.data_path == path for driver in data.drivers):
         return False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The latest surfaces of the open file's oceans and their statistics, kept from one frame to the next."""
+"""Caches the latest surfaces and the statistics of the open file's oceans."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ RealArray = NDArray[np.float32]
 
 # a frame with motion blur asks for n, n - ¼, n + ¼ and n again
 _MOST_SURFACES = 4
-# what is quickly made again, of waves that are there, takes no more than this part of the memory
+# limit, as a fraction of the memory budget, for surfaces, which are quick to recompute
 _PART = 8
-# s after the foam that was made last, within which the next one is quickly made
+# time in s after the last foam within which the next is quick to compute
 _FOAM_IS_NEAR = Fraction(1)
-# what foam without its history is kept under, before the name of its channel
+# prefix of channel names for foam without its history
 _INSTANT = "instant "
-# compression over the threshold at which foam has half its strength: the middle of the model's rise
+# compression, relative to the threshold, at which foam has half its strength
 _HALF_STRENGTH = 1.125
 
 
@@ -37,10 +37,10 @@ class Surfaces:
     def __init__(self, parameters: OceanParameters) -> None:
         self.ocean = Ocean(parameters)
         self._surfaces: OrderedDict[Fraction, dict[str, RealArray]] = OrderedDict()
-        # arrays of a surface that was dropped, for the next one
+        # arrays of an evicted surface, reused for the next one
         self._spare: dict[str, RealArray] = {}
-        # foam remembers, and looks back anew whenever time goes back. Motion blur goes back and forth, but
-        # its whole frames ascend and so do the moments between them: each has a history of its own
+        # foam depends on its history, which restarts when time goes back. Motion blur goes back and forth,
+        # but whole frames ascend and so do subframes: each has a history of its own
         self._foam = {whole: FoamMaker(self.ocean) for whole in (True, False)}
 
     @property
@@ -51,15 +51,15 @@ class Surfaces:
     def fields(
         self, time: Fraction, outputs: frozenset[str], is_whole: bool = True, patient: bool = True
     ) -> tuple[dict[str, RealArray], bool]:
-        """Fields at a time in s by output, and whether they are all that they will be.
+        """Fields at a time in s by output, and whether they are final.
 
-        Each is (N+1, N+1, …) float32, in m and m/s; the last row and column are the first ones again. What
-        was made before is not made again. The arrays are overwritten by a surface that is asked for later,
-        so they must be used up at once.
+        Each is (N+1, N+1, …) float32, in m and m/s; the last row and column are the first ones again.
+        Existing fields are reused. The arrays are overwritten by later surfaces, so they must be consumed at
+        once.
 
         outputs : known to the core; foam needs cusp
         is_whole : whether it is the time of a whole frame
-        patient : otherwise foam is shown without its history where that would take long
+        patient : if False, foam is returned without its history if that would take long
         """
         kept = self._kept(time)
         self._make(time, kept, outputs - kept.keys() - OF_MEMORY)
@@ -72,7 +72,7 @@ class Surfaces:
         return result, remembered <= kept.keys()
 
     def _foam_at(self, time: Fraction, kept: dict[str, RealArray], maker: FoamMaker, patient: bool) -> str:
-        """Make the foam, with its history or without; what it is kept under, before its channels' names."""
+        """Compute the foam, with or without its history; returns the prefix of its channel names."""
         if "foam" not in kept and (patient or maker.is_near(time)):
             known = kept.get("cusp") if self.ocean.foam_is_of_its_samples else None
             made = Whitecaps(*map(self._array, Whitecaps._fields))
@@ -93,7 +93,7 @@ class Surfaces:
             kept[before + name] = field
 
     def foam_of(self, is_whole: bool) -> FoamMaker:
-        """What makes the foam of whole frames, or of those between."""
+        """The foam maker for whole frames or for subframes."""
         return self._foam[is_whole]
 
     def _make(self, time: Fraction, kept: dict[str, RealArray], outputs: frozenset[str]) -> None:
@@ -112,7 +112,7 @@ class Surfaces:
         return np.empty(CHANNELS[name.removeprefix(_INSTANT)].shape(side), np.float32)
 
     def _kept(self, time: Fraction) -> dict[str, RealArray]:
-        """What there is of a time; the oldest ones go where there are enough."""
+        """Cached fields of a time; evicts the oldest ones if there are too many."""
         if time not in self._surfaces:
             largest = max(map(_bytes_of, self._surfaces.values()), default=0)
             # a surface that failed for want of memory has none
@@ -125,13 +125,13 @@ class Surfaces:
 
 
 class FoamMaker:
-    """The foam of a sea. It is quickly made where time goes on from the moment before."""
+    """Computes the foam of a sea; fast if time continues from the previous moment."""
 
     def __init__(self, ocean: Ocean) -> None:
         self._ocean = ocean
         self._history: FoamHistory | None = None
         self._last: Fraction | None = None
-        # the window's thread and the one that makes foam ahead of it
+        # used by the window's thread and by the one that computes foam ahead
         self._busy = threading.Lock()
 
     def at(
@@ -150,7 +150,7 @@ class FoamMaker:
         return made
 
     def is_near(self, time: Fraction) -> bool:
-        """Whether the foam of a time is quickly made, right now."""
+        """Whether the foam of a time is quick to compute now."""
         if self._last is None or self._busy.locked():
             return False
         forgets = self._ocean.parameters.foam.half_life == 0.0
@@ -217,7 +217,7 @@ def computed_statistics(parameters: OceanParameters) -> str:
 
 
 def keep_statistics(parameters: OceanParameters, statistics: str) -> None:
-    """Remember what `computed_statistics` gave."""
+    """Store the result of `computed_statistics`."""
     MEMO.put(_STATISTICS, _statistical(parameters), statistics)
 
 

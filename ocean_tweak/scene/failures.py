@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What keeps an ocean from being shown is heard: on the console, and by the end of a background render.
+"""Reports problems that keep an ocean from being shown: on the console, and by ending a background render.
 
-In a window the panel and the 3D view tell it too, and somebody looks. In the background nobody does: a render
-would go on and leave pictures of a sea that nobody made, so it ends before the picture is written, with exit
-code 3. Blender ends it as by Ctrl-C, so films are closed and placeholders removed.
+In a window, the panel and the 3D view also show them. A background render would continue and write pictures
+of a wrong sea, so it ends before the picture is written, with exit code 3. It is ended as by Ctrl-C, so movie
+files are closed and placeholders removed.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ _SETTINGS = "settings: "
 
 @dataclass
 class _Shot:
-    """What of the present shot is known.
+    """State of the present shot.
 
-    said : what the console has heard: each thing once a shot
+    said : messages printed so far, as each is printed once per shot
     is_rendered : whether it is being rendered now
     has_failed : whether this render met a frame that cannot be shown
     troubles : what keeps oceans from being shown, by their session uid
@@ -50,26 +50,26 @@ _shot = _Shot()
 
 
 def refused(item: bpy.types.Object, text: str) -> None:
-    """The settings of an ocean are no sea that can be shown; a render in the background ends."""
-    # while a number is dragged, the console hears of its parameter once
+    """Report invalid settings of an ocean; a background render ends."""
+    # while a value is dragged, report its parameter once
     _failed(item, _SETTINGS + text.partition(" = ")[0], text)
 
 
 def missed(item: bpy.types.Object, text: str) -> None:
-    """A file is not there that the present frame should show; a render in the background ends."""
+    """Report a missing file of the present frame; a background render ends."""
     _failed(item, text, text)
 
 
 def warned(item: bpy.types.Object, subject: str, text: str) -> None:
-    """Something is not as it seems to be.
+    """Print a warning.
 
-    subject : of which the console hears once a shot, whatever the text
+    subject : printed once per shot, whatever the text
     """
     _say(logging.WARNING, item, subject, text)
 
 
 def is_well(item: bpy.types.Object) -> None:
-    """The settings are a sea: if they are none again, it is said again."""
+    """The settings are valid: report it again if they become invalid."""
     if not _shot.is_rendered:
         _shot.said -= {
             (uid, subject)
@@ -85,24 +85,24 @@ def _failed(item: bpy.types.Object, subject: str, text: str) -> None:
 
 
 def fail_render(item: bpy.types.Object | None = None) -> None:
-    """End a background render, but for an ocean that is not in its pictures."""
+    """End a background render, unless the ocean is not in its pictures."""
     if not (_shot.is_rendered and bpy.app.background) or _shot.has_failed:
         return
     if item is not None and not _is_rendered(item):
         return
-    if not bpy.app.module:  # whose signals are those of the script that renders, and so is its exit code
+    if not bpy.app.module:  # there, signals and exit code belong to the script that renders
         _shot.has_failed = True
         signal.raise_signal(signal.SIGINT)
 
 
 def render_begins() -> None:
-    """A shot of its own: all is said again."""
+    """A new shot: print all messages again."""
     _shot.said.clear()
     _shot.is_rendered, _shot.has_failed = True, False
 
 
 def render_ends() -> None:
-    """No more pictures are written. A background render that failed ends Blender here."""
+    """The render has ended. A failed background render ends Blender here."""
     _shot.is_rendered = False
     if _shot.has_failed:
         logging.shutdown()
@@ -113,7 +113,7 @@ def render_ends() -> None:
 
 
 def follow(item: bpy.types.Object) -> None:
-    """The settings and files of an ocean were looked at: what is in the way now is told in the 3D view."""
+    """Update the problems of an ocean, after its settings and files were checked, for the 3D view."""
     settings = settings_of(item)
     text = settings.error or missing_text(settings)
     if not text:
@@ -123,19 +123,19 @@ def follow(item: bpy.types.Object) -> None:
 
 
 def keep_only(items: Iterable[bpy.types.Object]) -> None:
-    """Forget what is wrong with oceans that are gone."""
+    """Drop problems of oceans that no longer exist."""
     present = {item.session_uid for item in items}
     for uid in _shot.troubles.keys() - present:
         del _shot.troubles[uid]
 
 
 def troubles() -> list[str]:
-    """What is wrong now with oceans of the file that cannot be shown, a line each, for the 3D view."""
+    """The present problems of oceans that cannot be shown, one line each, for the 3D view."""
     return list(_shot.troubles.values())
 
 
 def missing_text(settings: OceanSettings) -> str:
-    """What to say of the file that the present frame of a sequence lacks; "" where it lacks none."""
+    """Message for a missing file of a sequence's present frame; "" if none is missing."""
     if not settings.missing_file:
         return ""
     path = Path(settings.missing_file)
@@ -160,5 +160,5 @@ def _say(level: int, item: bpy.types.Object, subject: str, text: str) -> None:
 
 
 def _is_rendered(item: bpy.types.Object) -> bool:
-    """Whether an ocean is in a picture of its scene, as far as its switches and collections say."""
+    """Whether an ocean is rendered in its scene, by its visibility settings and collections."""
     return not item.hide_render and is_in_view_layer(item, scene_of(item))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam around the camera, or before it: points that the surface around the camera reads.
+"""Foam around or in front of the camera: points that the surface around the camera reads.
 
-On rings it is in windows, where they have few places, and around a camera that looks down. A picture waits
-for a fan, which is as dense as its pixels.
+Rings are used in the viewport, where they have few places, and around a camera that looks down. Renders use a
+fan, which is as dense as the pixels.
 
-It is made where somebody waits for it; in a window the history of another moment or of another place follows,
-and until then there is foam where crests break now.
+Renders wait for it. In the viewport, the history of another moment or place is computed in the background;
+until then only breaking crests have foam.
 """
 
 from __future__ import annotations

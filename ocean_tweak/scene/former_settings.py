@@ -112,14 +112,14 @@ def _renamed_text(text: str, names: _Names) -> str:
     try:
         values = json.loads(text)
     except (ValueError, RecursionError):
-        return text  # whoever reads it says that it is damaged
+        return text  # reported as damaged where it is read
     if not isinstance(values, dict):
         return text
     return json.dumps({names.get(key, key): value for key, value in values.items()})
 
 
 def _take_over_overrides(item: bpy.types.Object) -> None:
-    """A property that is overridden is told by its path."""
+    """Convert the paths of overridden properties."""
     override = item.override_library
     if override is None:
         return

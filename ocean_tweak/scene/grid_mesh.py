@@ -16,7 +16,7 @@ _KEY = "ocean_tweak_grid"
 
 @dataclass(frozen=True)
 class Grid:
-    """What determines the mesh.
+    """The parameters of the mesh.
 
     size : side of one patch in Blender units
     quads : along each side of one patch
@@ -31,7 +31,7 @@ class Grid:
 
     @property
     def tag(self) -> str:
-        """What stands in the mesh's custom property."""
+        """The value of the mesh's custom property."""
         return f"{self.size!r} {self.quads} {self.samples} {self.repeats[0]} {self.repeats[1]}"
 
     @property
@@ -46,7 +46,7 @@ class Grid:
 
     @property
     def vertices(self) -> int:
-        """How many there are."""
+        """Number of vertices."""
         return (self.columns + 1) * (self.rows + 1)
 
     def positions(self) -> NDArray[np.float32]:
@@ -92,17 +92,17 @@ def _numbers(rows: int, columns: int) -> NDArray[np.int32]:
 
 
 def is_current(mesh: bpy.types.Mesh, grid: Grid) -> bool:
-    """Whether the mesh was made as this grid. What was edited on it since does not count."""
+    """Whether the mesh was created as this grid; later edits are ignored."""
     return bool(mesh.get(_KEY) == grid.tag)
 
 
 def shown_size(mesh: bpy.types.Mesh) -> float:
-    """Side of a patch of the grid that the mesh was made as, in Blender units; 0 where it is none."""
+    """Side of a patch of the mesh's grid in Blender units; 0 if it is not a grid."""
     return float(str(mesh.get(_KEY, "0")).split()[0])
 
 
 def release(mesh: bpy.types.Mesh) -> None:
-    """Let a mesh be no grid of ours: an ocean that shares it gets another one."""
+    """Unmark a mesh as a grid of ours: an ocean that shares it gets another one."""
     if _KEY in mesh:
         del mesh[_KEY]
 
@@ -124,7 +124,7 @@ def _fill_topology(mesh: bpy.types.Mesh, grid: Grid) -> None:
     mesh.edges.add(len(edges))
     mesh.loops.add(corners.size)
     mesh.polygons.add(len(corners))
-    # told rather than calculated: Blender needs longer to find the edges than for all the rest
+    # set explicitly, as Blender takes longer to compute the edges than for everything else
     for name, values in (
         (".edge_verts", edges),
         (".corner_vert", corners),

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What keeps live oceans moving: frame changes, renders, opened files, undo, changed units and rates.
+"""Handlers that keep oceans up to date: frame changes, renders, opened files, undo, changed units and frame
+rates.
 
-Each event says what it changes of which oceans; `refinement.show` does it, now or step by step.
+Each event determines what to update for which oceans; `refinement.show` does it, at once or step by step.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ _OWNER = object()
 
 
 def _loud(handler: Callable[..., None]) -> Callable[..., None]:
-    """A handler whose mistakes end a background render: Blender prints them and renders on."""
+    """A handler whose exceptions end a background render, as Blender only prints them and continues."""
 
     @persistent
     @wraps(handler)
@@ -96,7 +97,7 @@ def refresh_on_frame_change(scene: bpy.types.Scene, _depsgraph: object = None) -
 
 @_loud
 def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
-    """Show oceans whose settings are animated: only now is it known what the frame makes of them."""
+    """Show oceans with animated settings, which are only known after the evaluation."""
     for item in _evaluated_oceans(scene, depsgraph):
         if is_animated(item):
             shown = shown_settings(item, depsgraph)
@@ -120,8 +121,8 @@ def refresh_around_camera(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 def refresh_for_render(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Give a render, or an export of what would be rendered, the samples of the render.
 
-    After the evaluation, because only then Blender tells what it was for. What is changed here is evaluated
-    once more before anybody reads it.
+    After the evaluation, because only then is its purpose known. Changes made here are evaluated again before
+    they are used.
     """
     if depsgraph is not None and depsgraph.mode == "RENDER":
         for item in _evaluated_oceans(scene, depsgraph):
@@ -303,7 +304,7 @@ def let_go_after_save(_path: object = None, _unused: object = None) -> None:
 
 @persistent
 def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
-    """Undo restores settings, but neither the texels nor what was made anew since."""
+    """Undo restores settings, but neither texels nor other generated data."""
     show_that_it_runs()
     live_image.forget_all()
     patch_objects.forget_all()
@@ -403,7 +404,7 @@ def unregister() -> None:
 
 
 def _has_file() -> bool:
-    """Whether there is a file yet: not while Blender starts, and the one that it opens is told."""
+    """Whether a file is open: not while Blender starts; opening one calls a handler."""
     return hasattr(bpy.data, "node_groups")
 
 

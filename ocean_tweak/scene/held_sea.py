@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a file keeps of a live ocean: the sea that a Blender without the extension shows, and no more.
+"""The part of a live ocean that is saved: the sea that a Blender without the extension shows.
 
-All else is made anew when the file is opened. While a file is written the ocean's mesh is without it; what
-surrounds a camera is run-time data, which Blender does not write.
+Everything else is recomputed when the file is opened. It is removed from the ocean's mesh while a file is
+written; objects around a camera are run-time data, which Blender does not save.
 """
 
 from __future__ import annotations

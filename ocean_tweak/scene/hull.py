@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The size and shape of what floats: its bounds, from which it gets a draft, and its waterline."""
+"""Size and shape of a floating object: its bounds, from which the draft follows, and its waterline."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Hull:
 
     @property
     def draft(self) -> float:
-        """How deep it sits where nobody says so: a third of its beam, at most half of its height."""
+        """Default draft: a third of its beam, at most half of its height."""
         return min(self.beam / _BEAM_OF_DRAFT, 0.5 * float(np.ptp(self.vertices[:, 2])))
 
     def waterline(self, level: float) -> Waterline | None:

@@ -98,7 +98,7 @@ class LoadedSequence:
 def find_sequence(path: str | Path) -> ImageSequence:
     """The sequence that a file belongs to, or the only one of a folder.
 
-    It has the frames that there are; which ones nobody baked is told by `unbaked_frames`.
+    It has the existing frames; `unbaked_frames` returns the others.
 
     Raises SequenceError when there is none, more than one, or a map of it lacks some of the frames.
     """
@@ -276,7 +276,7 @@ def _timing(path: Path) -> tuple[Fraction | None, Fraction]:
         return timing.fps, timing.stretch
     except NewerExrError as error:
         raise SequenceError(str(error)) from None
-    except (ExrError, KeyError, TypeError, ParameterError):  # a file that somebody else made
+    except (ExrError, KeyError, TypeError, ParameterError):  # a file from another program
         return None, Fraction(1)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a deleted ocean leaves behind: what was made for it goes with it, what floated on it stands still.
+"""Cleans up after a deleted ocean: helper objects are removed, and floating objects stand still.
 
 An ocean that others read is in no collection when it was deleted, but stays in the file until it is saved.
 """
@@ -22,7 +22,7 @@ def clear() -> bool:
     Returns whether there are any.
     """
     deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
-    # nobody reads an ocean for its spray or masks: it is freed, and its child has no parent any more
+    # an ocean is not referenced because of its spray or masks: it is freed, and its child loses its parent
     parted = [each for each in bpy.data.objects if each.parent is None and each.library is None]
     own = (item for item in parted if spray.is_ours(item) or mask_place.is_unread(item))
     alone = [item for item in own if item.users_collection]

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masks follow what moves the object that they are told by.
+"""Makes masks follow their objects.
 
-By hand: at once where it is moved or edited, and a moment after each stroke where they are painted weights.
-These are read in a window only, where somebody paints, and by a timer: reading looks at the evaluated mesh,
-which has to be there.
+After manual changes: at once if the object is moved or edited, and a moment after each stroke of painted
+weights. These are only read in a window, and by a timer, as reading needs the evaluated mesh.
 
-By itself, with keys, drivers, constraints or parents: then a driver of the ocean's settings needs the object,
-so that Blender evaluates it before the ocean is shown, whatever hides it, and the ocean counts as animated.
+For animation by keys, drivers, constraints or parents: a driver of the ocean's settings then depends on the
+object, so that Blender evaluates it before the ocean, even if it is hidden, and the ocean counts as animated.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Values of a material that follow the scene: its seconds, its camera's pixels and a lamp.
 
-Expressions as simple as these are evaluated without Python, so in a file nobody has trusted yet.
+Expressions as simple as these are evaluated without Python, and therefore also in untrusted files.
 """
 
 from __future__ import annotations

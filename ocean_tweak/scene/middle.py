@@ -15,7 +15,7 @@ from .grid_mesh import shown_size
 from .left_behind import is_made_for_oceans
 from .settings import OceanSettings, settings_of
 
-#: what is told of an ocean that does not move
+#: message for an ocean that could not be moved
 STAYS_BEHIND = "Its location is keyed, driven or locked: the domain grows and shrinks from its corner"
 
 

@@ -128,7 +128,7 @@ def _purpose(modifier: bpy.types.Modifier, textures: Textures) -> str | None:
 def _given_purpose(modifier: bpy.types.NodesModifier) -> str | None:
     try:
         return get_input(modifier, "Purpose")
-    except KeyError:  # a group that somebody changed
+    except KeyError:  # a group that was modified
         return None
 
 
@@ -166,7 +166,7 @@ def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> 
 
 
 def tell_held_frame(item: bpy.types.Object, textures: Textures, frame: int) -> None:
-    """Say of which frame the sea is that stands still where nobody is there to move it."""
+    """Store the frame of the saved sea, which is shown without the extension."""
     for _, modifier in own_modifiers(item, textures):
         if modifier.type == "NODES" and is_of_kind(modifier.node_group, OCEAN):
             set_inputs(modifier, {"Held Frame": frame})
@@ -224,8 +224,8 @@ def _set_group(modifier: bpy.types.NodesModifier, values: dict[str, Any]) -> Non
         if kind is OCEAN:
             set_inputs(modifier, {"Purpose": purpose})
     if modifier.node_group.library is not None and values.get("Live"):
-        # a linked group cannot be told that the extension runs; this is not saved, so that the sea moves as
-        # long as somebody is there to say so
+        # a linked group cannot be marked as running; this is not saved, so the sea moves as long as the
+        # extension sets it
         values = {**values, "Live": False}
     set_inputs(modifier, values)
 

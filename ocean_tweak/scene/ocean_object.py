@@ -89,7 +89,7 @@ def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: Image
         settings.source = "SEQUENCE"
     refresh(item, scene)
     for image in before - _sequence_images(settings):
-        if image.users == image.use_fake_user and image.library is None:  # of a bake that nobody shows now
+        if image.users == image.use_fake_user and image.library is None:  # of a bake that is no longer shown
             bpy.data.images.remove(image)
 
 

@@ -14,7 +14,7 @@ from .settings import all_oceans, settings_of
 
 
 def remove_with_meshes(items: Iterable[bpy.types.Object]) -> None:
-    """Remove objects of this file, and the meshes that nobody else has."""
+    """Remove objects of this file, and meshes without other users."""
     for item in [item for item in items if item.library is None]:
         mesh = item.data
         bpy.data.objects.remove(item)

@@ -119,7 +119,7 @@ def refresh(
 
 
 def _keep_out_of_files(ocean: bpy.types.Object) -> None:
-    """What is made anew with every opened file is not saved: the ocean's own mesh stands for it.
+    """Exclude generated objects from saved files: the ocean's own mesh replaces them.
 
     Nothing stands for what does not repeat, and points that move by files need the weights.
     """
@@ -191,7 +191,7 @@ def remove(ocean: bpy.types.Object) -> None:
 
 
 def remove_left() -> None:
-    """Take away those whose ocean was deleted: nobody can choose them."""
+    """Remove those of deleted oceans, which users cannot select."""
     own = (item for item in bpy.data.objects if is_ours(item))
     remove_with_meshes(item for item in own if not is_ocean(item.parent))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands still in a Blender without the extension, told before a farm finds out.
+"""Finds objects that will not move in a Blender without the extension, before a farm does.
 
 To find it, all objects of the file are looked at: when something happens, not whenever a panel is drawn.
 """
@@ -203,7 +203,9 @@ def _reads(item: bpy.types.Object, oceans: Sequence[bpy.types.Object]) -> bool:
 
 def _concerns(update: bpy.types.DepsgraphUpdate) -> bool:
     item = update.id.original
-    if not isinstance(item, bpy.types.Object) or was_ocean(item):  # an ocean's own changes are told
+    if not isinstance(item, bpy.types.Object) or was_ocean(
+        item
+    ):  # changes of an ocean itself are handled elsewhere
         return False
     if update.is_updated_transform and not update.is_updated_geometry:
         return False

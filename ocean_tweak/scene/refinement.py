@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is shown at once and what follows: a few samples while a parameter is dragged, then all of them, then
-foam with its history and the statistics.
+"""Progressive refinement: few samples while a parameter is dragged, then all of them, then foam with its
+history and the statistics.
 
-Only in a window. Without one there are no timers, and everything is done at once.
+Only in a window. In the background there are no timers, and everything is done at once.
 """
 
 from __future__ import annotations
@@ -156,8 +156,8 @@ def show(
     wanted: Wanted = Wanted.ALL,
     shown: OceanSettings | None = None,
 ) -> None:
-    """Bring what is wanted of an ocean into step with its settings and the scene's frame: what takes long
-    follows where somebody looks on. What is wrong with the ocean is kept in `error`.
+    """Update what is wanted of an ocean for its settings and the scene's frame; in a window, slow parts
+    follow later. Problems are stored in `error`.
 
     Everything that happens to an ocean comes here: a changed setting, a frame, a render, an opened file.
 
@@ -189,7 +189,7 @@ def show(
 
 
 def show_new(item: bpy.types.Object, scene: bpy.types.Scene, wanted: Wanted = Wanted.ALL) -> None:
-    """Show something of an ocean for the first time; what takes long follows where somebody looks on.
+    """Show an ocean for the first time; in a window, slow parts follow later.
 
     Raises as `refresh`.
     """
@@ -203,7 +203,7 @@ def show_new(item: bpy.types.Object, scene: bpy.types.Scene, wanted: Wanted = Wa
 
 
 def follow_up(item: bpy.types.Object, missing: Wanted) -> None:
-    """Let the foam's history follow where somebody looks on and a refresh left it out."""
+    """In a window, compute the foam's history later if a refresh left it out."""
     if not has_window():
         return
     _outstanding.note(item.session_uid, Wanted.HISTORY, Wanted.HISTORY in missing)
@@ -235,7 +235,7 @@ def _has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
 
 
 def has_window() -> bool:
-    """Whether somebody looks."""
+    """Whether there is a window."""
     return not bpy.app.background
 
 
@@ -302,7 +302,7 @@ def _start(item: bpy.types.Object, part: Wanted) -> None:
 
 
 def _take(item: bpy.types.Object, part: Wanted, future: Future[Any]) -> None:
-    """Show what was made for an ocean, unless another sea was set meanwhile: then it is made anew."""
+    """Show the result for an ocean, unless its sea has changed meanwhile: then compute it again."""
     uid = item.session_uid
     if part is Wanted.SAMPLES:
         if _outstanding.due[uid] > time.monotonic():

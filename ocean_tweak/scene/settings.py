@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What this layer needs to know about an ocean object.
+"""The interface of this layer to an ocean object's settings.
 
 The settings themselves are the property group `object.ocean_tweak`, which the layer above registers:
 it owns labels, ranges and units; here only this interface is known.
@@ -60,7 +60,7 @@ class MapImages(Protocol):
 
 
 class UsdSettings(Protocol):
-    """How an ocean becomes USD layers; the rest is told by export.usd.options.
+    """Settings of the USD export; for the others see export.usd.options.
 
     file : the asset's own layer, "" for the usual place
     use_bake : displace by the images that the ocean reads
@@ -213,7 +213,7 @@ def link_beside(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
 def is_ocean(item: bpy.types.Object | None) -> bool:
     """Whether an object was made as an ocean and still has the modifier that moves it.
 
-    Where somebody applied or removed that one, or converted the object, it is a mesh like any other.
+    If it was applied or removed, or the object was converted, it is an ordinary mesh.
     """
     if not was_ocean(item):
         return False

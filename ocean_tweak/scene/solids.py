@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Closed meshes from formulas, and their paint: what floats in the ready scenes is made of them.
+"""Closed meshes from formulas, and their paint, for the floating objects of the ready scenes.
 
 Every solid is a loft: rings of points, one after another, joined by quads and closed at both ends.
 """

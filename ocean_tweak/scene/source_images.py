@@ -40,7 +40,7 @@ WIND_VALUES = {
 }  # fmt: skip
 
 _SINGLE = ("FILE", "GENERATED")
-# s between two looks at an image that somebody paints: its texels are compared
+# interval in s at which the texels of an image being painted are compared
 _LOOK = 0.25
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's own start-up file has in its scene, which nobody chose: a cube, a light and a camera."""
+"""The default objects of Blender's start-up file: a cube, a light and a camera."""
 
 from __future__ import annotations
 

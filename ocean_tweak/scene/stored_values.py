@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings of strangers' files: Blender checks what is set, and not what an opened file holds."""
+"""Validates settings of opened files, which Blender does not check against their ranges."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .settings import all_oceans, settings_of
 
 _log = logging.getLogger(__name__)
 
-#: JSON that is made anew from the settings and from the bake when a file is opened, whatever the file holds
+#: JSON that is recomputed from the settings and from the bake when a file is opened
 _DERIVED = ("statistics", "baked_sea", "bake_differs")
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything around an ocean that makes a picture: horizon, sky, sun, camera, render settings.
 
-What a scene has already stays, unless the caller says otherwise. What Blender's start-up file put into it and
-nobody has changed goes.
+What a scene already has is kept, unless the caller says otherwise. Unchanged objects of Blender's start-up
+file are removed.
 """
 
 from __future__ import annotations

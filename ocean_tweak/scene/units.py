@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene's units and frame rate as exact numbers.
 
-Blender keeps these settings as float32. A number that somebody typed is the shortest decimal that gives
-this float32, so 1.001 is 1001/1000 and not 1.00100004673.
+Blender keeps these settings as float32. A typed number is taken to be the shortest decimal that gives this
+float32, so 1.001 is 1001/1000 and not 1.00100004673.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from ..export.files import read_bytes, write_text
 from .preferences import user_folder
 from .sea_picture import SeaView, write_png
 
-#: a user's preset is told from one that came along by the start of its key
+#: prefix that distinguishes the keys of a user's presets from built-in ones
 _OWN = "user:"
 
 

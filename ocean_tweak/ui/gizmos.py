@@ -32,7 +32,7 @@ class Handle(NamedTuple):
 
     gizmo : Blender's kind of it, which has a number or a place, `offset`
     colour : of its lines
-    style : what else it is told
+    style : its other properties
     read, write : the setting, in Blender units or rad; `read` gives None where the ocean has none now
     place : matrix in the world
     """
@@ -196,7 +196,7 @@ class OCEAN_GGT_handles(bpy.types.GizmoGroup):
         return item.is_editable and item.visible_get() and settings_of(item).source == "LIVE"
 
     def setup(self, _context: bpy.types.Context) -> None:
-        """Make all of them; which are shown is told before each drawing."""
+        """Create all of them; which are shown is decided before each drawing."""
         self.made = {name: self._make(handle) for name, handle in HANDLES.items()}
         self.is_pulled = False
 

@@ -165,7 +165,7 @@ class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
 
 
 class OCEAN_OT_layer_solo(_OfLayers, bpy.types.Operator):
-    """Hear the active layer alone."""
+    """Show the active layer alone."""
 
     bl_idname = "ocean.layer_solo"
     bl_description = "Mute all layers but the active one; press again to restore them"

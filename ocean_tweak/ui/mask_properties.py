@@ -178,7 +178,7 @@ def read_weights(group: bpy.types.PropertyGroup, scene: bpy.types.Scene, samples
 
 def take_weights(group: bpy.types.PropertyGroup, seen: Raster) -> None:
     """Let weights that were read be the mask's image. Raises ParameterError for a damaged one of before."""
-    # an image of an earlier reading that nobody else shows is replaced
+    # an image of an earlier reading without other users is replaced
     before = group.image
     candidates = [] if before is None else [ImageSource(before)]
     source_images.choose(group, source_images.source_with(seen, candidates))

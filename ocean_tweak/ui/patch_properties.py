@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The patches of an ocean as properties, which stay a sea while one number is dragged.
 
-Where two bands meet, both ends are one number; and the first patch's size is the ocean's. Each is kept twice,
-and whoever changes one changes the other.
+Where two bands meet, both ends are one number; and the first patch's size is the ocean's. Each is stored
+twice, and a change of one updates the other.
 """
 
 from __future__ import annotations

@@ -113,7 +113,7 @@ def _fitted(parameters: OceanParameters, size: float) -> OceanParameters:
 
 
 def _round(size: float) -> float:
-    """Two digits: a number that somebody might have typed."""
+    """Two significant digits, like a typed number."""
     return float(f"{size:.2g}")
 
 

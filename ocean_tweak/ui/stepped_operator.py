@@ -83,7 +83,7 @@ class SteppedOperator:
         result = {"CANCELLED"}
         try:
             result = self._go_on(context, until=time.monotonic() + _TURN)
-        finally:  # after an error that nobody expects too
+        finally:  # also after an unexpected error
             if result != {"RUNNING_MODAL"}:
                 self._clean_up(context)
         if result == {"RUNNING_MODAL"}:

@@ -118,7 +118,7 @@ def _check_noise(mask: Mask, domain_size: float) -> None:
 
 
 def check_lines(lines: Raster, domain_size: float) -> None:
-    """Raise ParameterError for lines that would repeat too often within the domain."""
+    """Raise ParameterError for lines that would repeat too often within a domain."""
     x0, y0, x1, y1 = np.moveaxis(lines.values, -1, 0)
     longest = float(max(np.abs(x1 - x0).max(), np.abs(y1 - y0).max()))
     if longest > MOST_DOMAINS * domain_size:

@@ -59,7 +59,7 @@ _FOAM = 44
 #: bytes a sample while the waves are made and measured
 _STATISTICS = 40
 
-# of the work alone, whoever else uses the machine; too coarse on Windows
+# CPU time, independent of other programs; too coarse on Windows
 _clock = time.perf_counter if os.name == "nt" else time.process_time
 
 
@@ -312,7 +312,7 @@ def _samples(job: Job) -> int:
 
 
 def _new_seed() -> int:
-    """Of waves that nobody has made yet."""
+    """For waves that do not exist yet."""
     return secrets.randbelow(2**31)
 
 

@@ -113,7 +113,7 @@ def chunks(frames: Sequence[Frame], size: int) -> list[str]:
 
 
 def sea_arguments(bake: Job, seas: str, cache: str) -> list[str]:
-    """What `bake` and `verify` are told alike: the sea, its files and their place.
+    """Common arguments of `bake` and `verify`: the sea, its files and their folder.
 
     What the farm fills in stands behind an equals sign: a folder or a range may begin with a minus.
 
@@ -149,7 +149,7 @@ def verify_arguments(job: ShotJob, bake: Job, seas: str, cache: str, only: str, 
 
 
 def render_arguments(job: ShotJob, cache: str, frames: str, pictures: str, openjd: bool) -> list[str]:
-    """What the render's script is told, behind Blender's own arguments."""
+    """Arguments of the render script, after Blender's own."""
     bakes = [word for bake in job.bakes for word in _option("--bake", f"{bake.home}/{bake.hash8}")]
     return [f"--cache={cache}", *bakes, f"--pictures={pictures}", *_openjd(openjd), f"--frames={frames}"]
 

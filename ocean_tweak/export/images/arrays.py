@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Arrays in .npy files. Their axes are told by their shape, or asked for."""
+"""Arrays in .npy files. The order of their axes follows from their shape, or is given."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from .checks import UnusableError, check_size, listed
 
 _MAGIC = b"\x76\x2f\x31\x01"
 
-#: what channels may be called where nobody says which: as many of a group as there are from its first
+#: default channel names: as many of a group as exist, from its first
 _GROUPS = (("R", "G", "B"), ("X", "Y", "Z"), ("U", "V"), ("u", "v"), ("Y",))
 
 #: what damaged images give

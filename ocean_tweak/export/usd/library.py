@@ -14,7 +14,7 @@ _MODULES = ("Gf", "Kind", "Sdf", "Tf", "Usd", "UsdGeom", "UsdShade", "Vt")
 
 
 _INSTALL = "install it with 'pip install usd-core', or use a Blender from blender.org, which brings it along"
-#: for whoever wants to press a button in a Blender without OpenUSD
+#: shown in a Blender without OpenUSD
 MISSING_IN_BLENDER = f"The Python of this Blender, which would do the work, has no OpenUSD: {_INSTALL}"
 
 

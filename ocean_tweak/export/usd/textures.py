@@ -36,7 +36,7 @@ def own_bake(top: Path, package: Package) -> Path:
 
 
 def make(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> Iterator[BakedFrame]:
-    """Bake what is not whole of the frames. Raises Held where somebody else bakes them."""
+    """Bake incomplete frames. Raises Held if another process is baking them."""
     with claimed(folder, tuple(frames)):
         todo = tuple(finding.frame for finding in unfinished(folder, job, frames))
         yield from bake(job.shot, todo, CacheSink(folder, job), workers, on=job.on)

@@ -28,7 +28,7 @@ from .reading import read_package
 
 #: of a 16-bit value, and of one in 32 bits against this machine's own NumPy, relative to the largest
 _HALF, _SINGLE = 2.0**-11, 1e-5
-#: frames that are compared when nobody says which
+#: number of frames that are compared by default
 _CHECKED = 3
 
 

@@ -69,7 +69,7 @@ def active_waves(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
 
 @lru_cache(maxsize=16)
 def parsed(text: str) -> Any:
-    """What a JSON text of the settings says, which nobody changes: it is parsed once, and drawn often."""
+    """Parse a JSON text of the settings; cached, as it is drawn often. Must not be modified."""
     return json.loads(text)
 
 

@@ -102,7 +102,7 @@ def _folder_name(settings: OceanSettings) -> str:
 
 
 def _disk(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what the next bake takes and what is on disk, as it was found when somebody looked last."""
+    """Draw the estimate of the next bake and the versions on disk, as last listed."""
     listing = bake_versions.known(shown_ocean(context))
     look = bake_operators.OCEAN_OT_look_at_bakes.bl_idname
     if listing is None:
