@@ -46,6 +46,7 @@ from .ui import (
     sky_operators,
     sky_properties,
     usd_operators,
+    wake_operators,
     wind_operators,
 )
 
@@ -67,6 +68,7 @@ CLASSES = (
     *panels.CLASSES,
     *camera_operators.CLASSES,
     *float_operators.CLASSES,
+    *wake_operators.CLASSES,
     *node_operators.CLASSES,
     *object_menu.CLASSES,
     *pinning.CLASSES,

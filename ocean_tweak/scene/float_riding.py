@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters, ParameterError
 from ..core.numerics.memo import MEMO
+from ..core.sea.placed_waves import repeating
 from ..core.sea.regions import Places
 from ..core.sea.riding import Moments, Oscillator, moments, natural_periods, ride
 from ..core.sea.waterline import Plane, fitted_plane, stencil
@@ -229,6 +230,7 @@ def solve_by_frames(
 
 def _sea_of(parameters: OceanParameters, place: Footprint) -> OceanParameters:
     """The same sea on as many samples as a hull feels."""
+    parameters = repeating(parameters)  # or it would lie in the dent that it makes itself
     beam = 2.0 * min(place.half_beam, place.half_length)
     wanted = 2 ** math.ceil(math.log2(max(_IN_BEAM * parameters.domain_size / beam, 16.0)))
     return parameters.at_resolution(min(wanted, parameters.resolution))

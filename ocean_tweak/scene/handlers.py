@@ -42,6 +42,7 @@ from . import (
     spray,
     stored_paths,
     stored_values,
+    wake_makers,
 )
 from .animated import is_animated, shown_settings
 from .plan import camera_has_moved, camera_surface_of, forget_cameras
@@ -155,6 +156,16 @@ def refresh_for_masks(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
             moved |= {item.original} if is_moved else set()
             edited |= {item.original} if is_edited else set()
     mask_following.follow(scene, moved, edited)
+
+
+@persistent
+def refresh_for_wakes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Let wakes follow their objects where these are moved by hand or keyed otherwise."""
+    if depsgraph is not None and any(map(depsgraph.id_type_updated, ("OBJECT", "ACTION"))):
+        kinds = (bpy.types.Object, bpy.types.Action)
+        wake_makers.follow(
+            scene, {update.id.name for update in depsgraph.updates if isinstance(update.id, kinds)}
+        )
 
 
 @persistent
@@ -346,6 +357,7 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),
+    ("depsgraph_update_post", refresh_for_wakes),
     ("render_init", begin_render),
     ("render_complete", end_render),
     ("render_cancel", end_render),

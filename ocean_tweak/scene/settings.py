@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import bpy
 
-from ..core import OceanParameters
+from ..core import OceanParameters, PathSample
 from ..core.synthesis.channels import CHANNELS, MAPS
 from ..nodes.names import MAP_INPUTS
 from .modifiers import Textures, is_moved
@@ -161,6 +161,15 @@ class OceanSettings(Protocol):
 
     def mask_objects(self) -> set[bpy.types.Object]:
         """Those from which the distance of a mask is measured."""
+
+    def wake_makers(self) -> list[tuple[int, bpy.types.Object]]:
+        """The number of each layer that is the wake of an object, and that."""
+
+    def set_wake_maker(self, number: int, item: bpy.types.Object) -> None:
+        """Let a layer be the wake of an object."""
+
+    def set_wake_path(self, number: int, path: tuple[PathSample, ...]) -> bool:
+        """Give a wake a path; whether it had another one."""
 
     def place_masks(self) -> None:
         """Measure the distances of masks from where their objects are now."""

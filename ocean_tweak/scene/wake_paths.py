@@ -23,6 +23,11 @@ def to_text(layer: WakeLayer) -> str:
     return json.dumps({"path": rows, "footprint": footprint}) if rows or footprint else ""
 
 
+def with_path(text: str, path: tuple[PathSample, ...]) -> str:
+    """The text of a layer with another path."""
+    return to_text(WakeLayer(path=path, footprint=from_text(text)[1]))
+
+
 @lru_cache(_KEPT)
 def from_text(text: str) -> tuple[tuple[PathSample, ...], Raster | None]:
     """A path and a footprint; none of either in an empty text. Raises ParameterError for a damaged one."""

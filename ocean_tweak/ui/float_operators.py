@@ -24,11 +24,11 @@ def floatable(context: bpy.types.Context) -> list[bpy.types.Object]:
 _OF_OBJECT = ("waterline", "draft", "tilt", "keep_height")
 
 
-class _OnOcean:
+class OnOcean:
     """Operators on the selected objects and an ocean."""
 
     ocean: StringProperty(
-        name="Ocean", description="The ocean to float on; empty for the one that the sidebar shows"
+        name="Ocean", description="The ocean that is meant; empty for the one that the sidebar shows"
     )
 
     @classmethod
@@ -51,7 +51,7 @@ class _OnOcean:
         return floating.chosen_ocean(context.scene, shown_ocean(context), self.ocean)
 
 
-class _Rides(_OnOcean):
+class _Rides(OnOcean):
     """Operators that let the selected objects float."""
 
     ride: EnumProperty(
@@ -239,7 +239,7 @@ class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class OBJECT_OT_ocean_contact(_OnOcean, bpy.types.Operator):
+class OBJECT_OT_ocean_contact(OnOcean, bpy.types.Operator):
     """Let the selected objects touch the water that they stand or float in."""
 
     bl_idname = "object.ocean_tweak_contact"

@@ -93,7 +93,13 @@ _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
         ),
         "image_channels": channels_property(),
     },
-    "WAKE": {"recording": StringProperty(**_HIDDEN)},
+    "WAKE": {
+        "recording": StringProperty(**_HIDDEN),
+        "object": PointerProperty(
+            name="Object", type=bpy.types.Object, options=set(), **_OVERRIDE,
+            description="What makes the waves: their path follows its keys. Without one it stays as it is",
+        ),
+    },
 }  # fmt: skip
 
 
@@ -198,6 +204,7 @@ def _image_source(layer: bpy.types.PropertyGroup) -> ImageSource | None:
 def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, metres: Fraction) -> None:
     """Take over the parameters' layers; images and recordings that hold the same numbers stay."""
     known_images, known_winds = images(layers), list(_known_winds(layers))
+    makers = {item.wake.recording: item.wake.object for _, item in _wakes(layers) if item.wake.object}
     set_count(layers, len(parameters.layers))
     for item, layer in zip(layers, parameters.layers, strict=True):
         item.kind = layer.kind
@@ -213,6 +220,7 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
                 _choose_image(item.image_waves, layer.image, known_images)
         elif isinstance(layer, WakeLayer):
             item.wake.recording = wake_paths.to_text(layer)
+            item.wake.object = makers.get(item.wake.recording)
 
 
 def set_recording(group: bpy.types.PropertyGroup, keys: tuple[WindKey, ...]) -> None:
@@ -233,6 +241,17 @@ def set_count(layers: bpy.types.bpy_prop_collection, count: int) -> None:
 def _image(group: bpy.types.PropertyGroup) -> dict[str, Any]:
     source = source_images.source_of(group)
     return {} if source is None else {"image": source_images.raster_of(source, 1)}
+
+
+def wake_makers(layers: bpy.types.bpy_prop_collection) -> list[tuple[int, bpy.types.Object]]:
+    """The number of each wake that has an object, and that."""
+    return [(number, layer.wake.object) for number, layer in _wakes(layers) if layer.wake.object is not None]
+
+
+def _wakes(
+    layers: bpy.types.bpy_prop_collection,
+) -> Iterator[tuple[int, bpy.types.PropertyGroup]]:
+    return ((number, layer) for number, layer in enumerate(layers) if layer.kind == WakeLayer.kind)
 
 
 def _path(group: bpy.types.PropertyGroup) -> dict[str, Any]:

@@ -16,12 +16,12 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, Mask, OceanParameters, Spray, Timing, Water, WaveLayer
+from ..core import Foam, Mask, OceanParameters, PathSample, Spray, Timing, Water, WaveLayer
 from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.validation import Off
 from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
-from ..scene import cache_place, middle, ocean_object
+from ..scene import cache_place, middle, ocean_object, wake_paths
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.image_sequence import ImageSequence
 from ..scene.settings import (
@@ -285,6 +285,20 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         """Those from which the distance of a mask is measured."""
         found = {mask.object for mask in self._masks() if mask.source == "DISTANCE"}
         return found - {None}
+
+    def wake_makers(self) -> list[tuple[int, bpy.types.Object]]:
+        """The number of each layer that is the wake of an object, and that."""
+        return layer_properties.wake_makers(self.layers)
+
+    def set_wake_maker(self, number: int, item: bpy.types.Object) -> None:
+        """Let a layer be the wake of an object."""
+        self.layers[number].wake.object = item
+
+    def set_wake_path(self, number: int, path: tuple[PathSample, ...]) -> bool:
+        """Give a wake a path; whether it had another one."""
+        group = self.layers[number].wake
+        before, group.recording = group.recording, wake_paths.with_path(group.recording, path)
+        return group.recording != before
 
     def place_masks(self) -> None:
         """Measure the distances of masks from where their objects are now."""

@@ -164,7 +164,7 @@ def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, exten
         return texts
 
     touch = "object.ocean_tweak_contact"
-    buttons = ["object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove"]
+    buttons = ["object.ocean_tweak_wake", "object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove"]
     select()
     assert drawn() == ["object.ocean_tweak_float", *buttons]
     select(buoy)

@@ -23,7 +23,7 @@ def test_the_layout_draws_what_blenders_can():
 
 def test_without_an_ocean_there_is_a_way_to_one(draw):
     scenes = ["With sky and camera:", *["ocean.add_scene"] * 4]  # calm, fresh breeze, storm, horizon
-    floating = [f"object.ocean_tweak_float{end}" for end in ("", "_bake", "_remove")]
+    floating = [f"object.ocean_tweak_{name}" for name in ("float", "wake", "float_bake", "float_remove")]
     offered = ["No ocean in this scene", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
     assert draw(None) == offered
 

@@ -7,7 +7,7 @@ from ...nodes.contact import LOOK_INPUTS
 from ...nodes.floating import DAMPED_INPUTS, RIDE_INPUTS
 from ...nodes.modifier_inputs import get_input, input_property, input_sockets
 from ...scene import contact, float_carrier, float_riding, floating
-from .. import float_operators
+from .. import float_operators, wake_operators
 from .drawing import SidebarPanel, split
 
 
@@ -45,6 +45,7 @@ class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
                 column.label(text=text, icon="INFO")
         if item is not None:
             _contact(layout, item)
+        layout.operator(wake_operators.OBJECT_OT_ocean_wake.bl_idname, icon="MOD_DYNAMICPAINT")
         column = layout.column(align=True)
         bake, remove = (
             float_operators.OBJECT_OT_ocean_float_bake, float_operators.OBJECT_OT_ocean_float_remove,

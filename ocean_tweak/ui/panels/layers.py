@@ -199,8 +199,9 @@ def _draw_hero_wave(
 def _draw_wake(
     layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, context: bpy.types.Context
 ) -> None:
+    draw_fields(layout, group, "object", "headings")
     draw_fields(layout.column(align=True), group, "length", "beam", "draught")
-    draw_fields(layout, group, "amplitude_scale", "decay")
+    draw_fields(layout, group, "amplitude_scale", "decay", "foam", "foam_half_life")
     area = layout.column(align=True)
     draw_fields(area, group, "area_size", "area_resolution", "area_follows")
     if not group.area_follows:

@@ -42,7 +42,13 @@ _HULLS, _WAVES = 3.0, 2.0
 #: samples of an area across a beam
 _FEWEST = 1.0
 #: lengths of the hull, and transverse waves, in an area to begin with
-_BEGIN_HULLS, _BEGIN_WAVES = 12.0, 24.0
+_BEGIN_HULLS, _BEGIN_WAVES = 12.0, 16.0
+#: 1/s, if no area asks for more
+_USUAL_DECAY = 0.015
+#: samples across a beam to begin with, and along the area's sides at least and at most
+_BEGIN_ACROSS, _BEGIN_SAMPLES = 2.0, (256, 1024)
+#: decays in which an object crosses an area to begin with: e^-3.6 of its waves come around
+_BEGIN_DECAYS = 3.6
 _WAKES = "wakes' paths"
 
 
@@ -118,7 +124,8 @@ class WakeLayer(Contribution):
         1.0, 0.0, 100.0, "", "Multiplies the wave height", "an artist's scale", useful=(0.0, 2.0)
     )
     decay: float = number(
-        0.015, 1e-4, 10.0, "1/s", "Rate at which waves fade, e^(-rate × age): how long a wake keeps its past",
+        _USUAL_DECAY, 1e-4, 10.0, "1/s", "Rate at which waves fade, e^(-rate × age): how long a "
+        "wake keeps its past",
         "from hours to a moment",
     )  # fmt: skip
     foam: float = number(
@@ -187,7 +194,10 @@ class WakeLayer(Contribution):
                 "",
                 "has no samples: give one at least, where the object is, or mute the layer",
             )
+        self._check_speed(sea, path)
         self._check_area(path)
+
+    def _check_speed(self, sea: OceanParameters, path: str) -> None:
         speed, index = self.track.fastest
         longest = min(transverse_wavelength(speed, sea), 2.0 * math.pi * speed**2 / sea.water.gravity)
         most = self.area_size / _WAVES
@@ -259,8 +269,16 @@ class WakeLayer(Contribution):
         path = (PathSample(time, middle, middle), PathSample(time + 1.0, middle + speed, middle))
         return cls(
             path=path, length=length, beam=0.2 * length, draught=0.05 * length,
-            area_size=area_for(length, speed, sea.water.gravity),
-        )  # fmt: skip
+        ).in_an_area(speed, sea.water.gravity)  # fmt: skip
+
+    def in_an_area(self, speed: float, gravity: float) -> Self:
+        """In a square that holds the waves at a speed in m/s, with the decay that this takes."""
+        wanted = max(_BEGIN_HULLS * self.length, _BEGIN_WAVES * 2.0 * math.pi * speed**2 / gravity)
+        size = float(2.0 ** math.ceil(math.log2(wanted)))
+        samples = 2 ** math.ceil(math.log2(_BEGIN_ACROSS * size / min(self.beam, self.length)))
+        decay = max(_USUAL_DECAY, round(_BEGIN_DECAYS * speed / size, 3))
+        few, many = _BEGIN_SAMPLES
+        return self.changed(area_size=size, area_resolution=min(max(samples, few), many), decay=decay)
 
     @classmethod
     def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
@@ -277,9 +295,3 @@ class WakeLayer(Contribution):
             if not layer.muted
         ]
         return wake_outlooks(sea, found)
-
-
-def area_for(length: float, speed: float, gravity: float) -> float:
-    """Side in m of a square that holds the waves of a hull of some m at a speed in m/s: a power of 2."""
-    wanted = max(_BEGIN_HULLS * length, _BEGIN_WAVES * 2.0 * math.pi * speed**2 / gravity)
-    return float(2.0 ** math.ceil(math.log2(wanted)))

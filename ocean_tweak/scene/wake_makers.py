@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that make waves: their paths without waves, by their keys, and what their hulls are.
+
+What floats must not be read by what its ocean evaluates. So a wake follows the place on land of its object, a
+floating one's carrier before the water moves it, and this is worked out from keys, frame by frame, without
+going there. Where constraints or drivers move an object, its path is recorded once instead, see
+`wake_recording`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Set
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+from numpy.typing import NDArray
+
+from ..core import PathSample
+from ..core.waves.wake.parameters import MOST_SAMPLES
+from . import float_path
+from .animated import curves_of, has_own_time, shown_settings
+from .float_carrier import carrier_of
+from .floating import own_hull
+from .hull import Hull
+from .refinement import show
+from .refresh import Wanted
+from .settings import OceanObjectError, oceans_in, settings_of
+from .units import frame_rate, metres_per_unit, time_stretch
+
+Array = NDArray[np.float64]
+
+#: of a path, by which a sample may be left out: m a metre of hull, and rad
+_ASIDE, _TURNED = 0.002, 0.01
+
+
+class WakeError(OceanObjectError):
+    """Why an object cannot make waves."""
+
+
+def path_of(
+    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, hull: Hull
+) -> tuple[PathSample, ...]:
+    """Where keys say that an object was and will be; () where they do not say all."""
+    place = carrier_of(item) or item
+    if not (float_path.is_known(place) and float_path.is_known(ocean)):
+        return ()
+    to_ocean = ocean.matrix_world.inverted_safe()
+    stretch = float(time_stretch(scene))
+    frames = frames_of(place, scene) if _moves(place) else range(scene.frame_start, scene.frame_start + 1)
+    places = (to_ocean @ float_path.matrix_at(place, frame / stretch) for frame in frames)
+    return path_through(frames, places, ocean, scene, hull)
+
+
+def frames_of(place: bpy.types.Object, scene: bpy.types.Scene) -> range:
+    """The scene's frames, and those before and after at which the object or its parents have keys."""
+    stretch = float(time_stretch(scene))
+    first, last = float(scene.frame_start), float(scene.frame_end)
+    each: bpy.types.Object | None = place
+    while each is not None:
+        for curve in curves_of(each):
+            begin, end = curve.range()
+            first, last = min(first, begin * stretch), max(last, end * stretch)
+        each = each.parent
+    frames = range(math.floor(first), math.ceil(last) + 1)
+    return frames if len(frames) <= MOST_SAMPLES else frames[:MOST_SAMPLES]
+
+
+def follow(scene: bpy.types.Scene, moved: Set[str]) -> None:
+    """Let the wakes of a scene's oceans follow objects that were moved or keyed otherwise.
+
+    moved : names of objects and actions that an evaluation has anew
+    """
+    for ocean in oceans_in(scene) if moved else ():
+        settings = settings_of(ocean)
+        changed = False
+        for number, item in settings.wake_makers():
+            if ocean.library is None and moved & set(_names(item)):
+                changed |= _follow(ocean, number, item, scene)
+        if changed:
+            show(ocean, scene, Wanted.CHANGE)
+
+
+def _follow(ocean: bpy.types.Object, number: int, item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    """Give a layer the path of its object; whether that is another one."""
+    hull = own_hull(item)
+    path = () if hull is None or item.name not in scene.objects else path_of(item, ocean, scene, hull)
+    return bool(path) and settings_of(ocean).set_wake_path(number, path)
+
+
+def _names(item: bpy.types.Object) -> Iterator[str]:
+    """Of what an object's path follows from."""
+    each: bpy.types.Object | None = item
+    while each is not None:
+        for part in (each, carrier_of(each)):
+            if part is None:
+                continue
+            yield part.name
+            if part.animation_data is not None and part.animation_data.action is not None:
+                yield part.animation_data.action.name
+        each = each.parent
+
+
+def _moves(place: bpy.types.Object) -> bool:
+    each: bpy.types.Object | None = place
+    while each is not None:
+        if any(True for _ in curves_of(each)):
+            return True
+        each = each.parent
+    return False
+
+
+def path_through(
+    frames: Iterable[int],
+    places: Iterable[Matrix],
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    hull: Hull,
+) -> tuple[PathSample, ...]:
+    """The path of a hull's middle with a place a frame, as few samples as tell it.
+
+    places : in the ocean's space
+
+    Raises WakeError for an ocean with a time of its own.
+    """
+    settings = shown_settings(ocean, None)
+    if settings.use_ocean_time:
+        raise WakeError(f"{ocean.name} has Keyed Time, which no path follows: switch it off")
+    metres = float(metres_per_unit(scene))
+    scale = settings.time_scale if has_own_time(settings) else 1.0
+    start, fps, stretch = settings.timing.start_frame, float(frame_rate(scene)), float(time_stretch(scene))
+    low, high = hull.vertices[:, :2].min(axis=0), hull.vertices[:, :2].max(axis=0)
+    middle = Vector((*(0.5 * (low + high)).tolist(), 0.0))
+    ahead = 0.5 * math.pi if hull.is_along_y else 0.0
+    found = []
+    for frame, place in zip(frames, places, strict=True):
+        origin, turn, _ = place.decompose()
+        yaw = 2.0 * math.atan2(turn.z, turn.w)
+        x, y, _ = (origin + Matrix.Rotation(yaw, 3, "Z") @ middle) * metres
+        time = (frame / stretch - start) / fps * scale
+        found.append(PathSample(time, x, y, yaw + ahead))
+    return _thinned(_bow_first(found), _ASIDE * hull.length * metres)
+
+
+def _bow_first(samples: list[PathSample]) -> list[PathSample]:
+    """With headings that turn without a jump, and so that the bow is in front where it moves."""
+    headings = np.unwrap([each.heading for each in samples])
+    steps = np.diff([(each.x, each.y) for each in samples], axis=0)
+    ahead = steps[:, 0] * np.cos(headings[1:]) + steps[:, 1] * np.sin(headings[1:]) if len(steps) else steps
+    backwards = math.pi if np.sum(ahead) < 0.0 else 0.0
+    return [
+        replace(each, heading=float(heading) + backwards)
+        for each, heading in zip(samples, headings, strict=True)
+    ]
+
+
+def _thinned(samples: list[PathSample], aside: float) -> tuple[PathSample, ...]:
+    """Those between which all others lie, up to some m, on straight lines at one speed."""
+    rows = np.array([(each.time, each.x, each.y, each.heading) for each in samples])
+    kept = [0]
+    while kept[-1] < len(rows) - 1:
+        left = rows[kept[-1] :]
+        kept.append(kept[-1] + _farthest(left, aside))
+    return tuple(samples[index] for index in kept)
+
+
+def _farthest(rows: Array, aside: float) -> int:
+    """The last row up to which all lie straight on from the first: looked for in steps that double, then
+    halve."""
+    step, good = 1, 1
+    while good + step < len(rows) and _is_straight(rows[: good + step + 1], aside):
+        good += step
+        step *= 2
+    while step:
+        if good + step < len(rows) and _is_straight(rows[: good + step + 1], aside):
+            good += step
+        step //= 2
+    return good
+
+
+def _is_straight(rows: Array, aside: float) -> bool:
+    share = ((rows[:, 0] - rows[0, 0]) / (rows[-1, 0] - rows[0, 0]))[:, np.newaxis]
+    off = np.abs(rows[:, 1:] - rows[0, 1:] - share * (rows[-1, 1:] - rows[0, 1:]))
+    return bool(np.all(off[:, :2] <= aside) and np.all(off[:, 2] <= _TURNED))
