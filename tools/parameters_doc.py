@@ -13,8 +13,11 @@ from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.data.validation import default_of
 from ocean_tweak.core.parameters.ocean_parameters import (
     Coast,
+    Current,
+    Equaliser,
     Foam,
     Mask,
+    MeasuredSpectra,
     OceanParameters,
     Patch,
     PathSample,
@@ -41,6 +44,9 @@ CLASSES = {
     Patch: "in each entry of the list `patches`",
     Mask: "in the `mask` of a layer of any kind but hero waves, or of a patch",
     Coast: "in `coast`, which a sea may lack",
+    MeasuredSpectra: "in the `measured` of a layer of the kind `WAVES`",
+    Equaliser: "in the `equaliser` of the sea or of a layer of the kind `WAVES`",
+    Current: "in `current`",
     Foam: "in `foam`",
     Spray: "in `spray`, which a sea may lack: it changes none of its waves",
     Timing: "in `timing`",

@@ -15,7 +15,7 @@ from ..export.places import CACHE_VARIABLE
 from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.options import DEFAULTS, FORM_OPTIONS, OPTIONS, written
 from ..export.usd.package import FORMS, UP_AXES
-from . import argument_values, baking, checking, info, job, usd
+from . import argument_values, baking, checking, info, job, spectrum, usd
 from .seas import chosen_seas
 
 
@@ -37,6 +37,7 @@ def make_parser(in_blender: bool) -> argparse.ArgumentParser:
     _add_job(commands, in_blender)
     _add_usd(commands, in_blender)
     _add_usd_verify(commands)
+    _add_spectrum(commands)
     return parser
 
 
@@ -69,6 +70,30 @@ def _add_info(commands: _Commands, in_blender: bool) -> None:
         help="write the sea with all changes, and planned patches, as parameters",
     )
     parser.set_defaults(run=lambda arguments, oceans: info.run(arguments, chosen_seas(arguments, oceans)))
+
+
+def _add_spectrum(commands: _Commands) -> None:
+    parser = _command(
+        commands, "spectrum", "read spectra that were measured or forecast, and write a sea of them"
+    )
+    parser.add_argument(
+        "files", type=argument_values.path, nargs="+", metavar="FILE",
+        help="NDBC's text (data_spec, swdir, swdir2, swr1, swr2, or historical w, d, i, j, k, also .gz, and "
+        "the weather for its wind), or SWAN's spectra",
+    )  # fmt: skip
+    parser.add_argument(
+        "--time", metavar="TIME",
+        help="2020-06-08T03:50 in UTC, one to another with / between, or all; by default the latest",
+    )  # fmt: skip
+    parser.add_argument(
+        "--place", metavar="NAME", help="which of several places; by default the first with energy"
+    )
+    parser.add_argument(
+        "--tail", action="store_true",
+        help="continue the spectrum beyond its highest frequency as f⁻⁵: short waves that the file lacks",
+    )  # fmt: skip
+    parser.add_argument("--out", type=argument_values.path, metavar="FILE.json", help="write the sea")
+    parser.set_defaults(run=lambda arguments, _oceans: spectrum.run(arguments))
 
 
 def _add_bake(commands: _Commands, in_blender: bool) -> None:

@@ -20,7 +20,8 @@ from ..core.parameters.patch_seas import open_sea
 from ..core.sea.coast_outlook import coast_outlook
 from ..core.sea.memory import beyond_budget, check_memory
 from ..core.statistics import sea_scales
-from ..core.statistics.sea_statistics import SeaState, Statistics
+from ..core.statistics.sea_spectrum import SeaSpectrum
+from ..core.statistics.sea_statistics import SeaState, Statistics, spectrum_state
 from ..core.waves.contribution import Contribution, Outlook
 from ..core.waves.kinds import KINDS
 from ..core.waves.spectral import WaveLayer
@@ -146,6 +147,7 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
             f"  merged on {parameters.merged_resolution}² samples, {apart:.3g} m apart: "
             f"waves from {2.0 * apart:.3g} m"
         )
+    lines += _equalised(parameters)
     if parameters.is_masked:
         lines.append("  masks cover some of these waves; all numbers are without masks")
     coverage, earlier = foam_outlook(parameters)
@@ -166,6 +168,20 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
     over = beyond_budget(parameters)
     warnings += [] if over is None else [over]
     return lines + [f"  warning: {warning}" for warning in warnings]
+
+
+def _equalised(parameters: OceanParameters) -> list[str]:
+    """What equalisers do to the height of the spectrum."""
+    after = SeaSpectrum(parameters)
+    if not any(spectrum.equalisers for spectrum in after.layers):
+        return []
+    layers = (
+        layer.changed(equaliser=None) if isinstance(layer, WaveLayer) else layer
+        for layer in parameters.layers
+    )
+    before = parameters.replace(equaliser=None, layers=tuple(layers))
+    heights = [spectrum_state(sea).significant_wave_height for sea in (SeaSpectrum(before), after)]
+    return [f"  equaliser: Hs {heights[0]:.2f} m before it, {heights[1]:.2f} m after"]
 
 
 def _patch_rows(statistics: Statistics) -> list[str]:

@@ -17,7 +17,7 @@ import shutil
 import signal
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,15 +28,18 @@ from ocean_tweak.core import OceanParameters, ParameterError
 from ocean_tweak.core.data.plain_data import parse_json
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.statistics.sea_spectrum import SeaSpectrum
 from ocean_tweak.export.cache.job import sealed
 from ocean_tweak.export.cache.records import file_hash
 from ocean_tweak.export.exr import ExrError, read_header, read_image
 from ocean_tweak.export.images import read_raster, with_rasters
+from ocean_tweak.export.spectra.reading import chosen_place, chosen_times, measured_sea, read_spectra
 from ocean_tweak.export.usd import isolated
 from ocean_tweak.export.usd.library import pxr
 from tests.batch import mutations
 from tests.batch.bakery import only_folder, write_sea
 from tests.batch.bakery import run as run_command
+from tests.export.spectrum_files import BUOY_FILES, F, bump, swan_text
 from tests.image_files import exr, png, tiff
 from tests.layers import layers_of
 
@@ -334,7 +337,48 @@ def vouch(folder: Path, changed: Path) -> None:
             continue  # no longer a record
 
 
+class Spectra(Fuzz):
+    """Files of measured spectra: a buoy's five, and one of a wave model with several places and times."""
+
+    def __init__(self, scratch: Path) -> None:
+        super().__init__(scratch)
+        self.whole = [path.read_bytes()[:3000].rpartition(b"\n")[0] + b"\n" for path in BUOY_FILES]
+        directions = np.arange(5.0, 360.0, 30.0)
+        waves = bump(directions, 40.0, True)
+        spectra = [waves, "NODATA", "ZERO", waves]
+        times = ("20200101.000000", "20200101.060000")
+        swan = swan_text(spectra, [(1, 2), (3, 4)], directions=directions, times=times)
+        narrow = np.stack([waves.sum(axis=1), np.full(len(F), 200.0), np.full(len(F), 20.0)], axis=1)
+        self.whole += [text.encode() for text in (swan, swan_text([narrow], directions=None))]
+        read_spectra(self._written(self.whole[:5]))
+
+    def _written(self, contents: Sequence[bytes]) -> list[Path]:
+        names = [path.name for path in BUOY_FILES] if len(contents) > 1 else ["sea.spec"]
+        paths = [self.scratch / name for name in names]
+        for path, content in zip(paths, contents, strict=True):
+            path.write_bytes(content)
+        return paths
+
+    def attempt(self, chance: random.Random) -> None:
+        """Read, and made a sea of: what is read must be one."""
+        index = chance.randrange(len(self.whole))
+        damaged = mutations.of_text(self.whole[index], chance)
+        contents = [*self.whole[:index], damaged, *self.whole[index + 1 : 5]] if index < 5 else [damaged]
+        paths = self._written(contents)
+        try:
+            records = read_spectra(paths)
+            sea = measured_sea(chosen_times(chosen_place(records, None), chance.choice((None, "all"))))
+        except ParameterError as error:
+            if "\n" in str(error):
+                raise AssertionError(f"more than a line: {error}") from None
+            return
+        assert OceanParameters.from_json(sea.to_json()) == sea
+        heights = [layer.table.m0 for layer in SeaSpectrum(sea).layers]
+        assert np.all(np.isfinite(heights)), heights
+
+
 KINDS: dict[str, Callable[[Path], Fuzz]] = {
+    "spectra": Spectra,
     "json": Parameters,
     "records": Records,
     "exr": lambda scratch: Images(scratch, ".exr", mutations.of_exr),

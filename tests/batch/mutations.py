@@ -55,6 +55,29 @@ def anywhere(content: bytes, chance: random.Random) -> bytes:
     return bytes(data)
 
 
+def of_text(content: bytes, chance: random.Random) -> bytes:
+    """Mostly another word, or lines that are gone, cut off or stand twice: bytes alone make no number."""
+    if chance.random() < 0.3:
+        return anywhere(content, chance)
+    lines = content.split(b"\n")
+    for _ in range(chance.randint(1, 3)):
+        place = min(chance.randrange(len(lines)), chance.randrange(len(lines)))
+        kind = chance.randrange(5)
+        words = lines[place].split()
+        if kind == 0:
+            del lines[place]
+        elif kind == 1:
+            lines[place:place] = lines[place : place + chance.choice((1, 3, 20))]
+        elif kind == 2:
+            lines[place] = lines[place][: chance.randrange(len(lines[place]) + 1)]
+        elif words:
+            words[chance.randrange(len(words))] = chance.choice(
+                (*WORDS, b"%d" % chance.choice(NUMBERS), b"-0.5", b"1e300", b"999.0", b"MM", *words)
+            )
+            lines[place] = b" ".join(words)
+    return b"\n".join(lines)
+
+
 def of_json(content: bytes, chance: random.Random) -> bytes:
     """Mostly another value for a key, which its syntax does not tell."""
     if chance.random() < 0.3:

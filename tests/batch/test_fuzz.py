@@ -19,6 +19,7 @@ LONG = os.environ.get("OCEAN_TWEAK_LONG_TESTS") == "1"
 COUNTS = {
     "json": (100, 20_000), "records": (100, 20_000), "exr": (100, 20_000), "usd": (50, 20_000),
     "png": (100, 20_000), "tiff": (100, 20_000), "npy": (100, 20_000), "bake": (50, 3_000),
+    "spectra": (300, 10_000),
 }  # fmt: skip
 #: that one process tries
 AT_ONCE = 500

@@ -36,6 +36,7 @@ PAPERS = {
     "Spray": 0,
     "Riding": 0,
     "Coast": 0,
+    "Measured seas": 0,
 }
 
 

@@ -183,10 +183,17 @@ def test_a_stretched_shot_is_slower_and_says_so_only_where_it_is() -> None:
 
 
 def test_what_can_change_during_a_shot_is_what_the_documentation_says():
-    """docs/batch.md: of a layer these five, of the sea choppiness and its time, of masks where they are."""
-    of_layers = ("wind_speed", "wind_direction", "fetch", "swell", "amplitude_scale")
+    """docs/batch.md: of a layer these six, of the sea choppiness and its time, of masks where they are, of
+    equalisers their ten bands, and the current."""
+    of_layers = ("wind_speed", "wind_direction", "fetch", "swell", "amplitude_scale", "measured_time")
     of_masks = [f"{of}mask.{name}" for of in ("", "layers.*.", "patches.*.") for name in ("x", "y", "lines")]
-    assert (*(f"layers.*.{name}" for name in of_layers), "choppiness", *of_masks, "ocean_time") == ANIMATED
+    bands = ("longer_3", "longer_2", "longer_1", "peak", *(f"shorter_{octave}" for octave in range(1, 7)))
+    of_equalisers = [f"{of}equaliser.{band}" for of in ("", "layers.*.") for band in bands]
+    expected = (
+        *(f"layers.*.{name}" for name in of_layers), "choppiness", *of_masks, *of_equalisers,
+        "current.speed", "current.direction", "ocean_time",
+    )  # fmt: skip
+    assert expected == ANIMATED
 
 
 # masks that move

@@ -196,7 +196,8 @@ def strain_covariances(
     energy, rates = np.zeros(grid.shape), np.zeros(grid.shape)
     for part in state.parts:
         present = part.expected_plus * grid.multiplicity, part.expected_minus * grid.multiplicity
-        frequency = part.omega - along, part.omega + along
+        against = part.omega if part.omega_against is None else part.omega_against
+        frequency = part.omega - along, against + along
         energy += present[0] + present[1]
         rates += present[0] * frequency[0] ** 2 + present[1] * frequency[1] ** 2
     if interpolated:
@@ -283,6 +284,9 @@ def foam_model(
         rows = windrows(wind.speed, wind.direction, parameters.domain_size, parameters.seed, finest)
         speed = foam.drift * wind.speed
         drift = (speed * math.cos(wind.direction), speed * math.sin(wind.direction))
+    if parameters.current is not None:
+        x, y = parameters.current.velocity
+        drift = (drift[0] + x, drift[1] + y)
     coverage = _coverage(parameters)
     if coverage > 0.0:
         strains = strains_of(drift)

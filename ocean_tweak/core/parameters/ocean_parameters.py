@@ -32,6 +32,8 @@ from ..data.validation import (
     switch,
 )
 from ..masks.parameters import Mask, check_mask
+from ..spectral.equaliser import Equaliser
+from ..spectral.measured import MeasuredSpectra
 from ..spectral.water import Water
 from ..waves.coast.parameters import Coast, repeats_after
 from ..waves.contribution import Contribution, Gives
@@ -41,16 +43,20 @@ from ..waves.kinds import KINDS
 from ..waves.spectral import WaveLayer
 from ..waves.wake.parameters import PathSample, WakeLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
+from .current import Current
 from .former_json import modern
 from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, resampled
 from .spray import Spray
 
 __all__ = [
     "Coast",
+    "Current",
+    "Equaliser",
     "Foam",
     "HeroWave",
     "ImageLayer",
     "Mask",
+    "MeasuredSpectra",
     "OceanParameters",
     "ParameterError",
     "Patch",
@@ -229,6 +235,8 @@ class OceanParameters(Validated):
     )  # fmt: skip
     mask: Mask | None = nested(Mask, optional=True)
     coast: Coast | None = nested(Coast, optional=True)
+    current: Current | None = nested(Current, optional=True)
+    equaliser: Equaliser | None = nested(Equaliser, optional=True)
     foam: Foam = nested(Foam)
     spray: Spray | None = nested(Spray, optional=True, compared=False)
     timing: Timing = nested(Timing)
@@ -242,6 +250,12 @@ class OceanParameters(Validated):
         object.__setattr__(self, "layers", _identified(self.layers))
         _check_loop(self.loop_duration, self.timing)
         self._check_layers()
+        if self.moves and self.has_coast:
+            raise ParameterError(
+                "current", to_plain(self.current),
+                "must be still over a coast, whose waves are followed in water that rests: remove it, or set "
+                "coast.muted",
+            )  # fmt: skip
         on_the_first = [
             kind.former_list or kind.names.noun
             for kind in KINDS
@@ -348,6 +362,11 @@ class OceanParameters(Validated):
     def has_states(self) -> bool:
         """Whether layers other than spectral ones report the height of their waves."""
         return any(Gives.STATE in layer.gives for layer in self.active())
+
+    @property
+    def moves(self) -> bool:
+        """Whether a current carries its waves."""
+        return self.current is not None and self.current != Current(direction=self.current.direction)
 
     def alone(self, layer: Contribution) -> OceanParameters:
         """A copy reduced to one layer and to the settings that affect its sea state."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ..waves.contribution import Contribution, Gives
+from ..waves.spectral import with_settled_equaliser
 from .ocean_parameters import Mask, OceanParameters, Patch
 
 #: samples along the shortest wave of a patch that is interpolated onto a grid: bilinear interpolation then
@@ -36,6 +37,7 @@ def patch_parameters(parameters: OceanParameters) -> tuple[OceanParameters, ...]
 
 
 def _patch_seas(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
+    parameters = with_settled_equaliser(parameters)
     if not parameters.patches:
         return (parameters,)
     return tuple(_of_patch(parameters, index, patch) for index, patch in enumerate(parameters.patches))
@@ -44,7 +46,10 @@ def _patch_seas(parameters: OceanParameters) -> tuple[OceanParameters, ...]:
 def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanParameters:
     held = (layer.in_patch(parameters, index, patch.rotation) for layer in parameters.layers)
     layers = tuple(layer for layer in held if layer is not None)
-    return parameters.replace(patches=(replace(patch, rotation=0.0),), layers=layers)
+    current = parameters.current
+    if current is not None and patch.rotation:
+        current = current.turned(patch.rotation)
+    return parameters.replace(patches=(replace(patch, rotation=0.0),), layers=layers, current=current)
 
 
 @dataclass(frozen=True)

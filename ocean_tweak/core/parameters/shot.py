@@ -8,6 +8,7 @@ are a raster with one row per frame.
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
@@ -24,22 +25,32 @@ from ..data.frames import LARGEST_FRAME, Frame
 from ..data.plain_data import to_plain
 from ..data.raster import Raster, check_numbers, numbers_in
 from ..data.validation import changing_fields
-from ..masks.parameters import MOVING, Mask
+from ..masks.parameters import MOVING
+from ..spectral.equaliser import GAINS
 from ..waves.kinds import KINDS
+from .current import Current
 from .ocean_parameters import OceanParameters, parse_json
 
 #: path of the ocean time in seconds, if it does not simply follow the frames
 OCEAN_TIME = "ocean_time"
 
-#: values that can be animated, by their path in the parameters' JSON; * is the index of a layer or patch
+#: what can change of what belongs to a sea, a layer or a patch: by the field that holds it
+_OF_BELONGINGS = {"mask": MOVING, "equaliser": GAINS, "current": changing_fields(Current)}
+
+#: what can change during a shot, by its path in the parameters' JSON; * is the number of a layer or patch
 ANIMATED = (
     *dict.fromkeys(f"layers.*.{name}" for kind in KINDS for name in changing_fields(kind)),
     *changing_fields(OceanParameters),
     *(f"{owner}mask.{name}" for owner in ("", "layers.*.", "patches.*.") for name in MOVING),
+    *(f"{owner}equaliser.{name}" for owner in ("", "layers.*.") for name in GAINS),
+    *(f"current.{name}" for name in changing_fields(Current)),
     OCEAN_TIME,
 )
 
-#: samples of a value, one per frame; a raster has one row per frame
+#: paths of what changes of a current
+_CURRENT = {f"current.{name}" for name in changing_fields(Current)}
+
+#: samples of a value, one a frame; a raster has a row for each
 Samples = tuple[float, ...] | Raster
 
 _ONE_SEA = "later frames would show other waves"
@@ -172,6 +183,10 @@ class Shot:
     animation: Animation | None = None
 
     def __post_init__(self) -> None:
+        if self.animation is not None and self.parameters.loop_duration is not None:
+            for path in sorted(_CURRENT & set(dict(self.animation.samples))):
+                reason = "is constant over a loop: remove its keys, or the loop"
+                raise ParameterError(f"{_KEY}.samples.{path}", "animated", reason)
         for values in self._extremes():
             try:
                 self._with(values)
@@ -202,15 +217,16 @@ class Shot:
                 continue
             if not owner:
                 changes[name] = value
-            elif owner == "mask":
-                changes["mask"] = _moved(changes.get("mask", self.parameters.mask), path, value)
+            elif owner in _OF_BELONGINGS:
+                before = changes.get(owner, getattr(self.parameters, owner))
+                changes[owner] = _belonging(before, owner, path, value)
             else:
-                number, _, mask = rest.partition(".")
+                number, _, belonging = rest.partition(".")
                 own, index = entries[known], int(number)
                 if index >= len(own):
                     raise ParameterError(path, value, f"the sea has only {len(own)} {known}")
-                own[index] = _changed(own[index], path, value, bool(mask))
-        # without patches there are no entries to update
+                own[index] = _changed(own[index], path, value, belonging)
+        # without patches there are no entries to say anew
         patches = {"patches": tuple(entries["patches"])} if self.parameters.patches else {}
         return self.parameters.replace(layers=tuple(entries["layers"]), **patches, **changes)
 
@@ -227,7 +243,37 @@ class Shot:
         change = self.animation.rate(OCEAN_TIME, frame)
         if change is not None:
             time, rate = Fraction(repr(values[OCEAN_TIME])), change * float(timing.fps)
-        return Moment(self._with(values), time, rate)
+        return Moment(self._carried(self._with(values), frame, time), time, rate)
+
+    def _carried(self, parameters: OceanParameters, frame: Frame, time: Fraction) -> OceanParameters:
+        """A frame's sea with how far a current that changes has carried it: each frame's waves are those of
+        the frame before, moved on."""
+        animation, current = self.animation, parameters.current
+        if animation is None or current is None or _CURRENT.isdisjoint(dict(animation.samples)):
+            return parameters
+        frames = (*range(animation.first_frame, math.ceil(frame)), frame)
+        moments = [self._water(each) for each in frames]
+        (x, y), then = moments[0]
+        come = x * then, y * then
+        for (velocity, then), (next_velocity, later) in itertools.pairwise(moments):
+            mean = (0.5 * (a + b) for a, b in zip(velocity, next_velocity, strict=True))
+            come_x, come_y = (here + each * (later - then) for here, each in zip(come, mean, strict=True))
+            come = come_x, come_y
+        x, y = current.velocity
+        now = float(time)
+        current = replace(current, carried_x=come[0] - x * now, carried_y=come[1] - y * now)
+        return parameters.replace(current=current)
+
+    def _water(self, frame: Frame) -> tuple[tuple[float, float], float]:
+        """The current in m/s at a frame, and the ocean's time in s."""
+        assert self.animation is not None
+        values, current = self.animation.at(frame), self.parameters.current
+        for path in sorted(_CURRENT & values.keys()):
+            current = _belonging(current, "current", path, values[path])
+        assert current is not None
+        time = values.get(OCEAN_TIME, float(self.parameters.timing.time(frame)))
+        assert isinstance(time, float)
+        return current.velocity, time
 
     def check(self, frames: tuple[Frame, ...]) -> None:
         """Raise ParameterError if a frame is outside the animation or its parameters are invalid."""
@@ -276,10 +322,11 @@ def _check_path(path: str) -> None:
     raise ParameterError(f"samples.{path}", "animated", f"is constant over a shot: {reason}")
 
 
-def _changed(entry: Any, path: str, value: float | Raster, of_mask: bool) -> Any:
-    """A layer or patch with one value of it or of its mask replaced."""
-    if of_mask:
-        return replace(entry, mask=_moved(getattr(entry, "mask", None), path, value))
+def _changed(entry: Any, path: str, value: float | Raster, belonging: str) -> Any:
+    """A layer or a patch with another value, of its own or of its mask or equaliser."""
+    if belonging:
+        before = getattr(entry, belonging, None)
+        return replace(entry, **{belonging: _belonging(before, belonging, path, value)})
     owner, _, name = path.rpartition(".")
     if name not in changing_fields(type(entry)):
         reason = f"is constant over a shot: {entry.constant}"
@@ -290,15 +337,15 @@ def _changed(entry: Any, path: str, value: float | Raster, of_mask: bool) -> Any
         raise error.inside(owner) from None
 
 
-def _moved(mask: Mask | None, path: str, value: float | Raster) -> Mask:
-    owner, _, name = path.rpartition(".")
-    if mask is None:
+def _belonging(before: Any, name: str, path: str, value: float | Raster) -> Any:
+    """A mask, an equaliser or a current with another value."""
+    owner, _, field = path.rpartition(".")
+    if before is None:
         raise ParameterError(
-            f"samples.{path}", "animated", "there is no mask: give it one, or leave this out"
+            f"samples.{path}", "animated", f"there is no {name}: give it one, or leave this out"
         )
     try:
-        changes: dict[str, Any] = {name: value}
-        return replace(mask, **changes)
+        return replace(before, **{field: value})
     except ParameterError as error:
         raise error.inside(owner) from None
 

@@ -40,14 +40,38 @@ class PlacedWaves:
         """Components of the displacement at rest positions in m, of one flat shape."""
         masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
         if not masks:
-            return dict(self._layer.fields(self._sea, x, y, time, frozenset(keys)))
+            return dict(self._fields(x, y, time, frozenset(keys)))
         under = weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration))
         wanted = unweighted(keys, moves=move(masks))
-        return weighted(self._layer.fields(self._sea, x, y, time, wanted), under)
+        return weighted(self._fields(x, y, time, wanted), under)
+
+    def _fields(
+        self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]
+    ) -> Mapping[Key, RealArray]:
+        """As the layer gives them, carried by the sea's current."""
+        current = self._sea.current
+        if current is None or not self._sea.moves:
+            return self._layer.fields(self._sea, x, y, time, frozenset(keys))
+        moving = [key for key in keys if key[1] == "t"]
+        wanted = frozenset(keys) | {(component, by) for component, _ in moving for by in "xy"}
+        (come_x, come_y), (ux, uy) = current.carried(float(time)), current.velocity
+        layer = self._layer.in_current(current)
+        found = dict(layer.fields(self._sea, x - come_x, y - come_y, time, wanted))
+        for component, by in moving:
+            found[component, by] = found[component, by] - (
+                ux * found[component, "x"] + uy * found[component, "y"]
+            )
+        return found
 
     def foam(self, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """What the layer makes of its own at rest positions in m, of one flat shape."""
-        found = self._layer.own_foam(self._sea, x, y, time)
+        layer, current = self._layer, self._sea.current
+        if current is not None and self._sea.moves:
+            come_x, come_y = current.carried(float(time))
+            layer = layer.in_current(current)
+            found = layer.own_foam(self._sea, x - come_x, y - come_y, time)
+        else:
+            found = layer.own_foam(self._sea, x, y, time)
         masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
         if found is None or not masks:
             return found
@@ -147,5 +171,9 @@ def check_repeats(sea: OceanParameters) -> None:
 
 def strain_covariances(sea: OceanParameters, drift: tuple[float, float]) -> list[tuple[Array, Array]]:
     """Of each of these layers that tells them, as `core.foam.threshold.strain_covariances` has them."""
-    told = (layer.strain_covariances(sea, drift) for layer in sea.active() if Gives.FIELDS in layer.gives)
+    ux, uy = (0.0, 0.0) if sea.current is None else sea.current.velocity
+    through_water = drift[0] - ux, drift[1] - uy
+    told = (
+        layer.strain_covariances(sea, through_water) for layer in sea.active() if Gives.FIELDS in layer.gives
+    )
     return [found for found in told if found is not None]

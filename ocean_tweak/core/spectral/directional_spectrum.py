@@ -6,15 +6,24 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..numerics.grid import WaveVectorGrid
 from . import dispersion
+from .equaliser import Equalising
 from .spectra import LayerScales, layer_scales, scaled_spectrum
-from .spreading import WIND_MODELS, Shape, Spreading, directional_spreading, spreading_shape, wrap_angle
+from .spreading import (
+    WIND_MODELS,
+    Shape,
+    Spreading,
+    directional_spreading,
+    mean_cosine,
+    spreading_shape,
+    wrap_angle,
+)
 from .water import Water
 
 if TYPE_CHECKING:
@@ -41,14 +50,16 @@ class DirectionalSpectrum:
 
     Horvath (2015), eq. 16 and 61.
 
-    patch_band : shortest and longest wavelength in m of the patch, with sharp ends, in addition to the
-        layer's own band; None for all waves
+    patch_band : shortest and longest wavelength in m of the patch that holds it, sharp, beside the layer's
+        own band; None for all waves
+    equalisers : that change its heights by wavelength
     """
 
     layer: WaveLayer
     water: Water
     dispersion: str
     patch_band: tuple[float, float] | None = None
+    equalisers: tuple[Equalising, ...] = ()
 
     @cached_property
     def scales(self) -> LayerScales:
@@ -64,6 +75,12 @@ class DirectionalSpectrum:
     def peak_frequency(self) -> float:
         """ω_p in rad/s, the peak frequency for wind and fetch before the depth factor."""
         return self.scales.peak_frequency
+
+    @property
+    def peaks(self) -> tuple[float, float]:
+        """ω in rad/s between which its peaks lie: a fifth of the lowest to a hundred of the highest hold all
+        of its energy."""
+        return self.peak_frequency, self.peak_frequency
 
     @cached_property
     def spreading(self) -> Spreading:
@@ -81,15 +98,19 @@ class DirectionalSpectrum:
         return replace(model, wind_frequency=self.scales.wind_frequency)
 
     def frequency_spectrum(self, omega: ArrayLike) -> Array:
-        """S(ω) in m²·s/rad, of any shape, with the layer's amplitude scale, band and short-wave cut-off
-        applied."""
-        spectrum = self.layer.amplitude_scale**2 * scaled_spectrum(omega, self.layer, self.scales, self.water)
-        if not (self.has_band or self.layer.short_wave_cutoff > 0.0):
+        """S(ω) in m²·s/rad, any shape, with the layer's amplitude scale, band, cut-off and equalisers."""
+        spectrum = self.layer.amplitude_scale**2 * self._own_spectrum(np.asarray(omega, np.float64))
+        if not (self.has_band or self.layer.short_wave_cutoff > 0.0 or self.equalisers):
             return spectrum
         return self.energy_weight(dispersion.wave_number(omega, self.dispersion, self.water)) * spectrum
 
+    def _own_spectrum(self, omega: Array) -> Array:
+        """S(ω) in m²·s/rad before all that the layer does to it."""
+        return scaled_spectrum(omega, self.layer, self.scales, self.water)
+
     def energy_weight(self, k: Array) -> Array:
-        """Fraction of the energy kept by the band and the short-wave cut-off, 0…1, over k in rad/m.
+        """What the energy is multiplied by, over k in rad/m: by the band and the short-wave cut-off, of which
+        each leaves a share, and by equalisers.
 
         The cut-off is Tessendorf's exp(-k²l²) (Horvath 2015, § 5.1.3). A band and its inverse add to 1.
         """
@@ -101,6 +122,8 @@ class DirectionalSpectrum:
             weight = weight * ((wavelength > shortest) & (wavelength <= longest))
         if layer.short_wave_cutoff > 0.0:
             weight = weight * np.exp(-((k * layer.short_wave_cutoff) ** 2))
+        for equaliser in self.equalisers:
+            weight = weight * equaliser.energy_gain(k)
         return weight
 
     @property
@@ -142,6 +165,12 @@ class DirectionalSpectrum:
         relative = np.asarray(theta, np.float64) - self.layer.wind_direction
         return directional_spreading(np.asarray(omega) / self.peak_frequency, relative, self.spreading)
 
+    def mean_vectors(self, omega: Array) -> NDArray[np.complex128]:
+        """∫D e^{iθ} dθ over ω in rad/s: the mean direction, as long as the waves keep to it."""
+        # directions change slowly over ω: every eighth frequency will do
+        cosine = mean_cosine(omega[::8] / self.peak_frequency, self.spreading)
+        return np.exp(1j * self.layer.wind_direction) * np.interp(omega, omega[::8], cosine)
+
     def density(self, kx: ArrayLike, ky: ArrayLike) -> Array:
         """Ψ(kx, ky) = S·D·(dω/dk)/k in m⁴, sampled at wave vectors other than 0. Horvath (2015), eq. 61."""
         k = np.hypot(kx, ky)
@@ -152,8 +181,11 @@ class DirectionalSpectrum:
     def _radial_energy(self, k: Array, omega: Array) -> Array:
         """S·(dω/dk)/k in m⁴·rad, before band and cut-off."""
         rate = dispersion.group_velocity(k, self.dispersion, self.water)
-        spectrum = scaled_spectrum(omega, self.layer, self.scales, self.water)
-        return self.layer.amplitude_scale**2 * spectrum * rate / k
+        return self.layer.amplitude_scale**2 * self._own_spectrum(omega) * rate / k
+
+    def sampler(self, lowest: float, highest: float) -> Sampler:
+        """What samples Ψ quickly at wave numbers between these, in rad/m."""
+        return RadialSampler(self, lowest, highest)
 
     def cell_means(self, grid: WaveVectorGrid) -> tuple[Array, Array]:
         """Ψ averaged over each wave-vector cell, in m⁴, for k and for -k.
@@ -221,40 +253,37 @@ def _each(shape: Shape, function: Callable[[Array], Array]) -> Shape:
     return Shape._make(None if array is None else function(array) for array in shape)
 
 
-class CellMeans:
-    """Means of a spectrum over the cells of a grid.
+class Sampler(Protocol):
+    """Gives Ψ in m⁴ at wave vectors and at their opposites, band and all included."""
 
-    Internally, arrays are [kx, ky], the memory order of the transforms.
-    """
+    def of_columns(self, grid: WaveVectorGrid, columns: slice) -> tuple[Array, Array]:
+        """At the centres of some columns' cells, (columns, N) each."""
 
-    def __init__(self, spectrum: DirectionalSpectrum, grid: WaveVectorGrid) -> None:
+    def at(self, kx: Array, ky: Array) -> tuple[Array, Array]:
+        """At wave vectors in rad/m, of any one shape."""
+
+
+class RadialSampler:
+    """Samples a spectrum in which but for the angle everything depends on k alone, by a table over k."""
+
+    def __init__(self, spectrum: DirectionalSpectrum, lowest: float, highest: float) -> None:
         self._spectrum = spectrum
-        self._grid = grid
-        # sub-cells extend half a cell below the first mode and beyond the last
-        self._table = RadialTable(0.25 * grid.spacing, 0.75 * grid.resolution * grid.spacing)
+        self._table = RadialTable(lowest, highest)
         k = self._table.k
         omega = dispersion.angular_frequency(k, spectrum.dispersion, spectrum.water)
         shape = spreading_shape(omega / spectrum.peak_frequency, spectrum.spreading)
         self._table.fill(spectrum._radial_energy(k, omega), shape)
 
-    def both(self) -> tuple[Array, Array]:
-        """Means for k and for -k, two (N, N//2+1) arrays in m⁴."""
-        grid = self._grid
-        forward, backward = (np.empty(grid.shape[::-1]) for _ in range(2))
-        for columns in grid.column_blocks():
-            forward[columns], backward[columns] = self._samples(columns)
-        self._refine(forward, backward)
-        for means in (forward, backward):
-            means[~grid.usable.T] = 0.0
-        return forward.T, backward.T
-
-    def _samples(self, columns: slice) -> tuple[Array, Array]:
-        """Ψ at the cell centres of some columns, (columns, N) each. The radial part is even in ky."""
-        grid = self._grid
+    def of_columns(self, grid: WaveVectorGrid, columns: slice) -> tuple[Array, Array]:
+        """The radial part is even in ky: half of it is enough."""
         kx, ky = grid.kx[0, columns, np.newaxis], grid.ky[:, 0]
         half = np.maximum(np.hypot(kx, ky[: grid.resolution // 2 + 1]), 0.5 * grid.spacing)
         shape = self._weighted_shape(half)
         return self._both_ways(_each(shape, grid.mirror), kx, ky)
+
+    def at(self, kx: Array, ky: Array) -> tuple[Array, Array]:
+        """At wave vectors in rad/m, of any one shape."""
+        return self._both_ways(self._weighted_shape(np.hypot(kx, ky)), kx, ky)
 
     def _weighted_shape(self, k: Array) -> Shape:
         shape = self._table.shape(self._table.nodes(k))
@@ -268,6 +297,30 @@ class CellMeans:
         theta = np.abs(wrap_angle(np.arctan2(ky, kx) - layer.wind_direction))
         return shape.density(theta, spreading), shape.density(np.pi - theta, spreading)
 
+
+class CellMeans:
+    """Means of a spectrum over the cells of a grid.
+
+    Arrays inside are [kx, ky], as the transforms want them in memory.
+    """
+
+    def __init__(self, spectrum: DirectionalSpectrum, grid: WaveVectorGrid) -> None:
+        self._spectrum = spectrum
+        self._grid = grid
+        # sub-cells reach half a cell inside of the first mode and beyond the last
+        self._sampler = spectrum.sampler(0.25 * grid.spacing, 0.75 * grid.resolution * grid.spacing)
+
+    def both(self) -> tuple[Array, Array]:
+        """Means for k and for -k, two (N, N//2+1) arrays in m⁴."""
+        grid = self._grid
+        forward, backward = (np.empty(grid.shape[::-1]) for _ in range(2))
+        for columns in grid.column_blocks():
+            forward[columns], backward[columns] = self._sampler.of_columns(grid, columns)
+        self._refine(forward, backward)
+        for means in (forward, backward):
+            means[~grid.usable.T] = 0.0
+        return forward.T, backward.T
+
     def _refine(self, forward: Array, backward: Array) -> None:
         """Replace samples by means over sub-cells where Ψ varies within a cell."""
         grid = self._grid
@@ -275,7 +328,7 @@ class CellMeans:
             offset = ((np.arange(n) + 0.5) / n - 0.5) * grid.spacing
             kx = grid.kx[0, column][:, np.newaxis, np.newaxis] + offset[np.newaxis, :, np.newaxis]
             ky = grid.ky[row, 0][:, np.newaxis, np.newaxis] + offset[np.newaxis, np.newaxis, :]
-            along, against = self._both_ways(self._weighted_shape(np.hypot(kx, ky)), kx, ky)
+            along, against = self._sampler.at(kx, ky)
             forward[column, row] = along.mean(axis=(1, 2))
             backward[column, row] = against.mean(axis=(1, 2))
 

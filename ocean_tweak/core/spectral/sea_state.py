@@ -103,15 +103,11 @@ def mode_state(
 
 
 def modes_state(parts: Sequence[Modes], parameters: OceanParameters) -> SeaState:
-    """State of modes of one grid with arbitrary angular frequencies; periods are those seen by a fixed
-    observer."""
-    if not parameters.has_states:
-        (part,) = parts
-        return mode_state(part.along, part.against, part.grid, parameters)
+    """State of waves of one grid that turn as they like: their periods are those that a place sees."""
     grid = parts[0].grid
     along, against = (np.sum([part[side] for part in parts], axis=0) for side in (1, 2))
     state = mode_state(along, against, grid, parameters)
-    if not state.m0 > 0.0:
+    if not parameters.has_states or not state.m0 > 0.0:
         return state
     near = np.exp(-0.5 * (np.log(np.maximum(grid.k, 1e-300) / state.peak_wave_number) / _KERNEL_WIDTH) ** 2)
     energies = [(part.along + part.against) * grid.multiplicity for part in parts]

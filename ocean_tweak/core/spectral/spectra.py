@@ -10,9 +10,9 @@ winds.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -359,6 +359,31 @@ def frequency_rule(lowest_peak: float, highest_peak: float, size: int = 8193) ->
     log_omega = np.linspace(np.log(0.2 * lowest_peak), np.log(100.0 * highest_peak), size)
     omega = np.exp(log_omega)
     return omega, omega * (log_omega[1] - log_omega[0])
+
+
+class HasPeaks(Protocol):
+    """A spectrum over frequency that tells where its peaks lie."""
+
+    @property
+    def peaks(self) -> tuple[float, float]:
+        """ω in rad/s: from a fifth of the first to a hundred of the second there is all of the energy."""
+
+    def frequency_spectrum(self, omega: Array) -> Array:
+        """S(ω) in m²·s/rad."""
+
+
+def combined_rule(spectra: Sequence[HasPeaks]) -> tuple[Array, Array]:
+    """As `frequency_rule`, for some spectra together; around 1 rad/s for none."""
+    peaks = [spectrum.peaks for spectrum in spectra] or [(1.0, 1.0)]
+    return frequency_rule(min(low for low, _ in peaks), max(high for _, high in peaks))
+
+
+def combined_peak(spectra: Sequence[HasPeaks]) -> float:
+    """ω in rad/s at the maximum of the sum of some spectra; NaN where there is no energy."""
+    omega, _ = combined_rule(spectra)
+    return refined_peak(
+        omega, sum((each.frequency_spectrum(omega) for each in spectra), np.zeros_like(omega))
+    )
 
 
 def refined_peak(omega: Array, spectrum: Array) -> float:

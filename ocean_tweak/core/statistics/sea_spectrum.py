@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..parameters.ocean_parameters import OceanParameters
 from ..spectral import dispersion
-from ..spectral.spectra import frequency_rule, refined_peak
+from ..spectral.spectra import combined_peak, combined_rule
 
 Array = NDArray[np.float64]
 
@@ -34,15 +34,13 @@ class SeaSpectrum:
 
     @cached_property
     def rule(self) -> tuple[Array, Array]:
-        """Nodes ω and weights, both in rad/s, of a quadrature that covers all of the energy."""
-        peaks = [layer.peak_frequency for layer in self.layers] or [1.0]
-        return frequency_rule(min(peaks), max(peaks))
+        """ω in rad/s and weights in rad/s of a quadrature that holds all of the energy."""
+        return combined_rule(self.layers)
 
     @cached_property
     def peak_frequency(self) -> float:
         """ω in rad/s at the maximum of S; NaN for a flat sea."""
-        omega, _ = self.rule
-        return refined_peak(omega, self.frequency_spectrum(omega))
+        return combined_peak(self.layers)
 
     @cached_property
     def peak_wave_number(self) -> float:
@@ -100,8 +98,8 @@ def polar_density(parameters: OceanParameters, rings: int = 48, directions: int 
 
 
 def shown_frequencies(sea: SeaSpectrum, size: int) -> Array:
-    """ω in rad/s around all peaks, evenly spaced in log ω."""
-    peaks = [layer.peak_frequency for layer in sea.layers] or [1.0]
+    """ω in rad/s around all peaks, evenly in log ω."""
+    peaks = [layer.peak_frequency for layer in sea.layers if np.isfinite(layer.peak_frequency)] or [1.0]
     return np.geomspace(_SHOWN[0] * min(peaks), _SHOWN[1] * max(peaks), size)
 
 

@@ -28,7 +28,6 @@ from ..spectral.sea_state import (
     state_of_moments,
     together,
 )
-from ..spectral.spreading import mean_cosine
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import WAVES, Gives
 from ..waves.spectral import WaveLayer
@@ -158,13 +157,19 @@ def sea_statistics(parameters: OceanParameters, state: InitialState) -> Statisti
 
 
 def _modes(state: InitialState, expected: bool) -> list[Modes]:
-    """Energies of all of a sea's states: expected ones, or those of this seed."""
-    return [
-        Modes(part.grid, part.expected_plus, part.expected_minus, part.omega)
-        if expected
-        else Modes(part.grid, np.abs(part.h_plus) ** 2, np.abs(part.h_minus) ** 2, part.omega)
-        for part in state.parts
-    ]
+    """Energies of all of a sea's states: expected over all seeds, or of this seed."""
+    modes = []
+    for part in state.parts:
+        along, against = part.expected_plus, part.expected_minus
+        if not expected:
+            along, against = np.abs(part.h_plus) ** 2, np.abs(part.h_minus) ** 2
+        if part.omega_against is None:
+            modes.append(Modes(part.grid, along, against, part.omega))
+        else:
+            none = np.zeros_like(along)
+            modes.append(Modes(part.grid, along, none, part.omega))
+            modes.append(Modes(part.grid, none, against, part.omega_against))
+    return modes
 
 
 def continuous_state(sea: SeaSpectrum) -> SeaState:
@@ -187,12 +192,23 @@ def _loop_speed_change(parameters: OceanParameters, state: InitialState) -> floa
         carrying = order[: int(np.searchsorted(cumulated, 0.99 * cumulated[-1])) + 1]
         true = _without_loop(parameters, part).ravel()[carrying]
         moving = true > 0.0
-        changes.append(np.max(np.abs(part.omega.ravel()[carrying][moving] / true[moving] - 1.0), initial=0.0))
+        for omega, shift in _both_ways(parameters, part):
+            seen = omega.ravel()[carrying][moving] - shift.ravel()[carrying][moving]
+            changes.append(np.max(np.abs(seen / true[moving] - 1.0), initial=0.0))
     return float(max(changes))
 
 
+def _both_ways(parameters: OceanParameters, part: InitialState) -> Iterator[tuple[Array, Array]]:
+    """ω of a state's waves along k and, where it is another, of those against it, and what a current adds."""
+    x, y = (0.0, 0.0) if parameters.current is None else parameters.current.velocity
+    shift = part.grid.kx * x + part.grid.ky * y
+    yield part.omega, shift
+    if part.omega_against is not None:
+        yield part.omega_against, -shift
+
+
 def _without_loop(parameters: OceanParameters, part: InitialState) -> Array:
-    """ω in rad/s that a state's waves would have without a loop."""
+    """ω in rad/s of a state's waves as it would be without a loop and a current."""
     own = None if part.layer is None else part.layer.frequencies(parameters, part.grid)
     if own is not None:
         return own
@@ -329,10 +345,7 @@ def spectrum_state(sea: SeaSpectrum) -> SeaState:
     spectrum, vector = np.zeros_like(omega), 0.0j
     for layer in sea.layers:
         energy = layer.frequency_spectrum(omega)
-        # directions vary slowly with ω: every eighth frequency is enough
-        cosine = mean_cosine(omega[::8] / layer.peak_frequency, layer.spreading)
-        towards = np.exp(1j * layer.layer.wind_direction)
-        vector += towards * np.sum(energy * np.interp(omega, omega[::8], cosine) * weight)
+        vector += np.sum(energy * layer.mean_vectors(omega) * weight)
         spectrum += energy
     m0, m2 = np.sum(spectrum * weight), np.sum(omega**2 * spectrum * weight)
     slope = np.sum(k**2 * spectrum * weight)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +39,11 @@ class InitialState:
     h_plus, h_minus : complex, m. The elevation's coefficient at time t is
         h_plus·exp(-iωt) + h_minus·exp(+iωt); h_minus(k) is the conjugate of h_plus(-k).
     omega : float64, rad/s; in a loop a multiple of 2π/T
-    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|², without hero
-        waves, which do not depend on the seed
+    omega_against : the same of h_minus, where a current makes it another; None for one that is as `omega`.
+        Against the current it may be negative: such waves are carried backwards
+    carried : x and y in m that a current has carried the waves by time 0
+    expected_plus, expected_minus : real, m²: means over all seeds of |h_plus|² and |h_minus|²,
+        without the hero waves, which no seed changes
     loop_duration : T in s, or None
     orbit_depth : depth in m for the horizontal orbital motion; infinite for deep water
     mirrored : whether ω is even in ky, which halves the work; it is always even in k
@@ -58,6 +62,8 @@ class InitialState:
     mirrored: bool = True
     others: tuple[InitialState, ...] = ()
     layer: Contribution | None = None
+    omega_against: Array | None = None
+    carried: tuple[float, float] = (0.0, 0.0)
 
     @property
     def parts(self) -> tuple[InitialState, ...]:
@@ -66,8 +72,11 @@ class InitialState:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all arrays, including those of the other states."""
-        own = (self.h_plus, self.h_minus, self.omega, self.expected_plus, self.expected_minus)
+        """Bytes of all arrays, with those of the other states."""
+        own = (
+            self.h_plus, self.h_minus, self.omega, self.omega_against, self.expected_plus,
+            self.expected_minus,
+        )  # fmt: skip
         factor = vars(self).get("potential_factor")
         return total_bytes((*own, factor, *self.others))
 
@@ -116,8 +125,8 @@ def _phasors(kx: Array, ky: Array, seed: int, amplitudes: str) -> ComplexArray:
 class Coefficients:
     """Accumulates the waves of all layers; arrays (N, N//2+1), transposed in memory.
 
-    grid, omega : of the sea
-    h_plus, h_minus, expected_plus, expected_minus : as in `InitialState`
+    grid, omega, omega_against : of the sea, in its current, as `InitialState` has them
+    h_plus, h_minus, expected_plus, expected_minus : of its state, as `InitialState` has them
     dtype : of the coefficients
     """
 
@@ -129,7 +138,8 @@ class Coefficients:
         self.h_plus, self.h_minus = (np.zeros(shape, dtype).T for _ in range(2))
         real = self.h_plus.real.dtype
         self.expected_plus, self.expected_minus = (np.zeros(shape, real).T for _ in range(2))
-        self.omega = _angular_frequency(self.grid, sea)
+        self.omega, self.omega_against = _frequencies(self.grid, still_frequency(self.grid, sea), sea)
+        self.carried = (0.0, 0.0) if sea.current is None else (sea.current.carried_x, sea.current.carried_y)
         self._others: list[InitialState] = []
 
     def set_apart(
@@ -142,11 +152,20 @@ class Coefficients:
         expected_minus: RealArray,
         mirrored: bool,
     ) -> None:
-        """Add a layer's waves that have their own frequencies; for the arguments see `InitialState`."""
+        """Add a layer's waves with frequencies of their own; the arguments are as `InitialState` has them,
+        but for what a current does to the frequencies."""
+        against = None
+        if self._sea.moves:
+            still = layer.frequencies(self._sea, self.grid)
+            if still is None:
+                still = still_frequency(self.grid, self._sea)
+            omega, against = _frequencies(self.grid, still, self._sea)
+            mirrored = False
         self._others.append(
             InitialState(
                 self.grid, h_plus, h_minus, omega, expected_plus, expected_minus,
                 self._sea.loop_duration, _orbit_depth(self._sea), mirrored, layer=layer,
+                omega_against=against, carried=self.carried,
             )
         )  # fmt: skip
 
@@ -161,7 +180,10 @@ class Coefficients:
             self.expected_minus,
             loop_duration=self._sea.repeats_after,
             orbit_depth=_orbit_depth(self._sea),
+            mirrored=self.omega_against is None,
             others=tuple(self._others),
+            omega_against=self.omega_against,
+            carried=self.carried,
         )
         state.potential_factor  # noqa: B018  made with the state, not by its first surface
         return state
@@ -213,17 +235,47 @@ def _match_height(grid: WaveVectorGrid, h_plus: ComplexArray, h_minus: ComplexAr
         h_minus *= factor
 
 
-def _angular_frequency(grid: WaveVectorGrid, parameters: OceanParameters) -> Array:
-    """ω(k), (N, N//2+1); in a sea that repeats after T the nearest multiple of 2π/T, at least one."""
+def still_frequency(grid: WaveVectorGrid, parameters: OceanParameters) -> Array:
+    """ω(k) in rad/s, (N, N//2+1), of water without a current and without a loop."""
     result = np.empty(grid.shape[::-1])
     for columns in grid.column_blocks():
         k = np.hypot(grid.kx[0, columns, np.newaxis], grid.ky[: grid.resolution // 2 + 1, 0])
         omega = dispersion.angular_frequency(k, parameters.dispersion, parameters.water)
-        if parameters.repeats_after is not None:
-            fundamental = 2.0 * np.pi / float(parameters.repeats_after)
-            omega = fundamental * np.maximum(1.0, np.rint(omega / fundamental))
         result[columns] = grid.mirror(omega)
     return result.T
+
+
+class Frequencies(NamedTuple):
+    """ω in rad/s, (N, N//2+1), of waves along k and against it; None where those are as along it."""
+
+    along: Array
+    against: Array | None
+
+
+def _in_loop(omega: Array, duration: Fraction | None) -> Array:
+    """The nearest multiples of 2π/T in a loop of duration T, at least one."""
+    if duration is None:
+        return omega
+    fundamental = 2.0 * np.pi / float(duration)
+    return np.asarray(fundamental * np.maximum(1.0, np.rint(omega / fundamental)))
+
+
+def _frequencies(grid: WaveVectorGrid, still: Array, parameters: OceanParameters) -> Frequencies:
+    """Of waves with frequencies in rad/s in still water, (N, N//2+1): ω = σ ± k·U in the sea's current.
+
+    In a loop both are rounded after they are shifted; a wave that the current holds may then stand still.
+    """
+    duration, current = parameters.repeats_after, parameters.current
+    if current is None or not parameters.moves:
+        return Frequencies(_in_loop(still, duration), None)
+    x, y = current.velocity
+    shift = grid.kx * x + grid.ky * y
+    both = [still + shift, still - shift]
+    if duration is not None:
+        fundamental = 2.0 * np.pi / float(duration)
+        both = [fundamental * np.rint(omega / fundamental) for omega in both]
+    along, against = (np.asfortranarray(omega) for omega in both)
+    return Frequencies(along, against)
 
 
 @dataclass(frozen=True)
@@ -246,14 +298,43 @@ def turns(state: InitialState, time: float | Fraction, columns: slice = _ALL) ->
     loop has bit for bit the phases of its start.
     """
     rows = state.grid.resolution // 2 + 1 if state.mirrored else state.grid.resolution
-    omega = state.omega.T[columns, :rows]
-    if state.loop_duration is None:
+    return _turns(state.omega.T[columns, :rows], time, state.loop_duration)
+
+
+def _turns(omega: Array, time: float | Fraction, period: Fraction | None) -> Array:
+    """ωt/2π, reduced to [-½, ½]."""
+    if period is None:
         result = omega * (float(time) / (2.0 * np.pi))
     else:
-        period = state.loop_duration
         turns_a_loop = np.rint(omega * (float(period) / (2.0 * np.pi)))
         result = turns_a_loop * float(Fraction(time) % period / period)
     result -= np.rint(result)
+    return result
+
+
+def _carried_phasors(
+    state: InitialState, time: float | Fraction, columns: slice, dtype: type, scale: float
+) -> tuple[ComplexArray, ComplexArray]:
+    """exp(-iωt) of waves along k and exp(+iωt) of those against it, (columns, N), in a current."""
+    assert state.omega_against is not None
+    grid, (x, y) = state.grid, state.carried
+    carried = (grid.kx[0, columns, np.newaxis] * x + grid.ky[:, 0] * y) / (2.0 * np.pi)
+    carried -= np.rint(carried)
+    period = state.loop_duration
+    along = -_turns(state.omega.T[columns], time, period) - carried
+    against = _turns(state.omega_against.T[columns], time, period) - carried
+    return _phasors_of(along, dtype, scale), _phasors_of(against, dtype, scale)
+
+
+def _phasors_of(turned: Array, dtype: type, scale: float) -> ComplexArray:
+    """exp(2πi·turns), times `scale`."""
+    real = np.float32 if dtype is np.complex64 else np.float64
+    angle = np.asarray(2.0 * np.pi * turned, real)
+    result: ComplexArray = np.empty(angle.shape, dtype)
+    np.cos(angle, out=result.real)
+    np.sin(angle, out=result.imag)
+    if scale != 1.0:
+        result *= real(scale)
     return result
 
 
@@ -271,20 +352,26 @@ def propagate(
     Chen (2014), eq. 9.
     """
     real = np.float32 if dtype is np.complex64 else np.float64
-    angle = np.asarray(2.0 * np.pi * turns(state, time, columns), real)
-    half: ComplexArray = np.empty(angle.shape, dtype)  # ω, and with it exp(iωt), is usually even in ky
-    np.cos(angle, out=half.real)
-    np.sin(angle, out=half.imag)
-    if scale != 1.0:
-        half *= real(scale)
-    turn = state.grid.mirror(half) if state.mirrored else half
-    against = np.multiply(state.h_minus.T[columns].astype(dtype, copy=False), turn, out=np.empty_like(turn))
-    along = np.conjugate(turn, out=turn)
-    along *= state.h_plus.T[columns].astype(dtype, copy=False)
+    h_plus: ComplexArray = state.h_plus.T[columns].astype(dtype, copy=False)
+    h_minus: ComplexArray = state.h_minus.T[columns].astype(dtype, copy=False)
+    if state.omega_against is None:
+        half = _phasors_of(turns(state, time, columns), dtype, scale)  # ω is mostly even in ky
+        turn = state.grid.mirror(half) if state.mirrored else half
+        against = np.multiply(h_minus, turn, out=np.empty_like(turn))
+        along = np.conjugate(turn, out=turn)
+        along *= h_plus
+    else:
+        along, against = _carried_phasors(state, time, columns, dtype, scale)
+        along *= h_plus
+        against *= h_minus
     rate = None
     if with_rate:
-        rate = ((dtype(-1j) * state.omega.T[columns].astype(real)) * (along - against)).T
-    # adding complex arrays as real pairs takes half the time
+        faster = dtype(-1j) * state.omega.T[columns].astype(real)
+        if state.omega_against is None:
+            rate = (faster * (along - against)).T
+        else:
+            rate = (faster * along + dtype(1j) * state.omega_against.T[columns].astype(real) * against).T
+    # adding complex numbers as pairs of real ones takes half the time
     np.add(along.view(real), against.view(real), out=along.view(real))
     for other in state.others:
         moved = propagate(other, time, dtype, with_rate, columns, scale)

@@ -22,6 +22,7 @@ from ..data.validation import Off, Validated, integer, number, switch
 if TYPE_CHECKING:
     from ..masks.parameters import Mask
     from ..numerics.grid import WaveVectorGrid
+    from ..parameters.current import Current
     from ..parameters.ocean_parameters import OceanParameters
     from ..spectral.directional_spectrum import DirectionalSpectrum
     from ..spectral.sea_state import SeaState
@@ -227,6 +228,10 @@ class Contribution(Validated):
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """Foam beside that of breaking waves, at rest positions in m, of one flat shape; None without any."""
         return None
+
+    def in_current(self, current: Current) -> Self:
+        """The layer as the water has it that a current moves: what is fixed to the ground goes against it."""
+        return self
 
     def strain_covariances(
         self, sea: OceanParameters, drift: tuple[float, float]

@@ -3,17 +3,22 @@
 
 from __future__ import annotations
 
+import cmath
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from ..data.errors import ParameterError
 from ..data.validation import Off, choice, nested, number, switch
 from ..masks.parameters import Mask
 from ..numerics import random
-from ..spectral import constants
+from ..spectral import constants, dispersion
 from ..spectral.directional_spectrum import DirectionalSpectrum
-from ..spectral.spectra import wind_at_10_m
+from ..spectral.equaliser import Equaliser, Equalising
+from ..spectral.measured import MeasuredSpectra
+from ..spectral.measured_spectrum import MeasuredSpectrum
+from ..spectral.spectra import combined_peak, wind_at_10_m
 from .contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
 
 if TYPE_CHECKING:
@@ -23,7 +28,7 @@ SPECTRA = ("TMA", "JONSWAP", "PIERSON_MOSKOWITZ", "PHILLIPS", "GENERALIZED_AB")
 SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "COSINE_2S", "FLAT")
 #: spectra that depend on the fetch
 FETCH_LIMITED = ("TMA", "JONSWAP")
-DEFINITIONS = ("WIND", "SEA_STATE")
+DEFINITIONS = ("WIND", "SEA_STATE", "MEASURED")
 DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
 
 _LARGEST_SEED = 2**31 - 1
@@ -33,6 +38,12 @@ _MOST_TURNED = 1e6
 
 #: number of layers whose random numbers are cached
 _KEPT = 4
+
+#: m/s; measured winds are taken for no more
+_STRONGEST_WIND = 100.0
+
+#: share of the energy above which it is told that it is left out
+_TOLD, _TOLD_OF_BLOCKED = 0.005, 0.0005
 
 
 @dataclass(frozen=True)
@@ -100,7 +111,10 @@ class WaveLayer(Contribution):
         "lower, the log law has no solution at every wind speed",
     )  # fmt: skip
     definition: str = choice(
-        "WIND", DEFINITIONS, "What sets the layer's energy: wind and fetch, or wave height and period"
+        "WIND",
+        DEFINITIONS,
+        "What sets the layer's energy: wind and fetch, wave height and period, or a "
+        "spectrum that was measured, turned by the layer's direction",
     )
     significant_wave_height: float = number(
         2.0,
@@ -149,9 +163,18 @@ class WaveLayer(Contribution):
     id: int = identity()
     seed: int = own_seed()
     mask: Mask | None = nested(Mask, optional=True)
+    equaliser: Equaliser | None = nested(Equaliser, optional=True)
+    measured: MeasuredSpectra | None = nested(MeasuredSpectra, optional=True)
+    measured_time: float = number(
+        0.0, 0.0, 1e8, "s", "Time after the first of the measured spectra; between two, their energies blend",
+        "three years", changes=True, left_out=True,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.definition == "MEASURED" and self.measured is None:
+            reason = "needs a spectrum in measured: read one from a file with the command `spectrum`"
+            raise ParameterError("definition", self.definition, reason)
         if self.shortest_wavelength >= self.longest_wavelength:
             raise ParameterError(
                 "shortest_wavelength", self.shortest_wavelength,
@@ -186,17 +209,104 @@ class WaveLayer(Contribution):
         return self.changed(**changes) if changes else self
 
     def directional_spectrum(self, sea: OceanParameters) -> DirectionalSpectrum | None:
-        """The spectrum in the sea's water, within the patch's band; None in a calm."""
+        """In the sea's water, within its band; None in a calm."""
+        plain = self.plain_spectrum(sea)
+        if plain is None:
+            return None
+        at_work = []
+        if self.equaliser is not None and not self.equaliser.is_flat:
+            at_work.append(_at_work(self.equaliser, (plain,)))
+        if sea.equaliser is not None and not sea.equaliser.is_flat:
+            at_work.append(_at_work(sea.equaliser, plain_spectra(sea)))
+        return replace(plain, equalisers=tuple(at_work)) if at_work else plain
+
+    def plain_spectrum(self, sea: OceanParameters) -> DirectionalSpectrum | None:
+        """Without equalisers."""
+        if self.definition == "MEASURED":
+            current = (0.0, 0.0) if sea.current is None else sea.current.velocity
+            return MeasuredSpectrum(self, sea.water, sea.dispersion, sea.band, current=current)
         return None if self.is_calm else DirectionalSpectrum(self, sea.water, sea.dispersion, sea.band)
 
     def wind(self, sea: OceanParameters) -> Wind | None:
-        """The layer's wind at 10 m."""
-        if self.is_calm or self.definition != "WIND" or self.amplitude_scale == 0.0:
+        """The layer's own, at 10 m, or what was measured beside the waves."""
+        if self.is_calm or self.definition == "SEA_STATE" or self.amplitude_scale == 0.0:
             return None
+        if self.definition == "MEASURED":
+            return self._measured_wind(sea)
         return Wind(wind_at_10_m(self.wind_speed, self.wind_height), self.wind_direction)
+
+    def _measured_wind(self, sea: OceanParameters) -> Wind | None:
+        """What was measured; else the layer's wind speed, along the waves' mean direction."""
+        assert self.measured is not None
+        found = self.measured.wind_at(self.measured_time)
+        speed = self.wind_speed if found is None else abs(found)
+        if speed < constants.CALM:
+            return None
+        at_10_m = wind_at_10_m(min(speed, _STRONGEST_WIND), self.wind_height)
+        if found is not None:
+            return Wind(at_10_m, self.wind_direction + cmath.phase(found))
+        spectrum = self.plain_spectrum(sea)
+        assert isinstance(spectrum, MeasuredSpectrum)
+        return Wind(at_10_m, spectrum.mean_direction)
+
+    def warnings(self, sea: OceanParameters) -> Iterable[str]:
+        """What of measured waves the domain, its samples or a current leaves out."""
+        spectrum = self.plain_spectrum(sea)
+        if not isinstance(spectrum, MeasuredSpectrum):
+            return
+        lengths, shares = spectrum.shares_of_lengths
+        samples = sea.domain_size / sea.resolution
+        longer, shorter = (
+            float(shares[lengths > sea.domain_size].sum()),
+            float(shares[lengths < 2.0 * samples].sum()),
+        )
+        if longer > _TOLD and not sea.is_cascade:
+            yield (
+                f"{100.0 * longer:.2g} % of the measured energy is in waves longer than the domain of "
+                f"{sea.domain_size:g} m: make it larger, or give it patches"
+            )
+        if shorter > _TOLD and not sea.is_cascade:
+            yield (
+                f"{100.0 * shorter:.2g} % of the measured energy is in waves shorter than two samples, "
+                f"{2.0 * samples:.3g} m: raise the resolution, or give it patches"
+            )
+        if spectrum.blocked_share > _TOLD_OF_BLOCKED:
+            yield (
+                f"The current blocks waves with {100.0 * spectrum.blocked_share:.2g} % of the measured "
+                "energy, which are left out: make the current slower, or turn it"
+            )
 
     @classmethod
     def memory(cls, sea: OceanParameters, real: int, moving: bool) -> MemoryNeed:
         """The cached random numbers."""
         kept = min(len(sea.active(cls)), _KEPT)
         return MemoryNeed(sea.resolution * (sea.resolution // 2 + 1) * kept * 2 * 2 * real, 0, 0)
+
+
+def plain_spectra(sea: OceanParameters) -> tuple[DirectionalSpectrum, ...]:
+    """Those of a sea's wave layers that have waves, without equalisers."""
+    spectra = (layer.plain_spectrum(sea) for layer in sea.active(WaveLayer))
+    return tuple(spectrum for spectrum in spectra if spectrum is not None)
+
+
+def with_settled_equaliser(sea: OceanParameters) -> OceanParameters:
+    """The same sea, whose equaliser says from which wavelength its bands are counted: that of the whole
+    sea's peak, of which a part of the sea does not know."""
+    equaliser = sea.equaliser
+    if equaliser is None or equaliser.is_flat or equaliser.wavelength:
+        return sea
+    peak = _at_work(equaliser, plain_spectra(sea)).peak
+    return sea.replace(equaliser=replace(equaliser, wavelength=min(1e6, math.tau / peak)))
+
+
+def _at_work(equaliser: Equaliser, spectra: tuple[DirectionalSpectrum, ...]) -> Equalising:
+    """An equaliser with the wave number that its bands are counted from: that of the spectra's peak, whatever
+    the band of a patch holds of it."""
+    if equaliser.wavelength:
+        return Equalising(equaliser, math.tau / equaliser.wavelength)
+    omega = combined_peak([replace(spectrum, patch_band=None) for spectrum in spectra])
+    if not math.isfinite(omega):  # there are no waves to change
+        return Equalising(equaliser, 1.0)
+    return Equalising(
+        equaliser, float(dispersion.wave_number(omega, spectra[0].dispersion, spectra[0].water))
+    )

@@ -123,11 +123,17 @@ def _between(centre: float, reach: float, spacing: float) -> NDArray[Any]:
 
 
 def add_hero_wave(
-    wave: HeroWave, grid: WaveVectorGrid, omega: Array, h_plus: ComplexArray, h_minus: ComplexArray
+    wave: HeroWave,
+    grid: WaveVectorGrid,
+    omega: tuple[Array, Array],
+    h_plus: ComplexArray,
+    h_minus: ComplexArray,
+    carried: tuple[float, float] = (0.0, 0.0),
 ) -> None:
     """Add a group's waves to coefficients (N, N//2+1) in m of those along +k and along -k.
 
-    omega : (N, N//2+1) rad/s, of the sea
+    omega : (N, N//2+1) rad/s, of the sea's waves along +k and along -k
+    carried : x and y in m that a current has carried them by time 0
 
     The modes are in phase at the focus, where their heights add up exactly to the crest height. The grid must
     hold all of them.
@@ -135,11 +141,12 @@ def add_hero_wave(
     n, spacing = grid.resolution, grid.spacing
     height = 0.5 * wave.crest_height / sum(float(np.sum(some.weight)) for some in _blocks(wave, spacing))
     for i, j, weight in _blocks(wave, spacing):
-        side = np.where(i < 0, -1, 1)  # the half plane holds one of two opposite wave vectors
-        turns = i * (wave.x / grid.domain_size % 1.0) + j * (wave.y / grid.domain_size % 1.0)
-        angle = (
-            omega[side * j % n, side * i] * wave.time + wave.phase - 2.0 * np.pi * (turns - np.rint(turns))
-        )
+        side = np.where(i < 0, -1, 1)  # of two opposite wave vectors the half plane holds one
+        x, y = wave.x - carried[0], wave.y - carried[1]
+        turns = i * (x / grid.domain_size % 1.0) + j * (y / grid.domain_size % 1.0)
+        at = side * j % n, side * i
+        own = np.where(side > 0, omega[0][at], omega[1][at])
+        angle = own * wave.time + wave.phase - 2.0 * np.pi * (turns - np.rint(turns))
         coefficients = height * weight * np.exp(1j * angle)
         along, against = i >= 0, i <= 0
         h_plus[j[along] % n, i[along]] += coefficients[along]

@@ -106,8 +106,9 @@ class HeroWave(Contribution):
         return needed_samples(self, sea.domain_size) <= resolution
 
     def add(self, sea: OceanParameters, to: Coefficients) -> None:
-        """Add its waves. They do not depend on the seed, so they have no expected energy."""
-        add_hero_wave(self, to.grid, to.omega, to.h_plus, to.h_minus)
+        """Add its waves; none of their energy is expected, which no seed changes."""
+        against = to.omega if to.omega_against is None else to.omega_against
+        add_hero_wave(self, to.grid, (to.omega, against), to.h_plus, to.h_minus, to.carried)
 
     @classmethod
     def to_begin_with(cls, sea: OceanParameters, time: float) -> Self:

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import Validated, choice, integer, nested, number, raster, switch
 from ...masks.parameters import Mask
-from ...numerics.memo import MEMO
+from ...numerics.memo import MEMO, remembered
 from ..contribution import Contribution, Gives, Key, MemoryNeed, Names, OwnFoam, muted
 from .elevation import Basin
 from .fields import WakeWaves, Where
@@ -27,6 +27,7 @@ from .outlook import WakeOutlooks, transverse_wavelength, wake_outlooks
 from .track import Track
 
 if TYPE_CHECKING:
+    from ...parameters.current import Current
     from ...parameters.ocean_parameters import OceanParameters
 
 Array = NDArray[np.float64]
@@ -196,6 +197,11 @@ class WakeLayer(Contribution):
             )
         self._check_speed(sea, path)
         self._check_area(path)
+        if sea.moves and not self.area_follows:
+            raise ParameterError(
+                f"{path}.area_follows", False,
+                "must be true in a current, which would carry the waves out of a square that rests",
+            )  # fmt: skip
 
     def _check_speed(self, sea: OceanParameters, path: str) -> None:
         speed, index = self.track.fastest
@@ -241,6 +247,10 @@ class WakeLayer(Contribution):
             return None
         hull = HullFoam(self.track, self.length, self.beam, self.foam, self.foam_half_life, sea.water.gravity)
         return hull.at(x, y, float(time))
+
+    def in_current(self, current: Current) -> Self:
+        """With the path through the water, which is another than that over the ground."""
+        return _through_water(self, current)
 
     @cached_property
     def _of_waves(self) -> Self:
@@ -295,3 +305,13 @@ class WakeLayer(Contribution):
             if not layer.muted
         ]
         return wake_outlooks(sea, found)
+
+
+@remembered("wakes' paths through the water")
+def _through_water(layer: WakeLayer, current: Current) -> Any:
+    """A wake with the path of its object through water that moves."""
+    path = []
+    for sample in layer.path:
+        come_x, come_y = current.carried(sample.time)
+        path.append(replace(sample, x=sample.x - come_x, y=sample.y - come_y))
+    return layer.changed(path=tuple(path))

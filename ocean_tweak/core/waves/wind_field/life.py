@@ -44,11 +44,17 @@ class Particles(NamedTuple):
 
 
 def particles_of(
-    births: Births, layer: WindFieldLayer, classes: RadiusClasses, gravity: float, shortest: float
+    births: Births,
+    layer: WindFieldLayer,
+    classes: RadiusClasses,
+    gravity: float,
+    shortest: float,
+    current: tuple[float, float] = (0.0, 0.0),
 ) -> Particles:
     """The particles of some waves, least divided first.
 
-    shortest : wavelength in m below which a wave has no particles
+    shortest : wavelength in m below which a wave has none
+    current : x and y in m/s, which carries them
     """
     speed = np.hypot(births.wind[:, 0], births.wind[:, 1])
     kept = wavelength(speed, gravity) >= shortest
@@ -82,6 +88,9 @@ def particles_of(
             share * rate,
             shape[these],
         )
+        if any(current):
+            of_age = (age[these] * current[0], age[these] * current[1], *current)
+            columns = (*(own + more for own, more in zip(columns, of_age, strict=False)), *columns[4:])
         parts.append(Particles._make(np.broadcast_to(column, angle.shape).ravel() for column in columns))
     return joined(parts)
 

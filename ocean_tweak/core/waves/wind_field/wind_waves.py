@@ -49,8 +49,10 @@ class WindWaves:
     def particles(self, time: float) -> Particles:
         """All particles at a time in s, layer by layer."""
         shortest = SHORTEST * self._parameters.domain_size / self._parameters.resolution
+        current = self._parameters.current
+        moving = (0.0, 0.0) if current is None else current.velocity
         parts = [
-            particles_of(emission.births(time), layer, self.classes, self._gravity, shortest)
+            particles_of(emission.births(time), layer, self.classes, self._gravity, shortest, moving)
             for emission, layer in zip(self._emissions, self._layers, strict=True)
         ]
         return joined(parts)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A current: one velocity of all the water, which carries waves, foam and what floats."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from ..data.validation import Validated, number
+
+
+@dataclass(frozen=True)
+class Current(Validated):
+    """How fast the water moves, and where to. A fixed place sees its waves turn with ω = σ + k·U.
+
+    Examples
+    --------
+    >>> Current(speed=1.5).velocity
+    (1.5, 0.0)
+    """
+
+    speed: float = number(
+        0.0, 0.0, 20.0, "m/s", "Speed of the current, which carries waves, foam and what floats",
+        "more than the fastest tidal stream", useful=(0.0, 3.0), changes=True,
+    )  # fmt: skip
+    direction: float = number(
+        0.0, -1e6, 1e6, "rad", "Direction towards which the current runs, counter-clockwise from +x",
+        "any number of turns, to the precision of a float", changes=True,
+    )  # fmt: skip
+    carried_x: float = number(
+        0.0, -1e12, 1e12, "m", "How far along x the water has come at time 0: of a current that changed, "
+        "what its present velocity times the time is not",
+        "a current of years", left_out=True,
+    )  # fmt: skip
+    carried_y: float = number(
+        0.0, -1e12, 1e12, "m", "How far along y the water has come at time 0: of a current that changed, "
+        "what its present velocity times the time is not",
+        "a current of years", left_out=True,
+    )  # fmt: skip
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """x and y in m/s."""
+        return self.speed * math.cos(self.direction), self.speed * math.sin(self.direction)
+
+    def carried(self, time: float) -> tuple[float, float]:
+        """x and y in m that the water has come by a time in s."""
+        x, y = self.velocity
+        return self.carried_x + x * time, self.carried_y + y * time
+
+    def turned(self, rotation: float) -> Current:
+        """The same current in axes that are turned by `rotation` rad."""
+        c, s = math.cos(rotation), math.sin(rotation)
+        return replace(
+            self, direction=self.direction - rotation,
+            carried_x=c * self.carried_x + s * self.carried_y,
+            carried_y=c * self.carried_y - s * self.carried_x,
+        )  # fmt: skip

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Heights of waves changed by octave of their wavelength: art direction that leaves all else true."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..data.validation import Off, Validated, changing_fields, number
+
+Array = NDArray[np.float64]
+
+LEAST_GAIN, MOST_GAIN = -24.0, 12.0
+
+
+def _gain(where: str) -> Any:
+    return number(
+        0.0, LEAST_GAIN, MOST_GAIN, "dB", f"Height of the waves {where}; 0 leaves them as they are, 6 "
+        "doubles them, -6 halves them",
+        "from a sixteenth of the height to four times it", changes=True, left_out=True,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Equaliser(Validated):
+    """Gains of waves by octave of their wavelength, around the spectrum's peak; smooth between.
+
+    Examples
+    --------
+    >>> Equaliser(shorter_2=6.0).is_flat
+    False
+    """
+
+    longer_3: float = _gain("eight times as long as those of the peak, and longer")
+    longer_2: float = _gain("four times as long as those of the peak")
+    longer_1: float = _gain("twice as long as those of the peak")
+    peak: float = _gain("of the peak")
+    shorter_1: float = _gain("half as long as those of the peak")
+    shorter_2: float = _gain("a quarter as long as those of the peak")
+    shorter_3: float = _gain("an eighth as long as those of the peak")
+    shorter_4: float = _gain("a sixteenth as long as those of the peak")
+    shorter_5: float = _gain("1/32 as long as those of the peak")
+    shorter_6: float = _gain("1/64 as long as those of the peak, and shorter")
+    wavelength: float = number(
+        0.0, 0.0, 1e6, "m", "Wavelength that the bands are counted from", "any domain",
+        off=Off(0.0, 100.0, "is that of the spectrum's peak"), left_out=True,
+    )  # fmt: skip
+
+    @property
+    def gains(self) -> tuple[float, ...]:
+        """Those of the ten bands in dB, from long waves to short."""
+        return tuple(getattr(self, name) for name in GAINS)
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether it changes nothing."""
+        return not any(self.gains)
+
+
+#: what of an equaliser can change during a shot: its gains, from long waves to short
+GAINS = changing_fields(Equaliser)
+
+#: octaves from the peak's wavelength down to that of each band
+OCTAVES: Array = np.arange(len(GAINS), dtype=np.float64) - GAINS.index("peak")
+
+
+class Equalising(NamedTuple):
+    """An equaliser at work: the wave number in rad/m that its bands are counted from is known."""
+
+    equaliser: Equaliser
+    peak: float
+
+    def gain(self, k: ArrayLike) -> Array:
+        """In dB over k in rad/m: from band to band by a smooth step, beyond the last as there."""
+        octaves = np.log2(np.maximum(np.asarray(k, np.float64), 1e-300) / self.peak)
+        position = np.clip(octaves - OCTAVES[0], 0.0, len(OCTAVES) - 1.0)
+        below = np.minimum(position.astype(np.int64), len(OCTAVES) - 2)
+        x = position - below
+        gains = np.array(self.equaliser.gains)
+        return gains[below] + x * x * (3.0 - 2.0 * x) * (gains[below + 1] - gains[below])
+
+    def energy_gain(self, k: ArrayLike) -> Array:
+        """What energy is multiplied by, over k in rad/m: heights grow by 10^(dB/20), energy by its square."""
+        return np.asarray(10.0 ** (0.1 * self.gain(k)))
