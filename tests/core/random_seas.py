@@ -28,6 +28,7 @@ from ocean_tweak.core import (
     WindKey,
 )
 from ocean_tweak.core.data.validation import OPEN
+from ocean_tweak.core.parameters.ocean_parameters import Current, Equaliser, MeasuredSpectra
 
 
 def values(field: dataclasses.Field[Any]) -> st.SearchStrategy[Any]:
@@ -56,10 +57,42 @@ def instances(cls: type, **fixed: st.SearchStrategy[Any]) -> st.SearchStrategy[A
     return st.builds(cls, **strategies, **fixed)
 
 
+def measured_spectra() -> st.SearchStrategy[MeasuredSpectra]:
+    """A few bins at one or two times, with directions or without."""
+
+    def spectra(
+        energies: list[float], r1: float, towards: float, is_told: bool, tail: bool
+    ) -> MeasuredSpectra:
+        times = len(energies) // 3
+        f = np.array([0.05, 0.1, 0.4])
+        moments = np.tile([r1 * math.cos(towards), r1 * math.sin(towards), 0.0, r1**2], (times, 3, 1))
+        return MeasuredSpectra(
+            frequencies=Raster(np.stack([f, np.gradient(f)], axis=-1)[np.newaxis]),
+            energy=Raster(np.reshape(energies, (times, 3, 1))),
+            moments=Raster(moments) if is_told else None,
+            times=Raster([[0.0, 3600.0]]) if times == 2 else None,
+            tail=tail,
+        )
+
+    energies = st.sampled_from([3, 6]).flatmap(
+        lambda count: st.lists(st.floats(0.0, 100.0, width=32), min_size=count, max_size=count)
+    )
+    return st.builds(
+        spectra, energies, st.floats(0.0, 1.0), st.floats(-7.0, 7.0), st.booleans(), st.booleans()
+    )
+
+
 BAND = st.tuples(st.floats(0.0, 100.0), st.floats(101.0, 1e6))
 LAYERS = st.builds(
     lambda layer, band: dataclasses.replace(layer, shortest_wavelength=band[0], longest_wavelength=band[1]),
-    instances(WaveLayer, shortest_wavelength=st.just(0.0), longest_wavelength=st.just(1e6), id=st.just(-1)),
+    instances(
+        WaveLayer,
+        shortest_wavelength=st.just(0.0),
+        longest_wavelength=st.just(1e6),
+        id=st.just(-1),
+        measured=measured_spectra(),
+        equaliser=st.one_of(st.none(), instances(Equaliser)),
+    ),
     BAND,
 )
 COMMON = {
@@ -67,6 +100,8 @@ COMMON = {
     "water": instances(Water),
     "foam": instances(Foam, resolution=st.sampled_from([0, 16, 24])),
     "timing": st.just(Timing()),
+    "current": st.one_of(st.none(), instances(Current)),
+    "equaliser": st.one_of(st.none(), instances(Equaliser)),
 }
 SEAS = instances(
     OceanParameters,

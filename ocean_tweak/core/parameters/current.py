@@ -9,6 +9,10 @@ from dataclasses import dataclass, replace
 from ..data.validation import Validated, number
 
 
+#: m that water comes in a year of the fastest stream
+_FARTHEST = 1e9
+
+
 @dataclass(frozen=True)
 class Current(Validated):
     """How fast the water moves, and where to. A fixed place sees its waves turn with ω = σ + k·U.
@@ -28,12 +32,12 @@ class Current(Validated):
         "any number of turns, to the precision of a float", changes=True,
     )  # fmt: skip
     carried_x: float = number(
-        0.0, -1e12, 1e12, "m", "How far along x the water has come at time 0: of a current that changed, "
+        0.0, -_FARTHEST, _FARTHEST, "m", "How far along x the water has come at time 0: of a current that changed, "
         "what its present velocity times the time is not",
         "a current of years", left_out=True,
     )  # fmt: skip
     carried_y: float = number(
-        0.0, -1e12, 1e12, "m", "How far along y the water has come at time 0: of a current that changed, "
+        0.0, -_FARTHEST, _FARTHEST, "m", "How far along y the water has come at time 0: of a current that changed, "
         "what its present velocity times the time is not",
         "a current of years", left_out=True,
     )  # fmt: skip
@@ -51,8 +55,8 @@ class Current(Validated):
     def turned(self, rotation: float) -> Current:
         """The same current in axes that are turned by `rotation` rad."""
         c, s = math.cos(rotation), math.sin(rotation)
+        x, y = c * self.carried_x + s * self.carried_y, c * self.carried_y - s * self.carried_x
         return replace(
-            self, direction=self.direction - rotation,
-            carried_x=c * self.carried_x + s * self.carried_y,
-            carried_y=c * self.carried_y - s * self.carried_x,
+            self, direction=math.remainder(self.direction - rotation, math.tau),
+            carried_x=min(max(x, -_FARTHEST), _FARTHEST), carried_y=min(max(y, -_FARTHEST), _FARTHEST),
         )  # fmt: skip
