@@ -4,10 +4,13 @@
 from .data.raster import Raster
 from .parameters.ocean_parameters import (
     Coast,
+    Current,
+    Equaliser,
     Foam,
     HeroWave,
     ImageLayer,
     Mask,
+    MeasuredSpectra,
     OceanParameters,
     ParameterError,
     Patch,
@@ -28,10 +31,13 @@ from .waves.wake.elevation import wake_elevation
 __all__ = [
     "Area",
     "Coast",
+    "Current",
+    "Equaliser",
     "Foam",
     "HeroWave",
     "ImageLayer",
     "Mask",
+    "MeasuredSpectra",
     "Ocean",
     "OceanParameters",
     "ParameterError",

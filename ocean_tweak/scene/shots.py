@@ -9,11 +9,12 @@ from collections.abc import Iterable, Iterator
 import bpy
 import numpy as np
 
-from ..core import Mask, OceanParameters, ParameterError, Raster
+from ..core import Current, Mask, OceanParameters, ParameterError, Raster
 from ..core.data.frames import Frame
 from ..core.data.raster import LARGEST_SIDE
 from ..core.data.validation import changing_fields
 from ..core.parameters.shot import OCEAN_TIME, Animation, Samples, Shot
+from ..core.spectral.equaliser import GAINS
 from . import handlers, mask_place
 from .animated import clock_of, has_own_time, is_animated, key_each_frame, set_keys, shown_settings
 from .settings import OceanObjectError, settings_of
@@ -140,6 +141,14 @@ def _values(parameters: OceanParameters) -> Iterator[tuple[str, float | Raster]]
         own = changing_fields(type(layer))
         yield from ((f"layers.{index}.{name}", getattr(layer, name)) for name in own)
     yield from _places("", parameters.mask)
+    owners = (("", parameters), *((f"layers.{n}.", layer) for n, layer in enumerate(parameters.layers)))
+    for owner, holder in owners:
+        equaliser = getattr(holder, "equaliser", None)
+        if equaliser is not None:
+            yield from ((f"{owner}equaliser.{name}", getattr(equaliser, name)) for name in GAINS)
+    if parameters.current is not None:
+        names = changing_fields(Current)
+        yield from ((f"current.{name}", getattr(parameters.current, name)) for name in names)
     for name, entries in (("layers", parameters.layers), ("patches", parameters.patches)):
         for index, entry in enumerate(entries):
             yield from _places(f"{name}.{index}.", entry.mask)

@@ -21,6 +21,7 @@ from bpy.props import (
 )
 
 from ..core import (
+    Equaliser,
     ImageLayer,
     OceanParameters,
     ParameterError,
@@ -33,7 +34,7 @@ from ..core.data.plain_data import to_plain
 from ..core.data.raster import Raster
 from ..core.waves.contribution import Contribution
 from ..core.waves.kinds import shown
-from ..scene import source_images, wake_paths, wind_recording
+from ..scene import measured_text, source_images, wake_paths, wind_recording
 from ..scene.source_images import ImageSource
 from ..scene.units import shortest_decimal
 from . import mask_properties, parameter_properties
@@ -49,6 +50,12 @@ SOURCES = {
     "IMAGE": ("Image", "Red and green of an image are the wind along x and along y"),
     "RECORDING": ("Recording", "What Record Wind took from force fields, or keys that came with a file"),
 }
+
+
+class OCEAN_PG_equaliser(bpy.types.PropertyGroup):
+    """Heights of waves by octave of their length."""
+
+    __annotations__ = parameter_properties.annotations(Equaliser, changed)
 
 
 #: properties of kinds besides those of their parameters: of a wind field where its wind comes from, with the
@@ -98,6 +105,14 @@ _OWN_PROPERTIES: dict[str, dict[str, Any]] = {
         "object": PointerProperty(
             name="Object", type=bpy.types.Object, options=set(), **_OVERRIDE,
             description="What makes the waves: their path follows its keys. Without one it stays as it is",
+        ),
+    },
+    "WAVES": {
+        "spectra": StringProperty(**_HIDDEN),
+        "equaliser": PointerProperty(type=OCEAN_PG_equaliser, **_OVERRIDE),
+        "use_equaliser": BoolProperty(
+            name="Equaliser", **_SHOWN,
+            description="Change the height of the layer's waves by octave of their length",
         ),
     },
 }  # fmt: skip
@@ -175,10 +190,25 @@ def _read(layer: bpy.types.PropertyGroup, metres: Fraction) -> object:
     values = parameter_properties.read(group, kind, metres)
     if kind.has("mask"):
         values["mask"] = mask_properties.read(group.mask, metres)
+    if kind is WaveLayer:
+        values["measured"] = measured_text.from_text(group.spectra)
+        values["equaliser"] = read_equaliser(group, metres)
     if kind.kind not in _RASTERS:
         return {**values, "kind": kind.kind}
     values.update(_RASTERS[kind.kind](group))
     return source_images.made_layer(kind, tuple(values.items()))
+
+
+def read_equaliser(group: bpy.types.PropertyGroup, metres: Fraction) -> dict[str, Any] | None:
+    """That of a layer or of an ocean, not yet validated; None while it is switched off."""
+    return parameter_properties.read(group.equaliser, Equaliser, metres) if group.use_equaliser else None
+
+
+def write_equaliser(group: bpy.types.PropertyGroup, equaliser: Equaliser | None, metres: Fraction) -> None:
+    """Take over the equaliser of a layer or of an ocean."""
+    group.use_equaliser = equaliser is not None
+    if equaliser is not None:
+        parameter_properties.write(group.equaliser, Equaliser, to_plain(equaliser), metres)
 
 
 def images(layers: bpy.types.bpy_prop_collection) -> set[ImageSource]:
@@ -221,6 +251,9 @@ def write(layers: bpy.types.bpy_prop_collection, parameters: OceanParameters, me
         elif isinstance(layer, WakeLayer):
             item.wake.recording = wake_paths.to_text(layer)
             item.wake.object = makers.get(item.wake.recording)
+        elif isinstance(layer, WaveLayer):
+            item.spectra = measured_text.to_text(layer.measured)
+            write_equaliser(item, layer.equaliser, metres)
 
 
 def set_recording(group: bpy.types.PropertyGroup, keys: tuple[WindKey, ...]) -> None:
@@ -343,6 +376,7 @@ def _choose_image(group: bpy.types.PropertyGroup, raster: Raster, known: set[Ima
 
 CLASSES = (
     *mask_properties.CLASSES,
+    OCEAN_PG_equaliser,
     *GROUPS.values(),
     OCEAN_PG_layer,
 )

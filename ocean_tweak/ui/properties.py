@@ -16,12 +16,23 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..core import Foam, Mask, OceanParameters, PathSample, Spray, Timing, Water, WaveLayer
+from ..core import (
+    Current,
+    Equaliser,
+    Foam,
+    Mask,
+    OceanParameters,
+    PathSample,
+    Spray,
+    Timing,
+    Water,
+    WaveLayer,
+)
 from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.validation import Off
 from ..core.waves.kinds import shown
 from ..nodes.names import MAP_INPUTS
-from ..scene import cache_place, middle, ocean_object, wake_paths
+from ..scene import cache_place, current_way, middle, ocean_object, wake_paths
 from ..scene.cache_place import DEFAULT_CACHE
 from ..scene.image_sequence import ImageSequence
 from ..scene.settings import (
@@ -42,6 +53,7 @@ from .usd_properties import OCEAN_PG_usd
 
 # frame rate and time stretching are the scene's
 _FROM_SCENE = ("fps", "stretch")
+_FROM_KEYS = ("carried_x", "carried_y")
 # patches are always merged, on the samples that are rendered
 _FROM_RESOLUTION = ("merged_resolution",)
 
@@ -70,6 +82,12 @@ class OCEAN_PG_water(bpy.types.PropertyGroup):
     __annotations__ = parameter_properties.annotations(Water, changed)
 
 
+class OCEAN_PG_current(bpy.types.PropertyGroup):
+    """The current; how far it has come follows from its keys."""
+
+    __annotations__ = parameter_properties.annotations(Current, changed, _FROM_KEYS)
+
+
 class OCEAN_PG_foam(bpy.types.PropertyGroup):
     """How whitecaps cover the sea and how long they last."""
 
@@ -95,6 +113,14 @@ class OCEAN_PG_maps(bpy.types.PropertyGroup):
 
 
 _SWITCHES = {
+    "use_current": BoolProperty(
+        name="Current", default=False, **_SHOWN,
+        description="Let the water move: a current carries waves, foam, wakes and what floats",
+    ),
+    "use_equaliser": BoolProperty(
+        name="Equaliser", default=False, **_SHOWN,
+        description="Change the height of all spectral waves by octave of their length",
+    ),
     "use_foam": BoolProperty(
         name="Foam", default=True, **_SHOWN,
         description="Write the attributes foam (how much of the water is white), breaking (how much "
@@ -138,6 +164,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "layers": CollectionProperty(type=OCEAN_PG_layer, **_OVERRIDE),
         "patches": CollectionProperty(type=OCEAN_PG_patch, **_OVERRIDE),
         "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
+        "current": PointerProperty(type=OCEAN_PG_current, **_OVERRIDE),
+        "equaliser": PointerProperty(type=layer_properties.OCEAN_PG_equaliser, **_OVERRIDE),
         "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
         "spray": PointerProperty(type=OCEAN_PG_spray, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
@@ -250,6 +278,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data = parameter_properties.read(self, OceanParameters, metres, _FROM_RESOLUTION)
         data["water"] = parameter_properties.read(self.water, Water, metres)
         data["foam"] = parameter_properties.read(self.foam, Foam, metres)
+        data["equaliser"] = layer_properties.read_equaliser(self, metres)
         if self.use_spray:
             data["spray"] = parameter_properties.read(self.spray, Spray, metres)
         data["layers"] = layer_properties.read(self.layers, metres)
@@ -260,6 +289,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         data["merged_resolution"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
+        if self.use_current:
+            told = from_plain(Current, parameter_properties.read(self.current, Current, metres, _FROM_KEYS))
+            data["current"] = current_way.carried(self, told, scene, self.timing.start_frame)
         data["loop_duration"] = str(self.loop_frames / frame_rate(scene)) if self.use_loop else None
         return from_plain(OceanParameters, data)  # as it is today, and of no size that a file could have
 
@@ -341,8 +373,9 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     def blender_values(self, path: str, values: Sequence[float], scene: bpy.types.Scene) -> list[float]:
         """Values of a parameter that can be animated, by its path, in the units of its property."""
-        of_mask = path.rpartition(".")[0].endswith("mask")
-        kind = Mask if of_mask else WaveLayer if path.startswith("layers.") else OceanParameters
+        belonging = {"mask": Mask, "equaliser": Equaliser, "current": Current}
+        usual = WaveLayer if path.startswith("layers.") else OceanParameters
+        kind = belonging.get(path.rpartition(".")[0].rpartition(".")[2], usual)
         unit = parameter_properties.unit_of(kind, path.rpartition(".")[2], metres_per_unit(scene))
         return [value / unit for value in values]
 
@@ -369,6 +402,10 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             parameter_properties.write(self, OceanParameters, data, metres, _FROM_RESOLUTION)
             parameter_properties.write(self.water, Water, data["water"], metres)
             parameter_properties.write(self.foam, Foam, data["foam"], metres)
+            self.use_current = parameters.current is not None
+            if parameters.current is not None:
+                parameter_properties.write(self.current, Current, data["current"], metres, _FROM_KEYS)
+            layer_properties.write_equaliser(self, parameters.equaliser, metres)
             self.use_spray = parameters.spray is not None
             if parameters.spray is not None:
                 parameter_properties.write(self.spray, Spray, data["spray"], metres)
@@ -388,6 +425,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
 CLASSES = (
     OCEAN_PG_water,
+    OCEAN_PG_current,
     *layer_properties.CLASSES,
     OCEAN_PG_foam,
     OCEAN_PG_spray,

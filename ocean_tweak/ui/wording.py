@@ -47,6 +47,17 @@ LABELS = {
     "noise_direction": "Direction",
     "noise_evolution": "Evolution",
     "noise_seed": "Seed",
+    "longer_3": "8 × (dB)",
+    "longer_2": "4 × (dB)",
+    "longer_1": "2 × (dB)",
+    "peak": "Peak (dB)",
+    "shorter_1": "1/2 (dB)",
+    "shorter_2": "1/4 (dB)",
+    "shorter_3": "1/8 (dB)",
+    "shorter_4": "1/16 (dB)",
+    "shorter_5": "1/32 (dB)",
+    "shorter_6": "1/64 (dB)",
+    "measured_time": "Measured Time",
 }
 
 #: what stands in the place of a field's number while it is switched off
@@ -59,6 +70,7 @@ OFF = {
     "short_wave_cutoff": "None",
     "proxy": "None",
     "noise_evolution": "None",
+    "wavelength": "Peak",
 }
 
 
@@ -113,6 +125,7 @@ CHOICES = {
     "definition": {
         "WIND": ("Wind", "Wind speed and fetch"),
         "SEA_STATE": ("Sea State", "Wave height and period, from a forecast or a buoy"),
+        "MEASURED": ("Measured", "A spectrum from a file: File > Import > Measured Sea"),
     },
     "spectrum": {
         "TMA": ("TMA", "JONSWAP, lower where the water is shallow (Bouws and others 1985)"),

@@ -42,7 +42,14 @@ def awkward_sea(core, seed):
     fps = Fraction(chance.choice(["24", "24000/1001", "25", "12.5", "29.97"]))
     longest = 1e5 + chance.random()
     masks = [awkward_mask(core, chance) if index == seed % 4 else None for index in range(1 + seed % 3)]
-    layers = [awkward(core.WaveLayer, chance, longest_wavelength=longest, mask=mask) for mask in masks]
+    layers = [
+        awkward(
+            core.WaveLayer, chance, longest_wavelength=longest, mask=mask,
+            measured=awkward_spectra(core, chance),
+            equaliser=awkward(core.Equaliser, chance) if chance.random() < 0.5 else None,
+        )
+        for mask in masks
+    ]  # fmt: skip
     timing = core.Timing(fps=fps, start_frame=9)
     given = {"resolution": SAMPLES, "merged_resolution": 0}
     if seed % 2:
@@ -53,7 +60,16 @@ def awkward_sea(core, seed):
     return awkward(
         core.OceanParameters, chance, layers=tuple(layers), timing=timing,
         water=awkward(core.Water, chance), foam=awkward(core.Foam, chance, resolution=20 + 2 * seed),
-        loop_duration=Fraction(720) / fps, **given,
+        loop_duration=Fraction(720) / fps, equaliser=awkward(core.Equaliser, chance),
+        current=awkward(core.Current, chance, carried_x=0.0, carried_y=0.0), **given,
+    )  # fmt: skip
+
+
+def awkward_spectra(core, chance):
+    numbers = [[chance.random() for _ in range(3)] for _ in range(2)]
+    return core.MeasuredSpectra(
+        frequencies=core.Raster([[[0.05, 0.01], [0.1, 0.02 + 0.01 * chance.random()], [0.3, 0.1]]]),
+        energy=core.Raster(numbers), times=core.Raster([[0.0, 3600.0]]), absolute=False, tail=True,
     )  # fmt: skip
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 from ..data.validation import Validated, number
 
-
 #: m that water comes in a year of the fastest stream
 _FARTHEST = 1e9
 
@@ -32,13 +31,13 @@ class Current(Validated):
         "any number of turns, to the precision of a float", changes=True,
     )  # fmt: skip
     carried_x: float = number(
-        0.0, -_FARTHEST, _FARTHEST, "m", "How far along x the water has come at time 0: of a current that changed, "
-        "what its present velocity times the time is not",
+        0.0, -_FARTHEST, _FARTHEST, "m", "How far along x the water has come at time 0: of "
+        "a current that changed, what its present velocity times the time is not",
         "a current of years", left_out=True,
     )  # fmt: skip
     carried_y: float = number(
-        0.0, -_FARTHEST, _FARTHEST, "m", "How far along y the water has come at time 0: of a current that changed, "
-        "what its present velocity times the time is not",
+        0.0, -_FARTHEST, _FARTHEST, "m", "How far along y the water has come at time 0: of "
+        "a current that changed, what its present velocity times the time is not",
         "a current of years", left_out=True,
     )  # fmt: skip
 

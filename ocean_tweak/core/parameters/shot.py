@@ -254,7 +254,8 @@ class Shot:
         frames = (*range(animation.first_frame, math.ceil(frame)), frame)
         moments = [self._water(each) for each in frames]
         (x, y), then = moments[0]
-        come = x * then, y * then
+        base = self.parameters.current or current
+        come = base.carried_x + x * then, base.carried_y + y * then
         for (velocity, then), (next_velocity, later) in itertools.pairwise(moments):
             mean = (0.5 * (a + b) for a, b in zip(velocity, next_velocity, strict=True))
             come_x, come_y = (here + each * (later - then) for here, each in zip(come, mean, strict=True))

@@ -34,6 +34,14 @@ class MeasuredSpectra(Validated):
     """Spectra of one place. Directions are those towards which waves run, counter-clockwise from east.
 
     Raises ParameterError for numbers that are no spectrum.
+
+    Examples
+    --------
+    >>> from ocean_tweak.core import MeasuredSpectra, Raster
+    >>> bins = Raster([[[0.08, 0.02], [0.10, 0.02], [0.12, 0.02]]])  # middles and widths, Hz
+    >>> swell = MeasuredSpectra(frequencies=bins, energy=Raster([[5.0, 12.0, 3.0]]))
+    >>> float(round(4.0 * swell.table(0.0, np.ones((3, 720)) / 6.283).m0 ** 0.5, 2))
+    2.53
     """
 
     frequencies: Raster = raster(
