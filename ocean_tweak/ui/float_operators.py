@@ -79,7 +79,7 @@ class _Rides(OnOcean):
         min=0.0,
         soft_max=1000.0,
         unit="LENGTH",
-        description="Size of what floats: shorter waves do not move it. 0 follows the surface at the "
+        description="Size of the floating object: shorter waves do not move it. 0 follows the surface at the "
         "object's origin",
     )
     draft: FloatProperty(
@@ -212,7 +212,7 @@ class OBJECT_OT_ocean_float_bake(_Rides, SteppedOperator, bpy.types.Operator):
 
 
 class OBJECT_OT_ocean_float_remove(bpy.types.Operator):
-    """Let the selected objects float no more."""
+    """Stop floating the selected objects."""
 
     bl_idname = "object.ocean_tweak_float_remove"
     bl_description = (

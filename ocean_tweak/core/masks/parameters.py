@@ -36,50 +36,48 @@ class Mask(Validated):
     )
     image: Raster | None = raster("Weights from 0 to 1, stretched over the domain", channels=1)
     x: float = number(
-        0.0, -1e6, 1e6, "m", "Distance: the place from which it is measured", "far outside of any domain"
+        0.0, -1e6, 1e6, "m", "Distance: x of the place from which it is measured", "far outside any domain"
     )
     y: float = number(
-        0.0, -1e6, 1e6, "m", "Distance: the place from which it is measured", "far outside of any domain"
+        0.0, -1e6, 1e6, "m", "Distance: y of the place from which it is measured", "far outside any domain"
     )
     lines: Raster | None = raster(
-        "Distance: straight lines from which it is measured, not from a place: x and y of one end, x and y "
+        "Distance: straight lines from which it is measured instead of a place: x and y of one end, x and y "
         "of the other, m", channels=4, left_out=True,
     )  # fmt: skip
     inner_radius: float = number(50.0, 0.0, 1e6, "m", "Distance up to which the weight is 0", "any domain")
-    outer_radius: float = number(
-        150.0, 1e-3, 1e6, "m", "Distance from which on the weight is 1", "any domain"
-    )
-    inverted: bool = switch(False, "Exchange 0 and 1: waves near the place, or where the image is dark")
+    outer_radius: float = number(150.0, 1e-3, 1e6, "m", "Distance from which the weight is 1", "any domain")
+    inverted: bool = switch(False, "Swap 0 and 1: waves near the place, or where the image is dark")
     strength: float = number(
-        1.0, 0.0, 1.0, "", "How much of the waves it takes where the weight is 0: all of them, or a share",
-        "a share", left_out=True,
+        1.0, 0.0, 1.0, "", "Fraction of the waves that the mask removes where the weight is 0", "a share",
+        left_out=True,
     )  # fmt: skip
     noise_size: float = number(
         100.0, 0.1, 100e3, "m", "Noise: distance from one gust to the next", "as the domain", left_out=True
     )
     noise_coverage: float = number(
-        0.5, 0.01, 0.99, "", "Noise: mean weight, the share of the sea where waves are", "never all or none",
+        0.5, 0.01, 0.99, "", "Noise: mean weight, the fraction of the sea with waves", "never all or none",
         left_out=True,
     )  # fmt: skip
     noise_contrast: float = number(
-        0.8, 0.0, 0.99, "", "Noise: 0 is the same weight everywhere, towards 1 it has sharp edges",
+        0.8, 0.0, 0.99, "", "Noise: 0 is the same weight everywhere; towards 1, gusts get sharp edges",
         "at 1 an edge would be a step", left_out=True,
     )  # fmt: skip
     noise_speed: float = number(
-        10.0, 0.0, 1000.0, "m/s", "Noise: how fast it moves; gusts do about as fast as the wind", "any wind",
-        useful=(0.0, 50.0), left_out=True,
+        10.0, 0.0, 1000.0, "m/s", "Noise: speed at which it moves; gusts move about as fast as the wind",
+        "any wind", useful=(0.0, 50.0), left_out=True,
     )  # fmt: skip
     noise_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Noise: where it moves to, counter-clockwise from +x, as winds are told",
+        0.0, -1e6, 1e6, "rad", "Noise: direction towards which it moves, counter-clockwise from +x",
         "any number of turns", left_out=True,
     )  # fmt: skip
     noise_evolution: float = number(
-        30.0, 0.0, 1e6, "s", "Noise: time in which it becomes another, apart from moving",
+        30.0, 0.0, 1e6, "s", "Noise: time in which it changes shape, besides moving",
         "from a flicker to days", useful=(0.0, 300.0), left_out=True,
-        off=Off(0.0, 30.0, "stays the same while it moves"),
+        off=Off(0.0, 30.0, "keeps its shape while it moves"),
     )  # fmt: skip
     noise_seed: int = integer(
-        0, 0, 2**31 - 1, "Noise: number of this one among all that are alike", "Blender's whole numbers",
+        0, 0, 2**31 - 1, "Noise: random seed", "Blender's whole numbers",
         left_out=True,
     )  # fmt: skip
 

@@ -57,7 +57,7 @@ FORM_OPTIONS: dict[str, Option] = dict(
     )
 )
 
-#: of an artist in doubt
+#: the usual form
 DEFAULT_FORM = "clips"
 
 DEFAULTS: dict[str, Any] = {
