@@ -44,7 +44,7 @@ same-seas:  ## whether the seas are those of the commit BASE, bit for bit
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.same_seas $(or $(BASE),HEAD)
 
-lint:       ## formatting, lint, types of the core, import layers, spelling; FIX=1 formats first
+lint:       ## formatting, lint, types of the core, import layers, spelling, wordings; FIX=1 formats first
 	@$(PYTHON) -m tools.setup python-5.2
 	@$(VENV) -m tools.lint
 

@@ -14,6 +14,7 @@ BIN = Path(sys.executable).parent
 CHECKS = (
     ("ruff", "format", "--check"), ("ruff", "check"), ("mypy",), ("lint-imports",),
     ("python", "-m", "tools.unused"), ("python", "-m", "tools.arrows"), ("codespell",),
+    ("python", "-m", "tools.words"),
 )  # fmt: skip
 FIXES = (("ruff", "format"), ("ruff", "check", "--fix"))
 

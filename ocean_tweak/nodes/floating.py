@@ -30,7 +30,7 @@ RIDE_INPUTS = (
     OCEAN_INPUT,
     Plug(
         "Waterline", "NodeSocketFloat", 0.0,
-        "Size of what floats: shorter waves do not move it. 0 follows the surface at a point",
+        "Size of the floating object: shorter waves do not move it. 0 follows the surface at a point",
     ),
     Plug("Draft", "NodeSocketFloat", 0.0, "How deep it sits: from its lowest point up to the surface"),
     Plug("Keel", "NodeSocketFloat", 0.0, "How far below the origin its lowest point is"),

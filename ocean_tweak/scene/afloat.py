@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What floats before the camera of a ready scene, by whose size the sea is seen to be large or small."""
+"""Floating objects in front of the camera of a ready scene, which give the sea its scale."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _best_seen(
     """x and y in the patch, in m, where the water before it hides as much as is wanted.
 
     angle : of the camera, from one side of its picture to the other
-    heading : of what floats there
+    heading : of the floating object
     """
     forward = np.array([math.cos(VIEW), math.sin(VIEW)])
     right = np.array([forward[1], -forward[0]])

@@ -112,7 +112,7 @@ def collars_of(item: bpy.types.Object) -> list[bpy.types.Node]:
 def refresh(fitted: Mapping[bpy.types.Object, Values] | None = None) -> None:
     """Give the materials of each ocean's water the collars of what touches it, and no others.
 
-    fitted : inputs of collars that are made anew
+    fitted : inputs of collars to recompute
     """
     fitted = fitted or {}
     known = {item: item[_OCEAN] for item in bpy.data.objects if touches(item) and _is_shown(item)}

@@ -115,7 +115,7 @@ def own_hull(item: bpy.types.Object) -> Hull | None:
 
 
 def usual_ride(kind: str, item: bpy.types.Object, hull: Hull | None, damped: bool = False) -> Ride:
-    """How an object floats where nobody says so.
+    """How an object floats by default.
 
     kind : a key of RIDES
     hull : of the object, None for one without
@@ -167,7 +167,7 @@ def touch_water(item: bpy.types.Object, ocean: bpy.types.Object) -> bool:
 
 
 def sink(item: bpy.types.Object) -> None:
-    """Let an object float no more, live or baked: it is where it stands without water, and dry."""
+    """Stop floating an object, live or baked: it returns to its place without water, dry."""
     contact.part(item)
     take_off(item)
 

@@ -199,7 +199,7 @@ def look_after_save(_path: object = None, _unused: object = None) -> None:
 
 @persistent
 def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
-    """The console hears all again that is wrong with a shot."""
+    """Print all messages of a shot again."""
     failures.render_begins()
     scene_sky.look_for_panoramas()
     for item in oceans_in(scene):

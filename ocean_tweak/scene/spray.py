@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Spray of an ocean in Blender: a child of it whose vertices are the particles, which nodes make points of.
 
-It is made anew with every whole frame and not saved, unless nodes read it from the files of a bake. Of a sea
+It is recomputed in every whole frame and not saved, unless nodes read it from the files of a bake. Of a sea
 of patches it is around the camera; of one that repeats, each particle is in the repeat that is nearest to it.
 """
 
