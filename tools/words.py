@@ -28,13 +28,8 @@ WORDINGS = {
     "what blender is told": "registers …",
     "of a noise at a time": "samples of a noise at one time",
     "by hash and not by order": "identified by a hash, not by order",
-    "what floats": "floating objects",
     "on how many samples": "resolution",
     "as winds are told": "as for wind",
-    "(?:is|are|was|were) made anew": "is recomputed",
-    "hears? all again": "print all messages again",
-    "where nobody says": "by default",
-    "whoever (?:asks|calls|reads|wants|knows|changes)": "name the caller, the reader or the user",
 }
 #: where they are looked for
 PLACES = ("*.md", "docs/*.md", "ocean_tweak/**/*.py", "ocean_tweak/**/*.json", "blender_manifest.toml")

@@ -115,7 +115,7 @@ class OCEAN_PG_maps(bpy.types.PropertyGroup):
 _SWITCHES = {
     "use_current": BoolProperty(
         name="Current", default=False, **_SHOWN,
-        description="Let the water move: a current carries waves, foam, wakes and what floats",
+        description="Let the water move: a current carries waves, foam, wakes and floating objects",
     ),
     "use_equaliser": BoolProperty(
         name="Equaliser", default=False, **_SHOWN,

@@ -12,7 +12,7 @@ from tools import words
         "Waves are told by the distance to it",
         "Let the objects float no more.",
         "| registration | what Blender\nis told |",
-        "# a comment about what\n    # floats on it",
+        "# on how\n    # many samples",
         '"Noise: number of this "\n        "one among all that are alike"',
         'f"As large as these waves "\n    f"want it"',
     ],

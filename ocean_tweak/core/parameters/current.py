@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A current: one velocity of all the water, which carries waves, foam and what floats."""
+"""A current: one velocity of all the water, which carries waves, foam and floating objects."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Current(Validated):
     """
 
     speed: float = number(
-        0.0, 0.0, 20.0, "m/s", "Speed of the current, which carries waves, foam and what floats",
+        0.0, 0.0, 20.0, "m/s", "Speed of the current, which carries waves, foam and floating objects",
         "more than the fastest tidal stream", useful=(0.0, 3.0), changes=True,
     )  # fmt: skip
     direction: float = number(
