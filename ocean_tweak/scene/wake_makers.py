@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects that make waves: their paths without waves, by their keys, and what their hulls are.
 
-A floating object must not be read by the evaluation of its ocean. So a wake follows the place on land of its object, a
-floating one's carrier before the water moves it, and this is worked out from keys, frame by frame, without
-going there. Where constraints or drivers move an object, its path is recorded once instead, see
+A floating object must not be read by the evaluation of its ocean. So a wake follows the place on land of its
+object, a floating one's carrier before the water moves it, and this is worked out from keys, frame by frame,
+without going there. Where constraints or drivers move an object, its path is recorded once instead, see
 `wake_recording`.
 """
 
