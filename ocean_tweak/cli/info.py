@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..core import Ocean, OceanParameters
+from ..core import Ocean, OceanParameters, Spray
 from ..core.data.printable import readable_bytes
 from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
@@ -19,6 +19,8 @@ from ..core.parameters.patch import NO_LONGEST
 from ..core.parameters.patch_seas import open_sea
 from ..core.sea.coast_outlook import coast_outlook
 from ..core.sea.memory import beyond_budget, check_memory
+from ..core.sea.spray import expected_count, why_none
+from ..core.spray.columns import BYTES_IN_FILE
 from ..core.statistics import sea_scales
 from ..core.statistics.sea_spectrum import SeaSpectrum
 from ..core.statistics.sea_statistics import SeaState, Statistics, spectrum_state
@@ -58,6 +60,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
                     "budget": MEMO.budget,
                     "kept": MEMO.report(),
                 },
+                **_plain_spray(parameters[name]),
                 **{
                     kind.former_list or kind.kind.lower(): found.to_plain()
                     for kind, found in _outlooks(parameters[name])
@@ -112,6 +115,14 @@ def _plain(statistics: Statistics) -> dict[str, object]:
     return told
 
 
+def _plain_spray(parameters: OceanParameters) -> dict[str, object]:
+    if parameters.spray is None:
+        return {}
+    why = why_none(parameters)
+    count = round(expected_count(parameters, parameters.spray))
+    return {"spray": {"particles": count, **({} if why is None else {"why_none": why})}}
+
+
 def _outlooks(parameters: OceanParameters) -> list[tuple[type[Contribution], Outlook]]:
     """Summaries of layers whose waves are not part of the sea's statistics."""
     shown = sorted(KINDS, key=lambda kind: kind.names.number)
@@ -154,6 +165,8 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
     if coverage > 0.0:
         share = f"{100.0 * coverage:.2g} % of the sea by {parameters.foam.law}"
         lines.append(f"  foam on {share}; a single frame looks back over {earlier} moments")
+    if parameters.spray is not None:
+        lines.append(f"  {_spray(parameters, parameters.spray)}")
     if statistics.loop_speed_change is not None:
         change = 100.0 * statistics.loop_speed_change
         duration = float(parameters.repeats_after or 0)
@@ -182,6 +195,15 @@ def _equalised(parameters: OceanParameters) -> list[str]:
     before = parameters.replace(equaliser=None, layers=tuple(layers))
     heights = [spectrum_state(sea).significant_wave_height for sea in (SeaSpectrum(before), after)]
     return [f"  equaliser: Hs {heights[0]:.2f} m before it, {heights[1]:.2f} m after"]
+
+
+def _spray(parameters: OceanParameters, spray: Spray) -> str:
+    if (why := why_none(parameters)) is not None:
+        return why
+    count = expected_count(parameters, spray)
+    size = readable_bytes(round(count) * BYTES_IN_FILE)
+    where = "around the camera" if parameters.is_cascade else "on the tile"
+    return f"spray of about {float(f'{count:.2g}'):,.0f} particles {where}, {size} a frame with bake --spray"
 
 
 def _patch_rows(statistics: Statistics) -> list[str]:

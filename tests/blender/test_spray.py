@@ -440,3 +440,41 @@ def test_usd_of_the_panel_has_it(extension, ocean, empty_scene, monkeypatch):
         ocean.ocean_tweak.use_spray = is_on
         module.UsdExport(ocean, shot, (1,))
         assert ("--spray" in told.pop()) is is_on
+
+
+@pytest.mark.parametrize("subframe", [0.25, -0.4])
+def test_baked_points_go_on_by_their_velocity_between_frames(baked, empty_scene, subframe):
+    """As both engines look at them for motion blur: EEVEE at other frames, where it pairs points by order."""
+    empty_scene.frame_set(14)
+    whole = points(spray_of(baked))
+    empty_scene.frame_set(14 if subframe > 0.0 else 13, subframe=subframe % 1.0)
+    between = points(spray_of(baked))
+    moved = whole["position"] + whole["velocity"] * subframe / 24.0
+    assert np.linalg.norm(moved - whole["position"], axis=1).max() > 0.05
+    np.testing.assert_allclose(between["position"], moved, atol=1e-4)
+    np.testing.assert_array_equal(between["velocity"], whole["velocity"])
+
+
+def test_each_particle_is_in_the_repeat_that_is_nearest_to_the_camera(extension, ocean, empty_scene):
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    ocean.ocean_tweak.repeats_x, ocean.ocean_tweak.repeats_y = 3, 1
+    camera.location = (240.0, -30.0, 3.0)
+    bpy.context.view_layer.update()
+    empty_scene.frame_set(13)
+    own = made(0.5).position[:, :2]
+    found = points(spray_of(ocean))["position"][:, :2]
+    places = own[:, np.newaxis] + 100.0 * np.array([(0, 0), (1, 0), (2, 0)])
+    away = np.linalg.norm(places - (240.0, -30.0), axis=-1)
+    np.testing.assert_allclose(found, places[np.arange(len(own)), away.argmin(axis=1)], atol=1e-3)
+    assert len(np.unique(away.argmin(axis=1))) == 2
+
+    extension("scene.surroundings").add_horizon(ocean, SEA, empty_scene, empty_scene.collection, 3)
+    empty_scene.frame_set(14)
+    empty_scene.frame_set(13)
+    found = points(spray_of(ocean))["position"][:, :2]
+    shifts = (found - own) / 100.0
+    np.testing.assert_allclose(shifts, np.rint(shifts), atol=1e-4)
+    assert np.abs(found - (240.0, -30.0)).max() <= 50.001  # also where no repeat of its own is
+    assert shifts[:, 1].min() < -0.5

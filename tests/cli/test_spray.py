@@ -274,3 +274,20 @@ def test_a_file_of_others_is_none_of_ours(tmp_path: Path, head: bytes) -> None:
     assert told_by_ply(path, (COLUMNS,)) is None
     with pytest.raises(PlyError, match="not readable points of Ocean Tweak"):
         read_ply(path, (COLUMNS,))
+
+
+def test_info_says_how_much_there_will_be(sea: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    large = SEA.replace(resolution=128, domain_size=400.0)
+    sea.write_text(large.to_json(), encoding="utf-8")
+    info, spray = ["info", "--params", str(sea), "--set"], 'spray={"amount": 0.2}'
+    assert main([*info, spray, "--json"]) == 0
+    particles = json.loads(capsys.readouterr().out)["sea"]["spray"]["particles"]
+    made = [len(TileSpray(Ocean(large)).at(time, Spray(amount=0.2)).age) for time in (3.0, 41.0)]
+    assert particles == pytest.approx(np.mean(made), rel=0.5)
+    assert main([*info, spray]) == 0
+    said = capsys.readouterr().out
+    assert "particles on the tile" in said
+    assert main([*info, spray, "--set", "layers.0.wind_speed=6"]) == 0
+    assert "this sea has no spray, because its wind of 6 m/s tears nothing off" in capsys.readouterr().out
+    assert main(info[:-1]) == 0
+    assert "spray" not in capsys.readouterr().out

@@ -78,11 +78,18 @@ def check_spray(parameters: OceanParameters, spray: Spray) -> None:
     """
     if (why := why_none(parameters)) is not None:
         raise ParameterError("spray", "", why)
-    wind, tears = foam_wind(parameters), _TEARS * Ocean(parameters).mean_breaking
-    assert wind is not None
+    _check_memory(expected_count(parameters, spray), spray)
+
+
+def expected_count(parameters: OceanParameters, spray: Spray) -> float:
+    """Particles of a sea at a time, in the mean, on its tile or around a place; 0 for a sea that has none."""
+    wind = foam_wind(parameters)
+    if wind is None or why_none(parameters) is not None:
+        return 0.0
     around = parameters.is_cascade
     area = area_of_squares(FoamLevels(parameters)) if around else parameters.domain_size**2
-    _check_memory(area * tears * torn_rate(wind.speed) * spray.amount * mean_life(spray), spray)
+    tears = _TEARS * Ocean(parameters).mean_breaking
+    return area * tears * torn_rate(wind.speed) * spray.amount * mean_life(spray)
 
 
 class TileSpray:

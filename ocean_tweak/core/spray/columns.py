@@ -10,6 +10,8 @@ from .particles import Particles
 
 #: of a particle, float32; its number is the last bits of its id, as many as a float32 holds
 COLUMNS = ("x", "y", "z", "velocity_x", "velocity_y", "velocity_z", "radius", "age", "kind", "number")
+#: of a particle in a file
+BYTES_IN_FILE = 4 * len(COLUMNS)
 #: numbers that there are
 NUMBERS = 2**24
 
