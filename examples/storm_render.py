@@ -57,6 +57,7 @@ def render_settings(scene, width=960, height=540, samples=16):
     scene.cycles.adaptive_threshold = 0.02
     scene.cycles.adaptive_min_samples = 6
     scene.cycles.max_bounces = 2
+    scene.cycles.transparent_max_bounces = 64  # layers of mist
     scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = False
     scene.cycles.use_denoising = has_denoiser()
     if scene.cycles.use_denoising:
@@ -85,7 +86,21 @@ def check_baked_oceans_move(frames: list[int]) -> None:
             raise RuntimeError(
                 f"{name}: frames {frames[0]} and {frames[-1]} differ by only {moved:.3g} m rms"
             )
-        print(f"{name}: without the extension the water moves {moved:.2f} m rms", flush=True)
+        particles = count_of_spray(scene)
+        if particles == 0:
+            raise RuntimeError(f"{name}: there is no spray")
+        print(
+            f"{name}: without the extension the water moves {moved:.2f} m rms, under {particles} particles",
+            flush=True,
+        )
+
+
+def count_of_spray(scene: bpy.types.Scene) -> int:
+    """Particles at the frame that is shown."""
+    depsgraph = scene.view_layers[0].depsgraph
+    item = scene.objects[f"Ocean {scene.name} Spray"].evaluated_get(depsgraph)
+    cloud = item.evaluated_geometry().pointcloud
+    return 0 if cloud is None else len(cloud.points)
 
 
 def elevation(scene: bpy.types.Scene, frame: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 """Builds storm.blend: one sea in three scenes, each moved in another way.
 
 blender --background --python examples/storm_scene.py --
-        --params examples/storm.json --sequence DIR --frames 1-24 --out storm.blend
+        --params examples/storm.json --sequence DIR --frames 1-24 --spray 0.01 0.02 --out storm.blend
 
 "Displace" and "Geometry nodes" read the EXR sequence and need no extension, "Live" computes each frame.
 """
@@ -39,9 +39,11 @@ def main() -> None:
     """Build the file from the command line's arguments."""
     arguments = parse(sys.argv[sys.argv.index("--") + 1 :])
     extension = enable()
-    parameters = extension.module("core").OceanParameters.from_json(
-        arguments.params.read_text(encoding="utf-8")
-    )
+    core = extension.module("core")
+    parameters = core.OceanParameters.from_json(arguments.params.read_text(encoding="utf-8"))
+    if arguments.spray is not None:
+        amount, size = arguments.spray
+        parameters = parameters.replace(spray=core.Spray(amount=amount, size=size))
     first, last = arguments.frames
     sequence = extension.module("scene.image_sequence").ImageSequence(
         arguments.sequence, arguments.params.stem, tuple(range(first, last + 1))
@@ -60,6 +62,9 @@ def parse(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--params", type=Path, required=True, help="parameters of the sea, JSON")
     parser.add_argument("--sequence", type=Path, required=True, help="folder of the baked frames")
     parser.add_argument("--frames", type=_range, required=True, metavar="FIRST-LAST")
+    parser.add_argument(
+        "--spray", type=float, nargs=2, metavar=("AMOUNT", "SIZE"), help="that of the bake; none by default"
+    )
     parser.add_argument("--out", type=Path, required=True, help="the .blend file to write")
     return parser.parse_args(argv)
 
@@ -107,7 +112,7 @@ def dress(extension, parameters):
     place = surroundings.camera_place(mood, parameters, LOOKING)
     camera = None
     for scene in bpy.data.scenes:
-        ocean = next(item for item in scene.objects if item.name.startswith("Ocean "))
+        ocean = scene.objects[f"Ocean {scene.name}"]
         camera = camera or surroundings.new_camera(mood, place, ocean, scene, LOOKING)
         scene.collection.objects.link(camera)
         scene.camera = camera

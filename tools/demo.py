@@ -35,6 +35,8 @@ SCENES = {
     "Live": "Live, no files",
 }
 SAMPLES = 10
+#: amount and size in m of the spray: over 2 km few particles, each as much larger
+SPRAY = ("0.01", "0.02")
 
 
 class Steps:
@@ -79,7 +81,7 @@ def run(steps: Steps) -> list[str]:
     """Do all there is to do; return the table of wave heights."""
     shutil.rmtree(FOLDER, ignore_errors=True)
     PICTURES.mkdir(parents=True)
-    with steps.step(f"bake frames {FIRST}-{LAST} to EXR"):
+    with steps.step(f"bake frames {FIRST}-{LAST} with foam and spray"):
         bake()
     with steps.step("make Blender ready"):
         run_in_blender, note = ready_blender()
@@ -112,10 +114,12 @@ def summary(steps: Steps) -> list[str]:
 
 
 def bake() -> None:
-    """Write displacement and foam with the command line that artists use."""
+    """Write displacement, foam and spray with the command line that artists use."""
     frames = f"{FIRST}-{LAST}"
     command = [sys.executable, "-m", "ocean_tweak", "bake", "--params", str(PARAMETERS), "--frames", frames]
-    run_logged([*command, "--maps", "disp,foam,foam_age", "--out", str(CACHE)], LOG)
+    amount, size = SPRAY
+    spray = ["--spray", "--set", f"spray.amount={amount}", "--set", f"spray.size={size}"]
+    run_logged([*command, "--maps", "disp,foam,foam_age", *spray, "--out", str(CACHE)], LOG)
 
 
 def frames_folder() -> Path:
@@ -163,7 +167,7 @@ def build_scene_arguments() -> list[str]:
     """The arguments of the scene script."""
     return [
         "--params", str(PARAMETERS), "--sequence", str(frames_folder()),
-        "--frames", f"{FIRST}-{LAST}", "--out", str(BLEND),
+        "--frames", f"{FIRST}-{LAST}", "--spray", *SPRAY, "--out", str(BLEND),
     ]  # fmt: skip
 
 
