@@ -330,7 +330,7 @@ def test_a_step_of_the_finest_square_looks_at_no_coarser_one_again(monkeypatch: 
     levels, spray = FoamLevels(_patched()), Spray(life=0.5)
     maker = CameraSpray(levels)
     maker.at(_TIME, spray, (0.0, 0.0))
-    assert set(looked) == {0, 1, 2, 3, 4}
+    assert set(looked) == {0, 1, 2, 3, 4, 5, 6}
     looked.clear()
     moved = maker.at(_TIME, spray, (3.0, 0.0))  # of 16 cells of 0.25 m, more than half
     assert set(looked) == {0}
@@ -361,3 +361,22 @@ def test_memory_is_asked_for_as_many_squares_as_there_are(monkeypatch: pytest.Mo
     CameraSpray(FoamLevels(sea)).at(_TIME, Spray(life=0.5), (0.0, 0.0))
     beforehand, found = counts
     assert beforehand == pytest.approx(found, rel=0.5)
+
+
+def test_mist_that_is_far_away_is_of_more_and_smaller_puffs_and_covers_as_much() -> None:
+    """Of many particles one is drawn for so many: what they cover together is the same, for both."""
+    n, spray, wind = 200_000, Spray(), Wind(25.0, 0.0)
+    key, gust = (random.hash_cells(np.arange(n), np.arange(n), 3, stream) for stream in (1, 2))
+    rest, ones = np.zeros((n, 3), np.float32), np.ones(n, np.float32)
+    covered = {}
+    for together in (1.0, 64.0):
+        crests = Crests(key, gust, 0.3 * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), rest)
+        made = in_the_air(crests, spray, wind, 0.125, 0.25)
+        for kind in (drops.SPUME, drops.DROPLET, drops.MIST):
+            own = made.kind == kind
+            area = float((made.radius[own].astype(float) ** 2).sum())
+            covered[kind, together] = np.count_nonzero(own), area
+    for kind, fewer in ((drops.SPUME, 64.0), (drops.DROPLET, 64.0), (drops.MIST, 4.0)):
+        (near, area), (far, far_area) = covered[kind, 1.0], covered[kind, 64.0]
+        assert near / far == pytest.approx(fewer, rel=0.1)
+        assert far_area == pytest.approx(area, rel=0.1)

@@ -37,8 +37,8 @@ from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: m; a cell in which crests break is looked at in parts no larger than this
-_PART = 1.0
+#: m; a cell in which crests break is looked at in parts no larger than this, where that is a few parts
+_PART, _MOST_CUTS = 1.0, 4
 #: strength of a breaking crest from which on all of it tears, and the area that tears over the mean strength
 _ALL_TEARS, _TEARS = 0.25, 1.7
 #: m and moments in which wind tears alike
@@ -318,7 +318,7 @@ def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArr
 
 def _in_parts(cells: _Cells) -> tuple[_Cells, NDArray[np.int64]]:
     """Cells cut into parts that are small enough, and of which cell each part is."""
-    cuts = max(1, round(cells.size / _PART))
+    cuts = min(max(1, round(cells.size / _PART)), _MOST_CUTS)
     of_cell = np.repeat(np.arange(len(cells.column)), cuts * cuts)
     number = np.tile(np.arange(cuts * cuts), len(cells.column))
     column = cells.column[of_cell] * cuts + number % cuts

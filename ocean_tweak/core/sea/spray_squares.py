@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from .foam_levels import FINEST, FoamLevels
 
-#: squares, at most, by how many particles one stands for there: beyond a few hundred metres nobody sees drops
-STANDS_FOR = (1, 1, 2, 8, 16)
+#: squares, at most, by how many drops one stands for there: beyond a few hundred metres nobody sees them
+STANDS_FOR = (1, 1, 2, 8, 16, 128, 1024)
 #: cells along each side of a square, of which the middle ones belong to the next finer, and cells by which
 #: squares follow the place
 _CELLS, _STEP = 176, 16

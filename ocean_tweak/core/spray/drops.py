@@ -45,10 +45,10 @@ def torn_rate(wind_speed: float) -> float:
     return part * part * (3.0 - 2.0 * part) * _RATE * (wind_speed / _RATE_WIND) ** _RATE_POWER
 
 
-def kinds(share: Array) -> NDArray[np.int8]:
-    """SPUME, DROPLET or MIST for numbers evenly between 0 and 1."""
-    ends = np.cumsum([SHARE[kind] for kind in (MIST, SPUME)])
-    return np.asarray(np.array([MIST, SPUME, DROPLET], np.int8)[np.searchsorted(ends, share)])
+def kinds(share: Array, mist: RealArray) -> NDArray[np.int8]:
+    """SPUME, DROPLET or MIST for numbers evenly between 0 and 1, and shares of mist among them."""
+    spume = mist + (1.0 - mist) * (SHARE[SPUME] / (SHARE[SPUME] + SHARE[DROPLET]))
+    return np.where(share < mist, MIST, np.where(share < spume, SPUME, DROPLET)).astype(np.int8)
 
 
 def radii(kind: NDArray[np.int8], share: Array) -> RealArray:

@@ -40,6 +40,9 @@ _DROPS_FLY = 2.0
 #: the friction velocities by which mist spreads
 _DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 6.0, 240.0, 0.3
 
+#: mist is seen from far, in streaks as wide as its puffs: one stands for no more than so many
+_PUFFS = 4.0
+
 #: mean time in s that drops are in the air, and mist, over its life: as 25 m/s of wind leave them
 _DROPS_STAY, _MIST_STAYS = 0.47, 0.35
 #: bytes of a particle while frames are made and shown
@@ -55,7 +58,7 @@ class Crests(NamedTuple):
 
     key, gust : hashes of the cell, and of the gust at its place
     area : that tears, horizontal, m²
-    stands_for : how many particles one of the cell's stands for: it is as much larger
+    stands_for : how many drops one of the cell's stands for: it is as much larger
     place : (cells, 3) of its middle, m
     along : (cells, 2, 3) from its middle half way along the columns, and along the rows, m
     velocity : (cells, 3) of the water, m/s
@@ -106,7 +109,14 @@ def mean_life(spray: Spray) -> float:
 
 def expected(crests: Crests, spray: Spray, wind: Wind, step: float) -> RealArray:
     """(cells,) particles that cells throw up in a moment of `step` seconds, in the mean over gusts."""
-    return crests.area / crests.stands_for * np.float32(drops.torn_rate(wind.speed) * spray.amount * step)
+    drop, puff = _of_drops_and_mist(crests)
+    return crests.area * (drop + puff) * np.float32(drops.torn_rate(wind.speed) * spray.amount * step)
+
+
+def _of_drops_and_mist(crests: Crests) -> tuple[RealArray, RealArray]:
+    """(cells,) of all particles that cells throw up, the drops and the puffs of mist that are made."""
+    mist = np.float32(drops.SHARE[drops.MIST])
+    return (1 - mist) / crests.stands_for, mist / np.minimum(crests.stands_for, np.float32(_PUFFS))
 
 
 def in_the_air(crests: Crests, spray: Spray, wind: Wind, step: float, since: float) -> Particles:
@@ -121,14 +131,17 @@ def in_the_air(crests: Crests, spray: Spray, wind: Wind, step: float, since: flo
     key = random.members(crests.key[cell], number)
     offset = ((random.uniform(key, _TIME) - 0.5) * step).astype(np.float32)
     age = np.float32(since) - offset
-    kind = drops.kinds(random.uniform(key, _KIND))
+    drop, puff = _of_drops_and_mist(crests)
+    kind = drops.kinds(random.uniform(key, _KIND), (puff / (drop + puff))[cell])
     lives = (age >= 0.0) & (age <= np.where(kind == drops.MIST, spray.life, min(spray.life, _DROPS_FLY)))
     cell, key, offset, age, kind = cell[lives], key[lives], offset[lives], age[lives], kind[lives]
     radius = drops.radii(kind, random.uniform(key, _RADIUS))
     flight = _launched(crests, cell, key, kind, radius, offset, spray, wind)
     position, velocity = flight.at(age)
     above = flight.is_above(position)
-    drawn = _drawn(kind, radius, age, spray, wind) * np.sqrt(crests.stands_for[cell])
+    stands_for = crests.stands_for[cell]
+    stands_for = np.where(kind == drops.MIST, np.minimum(stands_for, np.float32(_PUFFS)), stands_for)
+    drawn = _drawn(kind, radius, age, spray, wind) * np.sqrt(stands_for)
     made = position, velocity, drawn, age, _ids(key), kind
     return Particles._make(each[above] for each in made)
 
