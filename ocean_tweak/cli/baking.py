@@ -126,7 +126,10 @@ def _make_all(
     refuse_links(folder)
     spray.ask()  # first, so that a bake that is stopped early continues with it
     code = _make(arguments, folder, job, frames)
-    return bake_spray(arguments, spray, frames) if code == DONE else code
+    if code != DONE:
+        return code
+    with _telling_how_to_go_on(folder):
+        return bake_spray(arguments, spray, frames)
 
 
 def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequence[Frame]) -> int:

@@ -51,7 +51,7 @@ def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequ
         stop_requested() as stop,
         claimed(
             files.directory, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark
-        ),
+        ) as hold,
     ):
         todo = [frame for frame in frames if not files.is_whole(frame)]
         progress.say(f"{len(todo)} of {len(frames)} frames of spray to make", left=len(todo), phase="spray")
@@ -59,7 +59,7 @@ def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequ
         maker = ShotSpray(files.shot, files.spray, files.place)
         try:
             for frame in todo:
-                if stop.is_set():
+                if stop.is_set() or hold.is_lost():
                     progress.fail("stopped")
                     return FAILED
                 started = time.perf_counter()

@@ -252,6 +252,14 @@ def spray_arguments(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str
     return ["--spray", *(() if place is None else ("--spray-place", *map(without_exponent, place)))]
 
 
+def spray_numbers(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
+    """What a command is told of them besides, that takes the sea from a bake."""
+    if not spray_arguments(ocean, scene):
+        return []
+    numbers = to_plain(settings_of(ocean).to_parameters(scene).spray)
+    return [f"--set=spray.{name}={value}" for name, value in numbers.items()]
+
+
 def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Place | None:
     """Where the camera is now around which an ocean of patches is shown, m; None for another ocean."""
     surface = camera_surface_of(ocean)

@@ -23,7 +23,7 @@ from .command_process import CommandProcess, Running
 from .preferences import user_folder
 from .settings import VIEWPORT_RESOLUTION, OceanObjectError, scene_of, settings_of
 from .shots import animate, check_keys
-from .spray import spray_arguments
+from .spray import spray_arguments, spray_numbers
 from .units import frame_rate, set_frame_rate, set_time_stretch, shortest_decimal, time_stretch
 
 _FOLDER = "usd"
@@ -54,7 +54,7 @@ class UsdExport(CommandProcess):
         if bake is None:
             super().__init__(item.name, arguments, shot)
         else:
-            super().__init__(item.name, [*arguments, f"--bake={bake}"])
+            super().__init__(item.name, [*arguments, *spray_numbers(item, scene_of(item)), f"--bake={bake}"])
 
     def take(self, said: dict[str, Any]) -> None:
         """At the end it says how much was written."""

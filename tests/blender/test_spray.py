@@ -378,6 +378,9 @@ def test_frames_of_spray_are_counted_by_themselves(extension, ocean, empty_scene
     bake.wait()
     module.forget(bake)
     assert bake.is_complete, bake.error
+    assert len(list(bake.folder.glob("spray/*.ply"))) == 2
+    extension("scene.bake_versions").delete(ocean)  # with its spray
+    assert not bake.folder.exists()
     each = [(0, 2), (1, 2), (2, 2)]
     assert list(dict.fromkeys(counts)) == [("", *count) for count in each] + [
         ("spray", *count) for count in each
@@ -436,10 +439,15 @@ def test_usd_of_the_panel_has_it(extension, ocean, empty_scene, monkeypatch):
     module, told = extension("scene.usd"), []
     monkeypatch.setattr(module.CommandProcess, "__init__", lambda _, name, words, *__: told.append(words))
     shot = extension("scene.shots").shot_of(ocean, empty_scene, (1,))
-    for is_on in (True, False):
-        ocean.ocean_tweak.use_spray = is_on
-        module.UsdExport(ocean, shot, (1,))
-        assert ("--spray" in told.pop()) is is_on
+    ocean.ocean_tweak.spray.amount = 0.5
+    for bake in (None, "folder"):
+        monkeypatch.setattr(module, "used_bake", lambda _, given=bake: given)
+        for is_on in (True, False):
+            ocean.ocean_tweak.use_spray = is_on
+            module.UsdExport(ocean, shot, (1,))
+            words = told.pop()
+            assert ("--spray" in words) is is_on
+            assert ("--set=spray.amount=0.5" in words) is (is_on and bake is not None)
 
 
 @pytest.mark.parametrize("subframe", [0.25, -0.4])

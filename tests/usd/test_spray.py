@@ -100,6 +100,11 @@ def test_over_a_bake_the_spray_can_be_set(tmp_path: Path, capsys: pytest.Capture
     assert main([*arguments, "--spray", "--set", "spray.amount=0.5"]) == 0
     expected = TileSpray(Ocean(SEA)).at(12 / 24.0, Spray(amount=0.5))
     assert len(points_of(top).GetIdsAttr().Get(13.0)) == len(expected.id)
+    bake = ["bake", "--params", str(sea), "--frames", "12-13", "--out", str(cache), "--spray"]
+    assert main([*bake, "--set", "spray.amount=0.25"]) == 0
+    assert main([*arguments, "--spray", "--force"]) == 0  # that of the bake
+    expected = TileSpray(Ocean(SEA)).at(12 / 24.0, Spray(amount=0.25))
+    assert len(points_of(top).GetIdsAttr().Get(13.0)) == len(expected.id)
     for refused in (["--set", "spray.amount=0.5"], ["--spray", "--set", "layers.0.wind_speed=9"]):
         capsys.readouterr()
         assert main([*arguments, *refused]) == 2
