@@ -99,8 +99,8 @@ def count_of_spray(scene: bpy.types.Scene) -> int:
     """Particles at the frame that is shown."""
     depsgraph = scene.view_layers[0].depsgraph
     item = scene.objects[f"Ocean {scene.name} Spray"].evaluated_get(depsgraph)
-    cloud = item.evaluated_geometry().pointcloud
-    return 0 if cloud is None else len(cloud.points)
+    geometry = item.evaluated_geometry()  # keeps the points
+    return 0 if geometry.pointcloud is None else len(geometry.pointcloud.points)
 
 
 def elevation(scene: bpy.types.Scene, frame: int) -> np.ndarray:
