@@ -18,6 +18,7 @@ from . import (
     frame_warnings,
     grid,
     horizon,
+    hull_cut,
     ocean,
     patch,
     patch_points,
@@ -70,4 +71,6 @@ ALL_KINDS = (
     contact.WET_BAND,
     contact.COLLAR,
     contact.RIPPLE_NORMAL,
+    hull_cut.HULL_PLACE,
+    hull_cut.HULL_CUT,
 )

@@ -46,7 +46,8 @@ class Shading:
             plug.name, description=plug.description, in_out="INPUT", socket_type=plug.socket_type,
             parent=parent,
         )  # fmt: skip
-        socket.default_value = plug.default
+        if plug.default is not None:  # a shader has none
+            socket.default_value = plug.default
         if plug.socket_type == "NodeSocketFloat":
             socket.min_value = min(0.0, plug.default)
         if plug.socket_type == "NodeSocketVector":

@@ -18,7 +18,7 @@ from ..nodes.ocean import ocean_group
 from ..nodes.sample import SAMPLE
 from ..nodes.versioned import node_group
 from ..nodes.water import WATER
-from . import contact, water_material
+from . import contact, hull_cut, water_material
 from .preferences import user_folder
 from .sea_picture import SIZE, SeaView, draw_ball
 
@@ -71,7 +71,7 @@ def install() -> Path:
     try:
         for block in marked:
             _mark(block, assets[block])
-        with contact.set_aside():
+        with contact.set_aside(), hull_cut.set_aside():
             bpy.data.libraries.write(str(path), set(assets), fake_user=True, compress=True)
     except RuntimeError as error:
         raise OSError(f"{path}: {error}") from error

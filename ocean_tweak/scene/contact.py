@@ -115,10 +115,10 @@ def refresh(fitted: Mapping[bpy.types.Object, Values] | None = None) -> None:
     fitted : inputs of collars to recompute
     """
     fitted = fitted or {}
-    known = {item: item[_OCEAN] for item in bpy.data.objects if touches(item) and _is_shown(item)}
+    known = {item: item[_OCEAN] for item in bpy.data.objects if touches(item) and is_shown(item)}
     # what a file says there may be anything
     oceans = {ocean for ocean in known.values() if isinstance(ocean, bpy.types.Object) and is_ocean(ocean)}
-    shown = {ocean: set(_materials(ocean)) for ocean in oceans}
+    shown = {ocean: set(materials_of(ocean)) for ocean in oceans}
     for material in bpy.data.materials:
         water = _water(material)
         if water is None:
@@ -144,11 +144,12 @@ def set_aside() -> Iterator[None]:
         refresh(kept)
 
 
-def _is_shown(item: bpy.types.Object) -> bool:
+def is_shown(item: bpy.types.Object) -> bool:
+    """Whether an object is this file's and in a scene."""
     return item.library is None and len(item.users_scene) > 0
 
 
-def _materials(ocean: bpy.types.Object) -> Iterator[bpy.types.Material]:
+def materials_of(ocean: bpy.types.Object) -> Iterator[bpy.types.Material]:
     """Those that an ocean's water is shown with."""
     for item in (ocean, *ocean.children):
         yield from (slot.material for slot in item.material_slots if slot.material is not None)

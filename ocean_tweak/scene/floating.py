@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import bpy
 
 from ..nodes.modifier_inputs import all_inputs
-from . import contact, float_carrier, float_keys
+from . import contact, float_carrier, float_keys, hull_cut
 from .float_carrier import carrier_of, new_carrier, remove_carrier
 from .hull import Hull, hull_of
 from .settings import OceanObjectError, is_ocean, oceans_in
@@ -164,6 +164,17 @@ def touch_water(item: bpy.types.Object, ocean: bpy.types.Object) -> bool:
     if contact.touches(item) and float_keys.is_baked(item):
         return contact.touch(item, ocean, hull, contact.level_of(item))
     return contact.touch(item, ocean, hull, level_at(item, ocean))
+
+
+def cut_out(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
+    """Let no water be inside an object: of the ocean that it floats on, else of the given one.
+
+    Raises OceanObjectError for what has no inside, or cannot be changed.
+    """
+    check(item, ocean)
+    carrier = carrier_of(item)
+    known = None if carrier is None else ride_of(carrier)[0]
+    hull_cut.cut_out(item, known or ocean, own_hull(item))
 
 
 def sink(item: bpy.types.Object) -> None:

@@ -28,6 +28,7 @@ from . import (
     float_riding,
     former_settings,
     held_sea,
+    hull_cut,
     left_behind,
     live_image,
     mask_following,
@@ -186,8 +187,11 @@ def follow_materials(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 @persistent
 def clear_after_deletion(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Let what was made for a deleted ocean go with it."""
-    if depsgraph is not None and depsgraph.id_type_updated("COLLECTION") and left_behind.clear():
+    if depsgraph is None or not depsgraph.id_type_updated("COLLECTION"):
+        return
+    if left_behind.clear():
         _look_around()
+    hull_cut.refresh()  # hulls that are deleted stay in the file for as long as a material knows them
 
 
 @persistent
@@ -236,6 +240,7 @@ def look_around(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None =
 def _look_around() -> None:
     portability.look()
     contact.refresh()
+    hull_cut.refresh()
     failures.keep_only(all_oceans())
 
 
@@ -297,6 +302,7 @@ def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
     stored_paths.follow_import(imported)
     float_carrier.take_over()
     contact.refresh()
+    hull_cut.refresh()
     show_that_it_runs()
 
 
@@ -324,6 +330,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     float_carrier.follow()
     float_riding.forget_all()
     contact.refresh()
+    hull_cut.refresh()
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if is_live(item) else Wanted.NOTES)
 

@@ -12,7 +12,7 @@ from mathutils import Matrix, Quaternion
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Edges = NDArray[np.int32]
+Numbers = NDArray[np.int32]
 
 #: a middling ship: big container ships have four drafts of beam, deeply laden ones little more than two
 _BEAM_OF_DRAFT = 3.0
@@ -46,12 +46,14 @@ class Hull:
     tilt : from these, scaled, to the upright axes
     vertices : (N, 3) in the upright axes, Blender units
     edges : (M, 2) of their numbers
+    triangles : (L, 3) of their numbers
     """
 
     scale: tuple[float, float, float]
     tilt: Quaternion
     vertices: Array
-    edges: Edges
+    edges: Numbers
+    triangles: Numbers
 
     @property
     def keel(self) -> float:
@@ -104,19 +106,22 @@ def hull_of(
     upright : the object's place in the world where it does not float
     depsgraph : that has evaluated its modifiers; None takes its mesh without them
     """
-    parts = [_vertices(part, item, depsgraph) for part in (item, *item.children_recursive)]
-    parts = [(vertices, edges) for vertices, edges in parts if len(vertices)]
+    parts = [_mesh(part, item, depsgraph) for part in (item, *item.children_recursive)]
+    parts = [part for part in parts if len(part[0])]
     if not parts:
         return None
-    counts = np.cumsum([0, *(len(vertices) for vertices, _ in parts)])
-    vertices = np.concatenate([vertices for vertices, _ in parts])
-    edges = np.concatenate([edges + first for (_, edges), first in zip(parts, counts, strict=False)])
+    first = np.cumsum([0, *(len(vertices) for vertices, _, _ in parts)])
+    vertices = np.concatenate([vertices for vertices, _, _ in parts])
+    edges, triangles = (
+        np.concatenate([part[of] + before for part, before in zip(parts, first, strict=False)])
+        for of in (1, 2)
+    )
     _, turned, _ = upright.decompose()
     scale = item.matrix_world.to_scale()
     heading = Quaternion((turned.w, 0.0, 0.0, turned.z))
     tilt = heading.normalized().inverted() @ turned if heading.magnitude > 1e-6 else turned
     matrix = np.array(tilt.to_matrix()) * np.array(scale)
-    return Hull(tuple(scale), tilt, vertices @ matrix.T, edges)
+    return Hull(tuple(scale), tilt, vertices @ matrix.T, edges, triangles)
 
 
 def meshes_of(item: bpy.types.Object) -> Iterator[bpy.types.Object]:
@@ -124,18 +129,26 @@ def meshes_of(item: bpy.types.Object) -> Iterator[bpy.types.Object]:
     return (part for part in (item, *item.children_recursive) if part.type == "MESH" and not part.hide_render)
 
 
-def _vertices(
+def _mesh(
     part: bpy.types.Object, item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None
-) -> tuple[Array, Edges]:
-    """Of an object's mesh, in the coordinates of another."""
+) -> tuple[Array, Numbers, Numbers]:
+    """Vertices, edges and triangles of an object's mesh, in the coordinates of another."""
     if part not in meshes_of(item):
-        return np.empty((0, 3)), np.empty((0, 2), np.int32)
+        return np.empty((0, 3)), np.empty((0, 2), np.int32), np.empty((0, 3), np.int32)
     mesh = part.data if depsgraph is None else part.evaluated_get(depsgraph).data
-    flat, ends = np.empty(3 * len(mesh.vertices), np.float32), np.empty(2 * len(mesh.edges), np.int32)
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("co", flat)
-    mesh.edges.foreach_get("vertices", ends)
     matrix = np.array(item.matrix_world.inverted_safe() @ part.matrix_world)
-    return flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3], ends.reshape(-1, 2)
+    vertices = flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    mesh.calc_loop_triangles()
+    return vertices, _numbers(mesh.edges, 2), _numbers(mesh.loop_triangles, 3)
+
+
+def _numbers(elements: bpy.types.bpy_prop_collection, count: int) -> Numbers:
+    """(elements, count) numbers of their vertices."""
+    flat = np.empty(count * len(elements), np.int32)
+    elements.foreach_get("vertices", flat)
+    return flat.reshape(-1, count)
 
 
 def _fullness(points: Array) -> float:

@@ -11,7 +11,7 @@ import bpy
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.horizon import HORIZON
 from ..nodes.versioned import is_of_kind
-from . import contact, float_carrier, floating, mask_place, patch_objects, spray
+from . import contact, float_carrier, floating, hull_cut, mask_place, patch_objects, spray
 from .settings import was_ocean
 
 
@@ -39,6 +39,8 @@ def clear() -> bool:
             floating.sink(item)
         elif contact.ocean_of(item) in deleted:
             contact.part(item)
+        if hull_cut.ocean_of(item) in deleted:
+            hull_cut.let_in(item)
     return True
 
 

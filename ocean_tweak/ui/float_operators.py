@@ -5,12 +5,12 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..scene import contact, floating
+from ..scene import contact, floating, hull_cut
 from ..scene.float_bake import FloatBake
 from ..scene.float_keys import is_baked
 from ..scene.floating import FloatError, Ride
 from ..scene.portability import has_ocean
-from ..scene.settings import is_ocean
+from ..scene.settings import OceanObjectError, is_ocean
 from .active_ocean import refuse, shown_ocean
 from .stepped_operator import SteppedOperator
 
@@ -271,6 +271,43 @@ class OBJECT_OT_ocean_contact(OnOcean, bpy.types.Operator):
         return {"FINISHED"} if len(dry) < len(items) else {"CANCELLED"}
 
 
+class OBJECT_OT_ocean_cut_out(_OnOcean, bpy.types.Operator):
+    """Let no water be inside the selected hulls."""
+
+    bl_idname = "object.ocean_tweak_cut_out"
+    bl_description = (
+        "Make the water transparent inside the selected hulls, floating or not, open boats too, in "
+        "Cycles and EEVEE. Use it again after changing a hull"
+    )
+    bl_label = "Cut Out Hull"
+    bl_options = {"REGISTER", "UNDO"}
+
+    use_cut: BoolProperty(name="Cut Out", default=True, description="Off lets the water in again")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Cut out or let in."""
+        items = floating.outermost(floatable(context))
+        if not self.use_cut:
+            for item in items:
+                hull_cut.let_in(item)
+            return {"FINISHED"}
+        refused = []
+        try:
+            ocean = self.chosen_ocean(context)
+            for item in items:
+                try:
+                    floating.cut_out(item, ocean)
+                except OceanObjectError as error:
+                    refused.append(str(error))
+        except FloatError as error:
+            return refuse(self, error)
+        if refused:
+            self.report({"WARNING" if len(refused) < len(items) else "ERROR"}, "; ".join(refused))
+        elif text := hull_cut.why_unseen(ocean):
+            self.report({"WARNING"}, text)
+        return {"FINISHED"} if len(refused) < len(items) else {"CANCELLED"}
+
+
 def draw_object_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     """Draw the entries in the Object menu."""
     self.layout.separator()
@@ -284,4 +321,5 @@ def _floats(item: bpy.types.Object) -> bool:
 
 CLASSES = (
     OBJECT_OT_ocean_float, OBJECT_OT_ocean_float_bake, OBJECT_OT_ocean_float_remove, OBJECT_OT_ocean_contact,
+    OBJECT_OT_ocean_cut_out,
 )  # fmt: skip

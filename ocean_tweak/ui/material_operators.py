@@ -8,7 +8,7 @@ from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import EnumProperty
 
 from ..core import ParameterError
-from ..scene import asset_library, contact, solid_foam, water_material
+from ..scene import asset_library, contact, hull_cut, solid_foam, water_material
 from ..scene.camera_surface import camera_surface_of
 from ..scene.settings import settings_of
 from ..scene.water_colour import BRIGHTEST
@@ -44,6 +44,7 @@ class OCEAN_OT_use_water_material(OfActiveOcean, bpy.types.Operator):
         if surface is not None:
             solid_foam.show(surface, material)
         contact.refresh()
+        hull_cut.refresh()
         return {"FINISHED"}
 
 

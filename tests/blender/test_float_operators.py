@@ -163,15 +163,15 @@ def test_the_panel_shows_how_the_active_object_floats(ocean, buoy, select, exten
         panel.draw(SimpleNamespace(layout=Layout(texts)), bpy.context)
         return texts
 
-    touch = "object.ocean_tweak_contact"
+    touch = ["object.ocean_tweak_contact", "object.ocean_tweak_cut_out"]
     buttons = ["object.ocean_tweak_wake", "object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove"]
     select()
     assert drawn() == ["object.ocean_tweak_float", *buttons]
     select(buoy)
-    assert drawn() == ["object.ocean_tweak_float", touch, *buttons]
+    assert drawn() == ["object.ocean_tweak_float", *touch, *buttons]
     bpy.ops.object.ocean_tweak_float()
     inputs = ["Ocean", "Waterline", "Draft", "Keel", "Tilt", "Drift", "Keep Height", "Damped"]
-    assert drawn() == ["Float As", *inputs, touch, *buttons]
+    assert drawn() == ["Float As", *inputs, *touch, *buttons]
 
 
 @pytest.mark.parametrize(("menu", "function"), [("VIEW3D_MT_object", "draw_object_menu"),

@@ -57,6 +57,8 @@ KINDS = {
     "wet-band": ("nodes.contact", lambda module: module.WET_BAND),
     "collar": ("nodes.contact", lambda module: module.COLLAR),
     "ripple-normal": ("nodes.contact", lambda module: module.RIPPLE_NORMAL),
+    "hull-place": ("nodes.hull_cut", lambda module: module.HULL_PLACE),
+    "hull-cut": ("nodes.hull_cut", lambda module: module.HULL_CUT),
 }
 
 

@@ -6,7 +6,7 @@ import bpy
 from ...nodes.contact import LOOK_INPUTS
 from ...nodes.floating import DAMPED_INPUTS, RIDE_INPUTS
 from ...nodes.modifier_inputs import get_input, input_property, input_sockets
-from ...scene import contact, float_carrier, float_riding, floating
+from ...scene import contact, float_carrier, float_riding, floating, hull_cut
 from .. import float_operators, wake_operators
 from .drawing import SidebarPanel, split
 
@@ -55,7 +55,7 @@ class OCEAN_PT_float(SidebarPanel, bpy.types.Panel):
 
 
 def _contact(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
-    """Draw the collar and the wet band of an object, and the button that makes or takes them."""
+    """Draw the collar and the wet band of an object, and the buttons that make, take or cut."""
     touches = contact.touches(item)
     if touches:
         for collar in contact.collars_of(item):
@@ -70,6 +70,9 @@ def _contact(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
     text = "Leave Water Alone" if touches else float_operators.OBJECT_OT_ocean_contact.bl_label
     button = layout.operator(float_operators.OBJECT_OT_ocean_contact.bl_idname, text=text, icon="MOD_OCEAN")
     button.use_contact = not touches
+    is_cut, cut_out = hull_cut.is_cut(item), float_operators.OBJECT_OT_ocean_cut_out
+    text = "Let Water In" if is_cut else cut_out.bl_label
+    layout.operator(cut_out.bl_idname, text=text, icon="SELECT_SUBTRACT").use_cut = not is_cut
 
 
 CLASSES = (OCEAN_PT_float,)

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hulls are dry inside: rendered from above, in both engines, through copies, undo, files and deletion."""
+
+import contextlib
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+from . import floats
+from .test_velocity_blur import EEVEE_NAMES
+
+select, ocean = floats.select, floats.ocean
+LENGTH, BEAM, DEPTH = 24.0, 8.0, 3.0
+PIXELS, WIDTH = 96, 48.0  # of what is seen from above, m
+WATER, WOOD, LAND = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+
+
+def glowing(name, colour):
+    """A material that looks the same in any light."""
+    material = bpy.data.materials.new(name)
+    if material.node_tree is None:  # a material has nodes from the start since Blender 5.0
+        material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    glow, shown = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeOutputMaterial")
+    glow.inputs["Color"].default_value = (*colour, 1.0)
+    material.node_tree.links.new(glow.outputs[0], shown.inputs["Surface"])
+    return material
+
+
+@pytest.fixture
+def new_boat(empty_scene):
+    """An open boat without thickness: pointed at both ends, flared, its origin at half its depth."""
+
+    def make(name="Boat", is_decked=False, location=(25.0, 40.0, 0.0), turn=0.4):
+        angle = np.linspace(0.0, 2.0 * math.pi, 65)[:-1]
+        rings = [
+            np.stack([s * LENGTH / 2 * np.cos(angle), s * BEAM / 2 * np.sin(angle), 0.0 * angle + z], axis=-1)
+            for s, z in ((0.7, -DEPTH / 2), (0.9, 0.0), (1.0, DEPTH / 2))
+        ]
+        faces = [
+            (64 * ring + i, 64 * ring + (i + 1) % 64, 64 * (ring + 1) + (i + 1) % 64, 64 * (ring + 1) + i)
+            for ring in (0, 1)
+            for i in range(64)
+        ]
+        faces += [tuple(range(64))] + ([tuple(range(128, 192))] if is_decked else [])
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(np.concatenate(rings).tolist(), [], faces)
+        mesh.materials.append(glowing("Wood", WOOD))
+        item = bpy.data.objects.new(name, mesh)
+        item.location, item.rotation_euler.z = location, turn
+        empty_scene.collection.objects.link(item)
+        bpy.context.view_layer.update()
+        return item
+
+    return make
+
+
+@pytest.fixture
+def water(ocean):
+    ocean.data.materials.append(glowing("Sea", WATER))
+    ocean.ocean_tweak.viewport_resolution = 32
+    return ocean
+
+
+@pytest.fixture
+def seen_from_above(empty_scene, tmp_path):
+    """Render what is below a camera high above an object: (PIXELS, PIXELS, 3), and x and y in m of each."""
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.data.clip_end = "ORTHO", WIDTH, 1e4
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    render = empty_scene.render
+    render.engine = "CYCLES"
+    empty_scene.cycles.samples, empty_scene.cycles.use_denoising = 1, False
+    empty_scene.cycles.pixel_filter_type, empty_scene.cycles.filter_width = "BLACKMAN_HARRIS", 0.01
+    render.filter_size = 0.01
+    render.resolution_x = render.resolution_y = PIXELS
+    render.image_settings.file_format = "OPEN_EXR"
+    empty_scene.view_settings.view_transform = "Raw"
+
+    def shoot(item):
+        scene = bpy.context.scene  # a file may have been opened
+        camera, render, place = scene.camera, scene.render, item.matrix_world.translation
+        camera.location = (place.x, place.y, 200.0)
+        render.filepath = str(tmp_path / "above.exr")
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(render.filepath, check_existing=False)
+        pixels = np.array(image.pixels[:], np.float32).reshape(PIXELS, PIXELS, 4)[..., :3]
+        bpy.data.images.remove(image)
+        across = (np.arange(PIXELS) + 0.5) / PIXELS * WIDTH - WIDTH / 2
+        x, y = np.meshgrid(place.x + across, place.y + across)
+        return pixels, x, y
+
+    return shoot
+
+
+def shares(item, pixels, x, y, inner):
+    """Of water among the pixels over an object's plan, drawn in by some m, and beyond it."""
+    to_item = np.array(item.matrix_world.inverted())
+    # what is seen of the rim from above; a hull that heels is a little narrower
+    u, v = (to_item[row, 0] * x + to_item[row, 1] * y + to_item[row, 3] for row in (0, 1))
+    within = np.hypot(u / (0.9 * LENGTH / 2 - inner), v / (0.9 * BEAM / 2 - inner)) < 1.0
+    beyond = np.hypot(u / (LENGTH / 2 + 1.5), v / (BEAM / 2 + 1.5)) > 1.0
+    is_water = pixels[..., 2] > 0.5
+    return is_water[within].mean(), is_water[beyond].mean()
+
+
+def cut(*items, **settings):
+    for item in items:
+        item.select_set(True)
+    return bpy.ops.object.ocean_tweak_cut_out(**settings)
+
+
+def test_a_hull_is_dry_at_24_frames_of_a_storm(water, new_boat, select, seen_from_above, empty_scene, capfd):
+    boat = new_boat()
+    select(boat)
+    assert bpy.ops.object.ocean_tweak_float(ride="SHIP", use_contact=False) == {"FINISHED"}
+    empty_scene.frame_set(3)
+    wet, sea = shares(boat, *seen_from_above(boat), 0.0)
+    assert wet > 0.2  # there was water in it
+    assert sea > 0.99
+    assert cut() == {"FINISHED"}
+    cell = water.ocean_tweak.domain_size / water.ocean_tweak.resolution
+    for frame in range(1, 48, 2):
+        empty_scene.frame_set(frame)
+        dry, sea = shares(boat, *seen_from_above(boat), min(cell, 0.5))
+        assert dry == 0.0, frame
+        assert sea > 0.99
+    assert "ependency cycle" not in "".join(capfd.readouterr())
+
+
+def test_eevee_cuts_it_too(water, new_boat, select, seen_from_above, empty_scene):
+    boat = new_boat()
+    select(boat)
+    bpy.ops.object.ocean_tweak_float(ride="SHIP", use_contact=False)
+    cut()
+    empty_scene.frame_set(5)
+    for engine in EEVEE_NAMES:
+        with contextlib.suppress(TypeError):  # the name in another version
+            empty_scene.render.engine = engine
+    empty_scene.eevee.taa_render_samples = 1
+    dry, sea = shares(boat, *seen_from_above(boat), 0.5)
+    assert dry == 0.0
+    assert sea > 0.99
+
+
+def hulls(ocean):
+    """The objects that are cut out of the ocean's material, in order."""
+    nodes = ocean.material_slots[0].material.node_tree.nodes
+    return [node.object for node in nodes if node.type == "TEX_COORD"]
+
+
+def test_copies_are_cut_out_and_what_is_deleted_leaves_nothing(water, new_boat, select, empty_scene):
+    nodes = water.material_slots[0].material.node_tree.nodes
+    before = {node.name for node in nodes}
+    boat = new_boat()
+    select(boat)
+    cut()
+    assert hulls(water) == [boat]
+    copy = boat.copy()
+    empty_scene.collection.objects.link(copy)
+    bpy.context.view_layer.update()
+    assert hulls(water) == [boat, copy]
+    select(boat)
+    bpy.ops.object.delete()
+    bpy.context.view_layer.update()
+    assert hulls(water) == [copy]
+    select(copy)
+    assert cut(use_cut=False) == {"FINISHED"}
+    assert {node.name for node in nodes} == before
+    assert nodes[0].outputs[0].links[0].to_node == nodes[1]
+
+
+def test_letting_water_in_leaves_no_image(water, new_boat, select):
+    select(new_boat())
+    for _ in range(2):  # cut out anew, it has a new plan
+        cut()
+        assert [image.name for image in bpy.data.images if "Hull" in image.name] == ["Boat Hull"]
+    cut(use_cut=False)
+    assert not [image for image in bpy.data.images if "Hull" in image.name]
+
+
+def test_a_deleted_ocean_lets_go(extension, water, new_boat, select, empty_scene):
+    boat = new_boat()
+    select(boat)
+    cut()
+    select(water)
+    bpy.ops.object.delete()
+    bpy.context.view_layer.update()
+    assert not extension("scene.hull_cut").is_cut(boat)
+
+
+def test_a_file_without_the_extension_keeps_it_cut(
+    extension, water, new_boat, select, seen_from_above, empty_scene, tmp_path
+):
+    boat = new_boat()
+    select(boat)
+    cut()
+    file = str(tmp_path / "boat.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    with extension("scene.handlers").asleep():
+        bpy.ops.wm.open_mainfile(filepath=file)
+        image = bpy.data.images["Boat Hull"]
+        assert image.packed_file
+        assert image.is_float
+        cells = np.array(image.pixels[:]).reshape(-1, 4)
+        assert cells.min() == 0.0  # inside
+        assert cells.max() == 1.0
+        assert hulls(bpy.data.objects["Ocean"]) == [bpy.data.objects["Boat"]]
+        dry, sea = shares(bpy.data.objects["Boat"], *seen_from_above(bpy.data.objects["Boat"]), 0.5)
+    assert dry == 0.0
+    assert sea > 0.99
+
+
+def test_a_scaled_tilted_hull_with_a_deck(water, new_boat, select, seen_from_above, empty_scene):
+    """From a program with y upwards, half as large; a crest stands on the deck of a decked one."""
+    from mathutils import Matrix
+
+    boat = new_boat(is_decked=True)
+    boat.data.transform(Matrix.Rotation(-math.pi / 2, 4, "X") @ Matrix.Scale(2.0, 4))
+    boat.rotation_euler, boat.scale = (math.pi / 2, 0.0, 0.4), (0.5, 0.5, 0.5)
+    bpy.context.view_layer.update()
+    select(boat)
+    cut()
+    empty_scene.frame_set(1)
+    water.scale.z = 1e-3  # calm
+    water.location.z = 0.0
+    boat.location.z = 0.6
+    bpy.context.view_layer.update()
+    place = hulls(water)
+    assert place == [boat]
+    boat.hide_render = True
+    pixels, x, y = seen_from_above(boat)
+    flat = boat.matrix_world.translation
+    u = (x - flat.x) * math.cos(0.4) + (y - flat.y) * math.sin(0.4)
+    v = (y - flat.y) * math.cos(0.4) - (x - flat.x) * math.sin(0.4)
+    # 0.6 m below its middle: from 0.7 to 0.9 of the rim over half its depth
+    part = 0.9 - 0.2 * 0.6 / (DEPTH / 2)
+    inside = np.hypot(u / (part * LENGTH / 2), v / (part * BEAM / 2))
+    is_water = pixels[..., 2] > 0.5
+    assert not is_water[inside < 0.95].any()
+    assert is_water[inside > 1.05].all()
+    boat.location.z = -2.0  # under water, which is above the deck
+    bpy.context.view_layer.update()
+    assert (seen_from_above(boat)[0][..., 2] > 0.5).all()
+
+
+def test_what_encloses_nothing_and_linked_things_are_refused(water, select, empty_scene):
+    mesh = bpy.data.meshes.new("Raft")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+    raft, empty = bpy.data.objects.new("Raft", mesh), bpy.data.objects.new("Empty", None)
+    for item in (raft, empty):
+        empty_scene.collection.objects.link(item)
+    for item, text in (
+        (raft, "Raft cannot be cut out of the water: the hull encloses nothing"),
+        (empty, "no faces"),
+    ):
+        select(item)
+        with pytest.raises(RuntimeError, match=text):
+            cut()
+    assert hulls(water) == []
+
+
+def test_an_ocean_without_material_is_told(ocean, new_boat, select, capfd):
+    select(new_boat())
+    assert cut() == {"FINISHED"}
+    assert "has no material" in "".join(capfd.readouterr())
+
+
+def test_broken_links_are_mended(extension, water, new_boat, select):
+    boat = new_boat()
+    select(boat)
+    cut()
+    tree = water.material_slots[0].material.node_tree
+    tree.nodes.remove(next(node for node in tree.nodes if node.type == "TEX_IMAGE"))
+    extension("scene.hull_cut").refresh()
+    assert hulls(water).count(boat) >= 1
+    assert len([node for node in tree.nodes if node.type == "TEX_IMAGE"]) == 2
