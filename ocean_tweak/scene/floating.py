@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import bpy
 
@@ -17,6 +18,7 @@ from . import contact, float_carrier, float_keys, hull_cut
 from .float_carrier import carrier_of, new_carrier, remove_carrier
 from .hull import Hull, hull_of
 from .settings import OceanObjectError, is_ocean, oceans_in
+from .units import shortest_decimal
 
 #: kinds of objects that look at the sea or light it: they stay above the water
 _ABOVE = {"CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
@@ -246,8 +248,13 @@ def ride_of(carrier: bpy.types.Object) -> tuple[bpy.types.Object | None, Ride]:
     modifier = float_carrier.modifier_of(carrier)
     given = {} if modifier is None else all_inputs(modifier)
     # a linked one may be of a version with fewer inputs
-    values = {name: type(usual)(given.get(_title(name), usual)) for name, usual in vars(Ride()).items()}
+    values = {name: _as(type(usual), given.get(_title(name), usual)) for name, usual in vars(Ride()).items()}
     return given.get("Ocean"), Ride(**values)
+
+
+def _as(kind: type, value: Any) -> Any:
+    """A value of a node group as that of a Ride: its floats have few digits."""
+    return float(shortest_decimal(value)) if kind is float else kind(value)
 
 
 def _title(name: str) -> str:
