@@ -271,7 +271,7 @@ class OBJECT_OT_ocean_contact(OnOcean, bpy.types.Operator):
         return {"FINISHED"} if len(dry) < len(items) else {"CANCELLED"}
 
 
-class OBJECT_OT_ocean_cut_out(_OnOcean, bpy.types.Operator):
+class OBJECT_OT_ocean_cut_out(OnOcean, bpy.types.Operator):
     """Let no water be inside the selected hulls."""
 
     bl_idname = "object.ocean_tweak_cut_out"

@@ -79,10 +79,10 @@ def hull_plan(vertices: Array, triangles: Integers) -> HullPlan:
     Raises ValueError for a mesh that encloses nothing.
     """
     corners = vertices[triangles]
-    keel, top = float(vertices[:, 2].min()), _rim(vertices, corners)
+    keel, top = float(np.min(vertices[:, 2])), _rim(vertices, corners)
     spacing = (top - keel) / (LEVELS - 1.5)
     # slightly off heights that many vertices may share; the last level is above the rim
-    levels = keel + spacing * (np.arange(LEVELS) + 0.013)
+    levels: Array = keel + spacing * (np.arange(LEVELS, dtype=np.float64) + 0.013)
     grid = _grid(vertices, levels, _LONG)
     pieces = _pieces(corners, grid)
     wall = _walls(pieces, grid)
@@ -94,33 +94,30 @@ def hull_plan(vertices: Array, triangles: Integers) -> HullPlan:
     for level in range(1, LEVELS):
         before = np.minimum(distance[level], distance[level - 1])
         distance[level] = np.where(is_open[level - 1], before, distance[level])
-    return HullPlan(
-        distance.astype(np.float32), (*map(float, grid.low), float(levels[0])), grid.texel, spacing
-    )
+    low = (float(grid.low[0]), float(grid.low[1]), float(levels[0]))
+    return HullPlan(distance.astype(np.float32), low, grid.texel, spacing)
 
 
 def _rim(vertices: Array, corners: Array) -> float:
     """The height of the top of the hull, without masts and railings. Raises ValueError for none."""
-    low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
-    levels = low + (high - low) * (np.arange(_ROUGH_LEVELS) + 0.513) / _ROUGH_LEVELS
+    low, high = float(np.min(vertices[:, 2])), float(np.max(vertices[:, 2]))
+    step = (high - low) / _ROUGH_LEVELS
+    levels: Array = low + step * (np.arange(_ROUGH_LEVELS, dtype=np.float64) + 0.513)
     if high > low and np.all(np.ptp(vertices[:, :2], axis=0) > 0.0):
         grid = _grid(vertices, levels, _ROUGH_LONG)
         wall = _walls(_pieces(corners, grid), grid)
         lowest, _ = _heights(corners, grid)
         inside = ~_outside(wall) & ~wall & (lowest <= levels[:, np.newaxis, np.newaxis])
         areas = np.sum(inside, axis=(1, 2))
-        if areas.max() > 0:
-            return (
-                float(levels[np.nonzero(areas >= _RIM * areas.max())[0][-1]])
-                + 0.5 * (high - low) / _ROUGH_LEVELS
-            )
+        if np.any(areas > 0):
+            return float(levels[np.nonzero(areas >= _RIM * np.max(areas))[0][-1]]) + 0.5 * step
     raise ValueError("the hull encloses nothing: it needs a bottom and sides without gaps")
 
 
 def _grid(vertices: Array, levels: Array, long: int) -> _Grid:
-    low, high = vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)
+    low, high = np.min(vertices[:, :2], axis=0), np.max(vertices[:, :2], axis=0)
     size = high - low
-    texel = max(float(size.max()) / long, float(np.sqrt(size.prod() * len(levels) / _MOST_TEXELS)))
+    texel = max(float(np.max(size)) / long, float(np.sqrt(np.prod(size) * len(levels) / _MOST_TEXELS)))
     columns, rows = (np.ceil(size / texel).astype(int) + 2 * _MARGIN).tolist()
     middle = 0.5 * (low + high)
     return _Grid(
