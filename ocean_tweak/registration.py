@@ -29,6 +29,7 @@ from .ui import (
     layer_operators,
     mask_operators,
     material_operators,
+    measured_operators,
     node_operators,
     object_menu,
     overlays,
@@ -56,6 +57,7 @@ CLASSES = (
     *sky_properties.CLASSES,
     *adding.CLASSES,
     *parameter_operators.CLASSES,
+    *measured_operators.CLASSES,
     *sequence_operators.CLASSES,
     *bake_operators.CLASSES,
     *usd_operators.CLASSES,
@@ -162,6 +164,7 @@ def register(package: str | None = None) -> None:
     bpy.types.VIEW3D_MT_mesh_add.append(scene_operators.draw_add_menu)
     bpy.types.TOPBAR_MT_file_export.append(usd_operators.draw_export_menu)
     bpy.types.TOPBAR_MT_file_import.append(usd_operators.draw_import_menu)
+    bpy.types.TOPBAR_MT_file_import.append(measured_operators.draw_import_menu)
     CommandProcess.command_line = cli.command()
     handlers.register()
     overlays.register()
@@ -176,6 +179,7 @@ def unregister() -> None:
     overlays.unregister()
     handlers.unregister()
     asset_library.remove()
+    bpy.types.TOPBAR_MT_file_import.remove(measured_operators.draw_import_menu)
     bpy.types.TOPBAR_MT_file_import.remove(usd_operators.draw_import_menu)
     bpy.types.TOPBAR_MT_file_export.remove(usd_operators.draw_export_menu)
     bpy.types.VIEW3D_MT_mesh_add.remove(scene_operators.draw_add_menu)

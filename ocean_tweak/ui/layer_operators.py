@@ -14,6 +14,7 @@ from ..core.waves.wind_field.presets import WIND_FIELDS, wind_field
 from ..scene.animated import clock_of, move_keys
 from ..scene.settings import OceanObjectError, settings_of
 from .active_ocean import OfOwnList, nearest, refuse, shown_ocean
+from .measured_operators import OCEAN_OT_import_measured
 
 _WINDS = {
     "UNIFORM": ("Uniform", "The same wind everywhere (Li and Wang 2016, figure 9 B)"),
@@ -202,6 +203,11 @@ class OCEAN_MT_layer_add(bpy.types.Menu):
                 text = names.entry or names.label
                 add = self.layout.operator(OCEAN_OT_layer_add.bl_idname, text=text, icon=names.icon)
                 add.kind = kind.kind
+            if kind.kind == "WAVES":
+                measured = self.layout.operator(
+                    OCEAN_OT_import_measured.bl_idname, text="Measured", icon="IMPORT"
+                )
+                measured.target = "LAYER"
 
 
 class OCEAN_MT_wind_fields(bpy.types.Menu):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..core import OceanParameters
 from ..core.numerics.interpolation import between
+from ..core.spectral.equaliser import LEAST_GAIN, MOST_GAIN
 from ..core.statistics.sea_spectrum import FrequencyCurves, PolarDensity, frequency_curves, polar_density
 
 Pixels = NDArray[np.float32]
@@ -93,7 +94,24 @@ def _draw_curves(picture: Pixels, curves: FrequencyCurves, frame: _Frame) -> Non
     if highest > 0.0:
         for index, energy in reversed(list(enumerate(energies))):
             _draw_curve(part, energy / highest * (frame.height - 4), _LAYERS[index % len(_LAYERS)])
+    _draw_gains(part, curves)
     part[0] = _TEXT
+
+
+def _draw_gains(part: Pixels, curves: FrequencyCurves) -> None:
+    """What equalisers do to the heights, dotted over the curves: a line at 0 dB, and one for each layer."""
+    if not np.any(curves.gains):
+        return
+
+    def row(gain: NDArray[np.float64] | float) -> NDArray[np.int64]:
+        share = (np.asarray(gain) - LEAST_GAIN) / (MOST_GAIN - LEAST_GAIN)
+        return np.clip(np.rint(share * (part.shape[0] - 2)), 0, part.shape[0] - 1).astype(np.int64)
+
+    dots = np.arange(0, part.shape[1] - 1, 4)
+    part[row(0.0), dots] = _GRID
+    for index, gain in enumerate(curves.gains):
+        if np.any(gain):
+            part[row(gain)[dots], dots] = part[row(gain)[dots], dots + 1] = _LAYERS[index % len(_LAYERS)]
 
 
 def _draw_curve(part: Pixels, height: NDArray[np.float64], colour: tuple[float, float, float]) -> None:

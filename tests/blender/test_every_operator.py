@@ -8,7 +8,7 @@ import pytest
 WITHOUT_OCEAN = {
     "mesh.ocean_tweak_add", "ocean.add_scene", "ocean.install_assets", "node.ocean_tweak_add_group",
     "ocean.convert", "ocean.delete_preset", "ocean.rename_preset", "ocean.import_preset",
-    "ocean.export_preset", "ocean.import_usd", "ocean.stop_usd", "ocean.verify_usd",
+    "ocean.export_preset", "ocean.import_measured", "ocean.import_usd", "ocean.stop_usd", "ocean.verify_usd",
     "object.ocean_tweak_float", "object.ocean_tweak_float_bake", "object.ocean_tweak_float_remove",
     "object.ocean_tweak_contact",
 }  # fmt: skip

@@ -8,6 +8,7 @@ import bpy
 import pytest
 
 from tests.blender.conftest import stored
+from tests.export.spectrum_files import BUOY_FILES
 
 from . import layouts
 from .layouts import Layout
@@ -169,6 +170,8 @@ def test_every_parameter_can_be_reached(draw, item, core):
         drawn.update(draw(item))
     settings = item.ocean_tweak
     bpy.context.view_layer.objects.active = item
+    bpy.ops.ocean.import_measured(filepath=str(BUOY_FILES[0]), target="LAYER")
+    drawn.update(draw(item))
     bpy.ops.ocean.layer_add(kind="WIND_FIELD")
     wind = settings.layers[settings.active_layer].wind_field
     for source, height in (("UNIFORM", "STEEPNESS"), ("IMAGE", "WIND_SPEED"), ("RECORDING", "STEEPNESS")):
@@ -187,7 +190,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
     drawn.update(draw(item))
     fields = [
         core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing, core.WindFieldLayer,
-        core.ImageLayer, core.HeroWave, core.Patch,
+        core.ImageLayer, core.HeroWave, core.Patch, core.Current, core.Equaliser,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
     elsewhere = {
@@ -202,6 +205,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
         "mask",
     }
     elsewhere |= {"fps", "stretch"}  # the scene's
+    elsewhere |= {"measured", "carried_x", "carried_y"}  # a file's, and what follows from the current's keys
     in_lists = {"patches", "keys", "image"}  # as layers, recordings and images
     # behind a switch, or in a unit that Blender does not have
     drawn |= {name.removeprefix("use_") for name in drawn}

@@ -56,11 +56,13 @@ class FrequencyCurves(NamedTuple):
 
     omega : (size,) rad/s, ascending, evenly spaced in log ω
     layers : (layers, size) m²·s/rad, the active layers that have waves
+    gains : (layers, size) dB, what equalisers do to the heights of each layer
     resolved : lowest and highest ω in rad/s of the waves that the grid holds
     """
 
     omega: Array
     layers: Array
+    gains: Array
     resolved: tuple[float, float]
 
 
@@ -82,7 +84,10 @@ def frequency_curves(parameters: OceanParameters, size: int = 256) -> FrequencyC
     sea = SeaSpectrum(parameters)
     omega = shown_frequencies(sea, size)
     layers = [layer.frequency_spectrum(omega) for layer in sea.layers]
-    return FrequencyCurves(omega, np.array(layers).reshape(-1, size), resolved_band(parameters))
+    k = dispersion.wave_number(omega, parameters.dispersion, parameters.water)
+    gains = [sum((at_work.gain(k) for at_work in layer.equalisers), np.zeros(size)) for layer in sea.layers]
+    both = (np.array(rows).reshape(-1, size) for rows in (layers, gains))
+    return FrequencyCurves(omega, *both, resolved_band(parameters))
 
 
 def polar_density(parameters: OceanParameters, rings: int = 48, directions: int = 144) -> PolarDensity:

@@ -9,7 +9,7 @@ from ...scene.spray import too_few_bounces
 from .. import camera_operators, material_operators, parameter_operators
 from ..active_ocean import shown_ocean
 from ..field_drawing import draw_fields, draw_switched
-from .drawing import SubPanel, active_settings, message, split
+from .drawing import SubPanel, active_settings, draw_equaliser, message, split
 
 
 class OCEAN_PT_water(SubPanel, bpy.types.Panel):
@@ -25,6 +25,42 @@ class OCEAN_PT_water(SubPanel, bpy.types.Panel):
         column = layout.column(align=True)
         draw_fields(column, settings.water, "depth", "gravity", "density", "surface_tension")
         layout.operator(material_operators.OCEAN_OT_use_water_material.bl_idname, icon="MATERIAL")
+
+
+class OCEAN_PT_current(SubPanel, bpy.types.Panel):
+    """How the water moves as a whole."""
+
+    bl_idname = "OCEAN_PT_current"
+    bl_label = "Current"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw its switch."""
+        self.layout.prop(active_settings(context), "use_current", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw speed and direction, which can be keyed."""
+        layout, settings = split(self.layout, animated=True), active_settings(context)
+        column = layout.column(align=True)
+        column.active = settings.use_current
+        draw_fields(column, settings.current, "speed", "direction")
+
+
+class OCEAN_PT_equaliser(SubPanel, bpy.types.Panel):
+    """Heights of all waves by octave of their length."""
+
+    bl_idname = "OCEAN_PT_equaliser"
+    bl_label = "Equaliser"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw its switch."""
+        self.layout.prop(active_settings(context), "use_equaliser", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the bands of the whole sea; layers have their own."""
+        layout, settings = split(self.layout, animated=True), active_settings(context)
+        column = layout.column()
+        column.active = settings.use_equaliser
+        draw_equaliser(column, settings.equaliser)
 
 
 class OCEAN_PT_shape(SubPanel, bpy.types.Panel):
@@ -146,6 +182,8 @@ class OCEAN_PT_parameters(SubPanel, bpy.types.Panel):
 
 CLASSES = (
     OCEAN_PT_water,
+    OCEAN_PT_current,
+    OCEAN_PT_equaliser,
     OCEAN_PT_shape,
     OCEAN_PT_time,
     OCEAN_PT_foam,

@@ -10,9 +10,11 @@ from typing import Any
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ...core.spectral.equaliser import GAINS
 from ...scene.command_process import CommandProcess
 from ...scene.settings import OceanSettings, settings_of
 from ..active_ocean import active_layer, shown_ocean
+from ..field_drawing import draw_fields
 
 CATEGORY = "Ocean Tweak"
 _LABEL_SHARE = 0.4  # of the width, as Blender's own split layouts
@@ -54,6 +56,14 @@ def split(layout: bpy.types.UILayout, animated: bool = False) -> bpy.types.UILay
     layout.use_property_split = True
     layout.use_property_decorate = animated
     return layout
+
+
+def draw_equaliser(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup) -> None:
+    """Draw the bands, long waves first, and the wavelength that they are counted from."""
+    bands = layout.column(align=True)
+    for name in GAINS:
+        bands.prop(group, name, slider=True)
+    draw_fields(layout, group, "wavelength")
 
 
 def active_settings(context: bpy.types.Context) -> OceanSettings:

@@ -16,7 +16,8 @@ from .. import layer_operators, parameter_properties, wind_operators
 from ..active_ocean import active_layer, nearest, shown_ocean
 from ..field_drawing import draw_fields
 from ..layer_properties import kind_of
-from .drawing import SubPanel, active_settings, length_text, message, row, speed_text, split
+from ..measured_operators import OCEAN_OT_import_measured
+from .drawing import SubPanel, active_settings, draw_equaliser, length_text, message, row, speed_text, split
 from .masks import draw_image, draw_mask
 
 
@@ -43,6 +44,8 @@ def _waves_title(layer: bpy.types.PropertyGroup, scene: bpy.types.Scene) -> str:
     metres = float(metres_per_unit(scene))
     if layer.definition == "WIND":
         return f"{speed_text(scene, layer.wind_speed * metres)}, {layer.fetch_km:.3g} km"
+    if layer.definition == "MEASURED":
+        return "Measured"
     return f"{length_text(scene, layer.significant_wave_height * metres)}, {layer.peak_period:.3g} s"
 
 
@@ -105,6 +108,10 @@ class OCEAN_PT_layers(SubPanel, bpy.types.Panel):
                 _DRAWERS[kind.kind](layout, layer.group, context)
             else:
                 draw_fields(layout, layer.group, *parameter_properties.names_of(kind))
+            if kind.kind == "WAVES":
+                layout.prop(layer.group, "use_equaliser")
+                if layer.group.use_equaliser:
+                    draw_equaliser(layout, layer.group.equaliser)
             if hasattr(layer.group, "mask"):
                 draw_mask(layout, context, layer.group.mask)
 
@@ -113,10 +120,23 @@ def _draw_waves(
     layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup, _context: bpy.types.Context
 ) -> None:
     layout.row().prop(layer, "definition", expand=True)
+    if layer.definition == "MEASURED":
+        _draw_measured(layout, layer)
+        return
     names = ("wind_speed", "wind_direction", "fetch", "wind_height", "limit_fetch")
     if layer.definition == "SEA_STATE":
         names = ("significant_wave_height", "peak_period", "wind_direction")
     draw_fields(layout.column(align=True), layer, *names)
+    draw_fields(layout, layer, "amplitude_scale")
+
+
+def _draw_measured(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
+    again = layout.operator(OCEAN_OT_import_measured.bl_idname, text="Import as Another Layer", icon="IMPORT")
+    again.target = "LAYER"
+    column = layout.column(align=True)
+    column.prop(layer, "measured_time")
+    column.prop(layer, "wind_direction", text="Turn")
+    column.prop(layer, "wind_speed", text="Wind for Foam")
     draw_fields(layout, layer, "amplitude_scale")
 
 

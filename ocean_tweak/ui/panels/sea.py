@@ -120,6 +120,11 @@ def _wind(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
     column = layout.column(align=True)
     if layer.definition == "WIND":
         draw_fields(column, layer, "wind_speed", "wind_direction", "fetch")
+    elif layer.definition == "MEASURED":
+        column.label(text="Measured", icon="IMPORT")
+        column.prop(layer, "measured_time")
+        column.prop(layer, "wind_direction", text="Turn")
+        return
     else:
         draw_fields(column, layer, "significant_wave_height", "peak_period", "wind_direction")
     layout.prop(layer, "swell", slider=True)
@@ -181,6 +186,8 @@ def _baked_rows(scene: bpy.types.Scene, baked: dict[str, Any]) -> list[tuple[str
             ("Wind Speed", speed_text(scene, layer["wind_speed"])),
             ("Fetch", length_text(scene, layer["fetch"])),
         ]
+    elif layer["definition"] == "MEASURED":
+        first = [("Waves", translated("Measured"))]
     else:
         height = length_text(scene, layer["significant_wave_height"])
         first = [("Wave Height", height), ("Peak Period", f"{layer['peak_period']:.3g} s")]

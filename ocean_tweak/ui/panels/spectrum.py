@@ -38,7 +38,7 @@ class OCEAN_PT_spectrum(SubPanel, bpy.types.Panel):
         if icon:
             layout.template_icon(icon_value=icon, scale=_FRACTIONS)
         layer = active_waves(settings)
-        if layer is None:
+        if layer is None or layer.definition == "MEASURED":
             return
         draw_fields(layout, layer, "spectrum")
         if layer.spectrum in ("TMA", "JONSWAP"):
