@@ -86,8 +86,8 @@ def frequency_curves(parameters: OceanParameters, size: int = 256) -> FrequencyC
     layers = [layer.frequency_spectrum(omega) for layer in sea.layers]
     k = dispersion.wave_number(omega, parameters.dispersion, parameters.water)
     gains = [sum((at_work.gain(k) for at_work in layer.equalisers), np.zeros(size)) for layer in sea.layers]
-    both = (np.array(rows).reshape(-1, size) for rows in (layers, gains))
-    return FrequencyCurves(omega, *both, resolved_band(parameters))
+    curves, louder = (np.array(rows).reshape(-1, size) for rows in (layers, gains))
+    return FrequencyCurves(omega, curves, louder, resolved_band(parameters))
 
 
 def polar_density(parameters: OceanParameters, rings: int = 48, directions: int = 144) -> PolarDensity:
