@@ -370,7 +370,7 @@ def test_mist_that_is_far_away_is_of_more_and_smaller_puffs_and_covers_as_much()
     rest, ones = np.zeros((n, 3), np.float32), np.ones(n, np.float32)
     covered = {}
     for together in (1.0, 64.0):
-        crests = Crests(key, gust, 0.3 * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), rest)
+        crests = Crests(key, gust, 0.12 * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), rest)
         made = in_the_air(crests, spray, wind, 0.125, 0.25)
         for kind in (drops.SPUME, drops.DROPLET, drops.MIST):
             own = made.kind == kind
