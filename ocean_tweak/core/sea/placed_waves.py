@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The waves of one layer that need not repeat with the domain: known at any place, on no grid."""
+"""Waves of layers without a grid, which can be evaluated at any place and need not be periodic."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ from .surfaces import Field, Values
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: in which waves that are shown in an area alone go down to 0 along its sides, in its size
+#: width of the border in which waves shown in an area fade to 0, relative to its size
 _RIM = 0.1
 
 
 class PlacedWaves:
-    """The waves of a layer that gives fields, in the sea's axes, under its mask and the sea's."""
+    """The waves of a layer that provides fields, in the sea's axes, under its mask and the sea's."""
 
     def __init__(self, layer: Contribution, sea: OceanParameters) -> None:
         self._layer = layer
         self._sea = sea
 
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
-        """Components of the displacement at rest positions in m, of one flat shape."""
+        """Components of the displacement at flat arrays of rest positions in m."""
         masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
         if not masks:
             return dict(self._fields(x, y, time, frozenset(keys)))
@@ -80,7 +80,7 @@ class PlacedWaves:
         return OwnFoam(found.foam * share, found.breaking * share, found.age)
 
     def field(self, time: float | Fraction) -> Field:
-        """Their own surface at a time."""
+        """The surface of these waves at a time."""
         return as_field(lambda x, y, keys: self.at(x, y, time, keys))
 
 
@@ -100,7 +100,7 @@ def as_field(at: Callable[[Array, Array, Iterable[Key]], Mapping[Key, RealArray]
 
 
 def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
-    """Those of all layers that give fields."""
+    """The waves of all layers that provide fields."""
     return tuple(PlacedWaves(layer, sea) for layer in sea.active() if Gives.FIELDS in layer.gives)
 
 
@@ -114,7 +114,7 @@ def repeating(sea: OceanParameters) -> OceanParameters:
 
 
 def placed_fields(sea: OceanParameters, area: Area, time: float | Fraction) -> SurfaceFields:
-    """ADDING of these layers alone in an area, (n, n, …) float32, at whose outermost samples they are 0.
+    """ADDING of these layers only, in an area, (n, n, …) float32, fading to 0 at its outermost samples.
 
     There must be such layers.
     """
@@ -152,7 +152,7 @@ def with_own_foam(
 
 
 def check_repeats(sea: OceanParameters) -> None:
-    """Raise ParameterError, with the remedy, for a sea with waves that do not repeat, which has no tile."""
+    """Raise ParameterError, with a remedy, for a sea with waves that do not repeat, which has no tile."""
     if sea.has_coast:
         raise ParameterError(
             "coast", "given",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Components of parts at any rest positions, turned into the sea's axes, weighted and added up."""
+"""Components of parts at any rest positions, rotated to the sea's axes, weighted and summed."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from ..synthesis.transforms import X, Y, Z
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: a component of the displacement and what it is differentiated by
+#: a component of the displacement and the variable of its derivative
 Key = tuple[int, str]
 Components = Mapping[Key, RealArray]
 
 #: of the horizontal displacement
 GRADIENT = ((X, "x"), (X, "y"), (Y, "x"), (Y, "y"))
-#: components that turn together
+#: components that transform together under rotation
 _TOGETHER = (((X, ""), (Y, "")), ((X, "t"), (Y, "t")), ((Z, "x"), (Z, "y")), GRADIENT)
 
 
 def closed(wanted: Iterable[Key]) -> frozenset[Key]:
-    """The components wanted and those that they are mixed with when axes turn."""
+    """The requested components and those with which they mix under rotation."""
     keys = set(wanted)
     for group in _TOGETHER:
         if not keys.isdisjoint(group):
@@ -38,7 +38,7 @@ def closed(wanted: Iterable[Key]) -> frozenset[Key]:
 
 
 def into_patch(x: Array, y: Array, rotation: float) -> tuple[Array, Array]:
-    """Places in the axes of a patch that is turned by `rotation` rad, counter-clockwise."""
+    """Places in the axes of a patch rotated by `rotation` rad, counter-clockwise."""
     if not rotation:
         return x, y
     c, s = math.cos(rotation), math.sin(rotation)
@@ -65,23 +65,23 @@ def turned(values: dict[Key, RealArray], rotation: float) -> dict[Key, RealArray
 
 
 class Geometry(NamedTuple):
-    """Where the samples of a grid lie: so many along a square's side in m, turned by an angle in rad."""
+    """The layout of a grid: samples along a square's side in m, rotated by an angle in rad."""
 
     size: float
     resolution: int
     rotation: float
 
     def reader(self, x: Array, y: Array) -> Reader:
-        """Reads the grid's fields at places in m."""
+        """A reader of the grid's fields at places in m."""
         return Reader(*into_patch(x, y, self.rotation), self.size, self.resolution)
 
 
 class Grid:
-    """Periodic components of some waves, read in the sea's axes.
+    """Periodic components of some waves, sampled in the sea's axes.
 
-    components : (N+1, N+1) each, in axes of their own, the last row and column the first ones again
-    size : of the square that they fill, m
-    rotation : of its axes against the sea's, rad counter-clockwise
+    components : (N+1, N+1) each, in their own axes, with the first row and column repeated at the end
+    size : of their square, m
+    rotation : of its axes relative to the sea's, rad counter-clockwise
     """
 
     def __init__(self, components: Components, size: float, rotation: float) -> None:
@@ -97,22 +97,22 @@ class Grid:
 
     @property
     def geometry(self) -> Geometry:
-        """Where its samples lie."""
+        """The layout of its samples."""
         return Geometry(self._size, self._resolution, self._rotation)
 
     def read(self, x: Array, y: Array, weights: Weights | None = None) -> dict[Key, RealArray]:
-        """At places in m, of one flat shape, times weights of theirs."""
+        """Components at flat arrays of places in m, times weights."""
         return self.read_by(self.geometry.reader(x, y), weights) if self._fields else {}
 
     def read_by(self, reader: Reader, weights: Weights | None = None) -> dict[Key, RealArray]:
-        """At the places of a reader of this geometry."""
+        """Components at the places of a reader of this geometry."""
         found = {key: reader.read(field) for key, field in self._fields.items()}
         return weighted(turned(found, self._rotation), weights)
 
 
 class StrainFields:
-    """Of the gradient at places or on samples half the sum and half the difference of the diagonal, and the
-    mean of the others: those of waves add, and from the sum of all follows the compression.
+    """Half the sum and half the difference of the gradient's diagonal, and the mean of its off-diagonal
+    elements, at places or on samples. Those of all waves add up, and the compression follows from the sums.
     """
 
     def __init__(self, half_sum: RealArray, half_difference: RealArray, shear: RealArray) -> None:
@@ -120,7 +120,7 @@ class StrainFields:
 
     @classmethod
     def of(cls, gradient: Components) -> StrainFields:
-        """Those of a gradient."""
+        """The strains of a gradient."""
         xx, xy, yx, yy = (gradient[key] for key in GRADIENT)
         fields = xx + yy, xx - yy, xy + yx
         for field in fields:
@@ -128,12 +128,13 @@ class StrainFields:
         return cls(*fields)
 
     def add(self, other: StrainFields) -> None:
-        """Add those of other waves at the same places."""
+        """Add the strains of other waves at the same places."""
         for field, added in zip(self.fields, other.fields, strict=True):
             field += added
 
     def turned(self, rotation: float) -> StrainFields:
-        """In axes against which theirs are turned by `rotation` rad: the last two turn twice as far."""
+        """Transform to axes relative to which theirs are rotated by `rotation` rad: the last two rotate by
+        twice the angle."""
         if not rotation:
             return self
         half_sum, along, across = self.fields
@@ -141,7 +142,7 @@ class StrainFields:
         return StrainFields(half_sum, c * along - s * across, s * along + c * across)
 
     def compression(self) -> RealArray:
-        """1 - `channels.min_eigenvalue`, below 0 where the surface is stretched."""
+        """1 - `channels.min_eigenvalue`, negative where the surface is stretched."""
         half_sum, half_difference, shear = self.fields
         root = half_difference * half_difference
         root += shear * shear
@@ -151,7 +152,8 @@ class StrainFields:
 
 
 class StrainGrid:
-    """Periodic strains of some waves without masks, read in the sea's axes; the arguments are a `Grid`'s."""
+    """Periodic strains of some waves without masks, sampled in the sea's axes; the arguments are those of
+    `Grid`."""
 
     def __init__(self, components: Components, size: float, rotation: float) -> None:
         fields = StrainFields.of(components).fields
@@ -164,13 +166,13 @@ class StrainGrid:
         return total_bytes(self._fields)
 
     def read(self, x: Array, y: Array) -> StrainFields:
-        """At places in m, of one flat shape."""
+        """Strains at flat arrays of places in m."""
         reader = self._geometry.reader(x, y)
         return StrainFields(*(reader.read(field) for field in self._fields)).turned(self._geometry.rotation)
 
 
 class Summed:
-    """Sums of components, as the formulas of `core.synthesis.channels` read them."""
+    """Sums of components, in the form used by the formulas of `core.synthesis.channels`."""
 
     def __init__(self, parts: Iterable[Mapping[Key, RealArray]]) -> None:
         self._sums: dict[Key, RealArray] = {}

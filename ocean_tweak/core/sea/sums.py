@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of a sea added up: on the samples of its one tile, or anywhere, where waves on no grid add to them.
+"""Sums of the parts of a sea: on the samples of its tile, or at any places, including waves without a grid.
 
-The tile is that of patches that are merged, or of waves under masks. The first patch's own samples are the
-tile's; the others are read between theirs. Waves shorter than two samples of the tile are left out, or they
-would show as longer ones.
+The tile is that of merged patches, or of waves under masks. The first patch has the samples of the tile; the
+others are interpolated. Waves shorter than two samples of the tile are omitted, as they would alias to longer
+ones.
 
-A patch that does not fit the square is made to repeat with it: along the far sides it goes over into what
-lies before the near ones. Both are of the same spectrum and independent, so shares whose squares add up to 1
-keep the variance.
+A patch whose period does not fit the square is made periodic: along the far sides it blends into its
+continuation before the near ones. Both have the same spectrum and are independent, so weights whose squares
+add up to 1 preserve the variance.
 """
 
 from __future__ import annotations
@@ -49,25 +49,25 @@ from .surfaces import Field, summed_field, weighted_field
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: width in which a patch goes over at the far sides: in its longest waves, and in sides of the square at most
+#: width of the blend at the far sides, in longest waves of the patch, and its maximum in sides of the square
 _BORDER_WAVES, _WIDEST_BORDER = 2.0, 0.1
 
-#: what the foam of places looks back at: with more than a quarter of the memory it would push out all else
+#: strains for the foam at places: with more than a quarter of the memory they would evict everything else
 _STRAINS = "strains"
 MEMO.limit(_STRAINS, 4)
 
-#: where a tile's samples lie in other grids
+#: positions of a tile's samples in other grids
 _PLACES = "places of tiles"
 MEMO.limit(_PLACES, 4)
 
 
 class TileSum:
-    """The (N, N) samples of a sea's one tile, on which its parts are added up.
+    """The (N, N) samples of a sea's tile, on which its parts are summed.
 
     parameters : of the sea
-    parts : whose sum it is
-    dtype : of the fields' numbers
-    workers : threads that read between samples, by default as many as help
+    parts : the summands
+    dtype : of the fields
+    workers : threads for interpolation, by default a suitable number
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class TileSum:
         self._workers = workers
 
     def fill(self, time: float | Fraction, wanted: frozenset[str], fields: Mapping[str, RealArray]) -> None:
-        """Fill the arrays of all outputs but foam."""
+        """Fill the arrays of all outputs except foam."""
         for group in memory_groups(wanted):
             needs = frozenset().union(*(CHANNELS[name].needs for name in group))
             sums: dict[Key, RealArray] = {}
@@ -93,7 +93,7 @@ class TileSum:
     def _add(
         self, waves: PartWaves, time: float | Fraction, needs: frozenset[Key], sums: dict[Key, RealArray]
     ) -> None:
-        """Add the (N, N) components of a part to those of the parts before."""
+        """Add the (N, N) components of a part to the sums."""
         wanted = needs if waves.is_on_tile else unweighted(closed(needs))
         masks = waves.part.masks
         if masks:
@@ -111,9 +111,9 @@ class TileSum:
                 sums[key] += value
 
     def _read(self, components: Components, part: Part, sums: dict[Key, RealArray]) -> dict[Key, RealArray]:
-        """A part between its samples, in the sea's axes, made to repeat with the square.
+        """Interpolate a part in the sea's axes, made periodic with the square.
 
-        It is added to the sums where there are some, block by block: they are what is returned then.
+        If sums are given, it is added to them block by block, and they are returned.
         """
         n, side = self._samples, self._side
         grid = Grid(components, part.parameters.domain_size, part.rotation)
@@ -133,7 +133,7 @@ class TileSum:
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a tile, and how a grid is read there: once, or with shares where it goes over into itself."""
+    """A piece of a tile, and the readers of a grid there: one, or several with weights in the blend."""
 
     rows: slice
     columns: slice
@@ -141,7 +141,7 @@ class Piece:
     readings: tuple[tuple[NDArray[np.bool_], Reader, Weights] | Reader, ...]
 
     def read(self, grid: Grid) -> dict[Key, RealArray]:
-        """Components on the samples of this piece, in its shape."""
+        """Components on the samples of this piece."""
         total: dict[Key, RealArray] = {}
         for reading in self.readings:
             if isinstance(reading, Reader):
@@ -153,11 +153,11 @@ class Piece:
 
 
 class TilePlaces:
-    """Where the samples of a tile lie in a grid of its own, which is the same at all times.
+    """Positions of a tile's samples in another grid, which do not change in time.
 
     geometry : of the grid
-    side, samples : of the tile, in m and along each side
-    border : width in m in which the grid goes over at the far sides
+    side, samples : of the tile, in m, and per side
+    border : width of the blend at the far sides in m
     """
 
     def __init__(self, geometry: Geometry, side: float, samples: int, border: float) -> None:
@@ -171,7 +171,7 @@ class TilePlaces:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all readers, and of the shares at the far sides."""
+        """Bytes of all readers and blend weights."""
         readings = [each for piece in self.pieces for each in piece.readings]
         parts = [(each,) if isinstance(each, Reader) else (each[0], each[1], *each[2]) for each in readings]
         return total_bytes(itertools.chain(*parts))
@@ -192,9 +192,10 @@ class TilePlaces:
 
 
 def border_shares(place: Array, side: float, border: float) -> tuple[tuple[Array, Array, float], ...]:
-    """How much counts of what is there and of what is a side before, the derivative of that, and the side.
+    """Blend weights of a place and of the place one side before, their derivatives, and the side.
 
-    Shares are cosine and sine of an angle that rises smoothly from 0 to a quarter turn within the border.
+    The weights are cosine and sine of an angle that rises smoothly from 0 to a quarter turn within the
+    border.
     """
     part = np.clip((place - (side - border)) / border, 0.0, 1.0)
     angle = 0.5 * np.pi * part * part * (3.0 - 2.0 * part)
@@ -204,7 +205,7 @@ def border_shares(place: Array, side: float, border: float) -> tuple[tuple[Array
 
 
 class AnywhereSum:
-    """The sum of a sea's waves at any rest positions: parts are read between their samples.
+    """The sum of a sea's waves at any rest positions, with interpolated parts.
 
     parameters, precision : of the sea
     parts, placed, coast : whose sum it is
@@ -232,7 +233,7 @@ class AnywhereSum:
         wanted: Iterable[str],
         fields: Mapping[str, RealArray],
     ) -> None:
-        """Fill the arrays of outputs that have no memory, whose first axes hold the flat x and y in m."""
+        """Fill the arrays of outputs that do not depend on earlier times, at flat x and y in m."""
         needs = frozenset().union(*(CHANNELS[name].needs for name in wanted))
         sums = self._sums(x, y, time, needs, [self._grid(waves, time, needs) for waves in self._parts])
         for name in wanted:
@@ -242,10 +243,10 @@ class AnywhereSum:
             fields[name][...] = made.reshape(fields[name].shape)
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
-        """(places,) float32 compression, below 0 where the surface is stretched.
+        """(places,) float32 compression, negative where the surface is stretched.
 
-        The strains it is made of are remembered, for the next frame's foam looks back at them too, and so
-        may other seas of the same patches.
+        The strains are cached, because the next frame's foam needs them too, as may other seas of the same
+        patches.
         """
         total, *others = self._strains_at(x, y, time)
         for strains in others:
@@ -253,7 +254,7 @@ class AnywhereSum:
         return total.compression().astype(np.float32, copy=False)
 
     def _strains_at(self, x: Array, y: Array, time: Fraction) -> Iterator[StrainFields]:
-        """Those of each part, and of waves on no grid."""
+        """Strains of each part, and of waves without a grid."""
         known: dict[tuple[Mask, ...], Weights] = {}
         for waves in self._parts:
             grid = self._strains(waves, time)
@@ -283,7 +284,7 @@ class AnywhereSum:
     def points_above(
         self, x: ArrayLike, y: ArrayLike, time: float | Fraction, with_velocity: bool
     ) -> tuple[SurfacePoints, float]:
-        """Points of the sum of the parts' bilinear surfaces, and the fewest metres between samples."""
+        """Points of the sum of the parts' bilinear surfaces, and the smallest sample spacing in m."""
         fields, reaches = zip(*(waves.mesh_field(time, with_velocity) for waves in self._parts), strict=True)
         if self._coast is not None:
             fields = tuple(weighted_field(field, self._coast.shares) for field in fields)
@@ -300,7 +301,7 @@ class AnywhereSum:
         return [waves.field(time) for waves in self._placed]
 
     def _grid(self, waves: PartWaves, time: float | Fraction, needs: Iterable[Key]) -> Grid:
-        """What is read of a part: its components on its own samples."""
+        """The components of a part on its own samples."""
         wanted = closed(needs)
         if wanted and self._is_weighted(waves):
             wanted = unweighted(wanted, moves=move(waves.part.masks))
