@@ -87,7 +87,7 @@ SHOTS = {
         changes={"eye": 300.0, "tilt": math.radians(11.5), "lens": 35.0},
         light={
             "sun_azimuth": math.radians(12.0), "sun_elevation": math.radians(24.0), "clouds": 0.65,
-            "overcast": 0.12, "exposure": -0.3, "visibility": 30e3,
+            "overcast": 0.12, "exposure": 0.0, "visibility": 35e3,
         },
     ),
 }  # fmt: skip

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..core import OceanParameters, ParameterError
+from ..core.data import formats
 from ..core.data.raster import has_brief_rasters, raster_bytes
 from ..core.numerics.memo import remembered
 from ..core.parameters.former_json import modern
@@ -87,11 +88,13 @@ class Told:
     shot : None if it contains none
     maps : that a job has
     nbytes : of the images in the shot
+    foam : version of a job's foam
     """
 
     shot: Shot | None = None
     maps: tuple[str, ...] = ()
     nbytes: int = 0
+    foam: int = formats.FOAM
 
 
 def told_by(path: Path, frame: int = 0) -> Told:
@@ -107,13 +110,13 @@ def told_by(path: Path, frame: int = 0) -> Told:
 def _read(path: Path, frame: int, _written: tuple[int, int]) -> Told:
     try:
         if path.name != JOB_FILE:
-            shot, maps = Shot(parameters_of(path, frame)), ()
+            shot, maps, foam = Shot(parameters_of(path, frame)), (), formats.FOAM
         else:
             job = read_job(path.parent)
-            shot, maps = job.shot, job.maps
+            shot, maps, foam = job.shot, job.maps, job.foam
     except (CacheError, ExrError, ParameterError, SequenceError):
         return Told()
-    return Told(shot, maps, raster_bytes(shot.parameters))
+    return Told(shot, maps, raster_bytes(shot.parameters), foam)
 
 
 def shown_parameters(settings: OceanSettings, scene: bpy.types.Scene) -> OceanParameters:
@@ -159,8 +162,17 @@ def moves(item: bpy.types.Object) -> bool:
 
 
 def warn(item: bpy.types.Object) -> None:
-    """Warn on the console, once per shot, that the settings of a baked ocean differ from its bake."""
+    """Warn on the console, once per shot, that the settings of a baked ocean differ from its bake, and that
+    its foam has no age.
+    """
     settings = settings_of(item)
+    folder = folder_of(settings) if settings.source == "SEQUENCE" else None
+    if folder is not None and told_by(folder / JOB_FILE).foam < formats.FOAM_OF_TWO_AGES:
+        failures.warned(
+            item, "foam",
+            f"the bake in {folder} was made before foam had an age: the water material estimates it from the "
+            "amount of foam; bake again to tell breaking crests from old foam",
+        )  # fmt: skip
     if settings.bake_differs:
         found = [Difference(*entry) for entry in json.loads(settings.bake_differs)]
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""

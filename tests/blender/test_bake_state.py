@@ -4,6 +4,7 @@
 import json
 
 import bpy
+import numpy as np
 import pytest
 
 from .conftest import sea_of
@@ -154,3 +155,39 @@ def test_another_frame_of_a_bake_makes_no_sea(baked, extension, empty_scene, mon
     planned.clear()
     empty_scene.frame_set(3)
     assert len(planned) == 1
+
+
+def test_a_bake_from_before_foam_had_an_age_is_shown_with_a_word_about_it(
+    ocean, empty_scene, extension, core, monkeypatch, tmp_path, caplog
+):
+    """Its foam map has no breaking in blue; the mesh has its foam, nothing that breaks, and no age."""
+    formats, channels = extension("core.data.formats"), extension("core.synthesis.channels")
+    settings = ocean.ocean_tweak
+    settings.use_foam = True
+    sea = settings.to_parameters(empty_scene)
+    cache, shots = extension("export.cache.folders"), extension("core.parameters.shot")
+    job = extension("export.cache.job").Job(
+        "Ocean", "0123abcd", shots.Shot(sea), ("disp", "foam"), "ZIP", (1,), foam=1
+    )
+    with monkeypatch.context() as former:
+        former.setattr(formats, "FOAM", 1)
+        former.setitem(channels.MAPS, "foam", ("foam", "cusp"))
+        folder = cache.open_folder(tmp_path / "cache", job)
+        sink = extension("export.cache.records").CacheSink(folder, job)
+        assert list(extension("core.sea.bake").bake(job.shot, (1,), sink))
+    assert bpy.ops.ocean.use_sequence(filepath=str(folder)) == {"FINISHED"}
+    mesh = ocean.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    assert "foam_age" not in mesh.attributes
+    found = {name: np.empty(len(mesh.vertices), np.float32) for name in ("foam", "breaking")}
+    for name, values in found.items():
+        mesh.attributes[name].data.foreach_get("value", values)
+    count = sea.resolution
+    expected = core.Ocean(sea).frame(1, {"foam"}).foam
+    assert expected.max() > 0.1
+    grid = found["foam"].reshape(count + 1, count + 1)[:count, :count]
+    assert np.abs(grid - expected).max() < 2e-3
+    assert not found["breaking"].any()
+    caplog.clear()
+    extension("scene.handlers").begin_render(empty_scene)
+    assert caplog.text.count("was made before foam had an age") == 1
+    assert str(folder) in caplog.text

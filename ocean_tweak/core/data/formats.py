@@ -25,7 +25,9 @@ LAYER = 1
 #: the waves themselves: raised whenever the same parameters give a different surface
 SYNTHESIS = 1
 #: the foam: raised whenever the same waves get different foam. Only files that hold foam carry it
-FOAM = 4
+FOAM = 5
+#: the first foam that always tells what breaks now and how old the rest is
+FOAM_OF_TWO_AGES = 2
 #: the spray: raised whenever the same sea and settings give different particles
 SPRAY = 2
 
