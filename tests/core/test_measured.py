@@ -100,6 +100,11 @@ def test_each_bin_keeps_its_energy() -> None:
     np.testing.assert_allclose(np.diff(np.interp(table.edges, f, cumulated)), energy * WIDTH, atol=2e-6)
     assert table.m0 == pytest.approx(float(np.sum(energy * WIDTH)), rel=1e-6)
     with_tail = measured(energy + 0.1, tail=True).table(0.0)
+    rounded = np.where(F > 0.3, 0.0, S)  # what small energies are in files
+    table = measured(rounded, tail=True).table(0.0)
+    f = np.array([0.35, 0.5, 1.0])
+    np.testing.assert_allclose(table.frequency_spectrum(2.0 * f) * 32.0, table.frequency_spectrum(f))
+    assert 0.0 < table.m0 - rounded @ WIDTH < 0.01 * table.m0
     beyond = np.geomspace(with_tail.edges[-1], 50.0, 100_001)
     tail = np.trapezoid(with_tail.frequency_spectrum(beyond), beyond)
     assert with_tail.m0 == pytest.approx(float(np.sum((energy + 0.1) * WIDTH)) + tail, rel=1e-5)

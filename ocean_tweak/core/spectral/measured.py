@@ -26,6 +26,9 @@ DIRECTIONS = 720
 #: of the way from the middle of a bin to the middle of the next, over which the directions change
 _BLENDED = 0.5
 
+#: of the frequency of the last bin with energy, from which on bins tell how high the tail is
+_NEAR_LAST = 0.85
+
 _TURN = 2.0 * np.pi
 
 
@@ -71,7 +74,7 @@ class MeasuredSpectra(Validated):
         "Frequencies are those that a fixed place sees, which a current changes; else those of still water",
     )
     tail: bool = switch(
-        False, "Continue the energy beyond the highest frequency as f⁻⁵, with the last directions"
+        False, "Continue the energy beyond the highest frequency that has some as f⁻⁵, with its directions"
     )
 
     def __post_init__(self) -> None:
@@ -214,11 +217,25 @@ class EnergyTable:
     def m0(self) -> float:
         """Variance of the elevation in m²: the sum of the bins, and of the tail where there is one."""
         own = float(self.energy @ self.width)
-        return own + (float(self._tail_factor) / (4.0 * self.edges[-1] ** 4) if self._tail else 0.0)
+        return own + self._tail_factor / (4.0 * self._tail_from**4)
+
+    @cached_property
+    def _last(self) -> int:
+        """The number of the last bin that has energy: small energies are rounded to none in files."""
+        return int(np.max(np.nonzero(self.energy > 0.0)[0], initial=0))
 
     @property
+    def _tail_from(self) -> float:
+        return float(self.edges[self._last + 1])
+
+    @cached_property
     def _tail_factor(self) -> float:
-        return float(self.energy[-1] * self.f[-1] ** 5)
+        """S·f⁵ of the tail in m²·Hz⁴: the mean of the last bins with energy, which are rounded too."""
+        if not self._tail:
+            return 0.0
+        f, energy = self.f[: self._last + 1], self.energy[: self._last + 1]
+        near = f >= _NEAR_LAST * f[-1]
+        return float(np.mean(energy[near] * f[near] ** 5))
 
     def frequency_spectrum(self, f: Array) -> Array:
         """S in m²/Hz at frequencies in Hz, any shape; 0 outside of the bins."""
@@ -230,7 +247,7 @@ class EnergyTable:
         inside = (f >= self.edges[0]) & (f < self.edges[-1])
         result = np.where(inside, np.maximum(density, 0.0), 0.0)
         if self._tail:
-            beyond = f >= self.edges[-1]
+            beyond = f >= self._tail_from
             result[beyond] = self._tail_factor / f[beyond] ** 5
         return result
 
