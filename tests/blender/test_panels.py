@@ -288,15 +288,16 @@ def test_the_beaufort_number_is_that_of_the_wind(draw, item):
     assert "7, Near gale" in draw(item)
 
 
-def test_a_bake_under_way_shows_how_far_it_is(draw, item, extension):
+@pytest.mark.parametrize(("phase", "count"), [("", "3 / 12, 1:02"), ("spray", "Spray 3 / 12, 1:02")])
+def test_a_bake_under_way_shows_how_far_it_is(draw, item, extension, phase, count):
     process = extension("scene.bake_process")
-    bake = SimpleNamespace(done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)
+    bake = SimpleNamespace(phase=phase, done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)
     process._running[item.session_uid] = bake
     try:
         drawn = draw(item)
     finally:
         del process._running[item.session_uid]
-    assert "3 / 12, 1:02" in drawn
+    assert count in drawn
     assert "ocean.stop_bake" in drawn
     assert "ocean.bake" not in drawn
 
