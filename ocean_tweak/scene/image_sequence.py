@@ -23,12 +23,12 @@ from .settings import OceanObjectError, OceanSettings
 from .stored_paths import absolute, image_file, relative
 from .units import time_stretch
 
-# Blender's frames, and so those of files, go as far to either side
+# limits of Blender's frames, and therefore of files
 _FARTHEST = 1_048_574
 
 
 class SequenceError(OceanObjectError):
-    """An image sequence that cannot be used, and why."""
+    """An image sequence that cannot be used, with the reason."""
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ class ImageSequence:
     frames: tuple[int, ...]
 
     def path(self, frame: int, map_name: str = MOVING_MAP) -> Path:
-        """Where a map of a frame is."""
+        """Path of a frame's map."""
         return absolute(self.directory) / frame_file(self.name, map_name, frame)
 
     def check(self) -> tuple[str, ...]:
-        """The maps that there are. Raises SequenceError unless every frame has a file of each of them."""
+        """The existing maps. Raises SequenceError unless every frame has a file of each map."""
         first, last = self.frames[0], self.frames[-1]
-        if last - first >= MOST_FRAMES:  # which of them are baked is written out, one by one
+        if last - first >= MOST_FRAMES:  # their number is limited, as they are listed one by one
             raise SequenceError(
                 f"Frames {first} and {last} are {last - first} apart: {MOST_FRAMES} is too far"
             )
@@ -61,7 +61,7 @@ class ImageSequence:
             raise SequenceError(f"No files {self.name}_disp.####.exr in {absolute(self.directory)}{hint}")
         wanted = set(self.frames)
         frames = {name: available[self.name, name] for name in MAP_INPUTS if (self.name, name) in available}
-        # a map that was baked for other frames only is none of this sequence
+        # a map that was only baked for other frames is not part of this sequence
         maps = tuple(
             name
             for name in MAP_INPUTS
@@ -82,10 +82,10 @@ class LoadedSequence:
     """A sequence as images of the file.
 
     images : by map
-    early_images : by map, of frames before 0: Blender counts the files of an image upwards from 0
+    early_images : by map, for frames before 0, as Blender counts the files of an image upwards from 0
     samples : along each side
-    fps : of the shot it was baked for; None where the files do not say
-    stretch : frames of that shot in a frame of its animation
+    fps : of the shot it was baked for; None if unknown
+    stretch : frames of that shot per frame of its animation
     """
 
     images: dict[str, bpy.types.Image]
@@ -100,7 +100,7 @@ def find_sequence(path: str | Path) -> ImageSequence:
 
     It has the existing frames; `unbaked_frames` returns the others.
 
-    Raises SequenceError when there is none, more than one, or a map of it lacks some of the frames.
+    Raises SequenceError if there is none or more than one, or if a map lacks some of the frames.
     """
     chosen = absolute(path)
     directory, name = chosen, None
@@ -128,9 +128,8 @@ def find_sequence(path: str | Path) -> ImageSequence:
 def load_sequence(sequence: ImageSequence) -> LoadedSequence:
     """The sequence as images of the file.
 
-    Images of the same files that are there already are read anew and used.
-    Raises SequenceError for missing files, and for images that cannot be read, are not square or differ in
-    size.
+    Existing images of the same files are reloaded and reused. Raises SequenceError for missing files, and for
+    images that cannot be read, are not square or differ in size.
     """
     maps = sequence.check()
     paths = {name: sequence.path(sequence.frames[0], name) for name in maps}
@@ -151,34 +150,34 @@ def load_sequence(sequence: ImageSequence) -> LoadedSequence:
 
 
 def baked_frames(settings: OceanSettings) -> tuple[int, ...]:
-    """The frames of an ocean's sequence, ascending; those of an old file from its first to its last one."""
+    """The frames of an ocean's sequence, ascending; for old files, from the first to the last one."""
     return _stored(settings.sequence_frames, settings.sequence_first, settings.sequence_last)
 
 
 def baked_stretch(settings: OceanSettings) -> Fraction:
-    """Frames of an ocean's sequence in a frame of its animation."""
+    """Frames of an ocean's sequence per frame of its animation."""
     return _stored_stretch(settings.sequence_stretch)
 
 
 def shown_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> int:
-    """The frame whose files an ocean shows at a frame of the scene: the last baked one up to it,
-    else the first.
+    """The frame whose files an ocean shows at a frame of the scene: the last baked one not after it, else the
+    first.
 
-    Nodes choose the file by themselves, alike: see `nodes.shown_frame`.
+    Nodes choose the file by the same rule: see `nodes.shown_frame`.
     """
     return held_frame(baked_frames(settings), _wanted_frame(settings, scene, frame))
 
 
 def since_shown(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> Fraction:
-    """How far behind the moment of its files a frame of the scene is, in files, from -½ to ½.
+    """Offset of a frame of the scene from the moment of its files, in files, from -½ to ½.
 
-    0 unless Time Stretching changed since the bake; velocity moves the water on from there.
+    0 unless Time Stretching has changed since the bake; velocity then moves the water by it.
     """
     return _moment(settings, scene, frame) - _wanted_frame(settings, scene, frame)
 
 
 def unbaked_frames(settings: OceanSettings, scene: bpy.types.Scene, frames: Iterable[int]) -> tuple[int, ...]:
-    """Those of some frames of the scene that an ocean's sequence has not; none of a live ocean."""
+    """The given frames of the scene that an ocean's sequence lacks; none for a live ocean."""
     if settings.source != "SEQUENCE":
         return ()
     baked = set(baked_frames(settings))
@@ -191,7 +190,7 @@ def _wanted_frame(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -
 
 
 def _moment(settings: OceanSettings, scene: bpy.types.Scene, frame: int) -> Fraction:
-    """A frame of the scene as one of the bake, whole or not."""
+    """A frame of the scene converted to frames of the bake, possibly fractional."""
     return frame * baked_stretch(settings) / time_stretch(scene)
 
 
@@ -214,19 +213,19 @@ def _stored_stretch(text: str) -> Fraction:
 
 
 def file_of(settings: OceanSettings, frame: int, map_name: str = MOVING_MAP) -> Path | None:
-    """The file of a map at a frame of an ocean's sequence, there or not; None where it has no such map."""
+    """The path of a map at a frame of an ocean's sequence, existing or not; None if it has no such map."""
     maps = settings.early_maps if frame < 0 else settings.sequence_maps
     return _file_at(getattr(maps, map_name), frame)
 
 
 def folder_of(settings: OceanSettings) -> Path | None:
-    """Where the files of an ocean's sequence are looked for; None where it has none."""
+    """The folder of an ocean's sequence; None if it has none."""
     file = file_of(settings, baked_frames(settings)[0])
     return None if file is None else file.parent
 
 
 def missing_file(settings: OceanSettings, frame: int) -> Path | None:
-    """The first file of a frame of an ocean's sequence that is not there; None where all are."""
+    """The first missing file of a frame of an ocean's sequence; None if none is missing."""
     maps = settings.early_maps if frame < 0 else settings.sequence_maps
     files = (_file_at(getattr(maps, name), frame) for name in MAP_INPUTS)
     return next((file for file in files if file is not None and not file.is_file()), None)
@@ -297,6 +296,6 @@ def _frames_by_map(directory: Path) -> dict[tuple[str, str], set[int]]:
 
 
 def _shown_file(file_name: str) -> ImageFile | None:
-    """What the name of a file tells whose map Blender reads."""
+    """The parts of a file name whose map Blender reads."""
     file = image_file_of(file_name)
     return file if file is not None and file.map in MAP_INPUTS else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generated float images that hold a map of a sea: displacement, foam, normals or velocity."""
+"""Generated float images with a map of a sea: displacement, foam, normals or velocity."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ def new_image(name: str, samples: int) -> bpy.types.Image:
 
 
 def mark_as_data(image: bpy.types.Image) -> None:
-    """Keep Blender from changing the image's numbers.
+    """Keep Blender from converting the image's values.
 
-    `is_data` is set rather than a colour space by name: a studio's OCIO configuration may lack "Non-Color".
+    Sets `is_data` instead of a colour space by name, as a studio's OCIO configuration may lack "Non-Color".
     """
     image.colorspace_settings.is_data = True
     image.alpha_mode = "NONE"
 
 
 def prepare(image: bpy.types.Image, samples: int) -> None:
-    """Make the image ready for samples x samples texels; materials that use it keep it."""
+    """Resize the image to samples x samples texels, keeping its users."""
     if image.source != "GENERATED":
-        # quitting Blender with "save modified images" has packed it
+        # it was packed when Blender quit with "save modified images"
         if image.packed_file is not None:
             image.unpack(method="REMOVE")
         image.source = "GENERATED"
@@ -44,19 +44,19 @@ _shown: dict[int, Hashable] = {}
 
 
 def shows(image: bpy.types.Image, content: Hashable) -> bool:
-    """Whether this was written into the image last."""
+    """Whether this content was last written to the image."""
     return _shown.get(image.session_uid) == content and image.source == "GENERATED"
 
 
 def forget_all() -> None:
-    """Take no image's texels for granted: a file was opened, or a step undone."""
+    """Forget the contents of all images: a file was opened, or a step undone."""
     _shown.clear()
 
 
 def write(image: bpy.types.Image, field: NDArray[np.floating], content: Hashable = None) -> None:
     """Put an (N, N, 3) field [y, x] into the image; row 0 is the bottom row in both.
 
-    content : what `shows` will tell from then on
+    content : for `shows`
     """
     _shown[image.session_uid] = content
     texels = np.empty((*field.shape[:2], 4), np.float32)

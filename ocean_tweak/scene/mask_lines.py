@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The lines of a mesh or a curve as a mask measures from them: seen from above, in the ocean's axes."""
+"""The lines of a mesh or curve from which a mask measures, seen from above, in the ocean's axes."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ KINDS = ("MESH", "CURVE")
 def lines_of(item: bpy.types.Object, to_ocean: Matrix) -> NDArray[np.float32]:
     """(lines, 4) x and y of both ends of each edge, Blender units; of a curve, of the edges it is drawn with.
 
-    Without modifiers: one of them may read the sea, which the mask moves.
+    Without modifiers, as one of them may read the sea, which depends on the mask.
 
-    item : as evaluated or not, whose place is taken
+    item : evaluated or original object
     """
     if item.type not in KINDS:
         return np.zeros((0, 4), np.float32)
@@ -37,7 +37,7 @@ def lines_of(item: bpy.types.Object, to_ocean: Matrix) -> NDArray[np.float32]:
 
 
 def to_text(lines: NDArray[np.floating]) -> str:
-    """As a property keeps them, exactly."""
+    """Lines as exact text for a property."""
     return json.dumps(lines.tolist())
 
 
@@ -51,5 +51,5 @@ def from_text(text: str) -> NDArray[np.float64]:
 
 
 def shifted(text: str, x: float, y: float) -> str:
-    """The lines of a text of `to_text`, moved by so many Blender units."""
+    """The lines of a `to_text` text, shifted, in Blender units."""
     return to_text(from_text(text) + np.array((x, y, x, y))) if text else ""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The modifiers that move the grid: geometry nodes, or Displace and nodes that write what shots read.
 
-Where a render is finer than the viewport, it has modifiers of its own. All give the same vertices and
+If a render is finer than the viewport, it has modifiers of its own. All methods give the same vertices and
 attributes. Displace reads image textures.
 """
 
@@ -26,7 +26,7 @@ Images = Mapping[str, bpy.types.Image]
 
 OCEAN = ocean_group(1)
 
-#: what a modifier is for → its name and type
+#: purpose of a modifier → its name and type
 _PURPOSES = {
     "NODES": ("Ocean Tweak", "NODES"),
     "NODES_RENDER": ("Ocean Tweak Render", "NODES"),
@@ -36,24 +36,24 @@ _PURPOSES = {
     "MAPS": ("Ocean Tweak Maps", "NODES"),
     "MAPS_RENDER": ("Ocean Tweak Render Maps", "NODES"),
 }
-#: what the viewport shows → what a render shows in its place
+#: purpose in the viewport → its counterpart in renders
 _IN_RENDER = {"NODES": "NODES_RENDER", "VIEW": "RENDER", "MAPS": "MAPS_RENDER"}
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What the modifiers have to show.
+    """Input of the modifiers.
 
-    images : by map; None where the mesh's attributes have the surface
-    frames : those that a sequence has, ascending; None for live images
-    grid : the mesh and the samples of the images
-    render_images, render_grid : what a render reads instead; None where it shows what the viewport shows
-    scale : Blender units in a metre
-    velocity_scale : Blender units per second in a metre per second of the velocity image
-    warn : whether frames without a file get a warning
-    early_images : by map, of a sequence's frames before 0
-    files_per_frame : files of a sequence in a frame of the animation
-    seconds_per_file : of the scene, from one file to the next; 0 for live images
+    images : by map; None if the surface is in the mesh's attributes
+    frames : of a sequence, ascending; None for live images
+    grid : of the mesh, with the samples of the images
+    render_images, render_grid : the same for renders; None if they use the viewport's
+    scale : Blender units per metre
+    velocity_scale : Blender units per second per m/s of the velocity image
+    warn : warn about frames without a file
+    early_images : by map, for frames before 0
+    files_per_frame : files of a sequence per frame of the animation
+    seconds_per_file : scene time from one file to the next; 0 for live images
     """
 
     images: Images | None
@@ -70,13 +70,13 @@ class Shown:
 
     @property
     def render_is_alike(self) -> bool:
-        """Whether a render reads the same images, on its own grid."""
+        """Whether renders read the same images, on their own grid."""
         return self.render_images == self.images
 
     @property
     def suits_displace(self) -> bool:
-        """Whether a Displace modifier can show it: of a sequence it knows an offset and a length, and counts
-        Blender's frames upwards from 0."""
+        """Whether a Displace modifier can show it: it only supports an offset and a length of a sequence, and
+        frames from 0 upwards."""
         frames = self.frames
         if frames is None:
             return True
@@ -86,25 +86,25 @@ class Shown:
 
 @dataclass(frozen=True)
 class Textures:
-    """Those of an ocean's Displace modifiers, by which they are recognised."""
+    """The textures of an ocean's Displace modifiers, by which these are recognised."""
 
     view: bpy.types.Texture | None
     render: bpy.types.Texture | None
 
 
 def own_modifiers(item: bpy.types.Object, textures: Textures) -> list[tuple[str, bpy.types.Modifier]]:
-    """The object's modifiers that this module made and what each is for, whatever they are called now."""
+    """The object's modifiers created by this module, with their purposes, whatever their present names."""
     purposes = [(_purpose(modifier, textures), modifier) for modifier in item.modifiers]
     return [(purpose, modifier) for purpose, modifier in purposes if purpose is not None]
 
 
 def is_moved(item: bpy.types.Object, textures: Textures) -> bool:
-    """Whether the object has the modifier of ours that moves it in the viewport."""
+    """Whether the object has our modifier that moves it in the viewport."""
     return any(_purpose(modifier, textures) in ("NODES", "VIEW") for modifier in item.modifiers)
 
 
 def remove_own(item: bpy.types.Object, textures: Textures) -> None:
-    """Take the modifiers of ours away; those of a library stay."""
+    """Remove our modifiers, except those of a library."""
     own = own_modifiers(item, textures)
     for name in [modifier.name for _, modifier in own if not is_of_library(modifier)]:
         item.modifiers.remove(item.modifiers[name])
@@ -133,7 +133,7 @@ def _given_purpose(modifier: bpy.types.NodesModifier) -> str | None:
 
 
 def apply_nodes(item: bpy.types.Object, textures: Textures, shown: Shown) -> None:
-    """Let geometry nodes move the object; Displace modifiers of ours go."""
+    """Move the object by geometry nodes, and remove our Displace modifiers."""
     purposes = ["NODES"] if shown.render_grid is None else ["NODES", "NODES_RENDER"]
     made = _only_modifiers(item, textures, purposes)
     _set_group(made["NODES"], _sea_inputs(shown))
@@ -143,7 +143,7 @@ def apply_nodes(item: bpy.types.Object, textures: Textures, shown: Shown) -> Non
 
 
 def apply_displace(item: bpy.types.Object, textures: Textures, shown: Shown) -> None:
-    """Let Displace modifiers with these textures move the object; nodes behind them write the rest."""
+    """Move the object by Displace modifiers with these textures; nodes after them write the attributes."""
     purposes = ["VIEW", "MAPS"]
     if shown.render_grid is not None:
         # a baked sequence moves either grid, so the grid comes before
@@ -248,9 +248,9 @@ def _set_texture(
 def _only_modifiers(
     item: bpy.types.Object, textures: Textures, purposes: list[str]
 ) -> dict[str, bpy.types.Modifier]:
-    """The object's modifiers of ours for these purposes, at the place in the stack where ours were.
+    """Our modifiers for these purposes, at their position in the stack; others of ours are removed.
 
-    Those of a library cannot go, and Blender forgets most of what is set on them: others stand in for them.
+    Modifiers of a library cannot be removed, and Blender loses most changes to them: others replace them.
     """
     own = own_modifiers(item, textures)
     place = min((list(item.modifiers).index(modifier) for _, modifier in own), default=0)
@@ -258,7 +258,7 @@ def _only_modifiers(
         set_changed(modifier, show_viewport=False, show_render=False)
         place += 1
     own = [(purpose, modifier) for purpose, modifier in own if not is_of_library(modifier)]
-    # one that others stood in for before the object was made local comes last
+    # one that was replaced before the object was made local comes last
     own.sort(key=lambda each: not (each[1].show_viewport or each[1].show_render))
     names: dict[str, str] = {}
     for purpose, modifier in own:
@@ -280,12 +280,13 @@ def _only_modifiers(
 
 
 def is_of_library(modifier: bpy.types.Modifier) -> bool:
-    """Whether it came to a library override from its library."""
+    """Whether a modifier of a library override comes from its library."""
     return modifier.id_data.override_library is not None and modifier.is_override_data
 
 
 def _share_out(made: dict[str, bpy.types.Modifier], had: set[str]) -> None:
-    """Say which modifiers viewport and render show, when that changes; else it is the user's to switch."""
+    """Set which modifiers the viewport and renders show, when that changes; otherwise the user may switch
+    them."""
     for view, render in _IN_RENDER.items():
         if view in made and (render in made) != (render in had):
             made[view].show_render = render not in made
@@ -297,7 +298,7 @@ def _share_out(made: dict[str, bpy.types.Modifier], had: set[str]) -> None:
 def _new_modifier(item: bpy.types.Object, purpose: str, place: int) -> str:
     name, kind = _PURPOSES[purpose]
     modifier = item.modifiers.new(name, kind)
-    if purpose == "GRID":  # recognised by its group from now on
+    if purpose == "GRID":  # it is recognised by its group
         modifier.node_group = node_group(GRID)
     elif kind == "NODES":
         modifier.node_group = node_group(OCEAN)
@@ -308,7 +309,7 @@ def _new_modifier(item: bpy.types.Object, purpose: str, place: int) -> str:
 
 
 def new_texture(name: str) -> bpy.types.Texture:
-    """An image texture that reads texels as they are: bilinear, repeating, not clamped."""
+    """An image texture without filtering: bilinear, repeating, not clamped."""
     texture = bpy.data.textures.new(name, "IMAGE")
     texture.extension = "REPEAT"
     texture.use_interpolation = True
@@ -322,7 +323,7 @@ def new_texture(name: str) -> bpy.types.Texture:
 
 
 def _show_image(texture: bpy.types.Texture, image: bpy.types.Image, frames: Sequence[int] | None) -> None:
-    """Let a texture read an image; `frames` are those that a sequence has, ascending and without a gap."""
+    """Set a texture's image; `frames` are those of a sequence, ascending and without gaps."""
     set_changed(texture, image=image)
     if frames is None:
         return
@@ -339,7 +340,7 @@ def _show_image(texture: bpy.types.Texture, image: bpy.types.Image, frames: Sequ
 
 
 def set_changed(target: object, **values: object) -> None:
-    """Set what differs: what is set again marks the file as changed, and its owner for evaluation."""
+    """Set properties that differ, as setting one marks the file as changed and its owner for evaluation."""
     for name, value in values.items():
         if getattr(target, name) != value:
             setattr(target, name, value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ocean objects: made, and switched between live and baked."""
+"""Creates ocean objects, and switches them between live and baked."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def add(
 ) -> bpy.types.Object:
     """Add an ocean to a scene; its origin is the patch's corner x = y = 0.
 
-    The scene keeps its own frame rate: set it with `units.set_frame_rate` where the parameters' should hold.
+    The scene's frame rate is not changed: use `units.set_frame_rate` to adopt that of the parameters.
 
     parameters : the sea; for a sequence, what it was baked with
     method : a key of METHODS
@@ -80,7 +80,7 @@ def add(
 
 
 def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: ImageSequence) -> None:
-    """Let baked files move the ocean. Raises SequenceError, and then changes nothing."""
+    """Switch the ocean to baked files. Raises SequenceError, and then changes nothing."""
     baked = load_sequence(sequence)
     settings = settings_of(item)
     before = _sequence_images(settings)
@@ -94,9 +94,9 @@ def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: Image
 
 
 def end(item: bpy.types.Object) -> None:
-    """Let an object whose modifier was applied or removed be a mesh like any other.
+    """Turn an ocean whose modifier was applied or removed into an ordinary mesh.
 
-    The surface around the camera and the patches that showed the moving sea go, so that the mesh is seen.
+    The camera surface and the patches of the moving sea are removed, so that the mesh is visible.
     """
     settings = settings_of(item)
     has_surface = camera_surface_of(item) is not None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes, images and textures of an ocean are its own: a duplicate gets others before it changes them."""
+"""Meshes, images and textures belong to one ocean: a duplicate gets its own before it changes them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def remove_with_meshes(items: Iterable[bpy.types.Object]) -> None:
 
 
 def own_image(item: bpy.types.Object, owner: str, name: str, label: str, samples: int) -> bpy.types.Image:
-    """The ocean's own image of a map; made where it has none, or only that of the ocean it was copied from.
+    """The ocean's own image of a map, created if it has none or only that of the ocean it was copied from.
 
-    owner : the setting that holds the images, "live_maps" or "render_maps"
+    owner : the setting with the images, "live_maps" or "render_maps"
     name : a key of MAP_INPUTS
     """
     images = getattr(settings_of(item), owner)
@@ -39,7 +39,7 @@ def own_image(item: bpy.types.Object, owner: str, name: str, label: str, samples
 
 
 def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
-    """Give the ocean a texture of its own for the setting of this name; its Displace modifier goes along."""
+    """Give the ocean its own texture for the setting of this name, and update its Displace modifier."""
     settings = settings_of(item)
     shared = getattr(settings, name)
     if shared is None:
@@ -54,12 +54,12 @@ def own_texture(item: bpy.types.Object, name: str, label: str) -> None:
 
 
 def is_borrowed_mesh(item: bpy.types.Object) -> bool:
-    """Whether a linked duplicate still has the mesh of the ocean it was made from, the older one."""
+    """Whether a linked duplicate still has the mesh of its original, the older ocean."""
     return item.data.users > 1 and any(other.data == item.data for other in _elders(item))
 
 
 def has_other_users(image: bpy.types.Image | None) -> bool:
-    """Whether something besides oceans and their textures reads the image: a material, say."""
+    """Whether anything except oceans and their textures uses the image, such as a material."""
     if image is None:
         return False
     holders = [settings_of(item) for item in all_oceans()]
@@ -70,5 +70,5 @@ def has_other_users(image: bpy.types.Image | None) -> bool:
 
 
 def _elders(item: bpy.types.Object) -> Iterator[bpy.types.Object]:
-    """The oceans that were there before: a duplicate is younger than what it was made from."""
+    """Oceans created earlier, as a duplicate is younger than its original."""
     return (other for other in all_oceans() if other.session_uid < item.session_uid)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The points of a live patch and of its averages, as the surface around the camera reads them.
+"""The points of a live patch and of its averages, in the layout read by the surface around the camera.
 
-They lie one behind the other: those of the patch, x fastest, the last ones of a row and of a column being the
-first ones of the next period, then those of its averages, each closed in the same way.
+First the points of the patch, x fastest, with the first ones of each row and column repeated at the end, then
+those of its averages, each level in the same layout.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ RealArray = NDArray[np.float32]
 
 
 def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], lost: float) -> None:
-    """Put a patch and its averages on points.
+    """Write a patch and its averages to points.
 
     grid : of the patch, in Blender units
     fields : ADDING, (N+1, N+1, …) each, in Blender units
-    lost : mean square slope of the waves that these samples lack
+    lost : mean square slope of the waves too short for these samples
     """
     whole = {
         DISPLACEMENT: fields["displacement"],
@@ -53,7 +53,7 @@ def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], los
 
 
 def _slopes(slope: RealArray, lost: float) -> RealArray:
-    """Slopes along x and y and their squares' sum, with the waves that are not there."""
+    """Slopes along x and y and the sum of their squares, including the lost waves."""
     result = np.empty((*slope.shape[:2], 3), np.float32)
     result[..., :2] = slope
     np.square(slope[..., 0], out=result[..., 2])
@@ -63,7 +63,7 @@ def _slopes(slope: RealArray, lost: float) -> RealArray:
 
 
 def _table(grid: Grid) -> RealArray:
-    """(points, 3): how many points each of the averages has along x and y, and its first one's number."""
+    """(points, 3): numbers of points of each level along x and y, and the index of its first one."""
     sides = [grid.samples + 1]
     while sides[-1] > 2:
         sides.append(sides[-1] // 2 + 1)

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hidden meshes that show the patches of a sea of several, one each, to the surface around the camera.
+"""Hidden meshes with the patches of a sea, one each, for the surface around the camera.
 
-They are points alone, as the nodes want them: no renderer sees them. Each holds samples of its patch in the
-patch's own axes and is turned as the patch is: all of them for a render, half as many along each side for a
-window, few while a value is dragged. They are live, or nodes read them from baked files where the bake that
-moves the ocean's own mesh has them.
+They consist of points, which are not rendered. Each contains samples of its patch in the patch's own axes and
+is rotated like the patch: all samples for a render, half as many along each side for the viewport, few while
+a value is dragged. They are live, or are read by nodes from baked files, if the ocean's bake has them.
 
-Of a sea under masks, a patch is as many meshes as it has masks. Their weights are on points over the domain.
-Waves that do not repeat are on one mesh more, over a square around the camera, and so is foam, on rings.
+With masks, a patch has one mesh per mask, and the weights are on points over the domain. Waves that do not
+repeat are on a further mesh, over a square around the camera, and foam is on rings.
 """
 
 from __future__ import annotations
@@ -44,20 +43,21 @@ from .settings import OceanObjectError, is_ocean, link_beside, settings_of
 from .vertex_attributes import RealArray
 
 _NUMBER, _MASKS, _AREA, _FOAM = (f"ocean_tweak_{name}" for name in ("patch", "masks", "area", "foam_rings"))
-# what the meshes hold, by their session uid
+# contents of the meshes, by session uid
 _shown: dict[int, Hashable] = {}
 #: cells of the weights along each side of the domain
 _WEIGHTS = 256
 
 
 def shot_maps(ocean: bpy.types.Object) -> tuple[str, ...]:
-    """What a bake must hold, besides images, so that all that the file has of the ocean moves."""
+    """The maps, besides images, that a bake needs so that everything in the file that shows the ocean
+    moves."""
     is_shown = camera_surface_of(ocean) is not None and len(settings_of(ocean).patches) > 0
     return (POINTS,) if is_shown else ()
 
 
 def patches_of(ocean: bpy.types.Object) -> dict[int, bpy.types.Object]:
-    """The meshes of an ocean's patches by their number, from 1."""
+    """The meshes of an ocean's patches by number, from 1."""
     return dict(sorted((child[_NUMBER], child) for child in reversed(ocean.children) if _NUMBER in child))
 
 
@@ -69,17 +69,18 @@ def refresh(
     patient: bool,
     coarse: bool = False,
 ) -> bool:
-    """Make, renew, move or remove the meshes of an ocean's patches, and hand them to its camera surface.
+    """Create, update, move or remove the meshes of an ocean's patches, and connect them to its camera
+    surface.
 
-    points : baked ones that they read
+    points : the baked points to read
     patient : otherwise foam is shown without its history where that would take long
-    coarse : of few samples, and with the foam that there was
+    coarse : with few samples, and the previous foam
 
-    Returns whether they show all that they will.
+    Returns whether they are complete.
 
-    Raises MemoryError for a patch too large, OceanObjectError for masks that part the sea too often.
+    Raises MemoryError for a patch too large, OceanObjectError if masks split the sea into too many parts.
     """
-    # a linked ocean shows what its own file holds: Blender drops changes to it
+    # a linked ocean shows the data of its own file, as Blender discards changes to it
     if ocean.library is not None:
         return True
     surface = camera_surface_of(ocean)
@@ -107,9 +108,9 @@ def refresh(
         inputs[FOAM_INPUT] = foam = _foam_object(ocean, wanted is not None)
         modifier = surface_modifier(surface)
         if any(get_input(modifier, name) != inputs[name] for name in (AREA_INPUT, FOAM_INPUT)):
-            surface.update_tag()  # Blender does not see that it is shown otherwise from now on
+            surface.update_tag()  # Blender does not notice that its display has changed
         set_inputs(modifier, inputs)
-        # between whole frames foam stays: going back in time it would be made from nothing
+        # foam is kept at subframes, as going back in time would restart its history
         is_needed = plan.is_whole or (foam is not None and not foam.data.vertices)
         if wanted is not None and foam.data.library is None and is_needed and not coarse:
             is_complete = wanted.write(foam.data, patient)
@@ -121,7 +122,7 @@ def refresh(
 def _keep_out_of_files(ocean: bpy.types.Object) -> None:
     """Exclude generated objects from saved files: the ocean's own mesh replaces them.
 
-    Nothing stands for what does not repeat, and points that move by files need the weights.
+    Waves that do not repeat have no replacement, and points moved by files need the weights.
     """
     is_live = lack_points(ocean)
     for child in ocean.children:
@@ -161,22 +162,22 @@ def seas_in_window(plan: Plan) -> tuple[OceanParameters, ...]:
 
 
 def forget_all() -> None:
-    """Take no mesh for filled: a file was opened, or a step undone."""
+    """Forget the contents of all meshes: a file was opened, or a step undone."""
     _shown.clear()
 
 
 def are_live(ocean: bpy.types.Object) -> bool:
-    """Whether an ocean has patches that no files move, waves that do not repeat, or foam around a camera."""
+    """Whether an ocean has live patches, waves that do not repeat, or foam around a camera."""
     return shows_area(ocean) or has_foam(ocean) or lack_points(ocean)
 
 
 def lack_points(ocean: bpy.types.Object) -> bool:
-    """Whether an ocean has patches that no files move."""
+    """Whether an ocean has live patches."""
     return any(patch_points.modifier_of(item) is None for item in patches_of(ocean).values())
 
 
 def has_foam(ocean: bpy.types.Object) -> bool:
-    """Whether foam is made around a camera, of a baked sea too."""
+    """Whether foam is computed around a camera, also for a baked sea."""
     return any(_FOAM in child for child in ocean.children)
 
 
@@ -186,7 +187,7 @@ def shows_area(ocean: bpy.types.Object) -> bool:
 
 
 def remove(ocean: bpy.types.Object) -> None:
-    """Take the meshes of an ocean's patches and their weights away."""
+    """Remove the meshes of an ocean's patches and their weights."""
     remove_with_meshes(child for child in ocean.children if is_ours(child))
 
 
@@ -197,14 +198,14 @@ def remove_left() -> None:
 
 
 def is_ours(item: bpy.types.Object) -> bool:
-    """Whether an object was made to show a part of an ocean to its camera surface."""
+    """Whether an object was created for an ocean's camera surface."""
     return any(key in item for key in (_NUMBER, _MASKS, _AREA, _FOAM))
 
 
 def _refreshed(
     ocean: bpy.types.Object, plan: Plan, points: Points | None, of_sea: Sequence[Part], coarse: bool
 ) -> dict[int, bpy.types.Object]:
-    """The patches by their number; those that are one too many go."""
+    """The patches by number; surplus ones are removed."""
     present = patches_of(ocean)
     kept = {present[number].name for number in range(1, len(of_sea) + 1) if number in present}
     remove_with_meshes(child for child in ocean.children if _NUMBER in child and child.name not in kept)
@@ -230,7 +231,7 @@ def _refreshed(
 
 
 class _Filling(NamedTuple):
-    """A mesh, the patch that it is to hold, and the samples of that along each side."""
+    """A mesh, its patch, and the number of samples along each side."""
 
     mesh: bpy.types.Mesh
     patch: OceanParameters
@@ -238,12 +239,12 @@ class _Filling(NamedTuple):
 
     @property
     def is_coarse(self) -> bool:
-        """Whether these are fewer than a window shows at rest."""
+        """Whether these are fewer than the viewport shows at rest."""
         return self.samples < in_window(self.patch.resolution)
 
 
 def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
-    """Put patches on points, where they are not there already. They are made on all cores."""
+    """Write patches to points if they have changed, computed on all cores."""
     moment = (plan.time, plan.rate, plan.scale)
     lacking = [each for each in wanted if _shown.get(each.mesh.session_uid) != (moment, *each[1:])]
     if not lacking:
@@ -252,7 +253,7 @@ def _fill(wanted: Iterable[_Filling], plan: Plan) -> None:
     surfaces = [evaluation.surfaces_of(sea) for sea in seas]
     with ThreadPoolExecutor(usable_cores()) as pool:
         made = pool.map(lambda each: each.fields(plan.time, ADDING, plan.is_whole)[0], surfaces)
-        # one is written while the next one is made
+        # one is written while the next one is computed
         for each, sea, fields in zip(lacking, seas, made, strict=True):
             lost = 0.0 if each.is_coarse else _lost(each, sea)
             grid = Grid(each.patch.domain_size * plan.scale, each.samples, each.samples)
@@ -268,7 +269,7 @@ def _lost(filling: _Filling, sea: OceanParameters) -> float:
 
 
 def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | None:
-    """The mesh of what does not repeat; None where there is nothing of it."""
+    """The mesh of waves that do not repeat; None if there are none."""
     present = next((child for child in ocean.children if _AREA in child), None)
     if plan.placed is None:
         remove_with_meshes((present,) if present is not None else ())
@@ -285,7 +286,7 @@ def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | N
 
 
 def _foam_object(ocean: bpy.types.Object, is_wanted: bool) -> bpy.types.Object | None:
-    """The points of foam around the camera; None where there are none."""
+    """The points of foam around the camera, or None."""
     present = next((child for child in ocean.children if _FOAM in child), None)
     if not is_wanted:
         remove_with_meshes((present,) if present is not None else ())
@@ -299,7 +300,7 @@ def _foam_object(ocean: bpy.types.Object, is_wanted: bool) -> bpy.types.Object |
 def _weights(
     ocean: bpy.types.Object, size: float, scale: float, of_sea: Sequence[Part], when: SeaTime
 ) -> bpy.types.Object | None:
-    """Points over the domain with the weights of the parts that have masks; None where none has."""
+    """Points over the domain with the weights of masked parts; None if there are none."""
     present = next((child for child in ocean.children if _MASKS in child), None)
     masked = {WEIGHT.format(number): part.masks for number, part in enumerate(of_sea, 1) if part.masks}
     if not masked:
@@ -351,9 +352,9 @@ def _write(
     plan: Plan,
     corner: tuple[float, float],
 ) -> None:
-    """Put the fields ADDING of the plan's moment on points.
+    """Write the fields ADDING at the plan's time to points.
 
-    corner : x and y of the first one at rest, m
+    corner : rest position (x, y) of the first one, m
     """
     if len(mesh.vertices) != grid.vertices:
         mesh.clear_geometry()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Baked points of patches: what moves them for the surface around the camera, without the extension too."""
+"""Baked points of patches, which move them for the surface around the camera, also without the extension."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Po
 
 
 def read_points(item: bpy.types.Object, number: int, part: Part, points: Points) -> None:
-    """Let a patch's mesh read its points; what it held itself goes."""
+    """Let a patch's mesh read baked points; its own points are removed."""
     if len(item.data.vertices):
         item.data.clear_geometry()
         item.data.update_tag()
@@ -104,7 +104,7 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
 
 
 def read_none(item: bpy.types.Object) -> None:
-    """Let a patch's mesh hold the patch itself."""
+    """Let a patch's mesh hold its own points again."""
     modifier = modifier_of(item)
     if modifier is not None and is_of_library(modifier):
         set_changed(modifier, show_viewport=False, show_render=False)
@@ -113,7 +113,8 @@ def read_none(item: bpy.types.Object) -> None:
 
 
 def modifier_of(item: bpy.types.Object) -> bpy.types.NodesModifier | None:
-    """What lets a patch's mesh read points; None where it is live. That of a library may be switched off."""
+    """The modifier by which a patch's mesh reads points; None if it is live. That of a library may be
+    switched off."""
     nodes = (modifier for modifier in item.modifiers if modifier.type == "NODES")
     found = [modifier for modifier in nodes if is_of_kind(modifier.node_group, PATCH_POINTS)]
     own = [modifier for modifier in found if not is_of_library(modifier)]
@@ -133,6 +134,6 @@ def files_of(settings: OceanSettings) -> tuple[str, str, Path] | None:
 
 
 def _baked_shot(folder: Path) -> Shot | None:
-    """What a bake with points is of; None for another bake, or none."""
+    """The shot of a bake with points; None for other bakes."""
     told = told_by(folder / JOB_FILE)
     return told.shot if POINTS in told.maps else None

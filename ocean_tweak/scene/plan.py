@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an ocean needs, from its settings: the seas and grids of viewport and render."""
+"""Plans an ocean from its settings: the seas and grids of viewport and render."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ from .units import frame_rate, frame_with_subframe, metres_per_unit, time_stretc
 
 #: samples along each side of the surface that is shown while a parameter is dragged
 COARSE = 128
-#: samples along each side at which foam is made for a viewport whose render makes its own
+#: resolution of the viewport's foam if renders compute their own
 VIEWPORT_FOAM = 128
-#: samples along each side of a patch that a window shows in any case
+#: smallest resolution of a patch in the viewport
 _PATCH_SAMPLES = 256
 _LEAST_SAMPLES = 16
-#: domains along each side of the square of what does not repeat, and cells of it, at most
+#: side of the square for waves that do not repeat, in domains, and its largest number of cells
 _AROUND, _AREA_CELLS = 2, 512
-# m that a camera may be away from what was made around it
+# distance in m that a camera may move before its surroundings are recomputed
 _FAR_MOVED = 9.0
-# rad by which it may have turned
+# angle in rad that it may turn
 _FAR_TURNED = math.radians(2.0)
-# bytes that a vertex of a grid with all its attributes takes, counting one copy for the evaluation
+# bytes per vertex of a grid with all its attributes, including one copy for evaluation
 _VERTEX_BYTES = 200
 
 
 class _Seen(NamedTuple):
-    """An evaluated camera's matrix, and its object's own at that time."""
+    """The evaluated and the original matrix of a camera at the same time."""
 
     stale: Matrix
     matrix: Matrix
@@ -55,10 +55,10 @@ _used: dict[int, Matrix] = {}
 
 @dataclass(frozen=True)
 class Placed:
-    """Waves that do not repeat, of an ocean that a surface around a camera shows.
+    """The waves of an ocean with a camera surface that do not repeat.
 
     whole : the sea with all of its waves
-    area : where they are shown, beside the ocean's mesh
+    area : where they are shown, in addition to the ocean's mesh
     """
 
     whole: OceanParameters
@@ -67,16 +67,16 @@ class Placed:
 
 @dataclass(frozen=True)
 class Plan:
-    """What an ocean needs.
+    """The plan of an ocean.
 
-    parameters : of the render
-    metres : in a Blender unit
+    parameters : for renders
+    metres : per Blender unit
     viewport, render : mesh and samples
-    channels : those that are asked for
-    frame : of the scene, sub-frame included
+    channels : the requested ones
+    frame : of the scene, possibly a subframe
     time : the ocean's, s
-    rate : seconds of it in a second of the scene
-    placed : what the parameters are without; None where nothing is left out
+    rate : seconds of it per second of the scene
+    placed : waves omitted from the parameters; None for none
     """
 
     parameters: OceanParameters
@@ -96,17 +96,17 @@ class Plan:
 
     @property
     def maps(self) -> tuple[str, ...]:
-        """The images that are asked for."""
+        """The requested image maps."""
         return maps_of(self.channels)
 
     @property
     def has_own_render(self) -> bool:
-        """Whether a render shows another surface than the viewport."""
+        """Whether renders show another surface than the viewport."""
         return self.render != self.viewport
 
     @property
     def is_whole(self) -> bool:
-        """Whether the frame is not one between two."""
+        """Whether the frame is not a subframe."""
         return self.frame.denominator == 1
 
     @property
@@ -115,7 +115,7 @@ class Plan:
         return float(1 / self.metres)
 
     def viewport_sea(self, coarse: bool = False) -> OceanParameters:
-        """The sea that the viewport shows; coarse, one of few samples."""
+        """The sea that the viewport shows; if coarse, with few samples."""
         samples = self.viewport.samples
         return _sea_in_viewport(
             self.parameters, min(COARSE, samples) if coarse else samples, self.has_own_render
@@ -143,9 +143,9 @@ def _most_samples(viewport_resolution: int) -> int:
 
 
 def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
-    """What the settings ask for, at the scene's present frame.
+    """The plan for some settings at the scene's present frame.
 
-    Raises ParameterError for settings that are no sea, OceanObjectError for a grid too large.
+    Raises ParameterError for invalid settings, OceanObjectError for a grid too large.
     """
     parameters, metres = settings.to_parameters(scene), metres_per_unit(scene)
     size = float(Fraction(parameters.domain_size) / metres)
@@ -154,13 +154,13 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
         render, view = parameters.resolution, min(most, parameters.resolution)
         quads = view
     else:
-        # the files have their resolution, the viewport fewer quads to move
+        # the files have their own resolution, but the viewport moves fewer quads
         render = view = settings.sequence_samples
         quads = min(most, view)
     fixed, repeats = settings.mesh_resolution, (settings.repeats_x, settings.repeats_y)
     viewport = Grid(size, fixed or quads, view, repeats)
     clock, channels = clock_of(settings, scene, parameters.timing.start_frame), wanted_channels(settings)
-    if clock.rate is None:  # without a velocity, renderers make motion blur from the frames between
+    if clock.rate is None:  # without velocity, renderers use subframes for motion blur
         channels -= {"velocity"}
     plan = Plan(
         parameters, metres, viewport, Grid(size, fixed or render, render, repeats), channels,
@@ -174,7 +174,7 @@ def plan_of(settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
 def in_window(samples: int) -> int:
     """Samples along each side of a patch that a window shows, of those of a render.
 
-    Planned patches have four in their shortest wave: two are enough to hold it.
+    Planned patches have four samples per shortest wave, and two are enough to resolve it.
     """
     return min(samples, max(_PATCH_SAMPLES, samples // 4 * 2))
 
@@ -182,8 +182,8 @@ def in_window(samples: int) -> int:
 def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> float:
     """Blender units per second of the scene in a metre per second of the sea.
 
-    A sequence shows its files by the scene's frames, whatever frame rate and stretch of time it was baked
-    with: then it plays faster or slower than it was baked.
+    A sequence shows its files by the scene's frames, whatever frame rate and time stretch it was baked with,
+    so it may play faster or slower.
     """
     if settings.source == "LIVE" or not settings.sequence_fps:
         return plan.scale
@@ -192,7 +192,7 @@ def velocity_scale(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) 
 
 
 def seconds_per_file(settings: OceanSettings, scene: bpy.types.Scene) -> float:
-    """Seconds of the scene from one file of a sequence to the next."""
+    """Scene time in s from one file of a sequence to the next."""
     return float(time_stretch(scene) / baked_stretch(settings) / frame_rate(scene))
 
 
@@ -207,14 +207,14 @@ def _check(grid: Grid) -> None:
 
 
 def camera_surface_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
-    """The surface that shows an ocean around a camera; None where its own mesh does."""
+    """The camera surface of an ocean, or None."""
     return next((child for child in ocean.children if surface_modifier(child) is not None), None)
 
 
 def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> Plan:
-    """What an ocean needs: where a surface around a camera shows it, its own mesh has what repeats alone.
+    """The plan of an ocean; with a camera surface, its own mesh has only waves that repeat.
 
-    settings : of the ocean, or as animation makes them
+    settings : of the ocean, original or animated
 
     Raises as `plan_of`.
     """
@@ -225,7 +225,7 @@ def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.
     place = camera_place(surface, scene, plan.scale)
     size = _AROUND * own.domain_size
     cells = min(_AROUND * plan.viewport.samples, _AREA_CELLS)
-    cell = size / cells  # a camera that moves shows the same samples
+    cell = size / cells  # a moving camera shows the same samples
     corner = (cell * round((along - 0.5 * size) / cell) for along in place)
     area = Area(size + cell, cells + 1, tuple(corner))
     return dataclasses.replace(plan, parameters=own, placed=Placed(plan.parameters, area))
@@ -276,11 +276,11 @@ def forget_cameras() -> None:
 
 
 def camera_of(surface: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Object:
-    """Around which a surface shows its ocean; the surface itself where there is none."""
+    """The camera of a surface; the surface itself if there is none."""
     return get_input(surface_modifier(surface), "Camera") or scene.camera or surface
 
 
 def surface_modifier(surface: bpy.types.Object) -> bpy.types.NodesModifier | None:
-    """What shows an ocean on an object; None where nothing does."""
+    """The camera surface's modifier on an object, or None."""
     modifiers = (modifier for modifier in surface.modifiers if modifier.type == "NODES")
     return next((each for each in modifiers if is_of_kind(each.node_group, CAMERA_SURFACE)), None)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds objects that will not move in a Blender without the extension, before a farm does.
 
-To find it, all objects of the file are looked at: when something happens, not whenever a panel is drawn.
+This examines all objects of the file, and is therefore done on events instead of whenever a panel is drawn.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ class Need(NamedTuple):
 
     @property
     def text(self) -> str:
-        """In a line."""
+        """As one line of text."""
         return f"{self.name} {self.reason}: {self.remedy}"
 
 
 class Neighbours(NamedTuple):
-    """What goes with an ocean.
+    """Objects related to an ocean.
 
-    needs : objects that only the extension moves
+    needs : objects that do not move without the extension
     has_surface : whether a surface around the camera shows it
     has_bake : whether it reads a bake of ours, which lies on disk
     """
@@ -54,12 +54,12 @@ _Key = tuple[str, str | None]
 
 @dataclass
 class _Seen:
-    """What was found when it was looked for last.
+    """The result of the last search.
 
-    of : what goes with each ocean, by its session uid
+    of : the neighbours of each ocean, by session uid
     scenes : names of the oceans of each scene, each with the file that it is linked from, by session uid
     readers : session uids of the objects whose modifiers read oceans
-    objects : how many the file had
+    objects : number of objects in the file
     """
 
     of: dict[int, Neighbours] = field(default_factory=dict)
@@ -72,7 +72,7 @@ _seen = _Seen()
 
 
 def neighbours_of(ocean: bpy.types.Object) -> Neighbours:
-    """What goes with an ocean, as it was found last; it is looked for again where objects came or went."""
+    """The neighbours of an ocean from the last search, which is repeated if objects were added or removed."""
     return _found().of.get(ocean.session_uid, Neighbours())
 
 
@@ -84,7 +84,7 @@ def has_ocean(scene: bpy.types.Scene) -> bool:
 def known_oceans(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """The oceans of a scene by name; as `neighbours_of`."""
     found = [bpy.data.objects.get(key) for key in _found().scenes.get(scene.session_uid, ())]
-    if not all(map(is_ocean, found)):  # one got another name
+    if not all(map(is_ocean, found)):  # one was renamed
         look()
         found = [bpy.data.objects.get(key) for key in _seen.scenes.get(scene.session_uid, ())]
     return [item for item in found if is_ocean(item)]
@@ -97,7 +97,7 @@ def _found() -> _Seen:
 
 
 def look_at(ocean: bpy.types.Object) -> None:
-    """Find what goes with an ocean."""
+    """Search the neighbours of an ocean."""
     has_surface = camera_surface_of(ocean) is not None
     for scene in ocean.users_scene:
         keys = _seen.scenes.get(scene.session_uid, ())
@@ -107,7 +107,7 @@ def look_at(ocean: bpy.types.Object) -> None:
 
 
 def look() -> None:
-    """Find what goes with each ocean of the file."""
+    """Search the neighbours of all oceans of the file."""
     oceans = list(all_oceans())
     _seen.of.clear()
     _seen.objects = len(bpy.data.objects)
@@ -127,7 +127,7 @@ def _by_name(key: _Key) -> tuple[str, str]:
 
 
 def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:
-    """Whether objects came or went, or one changed that reads an ocean or may do so now.
+    """Whether objects were added or removed, or one that reads an ocean, or may do so now, has changed.
 
     Where no ocean is known, nothing is: one that comes is looked at when something asks for it.
     """
@@ -135,7 +135,7 @@ def is_outdated(updates: Iterable[bpy.types.DepsgraphUpdate]) -> bool:
 
 
 def sharp_under_blur(ocean: bpy.types.Object, scene: bpy.types.Scene) -> str:
-    """What to say of a bake whose water motion blur leaves sharp: no velocity moves it. "" of others."""
+    """Warning for a bake that motion blur leaves sharp, as it has no velocity; "" for others."""
     settings = settings_of(ocean)
     has_velocity = any(maps.vel is not None for maps in (settings.sequence_maps, settings.early_maps))
     if settings.source != "SEQUENCE" or not scene.render.use_motion_blur or has_velocity:
@@ -156,7 +156,7 @@ def forget_all() -> None:
 
 
 def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
-    """The ocean and what reads it, as far as these need the extension; none where all of it is baked."""
+    """The ocean and objects that read it, as far as they need the extension; none if everything is baked."""
     surface = camera_surface_of(ocean)
     if settings_of(ocean).source == "LIVE":
         return (_live(ocean), *_readers(ocean))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is the user's: the choices in Blender's preferences, and the folder of the extension's own files."""
+"""The user's preferences, and the folder for the extension's own files."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ _EXTENSIONS = "bl_ext"
 
 
 def extension_name() -> str | None:
-    """The name that Blender knows this extension by; None in a script that uses a checkout."""
+    """Blender's name for this extension; None in a script that uses a checkout."""
     parts = __package__.split(".")
     return ".".join(parts[:3]) if parts[0] == _EXTENSIONS else None  # bl_ext.REPOSITORY.EXTENSION. …
 
 
 def preferences() -> bpy.types.AddonPreferences | None:
-    """The user's choices, None where Blender keeps none: `log_level` and `write_log` are among them."""
+    """The user's preferences, such as `log_level` and `write_log`; None if Blender has none."""
     addon = bpy.context.preferences.addons.get(extension_name() or "")
     return addon.preferences if addon is not None else None
 
 
 def user_folder(name: str) -> Path:
-    """A folder for the user's files, made where it is missing; it outlives updates of the extension.
+    """A folder for the user's files, created if missing; it survives updates of the extension.
 
     name : `presets`, `assets`, …
 
-    Raises OSError where it cannot be made.
+    Raises OSError if it cannot be created.
     """
     extension = extension_name()
     if extension is not None:

@@ -24,21 +24,21 @@ from .plan import camera_surface_of, plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, is_live, refresh, tell
 from .settings import OceanSettings, all_oceans, scene_of, settings_of
 
-# s without a change after which all samples are shown
+# time in s without a change after which all samples are shown
 PAUSE = 0.15
-# s between two looks at what is to be done
+# interval of the timer in s
 _INTERVAL = 0.05
 
-#: what waits for all samples
+#: parts that wait for all samples
 _AFTER_SAMPLES = Wanted.SAMPLES | Wanted.NEIGHBOURS
 _NOTHING = Wanted(0)
 
 
 def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """What makes the waves of all the viewport's samples, before any surface of them.
+    """A job that computes the waves at full viewport resolution.
 
-    As the other jobs it touches no data of Blender and may run on any thread. Raises ParameterError or
-    OceanObjectError for settings that are no sea.
+    Like the other jobs it accesses no Blender data and may run on any thread. Raises ParameterError or
+    OceanObjectError for invalid settings.
     """
     plan = plan_for(item, settings_of(item), scene)
     seas = [plan.viewport_sea()]
@@ -48,7 +48,7 @@ def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], o
 
 
 def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """What makes the foam that the viewport lacks; raises as `_waves_job`."""
+    """A job that computes the foam missing in the viewport; raises the errors of `_waves_job`."""
     settings = settings_of(item)
     plan, jobs = plan_for(item, settings, scene), list[Callable[[], object]]()
     if is_live(item):
@@ -69,7 +69,7 @@ def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], ob
 def _statistics_job(
     item: bpy.types.Object, scene: bpy.types.Scene
 ) -> Callable[[], tuple[OceanParameters, str]] | None:
-    """What makes the statistics of the sea that is shown; None, and they are shown, where they are known."""
+    """A job that computes the statistics of the sea; None if they are known, and then they are shown."""
     settings = settings_of(item)
     if settings.error:
         return None
@@ -81,7 +81,7 @@ def _statistics_job(
     return None
 
 
-#: what follows, and what makes it; none of it touches data of Blender while it is made
+#: parts that follow later, and their jobs, which access no Blender data
 _JOBS: dict[Wanted, Callable[[bpy.types.Object, bpy.types.Scene], Callable[[], object] | None]] = {
     Wanted.SAMPLES: _waves_job,
     Wanted.HISTORY: _foam_job,
@@ -91,13 +91,13 @@ _JOBS: dict[Wanted, Callable[[bpy.types.Object, bpy.types.Scene], Callable[[], o
 
 @dataclass
 class _Outstanding:
-    """What is still to be done, by the object's session uid.
+    """Outstanding work, by the object's session uid.
 
-    missing : what an ocean lacks, of what _JOBS make
-    due : when all samples are wanted
-    making : what is being made
-    shares : of foam around a camera that is being made, what there is of it, 0…1
-    worker : the thread that makes it
+    missing : missing parts of an ocean, from _JOBS
+    due : time at which all samples are due
+    making : parts being computed
+    shares : completed fraction of foam around a camera that is being computed, 0…1
+    worker : the thread
     """
 
     missing: dict[int, Wanted] = field(default_factory=dict)
@@ -108,7 +108,7 @@ class _Outstanding:
 
     @property
     def uids(self) -> set[int]:
-        """Objects with something to be done."""
+        """Objects with outstanding work."""
         return {*self.missing, *(uid for uid, _ in self.making)}
 
     def lacks(self, uid: int, parts: Wanted) -> bool:
@@ -116,14 +116,14 @@ class _Outstanding:
         return bool(self.missing.get(uid, _NOTHING) & parts)
 
     def note(self, uid: int, parts: Wanted, is_missing: bool) -> None:
-        """An object lacks these parts now, or does not any more."""
+        """Note that an object lacks some parts, or no longer does."""
         before = self.missing.pop(uid, _NOTHING)
         left = before | parts if is_missing else before & ~parts
         if left:
             self.missing[uid] = left
 
     def keep_only(self, uids: Iterable[int]) -> None:
-        """Forget objects that are gone."""
+        """Drop objects that no longer exist."""
         for uid in self.uids.difference(uids):
             self.missing.pop(uid, None)
             self.due.pop(uid, None)
@@ -132,7 +132,7 @@ class _Outstanding:
                 self.making.pop((uid, part), None)
 
     def submit(self, uid: int, part: Wanted, job: Callable[[], object]) -> None:
-        """Let the thread make something."""
+        """Submit a job to the thread."""
         if self.worker is None:
             self.worker = ThreadPoolExecutor(1, "Ocean Tweak")
         if part is Wanted.HISTORY:
@@ -159,12 +159,12 @@ def show(
     """Update what is wanted of an ocean for its settings and the scene's frame; in a window, slow parts
     follow later. Problems are stored in `error`.
 
-    Everything that happens to an ocean comes here: a changed setting, a frame, a render, an opened file.
+    All events arrive here: a changed setting, a frame, a render, an opened file.
 
     shown : the settings as animation makes them, where it does
     """
     if not has_window():
-        # statistics of each frame of an animated sea would cost more than the frame
+        # computing statistics in each frame of an animated sea would cost more than the frame
         _show_now(item, scene, wanted if shown is None else wanted & ~Wanted.STATISTICS, shown)
         return
     uid = item.session_uid
@@ -214,7 +214,7 @@ def follow_up(item: bpy.types.Object, missing: Wanted) -> None:
 def _show_now(
     item: bpy.types.Object, scene: bpy.types.Scene, wanted: Wanted, shown: OceanSettings | None = None
 ) -> Wanted:
-    """Refresh, and keep what is wrong. Returns what is missing."""
+    """Refresh, and store any problem. Returns the missing parts."""
     try:
         return refresh(item, scene, wanted, shown)
     except EXPECTED_ERRORS as error:
@@ -227,7 +227,7 @@ def _is_playing() -> bool:
 
 
 def _has_statistics(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
-    """Whether the statistics that the ocean shows are those of its sea, or there can be none."""
+    """Whether the ocean's statistics are up to date, or impossible."""
     settings = settings_of(item)
     return bool(settings.error) or (
         evaluation.known_statistics(bake_state.shown_parameters(settings, scene)) == settings.statistics
@@ -240,30 +240,30 @@ def has_window() -> bool:
 
 
 def is_unfinished(item: bpy.types.Object) -> bool:
-    """Whether the viewport will show more in a moment: all samples, or foam with its history."""
+    """Whether the viewport will soon show more: all samples, or foam with its history."""
     return _outstanding.lacks(item.session_uid, Wanted.SAMPLES | Wanted.HISTORY)
 
 
 def foam_share(item: bpy.types.Object) -> float | None:
-    """Of the foam around a camera that is being made, what there is by now, 0…1; None where none is made."""
+    """Completed fraction of foam around a camera that is being computed, 0…1; None if none is."""
     uid = item.session_uid
     return _outstanding.shares.get(uid) if (uid, Wanted.HISTORY) in _outstanding.making else None
 
 
 def is_outstanding(item: bpy.types.Object) -> bool:
-    """Whether the surface or the statistics shown are not yet those of the settings."""
+    """Whether the surface or the statistics are not yet up to date."""
     return item.session_uid in _outstanding.uids
 
 
 def forget_all() -> None:
-    """Do nothing more: another file is opened, or the extension is disabled."""
+    """Drop all work: another file is opened, or the extension is disabled."""
     if bpy.app.timers.is_registered(go_on):
         bpy.app.timers.unregister(go_on)
     _outstanding.clear()
 
 
 def go_on() -> float | None:
-    """The timer: one step for each ocean. Returns the seconds to the next one, None when nothing is left."""
+    """The timer: one step for each ocean. Returns the seconds to the next one, None if nothing is left."""
     if bpy.app.is_job_running("RENDER"):
         return 10 * _INTERVAL
     oceans = {item.session_uid: item for item in all_oceans() if item.users_scene}
@@ -277,12 +277,12 @@ def go_on() -> float | None:
     if made:
         redraw_views()
     elif any(part is Wanted.HISTORY for _, part in _outstanding.making):
-        redraw_views({"UI"})  # where a bar tells of it
+        redraw_views({"UI"})  # redraw the progress bar
     return _INTERVAL if _outstanding.uids else None
 
 
 def _start(item: bpy.types.Object, part: Wanted) -> None:
-    """Let something be made that an ocean lacks, unless it is, or has to wait."""
+    """Start a job for a missing part of an ocean, unless one is running or it has to wait."""
     uid = item.session_uid
     if part is Wanted.SAMPLES:
         has_to_wait = _outstanding.due[uid] > time.monotonic()
@@ -318,7 +318,7 @@ def _take(item: bpy.types.Object, part: Wanted, future: Future[Any]) -> None:
         evaluation.keep_statistics(*made)  # and shown where they are looked for next
         return
     _outstanding.note(uid, part, False)
-    # the history is there now, unless time has jumped again
+    # the history is complete, unless time has jumped again
     missing = _show_now(item, scene_of(item), Wanted.ALL & ~(Wanted.STATISTICS | Wanted.HISTORY))
     _outstanding.note(uid, Wanted.HISTORY, Wanted.HISTORY in missing)
 

@@ -35,19 +35,19 @@ from .plan import Plan, plan_for, seconds_per_file, velocity_scale
 from .settings import OceanObjectError, OceanSettings, settings_of
 from .vertex_attributes import Fields, resampled, tiled
 
-#: what a user can cause: shown with the object; anything else is a bug and raises
+#: errors that a user can cause, shown with the object; any other is a bug and is raised
 EXPECTED_ERRORS = (ParameterError, OceanObjectError, MemoryError)
 
 _NO_SEQUENCE = "No image sequence is chosen: choose a baked one, or go back to live"
 
-# the sea of each ocean's settings, by session uid: panels and views ask for it whenever they are drawn
+# the sea of each ocean's settings, by session uid, as panels and views need it whenever they are drawn
 _seas: dict[int, OceanParameters] = {}
 # a render from the window refreshes oceans on its own thread, while the window may refresh them too
 _turn = threading.RLock()
 
 
 class Wanted(Flag):
-    """What of an ocean is to be as its settings and its scene's frame say.
+    """The parts of an ocean to update.
 
     SURFACE : the viewport's mesh, and what moves it: modifiers, attributes and images
     SAMPLES : all samples of a live surface and of patches; without it, they have few
@@ -86,9 +86,9 @@ _OF_SEA = Wanted.SURFACE | Wanted.PATCHES | Wanted.RENDER
 
 
 def of_a_frame(item: bpy.types.Object) -> Wanted:
-    """What another frame changes of an ocean: Blender itself reads the files of one that is baked.
+    """The parts that change with the frame; Blender itself reads the files of a baked ocean.
 
-    Its patches are live where there are no files of their points.
+    Its patches are live if there are no baked points.
     """
     if is_live(item):
         return Wanted.ALL & ~Wanted.NEIGHBOURS
@@ -111,7 +111,7 @@ def refresh(
     wanted: Wanted = Wanted.ALL,
     shown: OceanSettings | None = None,
 ) -> Wanted:
-    """Bring what is wanted of an ocean into step with its settings and the scene's frame, now.
+    """Update parts of an ocean for its settings and the scene's frame, at once.
 
     shown : the settings as animation makes them, where it does
 
@@ -143,7 +143,7 @@ def _refresh_sea(
     wanted: Wanted,
     shown: OceanSettings | None,
 ) -> Wanted:
-    """Show the waves in viewport, patches and render. Returns what is still to come."""
+    """Show the waves in viewport, patches and render. Returns the parts still missing."""
     plan = plan_for(item, shown or settings, scene)
     missing, is_baked = _NOTHING, settings.source != "LIVE"
     _seas[item.session_uid] = plan.whole
@@ -185,7 +185,7 @@ def _statistics(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, wan
 
 
 def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scene) -> None:
-    """Put the sea that a live ocean of this file shows on its mesh, as a file keeps it."""
+    """Write the sea of a live ocean to its mesh for saving."""
     if settings.source != "LIVE" or item.library is not None:
         return
     textures = Textures(settings.texture, settings.render_texture)
@@ -203,7 +203,7 @@ def _hold(item: bpy.types.Object, settings: OceanSettings, scene: bpy.types.Scen
 
 
 def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Keep for the panel which file of the present frame is not there, and let the console hear it."""
+    """Store the missing file of the present frame for the panel, and print it."""
     settings, file = settings_of(item), None
     if settings.source == "SEQUENCE":
         if settings.sequence_maps.disp is None:
@@ -225,7 +225,7 @@ def _note_files(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
 
 
 def sea_of_settings(item: bpy.types.Object, scene: bpy.types.Scene) -> OceanParameters | None:
-    """The sea of an ocean's settings; None where they are none. It is read once after each change."""
+    """The sea of an ocean's settings, cached until they change; None if they are invalid."""
     if item.session_uid not in _seas and not settings_of(item).error:
         try:
             _seas[item.session_uid] = settings_of(item).to_parameters(scene)
@@ -240,7 +240,7 @@ def forget_all() -> None:
 
 
 def tell(item: bpy.types.Object, error: BaseException) -> None:
-    """Keep what is wrong for the panel, and let the console hear it."""
+    """Store a problem for the panel, and print it."""
     text = str(error) or "Not enough memory for this resolution"
     _seas.pop(item.session_uid, None)
     set_changed(settings_of(item), error=text, statistics="")
@@ -271,7 +271,7 @@ def _refresh_live(
             images[name] = image
     own_images: Images | None = None
     if plan.has_own_render:
-        # filled when a render asks for it: playback does not pay for it
+        # filled for a render only, so that it does not slow down playback
         own_images = {
             name: ownership.own_image(item, "render_maps", name, f"{item.name} render {name}", 1)
             for name in plan.maps
@@ -324,7 +324,7 @@ def _refresh_baked(
 
 
 def _viewport_fields(plan: Plan, wanted: Wanted) -> tuple[Fields, bool]:
-    """(samples+1, samples+1, …) by output, m; and whether they are all that they will be."""
+    """(samples+1, samples+1, …) by output, m; and whether they are final."""
     patient = Wanted.SAMPLES | Wanted.HISTORY in wanted
     sea = evaluation.surfaces_of(plan.viewport_sea(coarse=Wanted.SAMPLES not in wanted))
     fields, is_complete = sea.fields(plan.time, plan.channels, plan.is_whole, patient)
@@ -335,7 +335,7 @@ def _viewport_fields(plan: Plan, wanted: Wanted) -> tuple[Fields, bool]:
 
 
 def _in_scene_time(fields: Fields, plan: Plan) -> Fields:
-    """The fields with what is per second, per second of the scene."""
+    """The fields with rates converted to scene time."""
     if plan.rate == 1.0:
         return fields
     rate = np.float32(plan.rate)
@@ -343,7 +343,7 @@ def _in_scene_time(fields: Fields, plan: Plan) -> Fields:
 
 
 def _on_vertices(fields: Fields, plan: Plan) -> Fields:
-    """The channels on the viewport's mesh, in Blender units; between samples they are bilinear."""
+    """The channels on the viewport's mesh, in Blender units, interpolated bilinearly."""
     result = {}
     for name, field in fields.items():
         scaled = field * np.float32(plan.scale) if CHANNELS[name].scales and plan.metres != 1 else field
@@ -368,14 +368,14 @@ def _write_render(settings: OceanSettings, plan: Plan) -> None:
 
 
 def _write_image(image: bpy.types.Image, fields: Fields, name: str, content: object = None) -> None:
-    """Put a map into an image; `fields` have the far edges, which an image has not."""
+    """Write a map to an image; `fields` include the far edges, which an image lacks."""
     texels = image_of(name, {channel: field[:-1, :-1] for channel, field in fields.items()})
     live_image.prepare(image, texels.shape[0])
     live_image.write(image, texels, content)
 
 
 def _refresh_mesh(item: bpy.types.Object, grid: Grid) -> None:
-    # a linked duplicate has its own sea from now on
+    # from now on a linked duplicate has its own sea
     if ownership.is_borrowed_mesh(item):
         item.data = item.data.copy()
     if grid_mesh.is_current(item.data, grid):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An ocean as a shot that needs no Blender: its sea, and what is animated, a sample a frame; and back."""
+"""Converts an ocean to a shot, with its animation sampled in each frame, and back."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _PLACE = ("mask.x", "mask.y")
 
 
 def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()) -> Shot:
-    """The shot of an ocean over frames, by default the scene's. Raises ParameterError for what is no sea.
+    """The shot of an ocean over frames, by default the scene's. Raises ParameterError for invalid settings.
 
     The scene ends at the frame where it was.
     """
@@ -34,7 +34,7 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     if not (is_animated(item) or has_own_time(settings)):
         return Shot(parameters)
     wanted = tuple(frames) or (scene.frame_start, scene.frame_end)
-    # one more on either side: the velocity of an end is that of the motion through it
+    # one more frame on either side, for the velocity at the ends
     first, last = math.floor(min(wanted)) - 1, math.ceil(max(wanted)) + 1
     seas, samples = zip(
         *(_sample(item, scene, depsgraph) for depsgraph in evaluations(scene, range(first, last + 1), item)),
@@ -47,7 +47,7 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
     }
     if not changing:
         return Shot(parameters)
-    # the sea of the first, whatever frame the scene shows now
+    # the sea of the first frame, whatever frame the scene is at
     return Shot(seas[0], Animation(first, tuple(changing.items())))
 
 
@@ -66,7 +66,7 @@ def _joined(path: str, values: list[float | Raster]) -> Samples:
 
 
 def check_keys(shot: Shot) -> None:
-    """Raise OceanObjectError for a shot that no keys of an ocean can hold: it moves lines of a mask."""
+    """Raise OceanObjectError for a shot that keys cannot represent: one that moves the lines of a mask."""
     for path, _ in shot.animation.samples if shot.animation is not None else ():
         if path.endswith("mask.lines"):
             raise OceanObjectError(
@@ -76,7 +76,7 @@ def check_keys(shot: Shot) -> None:
 
 
 def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
-    """Give an ocean, which is the shot's sea already, keys for what changes; none where nothing does.
+    """Key the animated values of a shot on an ocean that already has the shot's sea.
 
     shot : one that `check_keys` lets pass; a mask that moves in it gets a keyed object
     """
@@ -104,9 +104,9 @@ def animate(item: bpy.types.Object, scene: bpy.types.Scene, shot: Shot) -> None:
 def evaluations(
     scene: bpy.types.Scene, frames: Iterable[int], item: bpy.types.Object
 ) -> Iterator[bpy.types.Depsgraph]:
-    """The scene at each frame, without the waves of any ocean; it ends at the frame where it was.
+    """Evaluate the scene at each frame without computing oceans, then return to the original frame.
 
-    item : whose settings and place are evaluated, whatever hides it
+    item : object whose settings and transform are evaluated, even if it is hidden
     """
     before = scene.frame_current, scene.frame_subframe
     try:
@@ -126,7 +126,7 @@ def scene_frames(scene: bpy.types.Scene) -> tuple[int, ...]:
 def _sample(
     item: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 ) -> tuple[OceanParameters, dict[str, float | Raster]]:
-    """The sea at the scene's present frame, and what of it can be animated, by its path."""
+    """The sea at the scene's present frame, and its animatable values by path."""
     settings = shown_settings(item, depsgraph)
     parameters = settings.to_parameters(scene)
     values = dict(_values(parameters))
@@ -155,7 +155,7 @@ def _values(parameters: OceanParameters) -> Iterator[tuple[str, float | Raster]]
 
 
 def _places(owner: str, mask: Mask | None) -> Iterator[tuple[str, float | Raster]]:
-    """What changes of a mask whose object moves."""
+    """Values of a mask whose object moves."""
     if mask is not None and mask.source == "DISTANCE":
         names = ("x", "y") if mask.lines is None else ("lines",)
         yield from ((f"{owner}mask.{name}", getattr(mask, name)) for name in names)

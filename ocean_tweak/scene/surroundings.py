@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything around an ocean that makes a picture: horizon, sky, sun, camera, render settings.
+"""Everything around an ocean for a picture: horizon, sky, sun, camera, render settings.
 
 What a scene already has is kept, unless the caller says otherwise. Unchanged objects of Blender's start-up
 file are removed.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""USD layers of an ocean, written and checked by the command line in a process of its own, and read.
+"""Writes and verifies USD layers of an ocean by the command line in a separate process, and imports them.
 
-They hold the sea of the settings with the patch's corner at the origin, wherever the object stands.
+They contain the sea of the settings with the patch's corner at the origin, wherever the object is.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ _FOLDER = "usd"
 
 
 class UsdExport(CommandProcess):
-    """An export under way.
+    """A running export.
 
     frames : all that are wanted
     path : the asset's own layer
-    size : of all layers and images that were written, bytes; 0 until the end
+    size : of all written layers and images, bytes; 0 until the end
     """
 
     def __init__(self, item: bpy.types.Object, shot: Shot, frames: Sequence[Frame]) -> None:
         """Start it. Raises OceanObjectError for a file without a place, OSError for what the disk refuses.
 
-        shot : the ocean's; where the images of a bake are used, that of the bake takes its place
+        shot : the ocean's; replaced by that of a bake if its images are used
         """
         self.frames = tuple(frames)
         self.path = usd_file(item)
@@ -57,16 +57,16 @@ class UsdExport(CommandProcess):
             super().__init__(item.name, [*arguments, *spray_numbers(item, scene_of(item)), f"--bake={bake}"])
 
     def take(self, said: dict[str, Any]) -> None:
-        """At the end it says how much was written."""
+        """The last line contains the size."""
         self.size = said.get("bytes", self.size)
         super().take(said)
 
 
 class UsdCheck(CommandProcess):
-    """The reading back of layers.
+    """A running verification.
 
     path : the asset's own layer
-    problems : each that was found
+    problems : found so far
     """
 
     def __init__(self, item: bpy.types.Object) -> None:
@@ -76,14 +76,14 @@ class UsdCheck(CommandProcess):
         super().__init__(item.name, ["usd-verify", str(self.path)])
 
     def take(self, said: dict[str, Any]) -> None:
-        """It names the problems."""
+        """Each line is a problem."""
         if "problem" in said:
             frame = "" if said["frame"] is None else f"frame {said['frame']}: "
             self.problems.append(frame + said["problem"])
 
 
 def choices(item: bpy.types.Object) -> dict[str, Any]:
-    """What the ocean's settings choose, by the names of the command's arguments."""
+    """The ocean's settings as arguments of the command."""
     settings = settings_of(item).usd
     chosen = {name: getattr(settings, name) for name in OPTIONS}
     return {
@@ -96,23 +96,23 @@ def choices(item: bpy.types.Object) -> dict[str, Any]:
 
 
 def used_bake(item: bpy.types.Object) -> Path | None:
-    """The bake whose images will move the grid; None where the export makes its own, or needs none."""
+    """The bake whose images will displace the grid; None if the export bakes its own, or needs none."""
     settings = settings_of(item)
     wanted = settings.source == "SEQUENCE" and settings.usd.form == "displacement" and settings.usd.use_bake
     return shown_bake(item) if wanted else None
 
 
 def default_file(item: bpy.types.Object) -> str:
-    """Where an ocean goes that says no place, relative to its .blend file: each in a folder of its own."""
+    """Default path of an ocean's asset, relative to its .blend file, in a folder of its own."""
     name = bake_name(item)
     return f"//{_FOLDER}/{name}/{name}.usd"
 
 
 def usd_file(item: bpy.types.Object) -> Path:
-    """The asset's own layer. Raises OceanObjectError where that depends on a file that was never saved, or is
-    on another system.
+    """The asset's own layer. Raises OceanObjectError if its path depends on an unsaved file, or is of another
+    system.
 
-    An ocean that says no place goes into the user's own folder while its file has none.
+    Without a path, an ocean of an unsaved file is exported to the user's folder.
     """
     path = settings_of(item).usd.file
     if bpy.data.filepath or item.library is not None:
@@ -150,10 +150,10 @@ def add_from_layer(
 ) -> bpy.types.Object:
     """Add the sea of a layer, where the layer has it, named after its prim and animated as it was.
 
-    use_frame_rate : give the scene the sea's own
+    use_frame_rate : set the scene's frame rate to the sea's
 
-    Raises UsdError for a layer that holds none of our seas, and what `ocean_object.add` raises; then nothing
-    is changed.
+    Raises UsdError for a layer without a sea of ours, and the errors of `ocean_object.add`; then nothing is
+    changed.
     """
     prim, package = read_package(path)
     shot, before = package.shot, (frame_rate(scene), time_stretch(scene))

@@ -18,14 +18,14 @@ _OWN = "user:"
 
 
 def all_presets() -> dict[str, Preset]:
-    """Those that came along, then the user's by title; a file that is no preset is left out."""
+    """Built-in presets, then the user's by title; invalid files are skipped."""
     return {**built_in(), **own_presets()}
 
 
 def own_presets() -> dict[str, Preset]:
-    """The user's, by key, in the order of their titles: read after changes only, since menus ask often."""
+    """The user's presets by key, in the order of their titles; cached, as menus need them often."""
     folder = user_folder("presets")
-    # a file that is written whole, renamed or deleted changes its folder
+    # writing atomically, renaming or deleting a file changes its folder
     return dict(_presets_of(folder, folder.stat().st_mtime_ns))
 
 
@@ -46,7 +46,7 @@ def is_own(key: str) -> bool:
 
 
 def read_preset(path: Path) -> Preset:
-    """A preset from a file. Raises ParameterError for what is none, OSError for what cannot be read."""
+    """A preset from a file. Raises ParameterError for an invalid one, OSError if it cannot be read."""
     try:
         return Preset.from_json(read_bytes(path, LARGEST).decode("utf-8"))
     except UnicodeDecodeError as error:
@@ -54,10 +54,10 @@ def read_preset(path: Path) -> Preset:
 
 
 def save(preset: Preset, replace: bool = False) -> str:
-    """Keep a preset and a picture of its sea in the user's folder; returns its key.
+    """Save a preset and a picture of its sea in the user's folder; returns its key.
 
-    Raises ParameterError where the title is taken and `replace` is off, and for images that are too large
-    for a preset, OSError for what the disk refuses.
+    Raises ParameterError if the title is taken and `replace` is off, or if images are too large for a preset,
+    and OSError if it cannot be saved.
     """
     key, text = _key(preset.title), preset.to_json()
     if len(text) > LARGEST:
@@ -71,12 +71,12 @@ def save(preset: Preset, replace: bool = False) -> str:
         raise ParameterError("title", preset.title, "is already the name of another preset")
     write_text(path, text)
     _draw(preset, path.with_suffix(".png"))
-    _presets_of.cache_clear()  # clocks of disks are coarse: a second change may not move them
+    _presets_of.cache_clear()  # timestamps are coarse: a second change may not be noticed
     return key
 
 
 def _draw(preset: Preset, path: Path) -> None:
-    """Write the picture of a preset's sea; one that so few samples cannot show has none."""
+    """Write the picture of a preset's sea, unless it cannot be shown with few samples."""
     path.unlink(missing_ok=True)  # of another sea
     try:
         picture = SeaView(preset.parameters).picture()
@@ -108,7 +108,7 @@ def path_of(key: str) -> Path:
 
 
 def picture_of(key: str) -> Path:
-    """Where the picture of a user's preset is, if it has one."""
+    """The path of the picture of a user's preset, which may not exist."""
     return path_of(key).with_suffix(".png")
 
 

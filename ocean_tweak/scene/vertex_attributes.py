@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A live surface on the mesh's vertices: the quickest way to show it, and what shots read."""
+"""A live surface as attributes of the mesh's vertices, the fastest way to show it."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ RealArray = NDArray[np.float32]
 #: by channel, [y, x]
 Fields = Mapping[str, RealArray]
 
-# by a channel's components, Blender's type of an attribute and its name for the numbers
+# number of components → Blender's attribute type, and the name of its value property
 _TYPES = {0: ("FLOAT", "value"), 2: ("FLOAT2", "vector"), 3: ("FLOAT_VECTOR", "vector")}
-# what an ocean's own mesh may have
+# attributes of an ocean's own mesh
 _OF_OCEANS = tuple(channel for channel in CHANNELS.values() if channel.switch is not None)
 
 
 def can_hold(mesh: bpy.types.Mesh, grid: Grid) -> bool:
-    """Whether the mesh has a vertex for each sample, and Blender lets them be written."""
+    """Whether the mesh has a vertex per sample and can be written."""
     fits = grid.quads == grid.samples and len(mesh.vertices) == grid.vertices
-    # what is written on a linked mesh is dropped without a word
+    # changes to a linked mesh are silently discarded
     return fits and not mesh.is_editmode and mesh.library is None
 
 
 def write(mesh: bpy.types.Mesh, values: Fields) -> None:
-    """Put (rows+1, columns+1, …) fields on the vertices; the other attributes of a surface go.
+    """Write (rows+1, columns+1, …) fields to the vertices, and remove the surface's other attributes.
 
     values : by channel, in Blender units
     """
@@ -42,7 +42,7 @@ def write(mesh: bpy.types.Mesh, values: Fields) -> None:
 
 
 def put(mesh: bpy.types.Mesh, channel: Channel, field: RealArray) -> None:
-    """Put a channel's numbers on the vertices, in whatever shape they are."""
+    """Write a channel's values, of any shape, to the vertices."""
     kind, numbers = _TYPES[channel.components]
     attribute = mesh.attributes.get(channel.attribute)
     if attribute is not None and not _is_ours(attribute, channel):
@@ -81,7 +81,7 @@ def tiled(closed: RealArray, repeats: tuple[int, int]) -> RealArray:
 
 
 def remove(mesh: bpy.types.Mesh, keep: Container[str] = ()) -> None:
-    """Take a surface's attributes away where something else writes them, but those of some channels."""
+    """Remove a surface's attributes, except those of some channels, as something else writes them."""
     if mesh.library is not None or mesh.is_editmode:
         return
     for channel in _OF_OCEANS:
@@ -91,7 +91,7 @@ def remove(mesh: bpy.types.Mesh, keep: Container[str] = ()) -> None:
 
 
 def make_still(mesh: bpy.types.Mesh) -> None:
-    """Take away what would blur a mesh that moves no more: Cycles goes by the attribute alone."""
+    """Remove the velocity of a mesh that no longer moves, which Cycles would use for motion blur."""
     remove(mesh, keep=CHANNELS.keys() - {"velocity"})
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weights that were painted on a mesh, as seen from above the ocean: an image over its domain."""
+"""Projects painted weights of a mesh from above to an image over the ocean's domain."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _BLOCK = 4096  # rays of a step
 
 
 class WeightsReading:
-    """A reading that can be done a step at a time, and given up: it changes nothing.
+    """A projection in steps, which can be cancelled; it changes nothing.
 
     `finish` gives (samples, samples) weights of the highest face over or under each place of the domain, 0
     beside it, after `advance` was called once for each of `steps`.
 
-    mesh : as its modifiers leave it, wherever it stands and whatever hides it
+    mesh : evaluated with its modifiers, wherever it is, even if hidden
     group : name of its vertex group
 
-    Raises OceanObjectError for a mesh or group that is not there.
+    Raises OceanObjectError for a missing mesh or group.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class WeightsReading:
         self.steps, self.done = 2 + -(-samples // self._rows), 0
 
     def advance(self) -> None:
-        """Go on by a step."""
+        """Do one step."""
         if self.done == 0:
             self._look()
         elif self.done == 1:
@@ -75,7 +75,7 @@ class WeightsReading:
         """Nothing was changed."""
 
     def abandon(self) -> None:
-        """Nothing goes on beside Blender."""
+        """Nothing runs in the background."""
 
     def _look(self) -> None:
         with taking_part(self._scene, self._mesh, geometry=True):
@@ -91,7 +91,7 @@ class WeightsReading:
 
 
 def weights_seen(reading: WeightsReading) -> Raster:
-    """The weights of a reading, all at once. Raises as its `finish`."""
+    """The weights of a projection, all at once. Raises the errors of `finish`."""
     while reading.done < reading.steps:
         reading.advance()
     return reading.finish()
@@ -130,7 +130,7 @@ def _see(
     weight: Array,
     size: float,
 ) -> None:
-    """Put weights at the middle of each cell into some rows of (samples, samples); beside the mesh none."""
+    """Fill some rows of (samples, samples) with the weights at cell centres, 0 beside the mesh."""
     if tree is None:
         return
     top, down = float(places[:, 2].max()) + 1.0, Vector((0.0, 0.0, -1.0))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """View layers: whether one shows an object, and evaluations of objects that none shows.
 
-Blender evaluates what a view layer shows, and what that needs. Of an object that is excluded from the layer,
-hidden, or only in another one, animation stands still, without a word.
+Blender evaluates what a view layer shows, with its dependencies. The animation of an object that is excluded
+from the layer, hidden, or only in another one silently stands still.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import bpy
 
 
 def is_in_view_layer(item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
-    """Whether a view layer that is rendered has an object of the scene, as far as collections say."""
+    """Whether a rendered view layer contains an object of the scene, by its collections."""
     if item.name not in scene.collection.all_objects:
         return True  # an instance shows it
     return any(item.name in layer.objects for layer in scene.view_layers if layer.use)
 
 
 def evaluated(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
-    """The scene at its present frame, in the view layer that is open, or else its first."""
+    """The evaluated scene at its present frame, in the open view layer, or its first one."""
     is_open = scene == bpy.context.scene
     depsgraph = (bpy.context.view_layer if is_open else scene.view_layers[0]).depsgraph
     depsgraph.update()
@@ -30,10 +30,10 @@ def evaluated(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
 
 @contextmanager
 def taking_part(scene: bpy.types.Scene, *items: bpy.types.Object, geometry: bool = False) -> Iterator[None]:
-    """While this is open, evaluations of the scene have settings and place of these objects at every frame,
-    whatever hides them.
+    """Context manager during which evaluations of the scene include settings and transforms of these objects,
+    even if hidden.
 
-    geometry : also what their modifiers make
+    geometry : include their modifiers
     """
     followers = [_follower(item, geometry) for item in items]
     for follower in followers:
@@ -46,7 +46,8 @@ def taking_part(scene: bpy.types.Scene, *items: bpy.types.Object, geometry: bool
 
 
 def _follower(item: bpy.types.Object, geometry: bool) -> bpy.types.Object:
-    """An empty that needs the object: for its place a constraint, for its settings a driver."""
+    """An empty that depends on the object: by a constraint for its transform, by a driver for its
+    settings."""
     follower = bpy.data.objects.new(f"{item.name} is evaluated", None)
     follower.constraints.new("SHRINKWRAP" if geometry else "COPY_LOCATION").target = item
     driver = follower.driver_add("empty_display_size").driver
