@@ -38,6 +38,9 @@ WEIGHT = "ocean_tweak_weight_{}"
 #: point attribute of what touches the water: 1 at the surface, 0 at the top of the wet band, linear
 WET = "wet"
 
+#: point attribute of the mesh over a bed: depth of still water there, m; 0 where there is none
+COAST_DEPTH = "depth"
+
 #: corner attribute: position / domain size + ½ / samples, going on over the repeats
 TEXTURE_COORDINATES = "st"
 

@@ -287,4 +287,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 10, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 11, _build, "ShaderNodeTree")

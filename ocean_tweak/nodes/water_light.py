@@ -13,7 +13,7 @@ Schlick (1993), and absorbs some on the way through the crest, which is shorter 
 from __future__ import annotations
 
 from .building import Socket
-from .names import CUSP
+from .names import COAST_DEPTH, CUSP
 from .shading import Shading
 from .water_foam import Cover, Foam
 from .water_pattern import DEPTH
@@ -55,7 +55,9 @@ def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatt
     """Colour of the light that comes back out of the water."""
     lost = shade.vector("MAXIMUM", shade.vector("ADD", absorption, backscatter), (1e-9, 1e-9, 1e-9))
     deep = shade.scale(shade.vector("DIVIDE", backscatter, lost), SURFACE_FACTOR)
-    own = shade.value(DEPTH, "OBJECT")
+    # over a bed that of the place, else that of the sea
+    here = shade.value(COAST_DEPTH)
+    own = shade.mix(shade.math("GREATER_THAN", here, 0.0), shade.value(DEPTH, "OBJECT"), here)
     depth = shade.mix(shade.math("GREATER_THAN", given["Water Depth"], 0.0), own, given["Water Depth"])
     # a mesh that is no ocean has no depth: then it is deep
     depth = shade.mix(shade.math("GREATER_THAN", depth, 0.0), 1e4, depth)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from ..core import Foam, OceanParameters, Spray, Timing, WaveLayer
+from ..core import Foam, OceanParameters, Spray, Timing, Water, WaveLayer
 from ..core.parameters.presets import built_in
 from ..core.sea.patch_plan import Wish, planned
 from .skies import VIEW, seen
@@ -16,6 +16,19 @@ from .sky import Sky
 
 #: one whose highest wave stands before the camera as high as such waves are
 _STORM_SEED = 8
+
+
+@dataclass(frozen=True)
+class Shore:
+    """A bed, and from where it is seen: x, y and z in m.
+
+    bed : a key of `core.waves.coast.beds.BEDS`
+    eye, target : of the camera
+    """
+
+    bed: str
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -32,6 +45,7 @@ class Mood:
     rings : of copies around the ocean; 0 for a surface around the camera in their place
     floats : before the camera, a key of `afloat.AFLOAT`
     vertices : of the surface around the camera, at most; a long lens sees few of them
+    shore : of a coast, which takes the place of where the camera is and looks; None for the open sea
     """
 
     label: str
@@ -46,6 +60,7 @@ class Mood:
     rings: int
     floats: str = "BUOY"
     vertices: int = 200_000
+    shore: Shore | None = None
 
     def sea(self, timing: Timing) -> OceanParameters:
         """The sea's parameters."""
@@ -60,6 +75,14 @@ def _wind_sea(
     # foam is soft and looks back at dozens of surfaces: half the samples show it as well
     foam = Foam(resolution=resolution // 2)
     return OceanParameters(resolution=resolution, domain_size=domain_size, seed=3, layers=(layer,), foam=foam)
+
+
+def _coast(wind_speed: float, fetch: float, direction: float, depth: float, foam: Foam) -> OceanParameters:
+    """A sea that runs towards +x, for a bed of 512 m."""
+    layer = WaveLayer(wind_speed=wind_speed, fetch=fetch, wind_direction=direction, swell=0.6)
+    return OceanParameters(
+        resolution=384, domain_size=512.0, seed=3, layers=(layer,), foam=foam, water=Water(depth=depth)
+    )
 
 
 def _storm() -> OceanParameters:
@@ -104,5 +127,23 @@ MOODS = {
         waves=partial(_preset_sea, "horizon"), water="OCEANIC",
         sky=seen(24.0, 40.0, clouds=0.5, visibility=150e3),
         eye=2.0, crest_distance=14.0, lens=35.0, tilt=_degrees(4.0), rings=0,
+    ),
+}  # fmt: skip
+
+#: seas with a coast
+COASTS = {
+    "BEACH": Mood(
+        "Beach", "Swell that turns into a bay, rises, and breaks in lines on a bar and on the sand",
+        waves=partial(_coast, 11.0, 150e3, _degrees(12.0), 20.0, Foam(half_life=3.0)), water="COASTAL",
+        sky=seen(9.0, 60.0, clouds=0.5),
+        eye=0.0, crest_distance=0.0, lens=30.0, tilt=0.0, rings=0, floats="",
+        shore=Shore("BEACH", (298.0, 22.0, 21.0), (352.0, 250.0, 0.0)),
+    ),
+    "HARBOUR": Mood(
+        "Harbour", "Waves that pass the gap between two moles and spread in a fan behind it",
+        waves=partial(_coast, 12.0, 120e3, 0.0, 14.0, Foam()), water="COASTAL",
+        sky=seen(28.0, 40.0, clouds=0.5),
+        eye=0.0, crest_distance=0.0, lens=30.0, tilt=0.0, rings=0, floats="",
+        shore=Shore("HARBOUR", (10.0, 150.0, 210.0), (262.0, 262.0, 0.0)),
     ),
 }  # fmt: skip

@@ -14,6 +14,7 @@ from mathutils import Matrix
 
 from ..core import Area, OceanParameters
 from ..core.numerics.machine import usable_memory
+from ..core.parameters.patch_seas import open_sea
 from ..core.sea.placed_waves import repeating
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.modifier_inputs import get_input
@@ -77,6 +78,8 @@ class Plan:
     time : the ocean's, s
     rate : seconds of it per second of the scene
     placed : waves omitted from the parameters; None for none
+    over_bed : the sea with its coast, which has a mesh of its own, and without which the parameters are; None
+        for the open sea
     """
 
     parameters: OceanParameters
@@ -88,10 +91,13 @@ class Plan:
     time: Fraction
     rate: float
     placed: Placed | None = None
+    over_bed: OceanParameters | None = None
 
     @property
     def whole(self) -> OceanParameters:
         """The sea with all of its waves."""
+        if self.over_bed is not None:
+            return self.over_bed
         return self.parameters if self.placed is None else self.placed.whole
 
     @property
@@ -219,6 +225,9 @@ def plan_for(ocean: bpy.types.Object, settings: OceanSettings, scene: bpy.types.
     Raises as `plan_of`.
     """
     plan, surface = plan_of(settings, scene), camera_surface_of(ocean)
+    if plan.parameters.has_coast:
+        whole = plan.parameters
+        plan = dataclasses.replace(plan, parameters=open_sea(whole), over_bed=whole)
     own = repeating(plan.parameters) if surface is not None else plan.parameters
     if surface is None or own is plan.parameters:
         return plan

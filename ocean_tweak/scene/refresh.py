@@ -14,6 +14,7 @@ from ..core.data.frames import format_frames
 from ..core.synthesis.channels import CHANNELS, MOVING_MAP, channels_of, image_of
 from . import (
     bake_state,
+    coast_surface,
     evaluation,
     failures,
     grid_mesh,
@@ -158,11 +159,7 @@ def _refresh_sea(
     if wanted & (Wanted.PATCHES | Wanted.RENDER):
         points = patch_points.points_of(settings, plan, scene)
     if Wanted.PATCHES in wanted:
-        patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
-        if not patch_objects.refresh(item, plan, points, scene, patient, coarse):
-            missing |= Wanted.HISTORY
-        if Wanted.SAMPLES in wanted and not spray.refresh(item, plan, scene, patient):
-            missing |= Wanted.HISTORY
+        missing |= _refresh_parts(item, plan, points, scene, wanted)
     if Wanted.RENDER in wanted:
         patch_objects.show_for_render(item, plan, points, scene)
         spray.refresh(item, plan, scene, is_rendered=True)
@@ -172,6 +169,22 @@ def _refresh_sea(
         set_changed(settings, error="", **({} if text is None else {"statistics": text}))
         failures.is_well(item)
     return missing
+
+
+def _refresh_parts(
+    item: bpy.types.Object,
+    plan: Plan,
+    points: patch_points.Points | None,
+    scene: bpy.types.Scene,
+    wanted: Wanted,
+) -> Wanted:
+    """Show what lies around a camera, over a bed and in the air. Returns what is still to come."""
+    patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
+    is_complete = patch_objects.refresh(item, plan, points, scene, patient, coarse)
+    if not coarse:
+        coast_surface.refresh(item, plan)
+        is_complete = spray.refresh(item, plan, scene, patient) and is_complete
+    return _NOTHING if is_complete else Wanted.HISTORY
 
 
 def _statistics(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, wanted: Wanted) -> str | None:

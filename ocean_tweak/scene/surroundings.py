@@ -96,7 +96,7 @@ def build(
     camera, place = _compose(ocean, chosen, parameters, scene, target, wishes.engine)
     if wishes.camera or scene.camera is None:
         scene.camera = camera
-    kept = _set_up(scene, chosen, wishes, target, is_empty)
+    kept = set_up(scene, chosen, wishes, target, is_empty)
     _finish(ocean, chosen, parameters, scene)
     if wishes.afloat:
         add_afloat(chosen.floats, place, camera, parameters, ocean, scene, target)
@@ -312,18 +312,19 @@ def ride(
     camera.location.z = at_first
 
 
-def _set_up(
+def set_up(
     scene: bpy.types.Scene,
     mood: Mood,
     wishes: Wishes,
     collection: bpy.types.Collection,
     is_empty: bool,
+    view: float = VIEW,
 ) -> tuple[str, ...]:
     """Sky and settings, where the scene has none or they are wished for; says what was kept."""
     kept = []
     if wishes.world or is_plain(scene.world):
         scene_sky.settings_of(scene).use_exposure = is_empty
-        scene_sky.put(scene, mood.sky, VIEW, f"{mood.label} Sky", collection)
+        scene_sky.put(scene, mood.sky.turned(view - VIEW), view, f"{mood.label} Sky", collection)
     else:
         kept.append(f"world {scene.world.name}")
     set_engine(scene, wishes.engine)

@@ -45,7 +45,14 @@ from ..scene.settings import (
 )
 from ..scene.source_images import ImageSource
 from ..scene.units import frame_rate, metres_per_unit, time_stretch
-from . import layer_properties, mask_properties, parameter_properties, patch_properties, resizing
+from . import (
+    coast_properties,
+    layer_properties,
+    mask_properties,
+    parameter_properties,
+    patch_properties,
+    resizing,
+)
 from .layer_properties import OCEAN_PG_layer
 from .parameter_properties import changed, path_changed
 from .patch_properties import OCEAN_PG_patch
@@ -166,6 +173,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "mask": PointerProperty(type=mask_properties.OCEAN_PG_mask, **_OVERRIDE),
         "current": PointerProperty(type=OCEAN_PG_current, **_OVERRIDE),
         "equaliser": PointerProperty(type=layer_properties.OCEAN_PG_equaliser, **_OVERRIDE),
+        "coast": PointerProperty(type=coast_properties.OCEAN_PG_coast, **_OVERRIDE),
         "foam": PointerProperty(type=OCEAN_PG_foam, **_OVERRIDE),
         "spray": PointerProperty(type=OCEAN_PG_spray, **_OVERRIDE),
         "timing": PointerProperty(type=OCEAN_PG_timing, **_OVERRIDE),
@@ -286,6 +294,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         if self.patches:  # the first of them tells the tile
             del data["resolution"], data["domain_size"]
         data["mask"] = mask_properties.read(self.mask, metres)
+        data["coast"] = coast_properties.read(self.coast, metres)
         data["merged_resolution"] = self.resolution if self.patches else 0
         data["timing"] = parameter_properties.read(self.timing, Timing, metres, _FROM_SCENE)
         data["timing"].update(fps=str(frame_rate(scene)), stretch=str(time_stretch(scene)))
@@ -310,7 +319,8 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
 
     def source_images(self) -> set[ImageSource]:
         """The images from which waves or masks are made."""
-        others = (mask_properties.image_source(each.mask) for each in (self, *self.patches))
+        others = [mask_properties.image_source(each.mask) for each in (self, *self.patches)]
+        others.append(coast_properties.image_source(self.coast))
         return layer_properties.images(self.layers) | {source for source in others if source is not None}
 
     def mask_objects(self) -> set[bpy.types.Object]:
@@ -416,6 +426,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
             layer_properties.write(self.layers, parameters, metres)
             patch_properties.write(self, parameters, metres)
             mask_properties.write(self.mask, parameters.mask, metres, self.source_images())
+            coast_properties.write(self.coast, parameters.coast, metres, self.source_images())
             if was_quiet:
                 middle.settle(self)
             else:
@@ -427,6 +438,7 @@ CLASSES = (
     OCEAN_PG_water,
     OCEAN_PG_current,
     *layer_properties.CLASSES,
+    coast_properties.OCEAN_PG_coast,
     OCEAN_PG_foam,
     OCEAN_PG_spray,
     OCEAN_PG_timing,

@@ -5,8 +5,8 @@ import bpy
 from bpy.app.translations import pgettext_rpt as translated
 from bpy.props import BoolProperty, EnumProperty
 
-from ..scene import ocean_object, scene_sky, surroundings
-from ..scene.moods import MOODS
+from ..scene import coast_scene, ocean_object, scene_sky, surroundings
+from ..scene.moods import COASTS, MOODS
 from ..scene.settings import settings_of
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .adding import InObjectMode, make_active
@@ -31,7 +31,7 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
 
     mood: EnumProperty(
         name="Mood",
-        items=[(key, mood.label, mood.description) for key, mood in MOODS.items()],
+        items=[(key, mood.label, mood.description) for key, mood in (MOODS | COASTS).items()],
         default="FRESH_BREEZE",
         description="The sea, with its sky and water",
     )
@@ -72,7 +72,8 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
             scene_sky.keep_world(old)
         collection = scene.collection if self.use_new_scene else context.collection
         try:
-            made = surroundings.build(scene, self.mood, wishes, collection)
+            build = coast_scene.build if self.mood in COASTS else surroundings.build
+            made = build(scene, self.mood, wishes, collection)
         except ocean_object.EXPECTED_ERRORS as error:
             if self.use_new_scene:
                 bpy.data.scenes.remove(scene)
@@ -90,7 +91,7 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         """What was made, what stayed and went, and how to see the sea where the scene looks elsewhere."""
         parts = [
             translated("{mood}: {engine}, motion blur on").format(
-                mood=translated(MOODS[self.mood].label), engine=self.engine.title()
+                mood=translated((MOODS | COASTS)[self.mood].label), engine=self.engine.title()
             )
         ]
         if made.replaced:

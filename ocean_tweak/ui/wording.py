@@ -71,6 +71,7 @@ OFF = {
     "proxy": "None",
     "noise_evolution": "None",
     "wavelength": "Peak",
+    "step": "As the Sea",
 }
 
 

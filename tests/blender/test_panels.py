@@ -23,7 +23,8 @@ def test_the_layout_draws_what_blenders_can():
 
 
 def test_without_an_ocean_there_is_a_way_to_one(draw):
-    scenes = ["With sky and camera:", *["ocean.add_scene"] * 4]  # calm, fresh breeze, storm, horizon
+    # calm, fresh breeze, storm, horizon, beach, harbour
+    scenes = ["With sky and camera:", *["ocean.add_scene"] * 6]
     floating = [f"object.ocean_tweak_{name}" for name in ("float", "wake", "float_bake", "float_remove")]
     offered = ["No ocean in this scene", "mesh.ocean_tweak_add", "ocean.add_scene", *scenes, *floating]
     assert draw(None) == offered
@@ -188,9 +189,12 @@ def test_every_parameter_can_be_reached(draw, item, core):
     drawn.update(draw(item))
     bpy.ops.ocean.patch_add()
     drawn.update(draw(item))
+    with settings.quiet():
+        settings.coast.use = True
+    drawn.update(draw(item))
     fields = [
         core.OceanParameters, core.WaveLayer, core.Water, core.Foam, core.Timing, core.WindFieldLayer,
-        core.ImageLayer, core.HeroWave, core.Patch, core.Current, core.Equaliser,
+        core.ImageLayer, core.HeroWave, core.Patch, core.Current, core.Equaliser, core.Coast,
     ]  # fmt: skip
     names = {field.name for kind in fields for field in dataclasses.fields(kind)}
     elsewhere = {
@@ -203,6 +207,7 @@ def test_every_parameter_can_be_reached(draw, item, core):
         "loop_duration",
         "merged_resolution",
         "mask",
+        "coast",
     }
     elsewhere |= {"fps", "stretch"}  # the scene's
     elsewhere |= {"measured", "carried_x", "carried_y"}  # a file's, and what follows from the current's keys

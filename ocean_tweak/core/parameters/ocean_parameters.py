@@ -283,6 +283,9 @@ class OceanParameters(Validated):
         if self.is_masked:
             reason = "cannot be in a sea with masks: remove them; the bed itself gives shelter"
             raise ParameterError("coast", "given", reason)
+        if self.moves:
+            reason = "must be 0 with a coast: remove it, or set coast.muted"
+            raise ParameterError("current", to_plain(self.current), reason)
         if self.dispersion == "DEEP":
             reason = "must be FINITE_DEPTH or CAPILLARY with a coast: in DEEP water no wave feels a bed"
             raise ParameterError("dispersion", self.dispersion, reason)

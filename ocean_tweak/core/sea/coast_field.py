@@ -29,6 +29,10 @@ ComplexArray = NDArray[np.complexfloating]
 
 #: moments in a second at which births of foam are looked for
 _LOOKS = 4
+#: share of waves that break from which on they do for lack of depth
+_FEW = 0.02
+#: share of what breaks that stays on the water as foam when the front has passed
+_STAYS = 0.5
 #: s, by which the shape's rate is taken
 _MOMENT = 0.01
 
@@ -57,7 +61,9 @@ class OverBed:
         self._wet = ground.depth > 0.0
         # of these waves as many are to break as of all
         self._least = least_broken(pictures.rms_height, broken_share[self._wet]).astype(np.float32)
-        self._breaks = broken_share[self._wet] > FAINTEST**2
+        # single waves may break far out: such are whitecaps, which the open sea's foam has
+        share = broken_share[self._wet]
+        self._breaks, self._strength = share > _FEW, np.clip(share / _FEW - 1.0, 0.0, 1.0).astype(np.float32)
 
     def components(self, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """(rows, columns) of the displacement, and their derivatives."""
@@ -92,7 +98,8 @@ class OverBed:
     def foam(self, time: float | Fraction) -> OwnFoam:
         """(rows, columns) of waves that break for lack of depth, and what earlier ones left where it lies.
 
-        As foam is anywhere, the largest of 2^(-age/T) c over the present and over moments before it.
+        As foam is anywhere, the largest of 2^(-age/T) c over the present and over moments before it; but a
+        front is a roller, of which the water behind it keeps a share.
         """
         foam = self._sea.foam
         breaking = self._white(time)
@@ -102,7 +109,7 @@ class OverBed:
         memory = math.floor(-math.log2(FAINTEST) * foam.half_life * _LOOKS)
         for index in range(last, last - memory, -1):
             since = float(now - Fraction(index, _LOOKS))
-            then = self._births(index) * np.float32(2.0 ** (-since / foam.half_life))
+            then = self._births(index) * np.float32(_STAYS * 2.0 ** (-since / foam.half_life))
             more = then > left
             np.copyto(left, then, where=more)
             np.copyto(age, np.float32(since), where=more)
@@ -117,7 +124,9 @@ class OverBed:
         white = np.zeros(len(self._least), np.float32)
         there = self._breaks
         strength = min(1.0, self._sea.foam.coverage)
-        white[there] = strength * whiteness(self.signal(time)[there], self._least[there])
+        white[there] = (
+            strength * self._strength[there] * whiteness(self.signal(time)[there], self._least[there])
+        )
         return white
 
     def _shaped(self, signal: ComplexArray) -> RealArray:

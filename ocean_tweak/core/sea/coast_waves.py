@@ -42,6 +42,9 @@ RealArray = NDArray[np.floating]
 #: of waves that break for lack of depth, significant height over depth: √2 · 0.42
 _LARGEST = 0.6
 
+#: m, over which it is told how high the long waves around a place are
+_AROUND = 12.0
+
 _PICTURES = "pictures of coasts"
 _FIELDS = "fields of coasts"
 MEMO.limit(_FIELDS, 4)
@@ -169,12 +172,36 @@ class CoastWaves:
 
     @cached_property
     def _limit(self) -> Array:
-        """(rows, columns) what the depth leaves of waves that do not follow the bed."""
+        """(rows, columns) what depth and shelter leave of waves that do not follow the bed."""
         follow, every = self._energy
         depth, height = np.maximum(self.ground.depth, 0.0), 4.0 * math.sqrt(max(every - follow, 1e-12))
         limit = np.tanh(_LARGEST * depth / height) / math.tanh(_LARGEST * self.ground.deep / height)
-        result: Array = np.minimum(limit, 1.0)
+        result: Array = np.minimum(limit, self._sheltered)
         return result
+
+    @cached_property
+    def _sheltered(self) -> Array:
+        """(rows, columns) how high the long waves around are over how high they came, at most 1: where these
+        do not reach, shorter ones do not either.
+        """
+        wet, step = self.ground.depth > 0.0, self.ground.step
+        squares = np.zeros(wet.shape)
+        squares[wet] = self.pictures.rms_height**2
+        came = max(float(squares[: self.ground.rim_rows].mean()), 1e-12)
+        around = smoothed(squares, _AROUND / step) / np.maximum(
+            smoothed(wet.astype(float), _AROUND / step), 1e-6
+        )
+        share = self.ground.bed_share[:, np.newaxis]
+        return 1.0 - share * (1.0 - np.sqrt(np.minimum(around / came, 1.0)))
+
+
+def smoothed(field: Array, samples: float) -> Array:
+    """A field (rows, columns) under a bell of so many samples' deviation; it repeats along rows, and ends."""
+    wide = np.concatenate((field, field[::-1]))  # its own mirror goes on at either end
+    along, across = (np.fft.fftfreq(wide.shape[0])[:, np.newaxis], np.fft.rfftfreq(wide.shape[1]))
+    bell = np.exp(-2.0 * (np.pi * samples) ** 2 * (along**2 + across**2))
+    result: Array = np.fft.irfft2(np.fft.rfft2(wide) * bell, wide.shape)[: len(field)]
+    return result
 
 
 class _BedGrid:

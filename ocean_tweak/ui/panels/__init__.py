@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab. Panels only draw: nothing here computes a sea."""
 
-from . import details, floating, layers, masks, material, output, patches, sea, sky, spectrum, start
+from . import coast, details, floating, layers, masks, material, output, patches, sea, sky, spectrum, start
 from .start import draw_add_menu
 
 __all__ = ["CLASSES", "draw_add_menu"]
@@ -13,6 +13,7 @@ CLASSES = (
     *layers.CLASSES,
     *patches.CLASSES,
     *masks.CLASSES,
+    *coast.CLASSES,
     *spectrum.CLASSES,
     *details.CLASSES,
     *material.CLASSES,

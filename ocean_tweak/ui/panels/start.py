@@ -4,7 +4,7 @@
 import bpy
 
 from ...scene.conversion import ocean_modifier
-from ...scene.moods import MOODS
+from ...scene.moods import COASTS, MOODS
 from ...scene.settings import is_ocean, settings_of
 from .. import adding, scene_operators, sea_operators
 from ..active_ocean import shown_ocean
@@ -59,7 +59,7 @@ class OCEAN_PT_start_scene(SidebarPanel, bpy.types.Panel):
         self.layout.label(text="With sky and camera:")
         column = self.layout.column(align=True)
         operator = scene_operators.OCEAN_OT_add_scene.bl_idname
-        for key, mood in MOODS.items():
+        for key, mood in (MOODS | COASTS).items():
             column.operator(operator, text=mood.label, icon="SCENE_DATA").mood = key
 
 

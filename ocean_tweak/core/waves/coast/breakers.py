@@ -23,7 +23,7 @@ _FORWARD = (0.815, 0.672)
 #: kh beyond which water is deep for a wave
 _DEEP = np.pi
 #: rad of a wave's phase over which its front is white: none, all, all, none
-_FRONT = (-0.5, 0.0, 0.7, 1.5)
+_FRONT = (-0.3, 0.05, 0.5, 1.2)
 #: envelope over that from which waves are broken: none is white below, all of the front is above
 _SOFT = (0.9, 1.1)
 

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The mesh that shows an ocean over its bed, in the place of the ocean's own: fine near the shore."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import Ocean, OceanParameters, Places
+from ..core.numerics.memo import MEMO
+from ..core.synthesis.channels import CHANNELS
+from ..nodes.names import COAST_DEPTH
+from . import vertex_attributes, water_material
+from .plan import Plan
+from .settings import link_beside
+
+Array = NDArray[np.float64]
+
+_COAST = "ocean_tweak_coast"
+#: what the material reads of the waves
+_CHANNELS = ("displacement", "velocity")
+#: m offshore that the mesh goes on, and how much longer each step is there than the one before
+_OFFSHORE, _GROWS = 2500.0, 1.06
+#: m of land behind the farthest waterline that it covers
+_BEHIND = 10.0
+
+#: m of water that is drawn where there is none
+_FILM = 0.02
+
+_MESHES = "meshes of coasts"
+
+
+def coast_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
+    """The mesh that shows an ocean over its bed; None where there is none."""
+    return next((child for child in ocean.children if _COAST in child), None)
+
+
+def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
+    """Make, move or remove the mesh over the bed. Raises ParameterError for a bed that waves cannot reach."""
+    present = coast_of(ocean)
+    if plan.over_bed is None:
+        if present is not None:
+            _remove(ocean, present)
+        return
+    item = present or _new(ocean, plan.over_bed)
+    if item.data.library is not None:
+        return
+    if item.data.users > 1:  # of a duplicate
+        item.data = item.data.copy()
+    material = ocean.material_slots[0].material if ocean.material_slots else None
+    if material is not None and list(item.data.materials) != [material]:
+        item.data.materials.clear()
+        item.data.materials.append(material)
+    sea = MEMO.get("seas over beds", plan.over_bed, lambda: Ocean(plan.over_bed))
+    grid = MEMO.get(_MESHES, (sea.coast.ground, plan.scale), lambda: _Grid(sea))
+    if len(item.data.vertices) != grid.x.size or item.get(_COAST) != grid.tag:
+        _fill(item.data, grid)
+        item[_COAST] = grid.tag
+    _move(item.data, sea, grid, plan)
+
+
+class _Grid:
+    """Places over a bed and before it, in lines across the march."""
+
+    def __init__(self, sea: Ocean) -> None:
+        assert sea.coast is not None
+        ground = sea.coast.ground
+        wet = np.flatnonzero((ground.depth > 0.0).any(axis=1))
+        last = min(wet[-1] + 1 + math.ceil(_BEHIND / ground.step), ground.rows - 1)
+        along = ground.step * np.arange(last + 1, dtype=np.float64)
+        steps = ground.step * _GROWS ** np.arange(1, 400)
+        before = -np.cumsum(steps)
+        along = np.concatenate((before[before > -_OFFSHORE][::-1], along))
+        across = ground.step * np.arange(ground.columns + 1, dtype=np.float64)
+        self.rows, self.columns = len(along), len(across)
+        along, across = np.meshgrid(along + ground.first[0], across + ground.first[1], indexing="ij")
+        c, s = math.cos(ground.turn), math.sin(ground.turn)
+        self.x, self.y = (c * along - s * across).ravel(), (s * along + c * across).ravel()
+        depth = ground.between(self.x, self.y).read(ground.depth)
+        # what is drawn on land is a film of water
+        self.depth = np.maximum(depth, _FILM).astype(np.float32)
+        self.tag = f"{self.rows} {self.columns} {ground.step!r} {ground.first!r} {ground.turn!r}"
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the places."""
+        return self.x.nbytes + self.y.nbytes + self.depth.nbytes
+
+    def corners(self) -> NDArray[np.int32]:
+        """(quads, 4) vertices of each quad, counter-clockwise from above."""
+        number = np.arange(self.rows * self.columns, dtype=np.int32).reshape(self.rows, self.columns)
+        quads = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+        return np.stack(quads, axis=-1).reshape(-1, 4)
+
+
+def _fill(mesh: bpy.types.Mesh, grid: _Grid) -> None:
+    corners = grid.corners()
+    mesh.clear_geometry()
+    mesh.vertices.add(grid.x.size)
+    mesh.loops.add(corners.size)
+    mesh.polygons.add(len(corners))
+    mesh.loops.foreach_set("vertex_index", corners.reshape(-1))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, corners.size, 4, dtype=np.int32))
+    mesh.update(calc_edges=True)
+    mesh.shade_smooth()
+    mesh.attributes.new(COAST_DEPTH, "FLOAT", "POINT").data.foreach_set("value", grid.depth)
+
+
+def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: _Grid, plan: Plan) -> None:
+    """Put the sea of the plan's moment on the vertices."""
+    assert sea.coast is not None
+    wanted = [name for name in _CHANNELS if name == "displacement" or name in plan.channels]
+    surface = sea.surface(plan.time, wanted, Places(grid.x, grid.y))
+    fields = {name: surface[name] for name in wanted}
+    scale = np.float32(plan.scale)
+    moved = fields["displacement"] * scale
+    if "velocity" in fields:
+        fields["velocity"] = fields["velocity"] * np.float32(plan.scale * plan.rate)
+    if "foam" in plan.channels:
+        foam, breaking, age = sea.coast.foam(grid.x, grid.y, plan.time)
+        fields |= {"foam": foam, "breaking": breaking, "foam_age": age}
+    fields["displacement"] = moved
+    for name, field in fields.items():
+        vertex_attributes.put(mesh, CHANNELS[name], field)
+    places = np.stack((grid.x * plan.scale, grid.y * plan.scale, np.zeros(grid.x.size)), axis=-1)
+    places = (places + moved).astype(np.float32)
+    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
+    mesh.update_tag()
+
+
+def _new(ocean: bpy.types.Object, parameters: OceanParameters) -> bpy.types.Object:
+    name = f"{ocean.name} Coast"
+    item = bpy.data.objects.new(name, bpy.data.meshes.new(name))
+    item[_COAST] = ""
+    item.parent = ocean
+    link_beside(item, ocean)
+    water_material.describe_near(item, parameters)
+    _make_room(ocean)
+    return item
+
+
+def _remove(ocean: bpy.types.Object, item: bpy.types.Object) -> None:
+    mesh = item.data
+    bpy.data.objects.remove(item)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+    _make_room(ocean, is_there=False)
+
+
+def _make_room(ocean: bpy.types.Object, is_there: bool = True) -> None:
+    ocean.hide_render = is_there
+    ocean.display_type = "BOUNDS" if is_there else "TEXTURED"

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A coast in Blender: a mesh as sea bed, and the sea that ends on it."""
+
+import bpy
+import numpy as np
+import pytest
+
+SIDE = 200.0
+
+
+def slope(name="Bed", hole=False):
+    """A plane from 12 m below the water to 1 m above it, along +x."""
+    xs = (0.0, 80.0, 120.0, SIDE) if hole else (0.0, SIDE)
+    places = [(x, y, -12.0 + 0.065 * x) for x in xs for y in (0.0, SIDE)]
+    faces = [(2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1) for i in range(len(xs) - 1) if not (hole and i == 1)]
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(places, [], faces)
+    item = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(item)
+    return item
+
+
+@pytest.fixture
+def calm(core):
+    """A sea without a coast."""
+    layer = core.WaveLayer(wind_speed=9.0, fetch=60e3)
+    water = core.Water(depth=20.0)
+    return core.OceanParameters(resolution=32, domain_size=SIDE, water=water, layers=(layer,))
+
+
+@pytest.fixture
+def ocean(empty_scene, ocean_object, calm):
+    item = ocean_object.add(empty_scene, calm)
+    bpy.context.view_layer.objects.active = item
+    group = item.ocean_tweak.coast
+    with item.ocean_tweak.quiet():
+        group.rim, group.shortest_wavelength = 80.0, 40.0
+    return item
+
+
+@pytest.fixture
+def coast_of(extension):
+    return extension("scene.coast_surface").coast_of
+
+
+def values(mesh, name, components=1):
+    attribute = mesh.attributes[name]
+    found = np.empty(len(attribute.data) * components, np.float32)
+    attribute.data.foreach_get("value" if components == 1 else "vector", found)
+    return found.reshape(-1, components) if components > 1 else found
+
+
+@pytest.mark.parametrize("hole", [False, True])
+def test_make_coast_reads_the_depths_of_a_mesh(ocean, hole):
+    settings = ocean.ocean_tweak
+    settings.coast.bed = slope(hole=hole)
+    assert bpy.ops.ocean.make_coast() == {"FINISHED"}
+    assert settings.error == ""
+    coast = settings.to_parameters(bpy.context.scene).coast
+    assert coast is not None
+    assert coast.depth is not None
+    depth = coast.depth.values[..., 0]
+    expected = 12.0 - 0.065 * np.linspace(0.0, SIDE, depth.shape[1])
+    np.testing.assert_allclose(depth, np.broadcast_to(expected, depth.shape), atol=2.0 if hole else 0.02)
+    assert coast.spacing == pytest.approx(SIDE / (depth.shape[1] - 1))
+
+
+def test_the_mesh_over_the_bed_is_the_sea_there(ocean, core, coast_of):
+    settings, scene = ocean.ocean_tweak, bpy.context.scene
+    settings.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    scene.frame_set(30)
+    item = coast_of(ocean)
+    assert item is not None
+    assert ocean.hide_render
+    sea = core.Ocean(settings.to_parameters(scene))
+    place, moved = values(item.data, "position", 3), values(item.data, "displacement", 3)
+    rest = (place - moved)[:, :2].astype(np.float64)
+    time = sea.parameters.timing.time(30)
+    expected = sea.surface(time, on=core.Places(rest[:, 0], rest[:, 1])).displacement
+    np.testing.assert_allclose(moved, expected, atol=2e-3)
+    assert np.abs(moved[:, 2]).max() > 0.3
+    assert np.abs(moved[rest[:, 0] > 190.0]).max() < 1e-4
+    assert values(item.data, "foam").max() > 0.5
+    assert values(item.data, "depth").min() > 0.0
+    scene.frame_set(31)
+    assert np.abs(values(item.data, "displacement", 3) - moved).max() > 0.01
+    # finer near the shore
+    x = np.unique(rest[:, 0].round(0))
+    assert np.diff(x)[-1] < 0.5 * np.diff(x)[0]
+
+
+def test_it_goes_when_it_is_switched_off(ocean, coast_of):
+    settings = ocean.ocean_tweak
+    settings.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    settings.coast.use = False
+    assert coast_of(ocean) is None
+    assert not ocean.hide_render
+
+
+def test_settings_keep_a_coast_that_a_file_has(ocean, core, calm):
+    bed = np.repeat(np.linspace(12.0, -1.0, 51)[np.newaxis], 51, axis=0)
+    coast = core.Coast(depth=core.Raster(bed, "bed"), spacing=4.0, rim=80.0, shortest_wavelength=40.0)
+    ocean.ocean_tweak.from_parameters(calm.replace(coast=coast), bpy.context.scene)
+    found = ocean.ocean_tweak.to_parameters(bpy.context.scene).coast
+    assert found is not None
+    assert found.depth is not None
+    np.testing.assert_allclose(found.depth.values[..., 0], bed, atol=0.01)
+    assert (found.spacing, found.rim, found.shore) == (4.0, 80.0, "+X")
+
+
+def test_what_is_no_bed_is_refused_in_words(ocean):
+    with pytest.raises(RuntimeError, match="Choose a mesh as Sea Bed"):
+        bpy.ops.ocean.make_coast()
+    ocean.ocean_tweak.coast.bed = slope()
+    ocean.ocean_tweak.coast.shore = "-X"
+    bpy.ops.ocean.make_coast()
+    assert "choose another side" in ocean.ocean_tweak.error
