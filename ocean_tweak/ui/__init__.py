@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the artist sees: properties, operators, panels."""
+"""The user interface: properties, operators, panels."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ocean that the sidebar shows, and what operators that change it share."""
+"""The ocean shown in the sidebar, and base classes of operators that change it."""
 
 from collections.abc import Sized
 
@@ -12,10 +12,10 @@ from ..scene.settings import OceanSettings, is_ocean
 
 
 def shown_ocean(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The ocean that the sidebar shows and operators change; None where the scene has none.
+    """The ocean shown in the sidebar and changed by operators; None if the scene has none.
 
-    The pinned one, else the active object, else the one that the active object floats on, else the scene's
-    first by name.
+    The pinned one, or the active object, or the one on which the active object floats, or the scene's first
+    by name.
     """
     oceans, active = known_oceans(context.scene), context.active_object
     pinned = getattr(context.scene, PINNED)
@@ -28,16 +28,16 @@ def shown_ocean(context: bpy.types.Context) -> bpy.types.Object | None:
     return below if below in oceans else next(iter(oceans), None)
 
 
-#: the scene's property that holds the pinned ocean's name
+#: the scene's property with the pinned ocean's name
 PINNED = "ocean_tweak_pinned"
 
 
 class OfActiveOcean:
-    """Operators that act on the ocean that the sidebar shows."""
+    """Base class of operators on the ocean shown in the sidebar."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There is an ocean, and it is this file's own."""
+        """There is an ocean, and it is not linked."""
         item = shown_ocean(context)
         if item is None:
             cls.poll_message_set("There is no ocean in this scene: add one first")
@@ -49,9 +49,9 @@ class OfActiveOcean:
 
 
 class OfOwnList(OfActiveOcean):
-    """Operators that change a list of the ocean as a whole, which a library override keeps.
+    """Base class of operators that change a whole list of the ocean, which a library override cannot.
 
-    kept : what is said then
+    kept : message for library overrides
     """
 
     kept: str
@@ -68,18 +68,18 @@ class OfOwnList(OfActiveOcean):
 
 
 def nearest(index: int, entries: Sized) -> int:
-    """The number of the entry that an index into a list means, 0 for none: files and scripts may hold one
-    beyond its ends."""
+    """The nearest valid index into a list, 0 for an empty one, as files and scripts may contain invalid
+    ones."""
     return max(0, min(index, len(entries) - 1))
 
 
 def active_layer(settings: OceanSettings) -> bpy.types.PropertyGroup | None:
-    """The layer that is active in the list, if there is any."""
+    """The active layer of the list, if there is any."""
     return settings.layers[nearest(settings.active_layer, settings.layers)] if settings.layers else None
 
 
 def refuse(operator: bpy.types.Operator, error: BaseException | str) -> set[str]:
-    """Report what is wrong, and end the operator without a change."""
+    """Report an error and cancel the operator."""
     missing = "Not enough memory for this sea" if isinstance(error, MemoryError) else type(error).__name__
     text = (
         f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else str(error)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adding an ocean, and what operators share that do."""
+"""Adds an ocean; base class and helpers of such operators."""
 
 import bpy
 from bpy.props import EnumProperty
@@ -22,8 +22,8 @@ class InObjectMode:
 
 
 def make_active(item: bpy.types.Object, layer: bpy.types.ViewLayer) -> None:
-    """Select an object and no other one of a view layer, and make it the active one."""
-    layer.update()  # it does not know yet what has just been linked
+    """Make an object the only selected one of a view layer, and the active one."""
+    layer.update()  # the view layer does not know yet what has just been linked
     for other in tuple(layer.objects.selected):
         other.select_set(False, view_layer=layer)
     # an excluded collection keeps its objects out of the view layer
@@ -33,7 +33,7 @@ def make_active(item: bpy.types.Object, layer: bpy.types.ViewLayer) -> None:
 
 
 def default_sea(scene: bpy.types.Scene) -> OceanParameters:
-    """The core's default, a strong breeze on the open sea, with time zero at the scene's first frame."""
+    """The default sea, a strong breeze on the open sea, with time zero at the scene's first frame."""
     return OceanParameters(timing=Timing(fps=frame_rate(scene), start_frame=scene.frame_start))
 
 

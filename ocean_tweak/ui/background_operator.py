@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators whose work a process does: the window stays free, and Esc stops."""
+"""Operators that run a separate process: the window stays responsive, and Esc stops it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _LOOK = 0.1  # s
 
 
 class BackgroundOperator(OfActiveOcean):
-    """Acts on the active ocean; `begin` starts the process and `conclude` takes its result.
+    """Acts on the active ocean; `begin` starts the process and `conclude` handles its result.
 
-    processes : the module that keeps the processes of this kind
-    doing : what it does, for the status bar
-    busy : why a second one has to wait
+    processes : registry of processes of this kind
+    doing : text for the status bar
+    busy : message if one is already running
     """
 
     processes: Any
@@ -31,7 +31,7 @@ class BackgroundOperator(OfActiveOcean):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """An ocean of this file that no process of this kind works for."""
+        """There is an ocean of this file without a running process of this kind."""
         if not super().poll(context):
             return False
         if cls.processes.running(shown_ocean(context)):
@@ -44,11 +44,11 @@ class BackgroundOperator(OfActiveOcean):
         raise NotImplementedError
 
     def conclude(self, context: bpy.types.Context) -> set[str]:
-        """Take the result of the process, which has ended."""
+        """Handle the result of the finished process."""
         raise NotImplementedError
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Start, and look at it from time to time."""
+        """Start the process and a timer."""
         if not self._start(context):
             return {"CANCELLED"}
         self._timer = context.window_manager.event_timer_add(_LOOK, window=context.window)
@@ -71,7 +71,7 @@ class BackgroundOperator(OfActiveOcean):
         return self._end(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Do it, and wait for it."""
+        """Run the process and wait for it."""
         if not self._start(context):
             return {"CANCELLED"}
         self._process.wait()
@@ -107,10 +107,10 @@ class BackgroundOperator(OfActiveOcean):
 
 
 class StopsProcess:
-    """Operators that stop the process of the active ocean.
+    """Base class of operators that stop the process of the active ocean.
 
-    processes : the module that keeps it
-    idle : what to say where there is none
+    processes : registry of the processes
+    idle : message if there is none
     """
 
     processes: Any
@@ -118,7 +118,7 @@ class StopsProcess:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """It is under way."""
+        """A process is running."""
         item = shown_ocean(context)
         if item is None or cls.processes.running(item) is None:
             cls.poll_message_set(cls.idle)
@@ -126,6 +126,6 @@ class StopsProcess:
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Ask for the end; the running operator sees it."""
+        """Request the end; the running operator notices it."""
         self.processes.running(shown_ocean(context)).stop()
         return {"FINISHED"}

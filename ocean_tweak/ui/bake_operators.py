@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Baking the active ocean beside Blender, and taking a bake along to another folder."""
+"""Bakes the active ocean in the background, deletes bakes, and copies a bake to another folder."""
 
 from contextlib import suppress
 
@@ -46,12 +46,12 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
         return bake_process.start(item, shot_of(item, context.scene, frames), frames)
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
-        """Note how far it came, and use the frames."""
+        """Report the result, and use the frames."""
         bake: BakeProcess = self._process
         item, scene = bpy.data.objects.get(self._item), bpy.data.scenes.get(self._scene)
         if item is None or scene is None:
             return refuse(self, f"{bake.name} is gone; its frames are in {bake.folder}")
-        with suppress(OSError, OceanObjectError):  # the panel's list of what is on disk is a help, no more
+        with suppress(OSError, OceanObjectError):  # the panel's list of versions is optional
             bake_versions.look(item)
         settings = settings_of(item)
         settings.bake_total = len(bake.frames)
@@ -96,7 +96,7 @@ class OCEAN_OT_stop_bake(StopsProcess, bpy.types.Operator):
 
 
 class OCEAN_OT_look_at_bakes(OfActiveOcean, bpy.types.Operator):
-    """Look at the disk for the active ocean's bakes, and try out what the next one takes."""
+    """List the active ocean's bakes on disk, and estimate the next one."""
 
     bl_idname = "ocean.look_at_bakes"
     bl_description = "List the bakes of this ocean with their sizes, and estimate the next one"
@@ -104,7 +104,7 @@ class OCEAN_OT_look_at_bakes(OfActiveOcean, bpy.types.Operator):
     bl_options = {"INTERNAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Keep what is found for the panel."""
+        """Store the result for the panel."""
         try:
             bake_versions.foresee(shown_ocean(context), context.scene)
         except (OSError, *ocean_object.EXPECTED_ERRORS) as error:
@@ -126,7 +126,7 @@ class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
     )  # fmt: skip
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask first."""
+        """Ask for confirmation."""
         listing = bake_versions.known(shown_ocean(context))
         frames = {version.folder.name: version.frames for version in listing.versions} if listing else {}
         what = f"{self.version}, frames: {frames.get(self.version, 0)}"
@@ -137,7 +137,7 @@ class OCEAN_OT_delete_bake(OfActiveOcean, bpy.types.Operator):
         )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Delete, and tell what stayed."""
+        """Delete, and report what was kept."""
         try:
             cleaned = bake_versions.delete(shown_ocean(context), [self.version] if self.version else [])
         except (OSError, CacheError, Held, *ocean_object.EXPECTED_ERRORS) as error:
@@ -163,7 +163,7 @@ class OCEAN_OT_take_cache_along(OfActiveOcean, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """The bake lies elsewhere."""
+        """The bake is in another folder."""
         if not super().poll(context):
             return False
         if not settings_of(shown_ocean(context)).bake_is_elsewhere:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An ocean's surface around the camera: made and taken away again."""
+"""Adds and removes an ocean's camera surface."""
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
@@ -40,7 +40,7 @@ class OCEAN_OT_add_camera_surface(OfActiveOcean, bpy.types.Operator):
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Make it, and say which camera it follows."""
+        """Add it, and report which camera it follows."""
         try:
             add_camera_surface(shown_ocean(context), context.scene, budget=self.budget)
         except (OceanObjectError, ParameterError) as error:
@@ -76,7 +76,7 @@ class OCEAN_OT_remove_camera_surface(OfActiveOcean, bpy.types.Operator):
 
 
 def draw_camera_surface(layout: bpy.types.UILayout, item: bpy.types.Object) -> None:
-    """Draw the button that makes it, or the one that takes it away."""
+    """Draw the button that adds or removes it."""
     kind = OCEAN_OT_remove_camera_surface if neighbours_of(item).has_surface else OCEAN_OT_add_camera_surface
     layout.operator(kind.bl_idname, icon="X" if kind is OCEAN_OT_remove_camera_surface else "CAMERA_DATA")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fields of parameters as panels show them: in a unit of their own, or behind a switch."""
+"""Draws parameter fields in panels, with other units or switches."""
 
 import bpy
 
@@ -20,7 +20,7 @@ def draw_fields(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, *nam
 
 
 def draw_switched(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, name: str) -> None:
-    """Draw a switch, and beside it the number, or what its absence means."""
+    """Draw a switch, and beside it the number, or the meaning of "off"."""
     switch = f"{SWITCH}{name}"
     line = layout.row(heading=group.bl_rna.properties[switch].name)
     line.prop(group, switch, text="")
@@ -35,7 +35,7 @@ def draw_switched(layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, na
 def _draw_scaled(
     layout: bpy.types.UILayout, group: bpy.types.PropertyGroup, name: str, scaled: wording.Scaled
 ) -> None:
-    """Draw a field in its other unit, with the dot that sets keys of the field itself."""
+    """Draw a field in another unit, with the keyframe dot of the field itself."""
     line = layout.row(align=True)
     decorated = layout.use_property_decorate and group.bl_rna.properties[name].is_animatable
     line.use_property_decorate = False

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Handles of the active ocean in the 3D view: its size, and the active layer's wind or place.
+"""Handles (gizmos) of the active ocean in the 3D view: its size, and the active layer's wind or position.
 
-Each stands for a setting, which it reads and sets; what it drags is undone as one step.
+Each reads and sets one setting; a drag is one undo step.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from mathutils import Matrix, Vector
 from ..scene.settings import is_ocean, settings_of
 from .active_ocean import active_layer
 
-#: m/s of wind that the arrow of its speed takes to be as long as a side of the domain
+#: wind speed in m/s at which its arrow is as long as a side of the domain
 _FULL_LENGTH = 60.0
-#: arrows lead along z: this turns z to x
+#: arrows point along z: rotation from z to x
 _ALONG_X = Matrix.Rotation(math.radians(90.0), 4, "Y")
-#: dials begin at y: this turns y to x
+#: dials begin at y: rotation from y to x
 _FROM_X = Matrix.Rotation(math.radians(-90.0), 4, "Z")
 _SIZE_COLOUR, _WIND_COLOUR, _WAVE_COLOUR = (0.9, 0.9, 0.9), (1.0, 0.65, 0.1), (0.2, 0.8, 1.0)
 
@@ -30,11 +30,12 @@ _Object = bpy.types.Object
 class Handle(NamedTuple):
     """One handle.
 
-    gizmo : Blender's kind of it, which has a number or a place, `offset`
+    gizmo : Blender's type, with a number or a position `offset`
     colour : of its lines
     style : its other properties
-    read, write : the setting, in Blender units or rad; `read` gives None where the ocean has none now
-    place : matrix in the world
+    read, write : access the setting, in Blender units or rad; `read` returns None if the ocean does not have
+        it
+    place : world matrix
     """
 
     gizmo: str
@@ -46,7 +47,7 @@ class Handle(NamedTuple):
 
 
 def _sized(item: _Object) -> Any:
-    """What holds the size of the domain: the first patch, or the ocean."""
+    """The owner of the domain size: the first patch, or the ocean."""
     settings = settings_of(item)
     return settings.patches[0] if settings.patches else settings
 
@@ -64,19 +65,19 @@ def _set_half_width(item: _Object, value: float) -> None:
 
 
 def _group(item: _Object, *kinds: str) -> Any:
-    """Settings of the active layer where it is of one of these kinds."""
+    """Settings of the active layer if it is of one of these kinds."""
     layer = active_layer(settings_of(item))
     return layer.group if layer is not None and layer.kind in kinds else None
 
 
 def _blown(item: _Object) -> Any:
-    """Settings of the active layer where it has the same wind everywhere."""
+    """Settings of the active layer if it has a uniform wind."""
     group = _group(item, "WAVES", "WIND_FIELD", "IMAGE")
     return None if group is None or getattr(group, "source", "UNIFORM") != "UNIFORM" else group
 
 
 def _directed(item: _Object) -> tuple[Any, str] | None:
-    """What has a direction, and its name there."""
+    """The owner of a direction, and the property's name."""
     wave = _group(item, "HERO_WAVE")
     if wave is not None:
         return wave, "direction"
@@ -90,7 +91,7 @@ def _direction(item: _Object) -> float | None:
 
 
 def _turn(item: _Object) -> float | None:
-    """What its dial shows, which turns clockwise about its axis."""
+    """The value of its dial, which turns clockwise about its axis."""
     direction = _direction(item)
     return None if direction is None else -direction
 
@@ -132,7 +133,7 @@ def _set_wavelength(item: _Object, value: float) -> None:
 
 
 def _at(item: _Object) -> Matrix:
-    """Where the active layer's handles are: a hero wave's at its focus, else in the middle of the ocean."""
+    """Position of the active layer's handles: a hero wave's focus, or the middle of the ocean."""
     focus = _focus(item)
     return _middle(item) if focus is None else item.matrix_world @ Matrix.Translation(focus)
 
@@ -173,7 +174,7 @@ HANDLES = {
 
 
 def _keep_step() -> None:
-    """Let undo take back what a handle has set."""
+    """Create an undo step for a handle."""
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         bpy.ops.ed.undo_push(message="Pull Ocean Handle")
 
@@ -222,16 +223,16 @@ class OCEAN_GGT_handles(bpy.types.GizmoGroup):
         return gizmo
 
     def draw_prepare(self, context: bpy.types.Context) -> None:
-        """Put them where their settings are, and hide those of settings that there are not."""
+        """Update their positions, and hide those without a setting."""
         item, was_pulled = context.active_object, self.is_pulled
         self.is_pulled = any(gizmo.is_modal for gizmo in self.made.values())
         if was_pulled and not self.is_pulled:
-            # Blender keeps no step for handles of Python, and while it draws none can be kept
+            # Blender creates no undo step for Python gizmos, and none can be created while drawing
             bpy.app.timers.register(_keep_step)
         for name, gizmo in self.made.items():
             handle = HANDLES[name]
             gizmo.hide = handle.read(item) is None
-            if not gizmo.hide and not gizmo.is_modal:  # what is dragged measures from where it began
+            if not gizmo.hide and not gizmo.is_modal:  # the start of a drag is the reference
                 gizmo.matrix_basis = handle.place(item).normalized()
 
 

@@ -24,12 +24,12 @@ _WINDS = {
 
 
 class _OfLayers(OfOwnList):
-    """Operators that change the list as a whole, through the parameters."""
+    """Base class of operators that change the whole list, through the parameters."""
 
     kept = "A library override keeps its layers: make the ocean local first"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Change the list, and keep a layer active; keys follow their layers."""
+        """Change the list and the active layer; keys follow their layers."""
         item = shown_ocean(context)
         settings = settings_of(item)
         try:
@@ -46,7 +46,7 @@ class _OfLayers(OfOwnList):
         return {"FINISHED"}
 
     def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
-        """Another list, and the number of the layer that is active then."""
+        """The new list, and the index of its active layer."""
         raise NotImplementedError
 
 
@@ -73,13 +73,13 @@ class OCEAN_OT_layer_add(_OfLayers, bpy.types.Operator):
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """What is added."""
+        """Describe what is added."""
         if properties.kind == "WIND_FIELD":
             return _WINDS[properties.wind][1]
         return _kind(properties.kind).names.description
 
     def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
-        """A layer behind those of its kind, and of kinds before it in the menu."""
+        """Insert a layer after those of its kind, and of kinds before it in the menu."""
         new = self._new(parameters)
         before = [layer.names.number <= new.names.number for layer in parameters.layers]
         place = max((index + 1 for index, is_before in enumerate(before) if is_before), default=0)
@@ -102,7 +102,7 @@ class OCEAN_OT_layer_duplicate(_OfLayers, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
-        """A copy with another identity behind the active one."""
+        """Insert a copy with a new id after the active one."""
         layers = list(parameters.layers)
         copy = layers[active]
         layers.insert(active + 1, copy.changed(id=-1) if copy.has("id") else copy)
@@ -130,7 +130,7 @@ class OCEAN_OT_layer_remove(_OfLayers, bpy.types.Operator):
         return True
 
     def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
-        """The others."""
+        """Remove the active one."""
         return (*parameters.layers[:active], *parameters.layers[active + 1 :]), max(active - 1, 0)
 
 
@@ -149,7 +149,7 @@ class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Move it, unless it stands at the end already."""
+        """Move it, unless it is at the end already."""
         kinds = [layer.kind for layer in settings_of(shown_ocean(context)).layers]
         here = nearest(settings_of(shown_ocean(context)).active_layer, kinds)
         there = here + (1 if self.direction == "DOWN" else -1)
@@ -158,7 +158,7 @@ class OCEAN_OT_layer_move(_OfLayers, bpy.types.Operator):
         return super().execute(context)
 
     def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
-        """The layer and its neighbour the other way round."""
+        """Swap the layer with its neighbour."""
         other = active + (1 if self.direction == "DOWN" else -1)
         layers = list(parameters.layers)
         layers[active], layers[other] = layers[other], layers[active]
@@ -174,7 +174,7 @@ class OCEAN_OT_layer_solo(_OfLayers, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def changed(self, parameters: OceanParameters, active: int) -> tuple[Sequence[Contribution], int]:
-        """The active layer alone, or all."""
+        """Mute all other layers, or none."""
         alone = [index != active for index in range(len(parameters.layers))]
         is_alone = [layer.muted for layer in parameters.layers] == alone
         muted = [False] * len(alone) if is_alone else alone
@@ -194,7 +194,7 @@ class OCEAN_MT_layer_add(bpy.types.Menu):
     bl_description = "Add a layer: a swell from another direction, a wind field, an image, a hero wave"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw an entry a kind; wind fields have several to begin with."""
+        """Draw an entry for each kind; wind fields have a submenu."""
         for kind in shown():
             names = kind.names
             if kind.kind == "WIND_FIELD":
@@ -211,19 +211,19 @@ class OCEAN_MT_layer_add(bpy.types.Menu):
 
 
 class OCEAN_MT_wind_fields(bpy.types.Menu):
-    """Wind fields to begin with."""
+    """Built-in wind fields."""
 
     bl_idname = "OCEAN_MT_wind_fields"
     bl_label = "Wind Field"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw an entry a field."""
+        """Draw an entry for each field."""
         for key, (label, _) in _WINDS.items():
             operator = self.layout.operator(OCEAN_OT_layer_add.bl_idname, text=label)
             operator.kind, operator.wind = "WIND_FIELD", key
 
 
-#: buttons beside the list, below that which adds, and their icons
+#: buttons beside the list, below the one that adds, with their icons
 BUTTONS = (
     (OCEAN_OT_layer_remove, "REMOVE"),
     (OCEAN_OT_layer_duplicate, "DUPLICATE"),

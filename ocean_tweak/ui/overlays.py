@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn over the 3D view: the wind of the active ocean's layers as arrows, and what keeps oceans from
-being shown, since the sea that stands there then is an old one.
+"""Overlays of the 3D view: arrows for the wind of the active ocean's layers, and messages about oceans that
+cannot be shown, as the visible sea is then outdated.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ _handles: list[object] = []
 
 
 def register() -> None:
-    """Draw in every 3D view; without a window there is none."""
+    """Add the draw handlers, if there is a window."""
     if not bpy.app.background:
         for draw, kind in ((_draw_wind, "POST_VIEW"), (_draw_troubles, "POST_PIXEL")):
             _handles.append(bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", kind))
 
 
 def unregister() -> None:
-    """Draw no more."""
+    """Remove the draw handlers."""
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The list of patches: planned, added, removed, taken away."""
+"""Plans, adds and removes patches."""
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
@@ -15,7 +15,7 @@ from .resizing import tell_what_stays
 
 
 class _OfPatches(OfOwnList):
-    """Operators that change the list as a whole, through the parameters."""
+    """Base class of operators that change the whole list, through the parameters."""
 
     kept = "A library override keeps its patches: make the ocean local first"
 
@@ -119,7 +119,7 @@ class OCEAN_OT_patch_remove(_OfPresentPatches, bpy.types.Operator):
 
 
 class OCEAN_OT_one_patch(_OfPresentPatches, bpy.types.Operator):
-    """Take the patches away."""
+    """Reduce the sea to one patch."""
 
     bl_idname = "ocean.one_patch"
     bl_description = (

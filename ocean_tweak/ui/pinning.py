@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which of a scene's oceans the sidebar shows, whatever is selected."""
+"""Pins one of a scene's oceans in the sidebar, whatever is selected."""
 
 import bpy
 from bpy.props import StringProperty

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets: taken, saved, renamed, deleted, imported and exported."""
+"""Applies, saves, renames, deletes, imports and exports presets."""
 
 from itertools import chain, count
 from pathlib import Path

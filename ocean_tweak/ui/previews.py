@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures in panels: the spectrum of an ocean, and the presets, one of which is chosen by its picture.
+"""Pictures in panels: the spectrum of an ocean, and thumbnails for choosing a preset.
 
-The choice is a property of the window, not of any file.
+The choice is a property of the window manager, not of the file.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .spectrum_plot import SIZE, spectrum_plot
 
 _THUMBNAILS = Path(__file__).parent / "thumbnails"
 _SPECTRUM = "spectrum"
-# s after another sea was asked for: what is dragged asks for many
+# delay in s after a change of the sea, as dragging causes many
 _PAUSE = 0.1
 
 
 class Previews:
-    """Blender's collection of pictures, made when the first one is asked for."""
+    """Blender's preview collection, created on first use."""
 
     def __init__(self) -> None:
         self._collection: bpy.utils.previews.ImagePreviewCollection | None = None

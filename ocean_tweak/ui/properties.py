@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of an ocean object, `object.ocean_tweak`, and their way to and from OceanParameters."""
+"""The settings of an ocean object, `object.ocean_tweak`, and their conversion to and from OceanParameters."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -314,7 +314,7 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         ocean_object.use_sequence(item, shown_oceans()[item], ImageSequence(folder, name, tuple(frames)))
 
     def own_uid(self) -> str:
-        """What tells the ocean's bakes from those of others."""
+        """The uid of the ocean's bakes."""
         return cache_place.own_uid(self.id_data)
 
     def source_images(self) -> set[ImageSource]:

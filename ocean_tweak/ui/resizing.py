@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a domain of another size leaves where it is in the world: its middle, and what was placed by hand."""
+"""Keeps the middle of the domain, and manually placed things, in place when the domain size changes."""
 
 from __future__ import annotations
 

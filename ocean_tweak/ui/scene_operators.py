@@ -62,7 +62,7 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Make it, and say what the scene has kept."""
+        """Build the scene, and report what was kept."""
         old = context.scene
         scene = _new_scene(old) if self.use_new_scene else old
         wishes = surroundings.Wishes(
@@ -88,7 +88,8 @@ class OCEAN_OT_add_scene(InObjectMode, bpy.types.Operator):
         return {"FINISHED"}
 
     def _told(self, made: surroundings.Made, scene: bpy.types.Scene) -> str:
-        """What was made, what stayed and went, and how to see the sea where the scene looks elsewhere."""
+        """Report what was created, kept and removed, and how to see the sea if the scene has another
+        camera."""
         parts = [
             translated("{mood}: {engine}, motion blur on").format(
                 mood=translated((MOODS | COASTS)[self.mood].label), engine=self.engine.title()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sea from what is known of it: its height and period, a Beaufort number, or Blender's own ocean."""
+"""Creates a sea from a wave height and period, from a Beaufort number, or from Blender's Ocean modifier."""
 
 import dataclasses
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves the active ocean: baked files, or a live sea again."""
+"""Switches the active ocean between baked files and a live sea."""
 
 import bpy
 from bpy.app.translations import pgettext_rpt as translated

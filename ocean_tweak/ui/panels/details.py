@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an expert sets besides: water, shape, time, foam, and the mesh that carries it all."""
+"""Further settings: water, shape, time, foam, and the mesh."""
 
 import bpy
 
@@ -13,7 +13,7 @@ from .drawing import SubPanel, active_settings, draw_equaliser, message, split
 
 
 class OCEAN_PT_water(SubPanel, bpy.types.Panel):
-    """The liquid, and how fast waves run on it."""
+    """Properties of the liquid, and dispersion."""
 
     bl_idname = "OCEAN_PT_water"
     bl_label = "Water"
@@ -64,7 +64,7 @@ class OCEAN_PT_equaliser(SubPanel, bpy.types.Panel):
 
 
 class OCEAN_PT_shape(SubPanel, bpy.types.Panel):
-    """What is done with the waves."""
+    """Changes to the shape of waves."""
 
     bl_idname = "OCEAN_PT_shape"
     bl_label = "Shape"
@@ -77,7 +77,7 @@ class OCEAN_PT_shape(SubPanel, bpy.types.Panel):
 
 
 class OCEAN_PT_time(SubPanel, bpy.types.Panel):
-    """How frames become seconds."""
+    """The relation of frames to ocean time."""
 
     bl_idname = "OCEAN_PT_time"
     bl_label = "Time"
@@ -102,7 +102,7 @@ class OCEAN_PT_time(SubPanel, bpy.types.Panel):
 
 
 class OCEAN_PT_foam(SubPanel, bpy.types.Panel):
-    """How much foam there is and how it lives."""
+    """Amount, half-life and drift of foam."""
 
     bl_idname = "OCEAN_PT_foam"
     bl_label = "Foam"
@@ -120,7 +120,7 @@ class OCEAN_PT_foam(SubPanel, bpy.types.Panel):
 
 
 class OCEAN_PT_spray(SubPanel, bpy.types.Panel):
-    """What breaking crests throw into the air."""
+    """Spray from breaking crests."""
 
     bl_idname = "OCEAN_PT_spray"
     bl_label = "Spray"
@@ -143,7 +143,7 @@ class OCEAN_PT_spray(SubPanel, bpy.types.Panel):
 
 
 class OCEAN_PT_mesh(SubPanel, bpy.types.Panel):
-    """The mesh that is moved, and what it carries besides."""
+    """The mesh and its attributes."""
 
     bl_idname = "OCEAN_PT_mesh"
     bl_label = "Mesh"

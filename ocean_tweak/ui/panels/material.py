@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the active ocean's water looks: the inputs of its material that an artist turns first."""
+"""The look of the active ocean's water: the most important inputs of its material."""
 
 import bpy
 

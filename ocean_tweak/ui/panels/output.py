@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes to disk: bakes, with the choice of what is shown, and USD layers for other programs."""
+"""Output: bakes and the choice of what is shown, and USD layers for other programs."""
 
 import time
 from datetime import datetime
@@ -27,7 +27,7 @@ _MOST_NEEDS = 4
 
 
 class OCEAN_PT_bake(OceanPanel, bpy.types.Panel):
-    """Frames on disk: made, chosen, taken along."""
+    """Baked frames on disk."""
 
     bl_idname = "OCEAN_PT_bake"
     bl_label = "Bake"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Patches: what they are planned for, their list, and the active one in full."""
+"""Patches: the planner, the list, and the active one's settings."""
 
 from typing import Any
 

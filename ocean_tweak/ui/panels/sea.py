@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sea: the few numbers that make a sea, and what they mean right now."""
+"""The main panel: the most important settings of a sea, and their results."""
 
 from typing import Any
 
@@ -45,13 +45,13 @@ _MOST_DIFFERENCES = 4
 
 
 class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
-    """The few numbers that make a sea, and what they mean."""
+    """The most important settings of a sea, and their results."""
 
     bl_idname = "OCEAN_PT_sea"
     bl_label = "Sea"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the preset, the settings, what is wrong with them, and the waves that they make."""
+        """Draw the preset, the settings, problems, and the resulting waves."""
         layout = split(self.layout, animated=True)
         settings = active_settings(context)
         draw_shown(layout, context)
@@ -76,7 +76,7 @@ class OCEAN_PT_sea(OceanPanel, bpy.types.Panel):
 
 
 def _bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw what is wrong with the bake that is shown, and the remedies."""
+    """Draw problems of the bake that is shown, and remedies."""
     settings = active_settings(context)
     if settings.missing_file:
         message(layout, context, failures.missing_text(settings), alert=True)
@@ -131,7 +131,7 @@ def _wind(layout: bpy.types.UILayout, layer: bpy.types.PropertyGroup) -> None:
 
 
 def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
-    """Draw the size, of several patches that of the first, and the samples of the mesh."""
+    """Draw the domain size, for several patches that of the first, and the resolutions of the mesh."""
     first = settings.patches[0] if settings.patches else settings
     column = layout.column(align=True)
     column.prop(first, "domain_size")
@@ -144,7 +144,7 @@ def _size(layout: bpy.types.UILayout, settings: OceanSettings) -> None:
 
 
 def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the sea that is shown: the statistics that the last change left, and warnings."""
+    """Draw the latest statistics of the sea, and warnings."""
     settings, item = active_settings(context), shown_ocean(context)
     column = layout.box().column(align=True)
     is_baked = settings.source == "SEQUENCE" and bool(settings.baked_sea)
@@ -164,7 +164,7 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 
 def _waves_title(layout: bpy.types.UILayout, item: bpy.types.Object, is_baked: bool, is_known: bool) -> None:
-    """Draw one row, whatever it says: none below it moves when a refinement begins or ends."""
+    """Always draw exactly one row, so that rows below do not move when a refinement begins or ends."""
     share = refinement.foam_share(item)
     if share is not None:
         layout.progress(factor=share, text="Making the foam of earlier moments…")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where to begin when the scene has no ocean: with one, or with a whole scene at one press."""
+"""The panel of a scene without an ocean: adds one, or a whole scene."""
 
 import bpy
 
@@ -12,7 +12,7 @@ from .drawing import SidebarPanel, message
 
 
 class OCEAN_PT_start(SidebarPanel, bpy.types.Panel):
-    """Where to begin when the scene has no ocean."""
+    """Shown in a scene without an ocean."""
 
     bl_idname = "OCEAN_PT_start"
     bl_label = "Ocean Tweak"
