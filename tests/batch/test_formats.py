@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a newer version of the program wrote is refused in a line, and stays as it is."""
 
+import dataclasses
 import json
 import re
 
@@ -179,6 +180,25 @@ def test_former_foam_is_known_but_not_made(with_former_foam, capsys):
     assert main(["bake", *own, "--frames", "1", "--out", str(folder.parents[1])]) == 0
     (beside,) = folder.parent.glob("v002-*")
     assert json.loads((beside / "bake.json").read_text())["foam"] == formats.FOAM
+
+
+def test_windrows_of_before_are_told_where_the_wind_draws_foam_out():
+    """From 7 Bft on, in any frame; other bakes are as they were."""
+    storm = SEA.replace(layers=(dataclasses.replace(SEA.layers[0], wind_speed=25.0),))
+    rising = Animation(1, (("layers.0.wind_speed", (9.0, 16.0)),))
+    for shot, maps, are_told in (
+        (Shot(SEA), ("disp", "foam"), False),
+        (Shot(storm), ("disp", "vel"), False),
+        (Shot(storm), ("disp", "foam"), True),
+        (Shot(SEA, rising), ("disp", "foam"), True),
+    ):
+        job, former = (Job("sea", "1", shot, maps, frames=(1,), **said) for said in ({}, {"windrows": 1}))
+        assert ("windrows" in job.to_dict()) == are_told
+        assert (job.fingerprint != former.fingerprint) == are_told
+        assert Job.from_dict(former.to_dict()) == former
+    former = Job("sea", "1", Shot(storm), ("disp", "foam"), frames=(1,), windrows=1)
+    with pytest.raises(CacheError, match=r"windrows of version 1, which this program shows but no longer"):
+        former.check_foam()
 
 
 def test_a_bake_of_newer_foam_is_refused(tmp_path, capsys):

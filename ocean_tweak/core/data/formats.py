@@ -25,9 +25,12 @@ LAYER = 1
 #: the waves themselves: raised whenever the same parameters give a different surface
 SYNTHESIS = 1
 #: the foam: raised whenever the same waves get different foam. Only files that hold foam carry it
-FOAM = 5
+FOAM = 4
 #: the first foam that always tells what breaks now and how old the rest is
 FOAM_OF_TWO_AGES = 2
+#: the windrows: raised whenever the same foam is drawn out into others. Only files of foam that lies in them
+# carry it
+WINDROWS = 2
 #: the spray: raised whenever the same sea and settings give different particles
 SPRAY = 2
 
@@ -39,6 +42,11 @@ def told_foam(version: int, has_foam: bool) -> dict[str, int]:
     """The foam version as an entry for files and fingerprints; empty for the first version and without
     foam."""
     return {"foam": version} if has_foam and version > 1 else {}
+
+
+def told_windrows(version: int, has_windrows: bool) -> dict[str, int]:
+    """The version of windrows as such an entry; empty for the first version and without windrows."""
+    return {"windrows": version} if has_windrows and version > 1 else {}
 
 
 def told_encoding(version: int, has_halved: bool) -> dict[str, int]:

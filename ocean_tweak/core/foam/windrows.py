@@ -183,13 +183,20 @@ class Windrows:
         return _pattern(self.direction, self.side, self.seed, self.spacing)
 
 
+def are_there(wind_speed: float) -> bool:
+    """Whether a wind in m/s at 10 m draws foam out, on a sea large enough."""
+    return wind_speed > _FROM
+
+
 def windrows(
     wind_speed: float, direction: float, side: float, seed: int, spacing: float = 0.0
 ) -> Windrows | None:
     """The windrows of a wind in m/s at 10 m; None if the wind is too weak or the sea too small."""
+    if not are_there(wind_speed):
+        return None
     part = min(1.0, max(0.0, (wind_speed - _FROM) / (_WHOLE - _FROM)))
     strength = part * part * (3.0 - 2.0 * part)
-    if strength == 0.0 or side < 2.0 * _CELL:
+    if side < 2.0 * _CELL:
         return None
     return Windrows(strength, direction, side, seed, spacing)
 

@@ -137,8 +137,12 @@ def recovered_job(folder: Path) -> Job:
         except (ExrError, ValueError, KeyError):
             continue
         for maps in _all_choices(maps_for(shot.parameters, area)):
-            for foam, encoding in product(range(formats.FOAM, 0, -1), range(formats.ENCODING, 0, -1)):
-                job = Job(name, uid, shot, maps, compression, area=area, foam=foam, encoding=encoding)
+            versions = (range(newest, 0, -1) for newest in (formats.FOAM, formats.WINDROWS, formats.ENCODING))
+            for foam, windrows, encoding in product(*versions):
+                job = Job(
+                    name, uid, shot, maps, compression, area=area, foam=foam, windrows=windrows,
+                    encoding=encoding,
+                )  # fmt: skip
                 if job.fingerprint[:8] == match[2]:
                     return job
     raise CacheError(problem)

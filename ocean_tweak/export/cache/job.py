@@ -18,6 +18,8 @@ from ...core.data import formats
 from ...core.data.errors import ParameterError
 from ...core.data.frames import Frame, format_frames, parse_frames
 from ...core.data.printable import shown
+from ...core.foam.threshold import foam_wind
+from ...core.foam.windrows import are_there
 from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashed
 from ...core.parameters.ocean_parameters import OceanParameters
 from ...core.parameters.patch_seas import PARTS, parts
@@ -53,6 +55,7 @@ class Job:
     frames : the requested frames
     area : the square that is baked; None for the sea's own tile, or those of its patches
     foam : version of the foam in its maps; ignored without such maps
+    windrows : version of those in that foam; ignored without them
     encoding : version of the encoding of its maps; ignored if all have 32 bits
 
     Raises ParameterError for names that would lead to files elsewhere, and for maps that the sea does not
@@ -67,6 +70,7 @@ class Job:
     frames: tuple[Frame, ...] = field(default=(), compare=False)
     area: Area | None = None
     foam: int = field(default=formats.FOAM, kw_only=True)
+    windrows: int = field(default=formats.WINDROWS, kw_only=True)
     encoding: int = field(default=formats.ENCODING, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -80,6 +84,8 @@ class Job:
         _check_maps(self.maps, self.shot.parameters, self.area)
         if not self.outputs & OF_MEMORY:
             object.__setattr__(self, "foam", formats.FOAM)
+        if not self._has_windrows:
+            object.__setattr__(self, "windrows", formats.WINDROWS)
         if not halved_maps(self.maps, self.compression):
             object.__setattr__(self, "encoding", formats.ENCODING)
 
@@ -105,15 +111,33 @@ class Job:
 
     def check_foam(self) -> None:
         """Raise CacheError if its frames have foam of an earlier version, which can no longer be computed."""
-        if self.foam != formats.FOAM:
-            raise CacheError(
-                f"{self.home} was baked with foam of version {self.foam}, which this program "
-                f"shows but no longer makes (it makes version {formats.FOAM}): bake the sea "
-                "again; the old bake is kept"
-            )
+        for name, own, made in (
+            ("foam", self.foam, formats.FOAM), ("windrows", self.windrows, formats.WINDROWS),
+        ):  # fmt: skip
+            if own != made:
+                raise CacheError(
+                    f"{self.home} was baked with {name} of version {own}, which this program shows but no "
+                    f"longer makes (it makes version {made}): bake the sea again; the old bake is kept"
+                )
 
     def _told_foam(self) -> dict[str, int]:
-        return formats.told_foam(self.foam, bool(self.outputs & OF_MEMORY))
+        return {
+            **formats.told_foam(self.foam, bool(self.outputs & OF_MEMORY)),
+            **formats.told_windrows(self.windrows, self._has_windrows),
+        }
+
+    @cached_property
+    def _has_windrows(self) -> bool:
+        """Whether its maps have foam that the wind may draw out, in any frame."""
+        if not self.outputs & OF_MEMORY:
+            return False
+        wind = foam_wind(self.shot.parameters)
+        speeds = [0.0 if wind is None else wind.speed]
+        samples = () if self.shot.animation is None else self.shot.animation.samples
+        for path, values in samples:
+            if path.endswith("wind_speed") and isinstance(values, tuple):
+                speeds += values
+        return any(map(are_there, speeds))
 
     def _told_encoding(self) -> dict[str, int]:
         return formats.told_encoding(self.encoding, bool(halved_maps(self.maps, self.compression)))
@@ -223,7 +247,7 @@ class Job:
             raise ValueError("is not a JSON object")
         versions = {
             "format": formats.JOB, "synthesis": formats.SYNTHESIS, "foam": formats.FOAM,
-            "encoding": formats.ENCODING,
+            "windrows": formats.WINDROWS, "encoding": formats.ENCODING,
         }  # fmt: skip
         for key, known in versions.items():
             formats.check_format(data, known, key)
@@ -246,7 +270,7 @@ class Job:
         job = cls(
             name, uid, Shot.from_dict(data.get("shot")), tuple(maps), compression,
             parse_frames(frames) if frames else (), told_area(data), foam=data.get("foam", 1),
-            encoding=data.get("encoding", 1),
+            windrows=data.get("windrows", 1), encoding=data.get("encoding", 1),
         )  # fmt: skip
         if job.fingerprint != data.get("fingerprint"):
             raise ValueError("was changed: its fingerprint does not match its contents")
