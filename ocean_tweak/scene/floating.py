@@ -168,15 +168,18 @@ def touch_water(item: bpy.types.Object, ocean: bpy.types.Object) -> bool:
     return contact.touch(item, ocean, hull, level_at(item, ocean))
 
 
-def cut_out(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
+def cut_out(item: bpy.types.Object, ocean: bpy.types.Object) -> bool:
     """Let no water be inside an object: of the ocean that it floats on, else of the given one.
+
+    Returns whether the water reaches it as it is now.
 
     Raises OceanObjectError for what has no inside, or cannot be changed.
     """
     check(item, ocean)
-    carrier = carrier_of(item)
-    known = None if carrier is None else ride_of(carrier)[0]
-    hull_cut.cut_out(item, known or ocean, own_hull(item))
+    carrier, hull = carrier_of(item), own_hull(item)
+    known, ride = (None, None) if carrier is None else ride_of(carrier)
+    hull_cut.cut_out(item, known or ocean, hull)
+    return hull is not None and hull.waterline(level_at(item, known or ocean, ride)) is not None
 
 
 def sink(item: bpy.types.Object) -> None:

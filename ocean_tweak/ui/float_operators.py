@@ -291,19 +291,23 @@ class OBJECT_OT_ocean_cut_out(OnOcean, bpy.types.Operator):
             for item in items:
                 hull_cut.let_in(item)
             return {"FINISHED"}
-        refused = []
+        refused, dry = [], []
         try:
             ocean = self.chosen_ocean(context)
-            for item in items:
-                try:
-                    floating.cut_out(item, ocean)
-                except OceanObjectError as error:
-                    refused.append(str(error))
         except FloatError as error:
             return refuse(self, error)
+        for item in items:
+            try:
+                if not floating.cut_out(item, ocean):
+                    dry.append(item.name)
+            except OceanObjectError as error:
+                refused.append(str(error))
         if refused:
             self.report({"WARNING" if len(refused) < len(items) else "ERROR"}, "; ".join(refused))
         elif text := hull_cut.why_unseen(ocean):
+            self.report({"WARNING"}, text)
+        elif dry:
+            text = f"The water of {ocean.name} does not cut {', '.join(dry)}: move it into the water"
             self.report({"WARNING"}, text)
         return {"FINISHED"} if len(refused) < len(items) else {"CANCELLED"}
 

@@ -264,6 +264,37 @@ def test_what_encloses_nothing_and_linked_things_are_refused(water, select, empt
     assert hulls(water) == []
 
 
+def test_what_is_above_the_water_is_told_and_cut_out_when_it_comes_down(
+    water, new_boat, select, seen_from_above, capfd
+):
+    boat = new_boat(location=(25.0, 40.0, 30.0))
+    select(boat)
+    assert cut() == {"FINISHED"}
+    assert "does not cut Boat" in "".join(capfd.readouterr())
+    boat.location.z = water.location.z
+    bpy.context.view_layer.update()
+    dry, _ = shares(boat, *seen_from_above(boat), 0.5)
+    assert dry == 0.0
+
+
+def test_undo_and_redo(extension, water, new_boat, select, window):
+    cuts = extension("scene.hull_cut")
+    select(new_boat())
+    with window.override():
+        bpy.ops.ed.undo_push(message="before")
+        cut()
+        bpy.ops.ed.undo_push(message="cut")
+        bpy.ops.ed.undo()
+        boat, sea = (bpy.data.objects[name] for name in ("Boat", "Ocean"))
+        assert not cuts.is_cut(boat)
+        assert hulls(sea) == []
+        bpy.ops.ed.redo()
+        boat, sea = (bpy.data.objects[name] for name in ("Boat", "Ocean"))
+        assert cuts.is_cut(boat)
+        assert hulls(sea) == [boat]
+        assert np.ptp(boat["ocean_tweak_cut_plan"].pixels[:]) == 1.0
+
+
 def test_an_ocean_without_material_is_told(ocean, new_boat, select, capfd):
     select(new_boat())
     assert cut() == {"FINISHED"}
