@@ -86,7 +86,7 @@ def test_the_panel_shows_how_far_it_is_and_what_is_missing(ocean, extension, pro
     draw = extension("ui.panels.output").OCEAN_PT_usd.draw
     monkeypatch.setitem(sys.modules, "pxr", None)
     assert "pip install usd-core" in " ".join(drawn_by(draw, ocean))
-    export = SimpleNamespace(done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)
+    export = SimpleNamespace(phase="", done=3, left=12, factor=0.25, seconds_left=62.0, is_stopped=False)
     monkeypatch.setitem(process._running, ocean.session_uid, export)
     drawn = drawn_by(draw, ocean)
     assert "3 / 12, 1:02" in drawn
