@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Spray: which drops are torn off breaking crests, and how they fly."""
+"""Spray: emission of drops from breaking crests, and their flight."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Particles as columns of numbers: of the vertices of a mesh, and of the points of a file."""
+"""Particles as columns of numbers, for mesh vertices and for points in files."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 
 from .particles import Particles
 
-#: of a particle, float32; its number is the last bits of its id, as many as a float32 holds
+#: columns of a particle, float32; its number is the last bits of its id, as many as a float32 can hold
 COLUMNS = ("x", "y", "z", "velocity_x", "velocity_y", "velocity_z", "radius", "age", "kind", "number")
-#: of a particle in a file
+#: columns of a particle in a file
 BYTES_IN_FILE = 4 * len(COLUMNS)
-#: numbers that there are
+#: number of columns
 NUMBERS = 2**24
 
 
 def columns(particles: Particles) -> NDArray[np.float32]:
-    """(particles, 10) numbers, in m and m/s, named COLUMNS."""
+    """(particles, 10) values in m and m/s, in the order of COLUMNS."""
     result = np.empty((len(particles.age), len(COLUMNS)), np.float32)
     result[:, :3], result[:, 3:6] = particles.position, particles.velocity
     result[:, 6], result[:, 7], result[:, 8] = particles.radius, particles.age, particles.kind

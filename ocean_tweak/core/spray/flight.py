@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a drop flies: under its weight and a drag that is linear in its speed against the air."""
+"""Flight of a drop: gravity, and a drag linear in its speed relative to the air."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Flight(NamedTuple):
 
     start, velocity : (drops, 3) at birth, m and m/s
     air : (drops, 3) velocity of the air around each, m/s
-    response : (drops,) time in which a drop takes over the air's velocity, s
+    response : (drops,) response time, s
     """
 
     start: RealArray
@@ -27,7 +27,7 @@ class Flight(NamedTuple):
     response: RealArray
 
     def at(self, age: RealArray) -> tuple[RealArray, RealArray]:
-        """(drops, 3) places in m and velocities in m/s at ages in s.
+        """Positions in m and velocities in m/s, (drops, 3) each, at ages in s.
 
         dv/dt = g + (w - v)/τ has the solution v = u + (v₀ - u)·e^(-t/τ), with u = w + gτ; x is its integral.
         """
@@ -40,8 +40,8 @@ class Flight(NamedTuple):
         return place, last + excess * (np.float32(1.0) - left)
 
     def is_above(self, place: RealArray) -> NDArray[np.bool_]:
-        """Whether drops that are at such places have never been lower than where they started.
+        """Whether drops at these positions have never been below their start.
 
-        Their paths are bent one way all along, so one that rises at first and is still above has not.
+        Paths are concave, so a drop that rises at first and is still above its start has not.
         """
         return np.asarray((self.velocity[:, 2] > 0.0) & (place[:, 2] >= self.start[:, 2]))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Spray at a time, of the crests that broke at moments before it: no particle knows of another.
+"""Spray at a time, from crests that broke at earlier moments; particles are independent of each other.
 
-Whether a cell throws up a particle at a moment, and how it flies, follow from a hash of cell, moment and
-seed. So any frame can be made alone, in any order, with the same bytes, and anew with another amount, size,
-wind or life.
+A hash of cell, moment and seed determines whether a cell emits a particle and how it flies. So any frame can
+be computed alone, in any order, with the same bytes, and the amount, size, wind and life can be changed
+independently.
 """
 
 from __future__ import annotations
@@ -23,44 +23,44 @@ from .flight import Flight
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: of the wind at 10 m, what carries spray a metre or two above the water
+#: wind a metre or two above the water, which carries spray, relative to that at 10 m
 _CARRYING = 0.75
 #: velocities of the air's turbulence along the wind, across it and up, in friction velocities (Panofsky &
 #: Dutton 1984); over some seconds they stay (Taylor 1921)
 _TURBULENCE = (2.4, 1.9, 1.25)
-#: of the carrying wind, what a kind of particle has of it at once, at least and at most
+#: initial fraction of the carrying wind by kind of particle, minimum and maximum
 _AT_ONCE = {drops.SPUME: (0.15, 0.5), drops.DROPLET: (0.0, 0.2), drops.MIST: (0.3, 0.8)}
-#: speed in m/s with which crests throw drops up at most: without wind, and more with the wind at 10 m
+#: largest upward speed of launched drops in m/s: a constant, and a factor of the wind at 10 m
 _UPWARD, _UPWARD_BY_WIND = 3.5, 0.04
-#: by how much particles of a gust differ from each other in what they have of both
+#: variation of both among the particles of a gust
 _DIFFERENCE = 0.35
-#: s; drops have fallen back by then
+#: largest life of drops in s, by which they have fallen back
 _DROPS_FLY = 2.0
 #: drawn radii: the drop that has that of the settings, m; a piece of a sheet of spume, and mist, over it; and
 #: the friction velocities by which mist spreads
 _DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 6.0, 240.0, 0.3
 
-#: mist is seen from far, in streaks as wide as its puffs: one stands for no more than so many
+#: mist is seen from afar, in streaks as wide as its puffs: largest number that one may represent
 _PUFFS = 4.0
 
-#: mean time in s that drops are in the air, and mist, over its life: as 25 m/s of wind leave them
+#: mean time in the air: of drops in s, and of mist relative to its life, at a wind of 25 m/s
 _DROPS_STAY, _MIST_STAYS = 0.47, 0.35
-#: bytes of a particle while frames are made and shown
+#: bytes per particle while frames are computed and shown
 BYTES = 300
 
-# what is drawn of a cell, of a gust and of a particle
+# random streams of a cell, a gust and a particle
 _COUNT, _GUST, _UP, _ALONG = range(4)
 _TIME, _COLUMN, _ROW, _KIND, _RADIUS, _OWN_UP, _OWN_ALONG, _AIR = range(8)
 
 
 class Crests(NamedTuple):
-    """What breaks at a moment; (cells,) of each cell in which a crest does.
+    """Breaking crests at a moment; (cells,) arrays of cells with a crest.
 
     key, gust : hashes of the cell, and of the gust at its place
-    area : that tears, horizontal, m²
-    stands_for : how many drops one of the cell's stands for: it is as much larger
-    place : (cells, 3) of its middle, m
-    along : (cells, 2, 3) from its middle half way along the columns, and along the rows, m
+    area : horizontal area that is torn, m²
+    stands_for : number of drops that one of the cell's represents, by which it is larger
+    place : (cells, 3) centre, m
+    along : (cells, 2, 3) half extents along columns and along rows, m
     velocity : (cells, 3) of the water, m/s
     """
 
@@ -79,12 +79,12 @@ class Crests(NamedTuple):
 
 
 class Particles(NamedTuple):
-    """Spray at a time; (particles,) each.
+    """Spray at a time; (particles,) arrays.
 
     position, velocity : (particles, 3) float32, m and m/s
-    radius : with which it is drawn, float32, m
+    radius : for display, float32, m
     age : float32, s
-    id : the same as long as it lives, int64, above 0
+    id : constant over its life, int64, above 0
     kind : `drops.SPUME`, DROPLET or MIST, int8
     """
 
@@ -97,18 +97,18 @@ class Particles(NamedTuple):
 
 
 def longest_life(spray: Spray) -> float:
-    """Seconds that any particle lives."""
+    """Longest life of a particle in s."""
     return max(spray.life, _DROPS_FLY)
 
 
 def mean_life(spray: Spray) -> float:
-    """Seconds that a particle is in the air, in the mean over all kinds."""
+    """Mean time of a particle in the air in s, over all kinds."""
     mist = drops.SHARE[drops.MIST]
     return (1.0 - mist) * min(spray.life, _DROPS_STAY) + mist * _MIST_STAYS * spray.life
 
 
 def expected(crests: Crests, spray: Spray, wind: Wind, step: float) -> RealArray:
-    """(cells,) particles that cells throw up in a moment of `step` seconds, in the mean over gusts."""
+    """(cells,) expected particles emitted by cells in a moment of `step` seconds, averaged over gusts."""
     drop, puff = _of_drops_and_mist(crests)
     return crests.area * (drop + puff) * np.float32(drops.torn_rate(wind.speed) * spray.amount * step)
 
@@ -120,10 +120,10 @@ def _of_drops_and_mist(crests: Crests) -> tuple[RealArray, RealArray]:
 
 
 def in_the_air(crests: Crests, spray: Spray, wind: Wind, step: float, since: float) -> Particles:
-    """What crests of a moment have thrown up and is still in the air.
+    """Particles emitted by the crests of a moment that are still in the air.
 
-    step : of a moment, s; particles start at any time in it
-    since : s from its middle to now
+    step : duration of the moment, s; particles start at any time in it
+    since : time from its middle to now, s
     """
     count = _counts(crests, spray, wind, step)
     cell = np.repeat(np.arange(len(count)), count)
@@ -147,7 +147,7 @@ def in_the_air(crests: Crests, spray: Spray, wind: Wind, step: float, since: flo
 
 
 def joined(parts: list[Particles]) -> Particles:
-    """The particles of several moments, in their order."""
+    """Concatenate the particles of several moments."""
     if not parts:
         none = np.empty(0, np.float32)
         at = np.empty((0, 3), np.float32)
@@ -156,7 +156,7 @@ def joined(parts: list[Particles]) -> Particles:
 
 
 def _counts(crests: Crests, spray: Spray, wind: Wind, step: float) -> NDArray[np.int64]:
-    """(cells,) particles: gusts tear off more and less, exponentially distributed."""
+    """(cells,) numbers of particles, exponentially distributed over gusts."""
     torn = expected(crests, spray, wind, step) * -np.log(random.uniform(crests.gust, _GUST))
     return np.asarray(np.floor(torn + random.uniform(crests.key, _COUNT)).astype(np.int64))
 
@@ -171,7 +171,7 @@ def _launched(
     spray: Spray,
     wind: Wind,
 ) -> Flight:
-    """From where on the water, how fast, and through which air."""
+    """Positions on the water, launch velocities, and velocities of the air."""
     water = crests.velocity[cell]
     start = crests.place[cell] + water * offset[:, np.newaxis]
     for axis, stream in enumerate((_COLUMN, _ROW)):
@@ -198,7 +198,7 @@ def _between(
     key: NDArray[np.uint64],
     own: int,
 ) -> RealArray:
-    """Numbers between two, float32, that are alike within a gust."""
+    """Numbers in a range, float32, similar within a gust."""
     share = (1.0 - _DIFFERENCE) * random.uniform(gust, of_gust) + _DIFFERENCE * random.uniform(key, own)
     return np.asarray(least + (most - least) * share.astype(np.float32))
 
@@ -206,7 +206,7 @@ def _between(
 def _air(
     key: NDArray[np.uint64], carrying: float, direction: RealArray, spray: Spray, wind: Wind
 ) -> RealArray:
-    """(particles, 3) wind around each, m/s: nowhere more than at 10 m."""
+    """(particles, 3) wind around each, m/s, at most that at 10 m."""
     along, across, up = (
         np.float32(times * spray.wind * friction_velocity(wind.speed))
         * _bounded_normal(key, _AIR + 2 * index)
@@ -221,20 +221,19 @@ def _air(
 
 
 def friction_velocity(wind_speed: float) -> float:
-    """Of the air, m/s, for a wind in m/s at 10 m: the drag coefficient is (0.61 + 0.063 U)·10⁻³ (Smith
-    1980)."""
+    """Friction velocity of the air, m/s, for a wind in m/s at 10 m: the drag coefficient is (0.61 + 0.063
+    U)·10⁻³ (Smith 1980)."""
     return wind_speed * math.sqrt((0.61 + 0.063 * wind_speed) * 1e-3)
 
 
 def _bounded_normal(key: NDArray[np.uint64], stream: int) -> RealArray:
-    """Numbers of mean 0 and variance 1, of two streams, none beyond 2.45: a triangle in place of a bell."""
+    """Numbers of mean 0 and variance 1 from two streams, with a triangular distribution that ends at 2.45."""
     total = random.uniform(key, stream) + random.uniform(key, stream + 1) - 1.0
     return np.asarray((math.sqrt(6.0) * total).astype(np.float32))
 
 
 def _drawn(kind: NDArray[np.int8], radius: RealArray, age: RealArray, spray: Spray, wind: Wind) -> RealArray:
-    """Radii in m with which particles are drawn: spume is a piece of a sheet, mist many drops, which
-    turbulence spreads."""
+    """Display radii in m: spume is a piece of a sheet, mist many drops, spread by turbulence."""
     drawn = radius * np.where(kind == drops.SPUME, np.float32(_SHEET), np.float32(1.0))
     drawn *= np.float32(spray.size / _DRAWN_AS)
     spread = _MIST * spray.size + _SPREADING * friction_velocity(wind.speed) * age

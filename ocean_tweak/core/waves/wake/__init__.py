@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves that moving objects make: wakes of hulls, and rings of what falls in."""
+"""Waves of moving objects: wakes of hulls, and rings around objects that fall in."""
 
 from .elevation import wake_elevation
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Linear waves of a pressure that moves over the water, summed over its past.
+"""Linear waves of a moving pressure, integrated over its past.
 
-A pressure p(x, t) = ρ g d(x - X(t)), d being a draught in m, makes of each wave vector k (Havelock 1908)
+A pressure p(x, t) = ρ g d(x - X(t)), with a draught d in m, excites each wave vector k (Havelock 1908) as
 
     ĥ'' + ω² ĥ = -ω² d̂ e^(-ik·X),    ĥ(k, t) = -ω d̂(k) ∫ e^(-ik·X(τ)) sin ω(t-τ) e^(-γ(t-τ)) dτ
 
-with ω² = (g k + σ k³/ρ) tanh kh, and a decay γ. Of a straight piece of the path the integral is elementary.
-With its two exponentials apart, what all pieces so far have left is two numbers a wave vector, which turn and
-fade from the end of a piece to that of the next.
+with ω² = (g k + σ k³/ρ) tanh kh, and a decay γ. For a straight piece of the path the integral is elementary.
+With its two exponentials kept separate, the contribution of all earlier pieces is two numbers per wave
+vector, which rotate and decay from the end of one piece to that of the next.
 """
 
 from __future__ import annotations
@@ -51,17 +51,17 @@ def wake_elevation(
 ) -> Array:
     """Elevation in m of the waves of an object, (N, N) [y, x] over the square [-area/2, area/2)².
 
-    times, positions : (T,) s and (T, 2) m of its path; before the first sample it has moved for ever at its
-        first velocity, after the last it moves on
+    times, positions : (T,) s and (T, 2) m of its path; before the first sample it has moved at its first
+        velocity, and after the last at its last velocity
     time : s
-    area, resolution : side in m and N, an even number
-    footprint, spacing : (n, n) m of draught [y, x] in the object's frame, x forward, centred; its cell in m
+    area, resolution : side in m, and N, an even number
+    footprint, spacing : (n, n) draught in m [y, x] in the object's frame, x forward, centred; cell size in m
     headings : (T,) rad, by default along the path
     depth : m
-    surface_tension : N/m, on fresh water
-    decay : γ in 1/s, by which waves fade
+    surface_tension : N/m, for the density of fresh water
+    decay : γ, rate at which waves fade, 1/s
 
-    Raises ValueError for what is out of range, naming it.
+    Raises ValueError with the name of an argument out of range.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def wake_elevation(
 
 
 def _fitting(footprint: Footprint, area: float) -> Footprint:
-    """Raises ValueError where an area is smaller than the object."""
+    """Raise ValueError if an area is smaller than the object."""
     wide, long = (footprint.spacing * samples for samples in footprint.draught.shape)
     if max(wide, long) > area:
         raise ValueError(
@@ -95,7 +95,7 @@ def _fitting(footprint: Footprint, area: float) -> Footprint:
 
 @dataclass(frozen=True)
 class Basin:
-    """The wave vectors of a square of water, and how waves run and fade there; see `wake_elevation`.
+    """The wave vectors of a square of water, with dispersion and decay; see `wake_elevation`.
 
     density : kg/m³
     """
@@ -126,7 +126,7 @@ class Basin:
 
     @property
     def scale(self) -> float:
-        """By which transforms of NumPy are multiplied to be those of waves in m."""
+        """Factor from NumPy's transforms to waves in m."""
         return (self.resolution / self.area) ** 2
 
     @cached_property
@@ -141,7 +141,7 @@ class Basin:
 
     @cached_property
     def omega(self) -> Array:
-        """(N, N/2 + 1) rad/s; 0 for wave vectors that the samples cannot tell apart."""
+        """(N, N/2 + 1) rad/s; 0 at Nyquist."""
         k = np.hypot(self.kx, self.ky)
         tension = self.surface_tension / self.density
         slope = np.tanh(k * self.depth) if math.isfinite(self.depth) else 1.0
@@ -151,7 +151,7 @@ class Basin:
         return omega
 
     def turns(self, span: float) -> tuple[ComplexArray, ComplexArray]:
-        """e^((±iω - γ) span): how waves turn and fade in so many s."""
+        """e^((±iω - γ) span): rotation and decay of waves over a span in s."""
         found = self._turns.get(span)
         if found is None:
             self._turns.clear()  # a path has few spans, one after the other
@@ -165,14 +165,14 @@ class Basin:
 
 
 class Past:
-    """What the waves of an object have become by the end of its latest piece: two numbers a wave vector.
+    """The waves of an object at the end of its latest piece: two numbers per wave vector.
 
-    In float32, as the sea's own; phases are of float64, along each axis.
+    In single precision like the sea's own; phases are float64, along each axis.
     """
 
     @classmethod
     def until(cls, basin: Basin, footprint: Footprint, track: Track, time: float) -> Past:
-        """That of a track by a time in s."""
+        """The past of a track up to a time in s."""
         done, way = track.until(time)
         first = track.first
         past = cls(basin, footprint, first.ending(time) if time < first.end else first)
@@ -191,7 +191,7 @@ class Past:
                 np.negative(left[rows], out=left[rows])
 
     def go_on(self, pieces: Sequence[Piece], workers: int = 1) -> None:
-        """Go along pieces, of which each begins where the one before ended."""
+        """Continue along pieces, each of which begins where the previous one ended."""
         begin = pieces[0].start if pieces else (0.0, 0.0)
 
         def work(rows: slice) -> None:
@@ -206,7 +206,7 @@ class Past:
         return (0.5j * self._omega) * (self._left[0] - self._left[1])
 
     def rate(self) -> ComplexArray:
-        """∂ĥ/∂t in m³/s: what the object adds at this moment is in both, and not in their difference."""
+        """∂ĥ/∂t in m³/s: the object's present contribution cancels in the difference."""
         turned = (-0.5 * self._omega**2) * (self._left[0] + self._left[1])
         return turned - np.float32(self._basin.decay) * self.elevation()
 
@@ -232,7 +232,7 @@ class Past:
         return end
 
     def copy(self) -> Past:
-        """One that can go on by itself."""
+        """An independent copy."""
         other = copy(self)
         other._left = self._left.copy()
         return other

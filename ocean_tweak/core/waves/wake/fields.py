@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The waves of one object as fields at any places of a sea, from frame to frame."""
+"""The waves of one object as fields at any places of a sea."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MEMO.limit(_FIELDS, 4)
 
 
 class Where(NamedTuple):
-    """Around which place the waves of an object are: x and y in m, or the object itself."""
+    """Centre of an object's waves: (x, y) in m, or the object itself."""
 
     x: float
     y: float
@@ -57,9 +57,9 @@ class _Moment(NamedTuple):
 
 
 class WakeWaves:
-    """The waves of an object that goes along a track, and presses its footprint into the water.
+    """The waves of an object that moves along a track and presses its footprint into the water.
 
-    orbit_depth : m, by which orbits are wider; infinite for those of deep water
+    orbit_depth : depth in m for the horizontal orbital motion; infinite for deep water
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class WakeWaves:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the pasts that are kept."""
+        """Bytes of the cached pasts."""
         return total_bytes(self._pasts.values())
 
     def at(
@@ -101,7 +101,7 @@ class WakeWaves:
         return result
 
     def _middle(self, time: float) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Of the area in m, and how fast it moves in m/s."""
+        """Centre of the area in m, and its velocity in m/s."""
         if self._where.follows:
             return self._track.place(time)
         return (self._where.x, self._where.y), (0.0, 0.0)
@@ -140,7 +140,7 @@ class WakeWaves:
         return (1.0 / (k * np.tanh(k * self._orbit_depth))).astype(np.float32)
 
     def _past(self, time: float) -> Past:
-        """What has become of all waves by a time: the same bytes from any past that is kept."""
+        """The waves at a time, with the same bytes from any cached past."""
         done, way = self._track.until(time)
         if time < self._track.first.end:
             return Past(self._basin, self._footprint, self._track.first.ending(time))
@@ -160,7 +160,7 @@ class WakeWaves:
         return past
 
     def _keep(self, count: int, past: Past) -> None:
-        """Of pasts that are many, every other one is left out, but for the newest."""
+        """Thin out cached pasts: drop every other one, except the newest."""
         self._pasts[count] = past
         while len(self._pasts) > _PASTS:
             self._stride *= 2

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Foam that a hull leaves: the turbulent band astern, and what its bow throws to the sides.
+"""Foam of a hull: the turbulent band astern, and the spray of its bow.
 
-Each place of the water has it from when the hull passed there last, so that any frame is made alone. The band
-is as wide as the beam where it begins and widens with the fifth root of the distance, as the wakes of ships
-do (Milgram, Skop, Peltzer & Griffin 1993). From the bow a narrow band runs along either side and away.
+It depends on when the hull last passed a place, so any frame can be computed alone. The band is as wide as
+the beam where it begins and widens with the fifth root of the distance, as measured for ships (Milgram, Skop,
+Peltzer & Griffin 1993). A narrow band runs from the bow along either side and outwards.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from .track import Track
 
 Array = NDArray[np.float64]
 
-#: halvings after which foam is none
+#: number of half-lives after which foam counts as none
 _GONE = 8.0
-#: lengths of the straight stretches in which a path is followed, in beams
+#: length of the straight stretches of a path, in beams
 _STRETCH = 1.0
-#: Froude numbers at which a hull begins to make foam, and makes all that it can
+#: Froude numbers at which a hull begins to make foam, and at which it makes the most
 _BEGINS, _FULL = 0.08, 0.35
-#: of the band from the bow: how far it runs aside for each metre along, its width in beams, and its half-life
-#: as a share of that astern
+#: band from the bow: lateral distance per metre along the hull, width in beams, and half-life relative to
+# that astern
 _ASIDE, _NARROW, _SHORT = 0.12, 0.09, 0.2
 #: softness of the edges of the band astern, in its width
 _EDGE = 0.35
@@ -38,7 +38,7 @@ class HullFoam:
     """The foam of one hull.
 
     length, beam : m
-    amount : 0…1 where it is born
+    amount : 0…1 at its origin
     half_life : s, of the band astern
     """
 
@@ -50,7 +50,7 @@ class HullFoam:
     gravity: float
 
     def at(self, x: Array, y: Array, time: float) -> OwnFoam:
-        """(places,) at rest positions in m and a time in s; breaking where the bow throws it up now."""
+        """Foam (places,) at rest positions in m and a time in s; breaking where the bow throws it up."""
         foam, age, breaking = (np.zeros(x.size, np.float32) for _ in range(3))
         for stretch in self._stretches(time):
             there = stretch.near(x, y, self._reach)
@@ -73,8 +73,8 @@ class HullFoam:
     def _bands(self, stretch: _Stretch, since: Array, aside: Array) -> list[tuple[Array, Array, Array]]:
         """Foam astern and from the bow, its age, and whether it breaks now.
 
-        since : s since the hull's middle was there
-        aside : m from the path
+        since : time since the middle of the hull was there, s
+        aside : distance from the path, m
         """
         speed = stretch.speed
         froude = froude_number(speed, self.length, self.gravity)

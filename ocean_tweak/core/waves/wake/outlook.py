@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What to expect of wakes, told without making any: how long their waves are, and how wide they spread."""
+"""Summaries of wakes, without computing any: wavelengths and angles."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SLOW = 0.05
 
 
 def froude_number(speed: float, length: float, gravity: float) -> float:
-    """U/√(gL) of a hull of some m at a speed in m/s.
+    """Froude number U/√(gL) of a hull's length in m at a speed in m/s.
 
     Examples
     --------
@@ -35,10 +35,10 @@ def froude_number(speed: float, length: float, gravity: float) -> float:
 
 
 def wake_angle(froude: float) -> float:
-    """Half the angle in rad at which the highest waves stand, of a hull of some Froude number.
+    """Half angle in rad of the highest waves, for a hull's Froude number.
 
-    Up to 0.5 it is Kelvin's. A faster hull makes no waves much longer than itself, and those that it makes
-    run less far aside: tan α = √(2π F² - 1)/(4π F² - 1) (Rabaud & Moisy 2013), about 1/(√(8π) F).
+    Up to 0.5 it is Kelvin's. A faster hull makes no waves much longer than itself, and its waves spread less:
+    tan α = √(2π F² - 1)/(4π F² - 1) (Rabaud & Moisy 2013), about 1/(√(8π) F).
 
     Examples
     --------
@@ -52,7 +52,7 @@ def wake_angle(froude: float) -> float:
 
 
 def transverse_wavelength(speed: float, sea: OceanParameters) -> float:
-    """Length in m of the waves that run along with an object; infinite where none is as fast.
+    """Length in m of the transverse waves, which travel with the object; infinite if none is as fast.
 
     In deep water 2π U²/g; shallow water has none above √(gh).
     """
@@ -71,9 +71,9 @@ def transverse_wavelength(speed: float, sea: OceanParameters) -> float:
 
 
 class WakeOutlook(NamedTuple):
-    """What to expect of the waves of one object, where it is fastest.
+    """Summary of the waves of one object, at its fastest.
 
-    number : which of the sea's wakes it is
+    number : its number among the sea's wakes
     speed : m/s
     froude : of its hull
     angle : at which its highest waves stand on either side, rad
@@ -125,7 +125,7 @@ class WakeOutlook(NamedTuple):
 
 
 class WakeOutlooks(NamedTuple):
-    """What to expect of all wakes of a sea that are not muted."""
+    """Summary of all wakes of a sea that are not muted."""
 
     wakes: tuple[WakeOutlook, ...]
 

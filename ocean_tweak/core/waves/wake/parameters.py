@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wakes: an object's path, its footprint in the water, and the square in which its waves are shown."""
+"""Parameters of a wake: an object's path, its footprint in the water, and the square of its waves."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _WAKES = "wakes' paths"
 
 @dataclass(frozen=True)
 class PathSample(Validated):
-    """Where an object is at one time.
+    """Position of an object at one time.
 
     Examples
     --------
@@ -83,9 +83,9 @@ class PathSample(Validated):
 
 @dataclass(frozen=True)
 class WakeLayer(Contribution):
-    """Waves that one object makes: the wake of a hull, or rings around what falls in.
+    """The waves of one object: the wake of a hull, or rings around something that falls in.
 
-    They follow from the object's whole past: any frame is made alone, with the same bytes.
+    They depend on the object's whole past, so any frame can be computed alone, with the same bytes.
 
     Examples
     --------
@@ -181,14 +181,14 @@ class WakeLayer(Contribution):
 
     @cached_property
     def track(self) -> Track:
-        """The path as the waves take it."""
+        """The validated path."""
         rows = [(each.time, each.x, each.y, each.heading, each.immersion) for each in self.path]
         times, x, y, headings, immersions = np.array(rows).T
         told = headings if self.headings == "OF_SAMPLES" else None
         return Track.of(times, np.stack((x, y), axis=-1), told, immersions)
 
     def check(self, sea: OceanParameters, path: str) -> None:
-        """The area must hold its hull and its waves, and the samples its hull."""
+        """Check that the area can hold the hull and its waves, and that samples resolve the hull."""
         if not self.path:
             raise ParameterError(
                 f"{path}.path",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where an object was: straight pieces between samples, each at one speed."""
+"""The path of an object: straight pieces between samples, each with constant velocity."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AT_REST = 1e-6
 class Piece:
     """A straight stretch of a path.
 
-    begin, end : s
+    begin, end : times, s
     start, place : x and y where it begins and where it ends, m
     velocity : m/s
     heading : direction in which the object points, counter-clockwise from +x, rad
@@ -52,8 +52,8 @@ class Track:
     headings : (T,) rad; None points along the path
     immersions : (T,) by which the draught is multiplied; None for 1
 
-    Before its first sample and after its last, the object moves on as it does beside it; a path of one sample
-    is at rest.
+    Before its first sample and after its last, the object moves with the adjacent velocity; a path of one
+    sample is at rest.
     """
 
     times: Array
@@ -145,19 +145,19 @@ class Track:
 
     @property
     def fastest(self) -> tuple[float, int]:
-        """The greatest speed in m/s, and the sample up to which it is."""
+        """The greatest speed in m/s, and the index of the sample at its end."""
         speeds = np.hypot(*self._velocities.T)
         index = int(np.argmax(speeds))
         return float(speeds[index]), min(index + 1, len(self.times) - 1)
 
     @property
     def first(self) -> Piece:
-        """The object's way from ever to its first sample."""
+        """The object's unlimited path up to its first sample."""
         return Piece(-np.inf, float(self.times[0]), (-np.inf, -np.inf), *self._motion(0, self.positions[0]))
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """From the first sample to the last; stretches that go straight on at one speed are one."""
+        """The pieces from the first sample to the last; collinear ones with the same speed are merged."""
         found: list[Piece] = []
         for index in range(len(self.times) - 1):
             begin, end = float(self.times[index]), float(self.times[index + 1])
