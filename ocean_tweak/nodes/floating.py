@@ -26,6 +26,13 @@ from .versioned import GroupKind, node_group
 #: point attribute of a carrier: what takes it from its place to the surface, in its own space
 TRANSFORM = "float_transform"
 
+#: input that says how far the water has come
+CURRENT = "Current"
+_CURRENT_INPUT = Plug(
+    CURRENT, "NodeSocketVector", None,
+    "How far a current has carried the water, in the ocean's space: what drifts goes along",
+)  # fmt: skip
+
 RIDE_INPUTS = (
     OCEAN_INPUT,
     Plug(
@@ -123,7 +130,12 @@ def _build_stencil(tree: bpy.types.NodeTree) -> None:
 def _build_ride(tree: bpy.types.NodeTree) -> None:
     build = Builder(
         tree,
-        (Plug("Places", "NodeSocketGeometry", None, "Points"), *RIDE_INPUTS, *_OF_RIDE),
+        (
+            Plug("Places", "NodeSocketGeometry", None, "Points"),
+            *RIDE_INPUTS,
+            _CURRENT_INPUT,
+            *_OF_RIDE,
+        ),
         (
             Plug(
                 "Stencil", "NodeSocketGeometry", None, "The points around each place, one place after another"
@@ -204,7 +216,8 @@ def _on_the_surface(build: Builder, spaces: Spaces, discs: _Discs) -> tuple[Sock
     places = build.given("Places")
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     place = sample_index(build, places, position, discs.place, "FLOAT_VECTOR")
-    inside = spaces.point_of_ocean(place)
+    gone = build.vector("MULTIPLY", build.given(CURRENT), (1.0, 1.0, 0.0))
+    inside = build.vector("ADD", spaces.point_of_ocean(place), build.scaled(gone, build.given("Drift")))
     around = build.vector("ADD", inside, discs.offset)
 
     def surface(where: Socket, at_rest: bool) -> bpy.types.Node:
@@ -245,7 +258,7 @@ def _set_ranges(tree: bpy.types.NodeTree) -> None:
 
 
 def _ride(build: Builder, places: Socket, solved: dict[str, Input] | None = None) -> bpy.types.Node:
-    inputs: dict[str, Input] = {plug.name: build.given(plug.name) for plug in RIDE_INPUTS}
+    inputs: dict[str, Input] = {plug.name: build.given(plug.name) for plug in (*RIDE_INPUTS, _CURRENT_INPUT)}
     return build.group(node_group(RIDE), {"Places": places, **inputs, **(solved or {})})
 
 
@@ -260,7 +273,7 @@ def _of_place(build: Builder, ride: bpy.types.Node, place: Input) -> tuple[Socke
 
 
 def _build_float(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, (*RIDE_INPUTS, AS_ONE))
+    build = Builder(tree, (*RIDE_INPUTS, _CURRENT_INPUT, AS_ONE))
     _set_ranges(tree)
     geometry = build.given("Geometry")
     count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": geometry}, component="INSTANCES")
@@ -314,7 +327,7 @@ def _product(build: Builder, first: Socket, second: Socket) -> Socket:
 
 
 def _build_carrier(tree: bpy.types.NodeTree) -> None:
-    build = Builder(tree, (*RIDE_INPUTS, *DAMPED_INPUTS, *SOLVED_INPUTS))
+    build = Builder(tree, (*RIDE_INPUTS, _CURRENT_INPUT, *DAMPED_INPUTS, *SOLVED_INPUTS))
     _set_ranges(tree)
     frame = output(build.add("GeometryNodeInputSceneTime"), "Frame")
     away = alone(
@@ -330,6 +343,6 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
 
 
 STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
-RIDE = GroupKind("Ocean Tweak Ride", 4, _build_ride)
-FLOAT = GroupKind("Float on Ocean", 4, _build_float)
-CARRIER = GroupKind("Float on Ocean Carrier", 4, _build_carrier)
+RIDE = GroupKind("Ocean Tweak Ride", 5, _build_ride)
+FLOAT = GroupKind("Float on Ocean", 5, _build_float)
+CARRIER = GroupKind("Float on Ocean Carrier", 5, _build_carrier)

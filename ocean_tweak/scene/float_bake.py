@@ -115,6 +115,7 @@ class FloatBake:
             at = float_riding.place_of(rider.place, depsgraph)
             return float_riding.solve(plan, rider.ride, ocean, scene, at)
         under = float_riding.footprint(place, ocean, rider.ride, float(plan.metres))
+        under = float_riding.gone_along(under, water.come)
         rider.felt.append(float_riding.felt(under, water.carried, lambda x, y: water.surface(x, y)[0]))
         seconds, gravity = 1 / frame_rate(scene), plan.parameters.water.gravity
         return float_riding.solve_by_frames(rider.felt, seconds, rider.ride, under, gravity)

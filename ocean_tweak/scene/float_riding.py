@@ -30,6 +30,7 @@ from ..nodes.modifier_inputs import get_input
 from ..nodes.versioned import is_of_kind
 from . import float_carrier, float_path
 from .animated import is_animated, shown_settings
+from .float_current import come
 from .floating import Ride, ride_of
 from .plan import Plan, plan_for
 from .settings import OceanObjectError, is_ocean, oceans_in, settings_of
@@ -164,6 +165,15 @@ def footprint(place: Matrix, ocean: Matrix, ride: Ride, metres: float) -> Footpr
     )
 
 
+def gone_along(place: Footprint, way: tuple[float, float]) -> Footprint:
+    """A waterline as far along with a current, which has come that way in m, as it drifts."""
+    x, y = (
+        round(own + place.drift * along, _DIGITS[0])
+        for own, along in zip((place.x, place.y), way, strict=True)
+    )
+    return place._replace(x=x, y=y)
+
+
 def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator, Oscillator, Oscillator]:
     """Heave, pitch and roll, with the periods that are set, or else those of the size."""
     length, beam = 2.0 * place.half_length, 2.0 * place.half_beam
@@ -201,7 +211,8 @@ def solve(
 
     def lies(time: Fraction) -> Footprint:
         since = (plan.time - time) / Fraction(plan.rate) * frame_rate(scene) if plan.rate else Fraction(0)
-        return footprint(place_at((plan.frame - since) / stretch), ocean, ride_of_hull, metres)
+        place = footprint(place_at((plan.frame - since) / stretch), ocean, ride_of_hull, metres)
+        return gone_along(place, come(plan.parameters.current, float(time)))
 
     now = lies(plan.time)
     modes = modes_of(ride_of_hull, now, plan.parameters.water.gravity)

@@ -17,7 +17,7 @@ from ..core.sea.query import find_points
 from ..core.sea.surfaces import bilinear
 from ..core.sea.waterline import fitted_plane, stencil
 from ..export.exr import ExrError, read_image
-from . import evaluation
+from . import evaluation, float_current
 from .animated import shown_settings
 from .float_riding import Solved
 from .floating import FloatError, Ride
@@ -39,10 +39,12 @@ class Water:
 
     displacement : (N, N, 3) [y, x], m
     spacing : of the samples, m
+    come : x and y in m that a current has carried it
     """
 
     displacement: RealArray
     spacing: float
+    come: tuple[float, float] = (0.0, 0.0)
 
     def carried(self, x: Array, y: Array) -> Array:
         """(points, 2) how far the water of these places at rest has gone, m."""
@@ -73,7 +75,8 @@ def water_at(
         displacement = evaluation.surfaces_of(plan.parameters).ocean.surface(plan.time).displacement
     else:
         displacement = _baked(settings, plan, scene, frame)
-    return Water(displacement, plan.parameters.domain_size / len(displacement))
+    come = float_current.come(plan.parameters.current, float(plan.time))
+    return Water(displacement, plan.parameters.domain_size / len(displacement), come)
 
 
 def place_on(
@@ -104,7 +107,8 @@ def _settled(water: Water, middle: Array, ride: Ride, radius: float) -> tuple[fl
     offsets = radius * stencil() if radius > 0.0 else np.zeros((1, 2))
     drift = np.zeros(2)
     if ride.drift != 0.0:
-        drift = ride.drift * water.carried(*(middle + offsets).T).mean(axis=0)
+        gone = ride.drift * np.array(water.come)
+        drift = gone + ride.drift * water.carried(*(middle + gone + offsets).T).mean(axis=0)
     heights, normals = water.surface(*(middle + drift + offsets).T)
     if not radius > 0.0:
         return float(heights[0]), normals[0], drift

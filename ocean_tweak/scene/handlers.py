@@ -25,6 +25,7 @@ from . import (
     contact,
     failures,
     float_carrier,
+    float_current,
     float_riding,
     former_settings,
     held_sea,
@@ -85,6 +86,7 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
 def follow_before_frame(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
     """A script may have moved floating objects or keyed masks since the last evaluation."""
     float_carrier.follow()
+    float_current.follow_before_frame(scene)
     float_riding.follow_before_frame(scene)
     mask_following.bind(scene)
 
@@ -105,6 +107,7 @@ def refresh_animated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | No
             shown = shown_settings(item, depsgraph)
             mask_following.take_over(item, shown, depsgraph)
             show(item, scene, of_a_frame(item) & ~Wanted.FILES, shown)
+    float_current.follow_after_frame(scene, depsgraph)
     float_riding.follow_after_frame(scene, depsgraph)
 
 
@@ -174,6 +177,7 @@ def follow_by_hand(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None
     """Let floating objects go where they were moved to, and look after those that came and went."""
     if depsgraph is None or depsgraph.id_type_updated("OBJECT"):
         float_carrier.follow()
+        float_current.follow_by_hand(scene, depsgraph)
         float_riding.follow_by_hand(scene, depsgraph)
 
 

@@ -95,3 +95,48 @@ def test_an_equaliser_of_the_sea_and_of_a_layer(extension, ocean, empty_scene):
     assert shot.at(5).parameters.equaliser.peak == pytest.approx(0.0)
     settings.use_equaliser = False
     assert sea_of(ocean).equaliser is None
+
+
+@pytest.mark.parametrize("keyed", [False, True])
+def test_what_drifts_goes_along_with_the_current(extension, ocean, empty_scene, keyed):
+    """By as much as the water has come, live and baked to keys; what does not drift stays above its place."""
+    floating = extension("scene.floating")
+    empty_scene.frame_start, empty_scene.frame_end = 1, 10
+    settings = ocean.ocean_tweak
+    settings.use_current, settings.use_foam = True, False
+    settings.current.direction = 0.5
+    settings.current.speed = 3.0
+    if keyed:
+        settings.current.keyframe_insert("speed", frame=1)
+        settings.current.speed = 0.0
+        settings.current.keyframe_insert("speed", frame=7)
+    items = []
+    for drift in (0.0, 1.0):
+        item = bpy.data.objects.new("Cork", None)
+        item.location = (60.0, 50.0, 0.0)
+        empty_scene.collection.objects.link(item)
+        floating.float_on(item, ocean, floating.Ride(drift=drift))
+        items.append(item)
+    live = {}
+    for frame in (4, 10):
+        empty_scene.frame_set(frame)
+        # of an ocean that is animated, this is known after the evaluation
+        bpy.context.view_layer.update()
+        evaluated = ocean.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        sea = evaluated.ocean_tweak.to_parameters(empty_scene)
+        time = sea.timing.time(frame)
+        way = np.array(sea.current.carried(float(time)))
+        assert np.hypot(*way) > 0.3
+        at_rest = extension("core").Places(*np.add(way, (60.0, 50.0)))
+        fields = extension("core").Ocean(sea).surface(time, on=at_rest)
+        expected = way + fields.displacement[:2]
+        places = [np.array(item.matrix_world.translation) for item in items]
+        np.testing.assert_allclose(places[0][:2], (60.0, 50.0), atol=1e-3)
+        np.testing.assert_allclose(places[1][:2] - (60.0, 50.0), expected, atol=0.05)
+        live[frame] = places[1]
+    bpy.context.view_layer.objects.active = items[1]
+    items[1].select_set(True)
+    assert bpy.ops.object.ocean_tweak_float_bake(drift=1.0) == {"FINISHED"}
+    for frame, place in live.items():
+        empty_scene.frame_set(frame)
+        np.testing.assert_allclose(items[1].matrix_world.translation, place, atol=0.02)
