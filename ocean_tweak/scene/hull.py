@@ -84,18 +84,31 @@ class Hull:
     def waterline(self, level: float) -> Waterline | None:
         """Its waterline where water stands at a height above the origin; None where none cuts it."""
         above = self.vertices[:, 2] - level
-        first, second = above[self.edges].T
-        cut = self.edges[first * second < 0.0]
-        if len(cut) < _LEAST_POINTS:
+        points = self._cut(above)
+        if len(points) < _LEAST_POINTS:
             return None
-        first, second = above[cut].T
-        share = (first / (first - second))[:, np.newaxis]
-        points = self.vertices[cut[:, 0]] * (1.0 - share) + self.vertices[cut[:, 1]] * share
         low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         if not np.all(half > 0.0):
             return None
         return Waterline(tuple(middle), *half, _fullness(np.abs(points[:, :2] - middle) / half))
+
+    def below(self, level: float) -> tuple[Array, Array]:
+        """The least and the greatest x and y of what is under water that stands at a height above the origin.
+
+        Something must be.
+        """
+        above = self.vertices[:, 2] - level
+        points = np.concatenate((self.vertices[above <= 0.0], self._cut(above)))[:, :2]
+        return points.min(axis=0), points.max(axis=0)
+
+    def _cut(self, above: Array) -> Array:
+        """(points, 3) where edges pass 0 of the height above something that their vertices have."""
+        first, second = above[self.edges].T
+        cut = self.edges[first * second < 0.0]
+        first, second = above[cut].T
+        share = (first / (first - second))[:, np.newaxis]
+        return self.vertices[cut[:, 0]] * (1.0 - share) + self.vertices[cut[:, 1]] * share
 
 
 def hull_of(

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Set
 from dataclasses import replace
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -23,8 +24,7 @@ from ..core.waves.wake.parameters import MOST_SAMPLES
 from . import float_path
 from .animated import curves_of, has_own_time, shown_settings
 from .float_carrier import carrier_of
-from .floating import own_hull
-from .hull import Hull
+from .floating import level_at, own_hull, ride_of
 from .refinement import show
 from .refresh import Wanted
 from .settings import OceanObjectError, oceans_in, settings_of
@@ -40,8 +40,50 @@ class WakeError(OceanObjectError):
     """Why an object cannot make waves."""
 
 
+class InWater(NamedTuple):
+    """What of a hull is in the water; Blender units, in its upright axes.
+
+    length, beam, draught : of the part below calm water
+    middle : of that, x and y
+    is_along_y : whether its length is along y
+    """
+
+    length: float
+    beam: float
+    draught: float
+    middle: tuple[float, float]
+    is_along_y: bool
+
+
+def in_water(item: bpy.types.Object, ocean: bpy.types.Object, metres: float) -> InWater:
+    """The part of an object that presses the water aside.
+
+    metres : in a Blender unit, for what is said
+
+    Raises WakeError for what is above the water, or has no width.
+    """
+    hull, carrier = own_hull(item), carrier_of(item)
+    if hull is None:
+        raise WakeError(f"{item.name} has no mesh that is rendered, so no hull: choose one that has")
+    level = level_at(item, ocean, None if carrier is None else ride_of(carrier)[1])
+    draught = level + hull.keel
+    if draught <= 0.0:
+        raise WakeError(
+            f"{item.name} is {-draught * metres:.3g} m above the water: lower it, or press Float on Ocean "
+            "first"
+        )
+    low, high = hull.below(level)
+    sizes, middle = (high - low).tolist(), (0.5 * (low + high)).tolist()
+    length, beam = max(sizes), min(sizes)
+    if not beam > 0.0:
+        raise WakeError(
+            f"{item.name} is flat, {length * metres:.3g} by {beam * metres:.3g} m: choose what has a width"
+        )
+    return InWater(length, beam, draught, (middle[0], middle[1]), sizes[1] > sizes[0])
+
+
 def path_of(
-    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, hull: Hull
+    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, wetted: InWater
 ) -> tuple[PathSample, ...]:
     """Where keys say that an object was and will be; () where they do not say all."""
     place = carrier_of(item) or item
@@ -51,7 +93,7 @@ def path_of(
     stretch = float(time_stretch(scene))
     frames = frames_of(place, scene) if _moves(place) else range(scene.frame_start, scene.frame_start + 1)
     places = (to_ocean @ float_path.matrix_at(place, frame / stretch) for frame in frames)
-    return path_through(frames, places, ocean, scene, hull)
+    return path_through(frames, places, ocean, scene, wetted)
 
 
 def frames_of(place: bpy.types.Object, scene: bpy.types.Scene) -> range:
@@ -85,8 +127,12 @@ def follow(scene: bpy.types.Scene, moved: Set[str]) -> None:
 
 def _follow(ocean: bpy.types.Object, number: int, item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     """Give a layer the path of its object; whether that is another one."""
-    hull = own_hull(item)
-    path = () if hull is None or item.name not in scene.objects else path_of(item, ocean, scene, hull)
+    if item.name not in scene.objects:
+        return False
+    try:
+        path = path_of(item, ocean, scene, in_water(item, ocean, float(metres_per_unit(scene))))
+    except WakeError:  # out of the water for now: its layer stays as it was
+        return False
     return bool(path) and settings_of(ocean).set_wake_path(number, path)
 
 
@@ -117,7 +163,7 @@ def path_through(
     places: Iterable[Matrix],
     ocean: bpy.types.Object,
     scene: bpy.types.Scene,
-    hull: Hull,
+    wetted: InWater,
 ) -> tuple[PathSample, ...]:
     """The path of a hull's middle with a place a frame, as few samples as tell it.
 
@@ -131,9 +177,7 @@ def path_through(
     metres = float(metres_per_unit(scene))
     scale = settings.time_scale if has_own_time(settings) else 1.0
     start, fps, stretch = settings.timing.start_frame, float(frame_rate(scene)), float(time_stretch(scene))
-    low, high = hull.vertices[:, :2].min(axis=0), hull.vertices[:, :2].max(axis=0)
-    middle = Vector((*(0.5 * (low + high)).tolist(), 0.0))
-    ahead = 0.5 * math.pi if hull.is_along_y else 0.0
+    middle, ahead = Vector((*wetted.middle, 0.0)), 0.5 * math.pi if wetted.is_along_y else 0.0
     found = []
     for frame, place in zip(frames, places, strict=True):
         origin, turn, _ = place.decompose()
@@ -141,7 +185,7 @@ def path_through(
         x, y, _ = (origin + Matrix.Rotation(yaw, 3, "Z") @ middle) * metres
         time = (frame / stretch - start) / fps * scale
         found.append(PathSample(time, x, y, yaw + ahead))
-    return _thinned(_bow_first(found), _ASIDE * hull.length * metres)
+    return _thinned(_bow_first(found), _ASIDE * wetted.length * metres)
 
 
 def _bow_first(samples: list[PathSample]) -> list[PathSample]:

@@ -14,12 +14,10 @@ import bpy
 from ..core import PathSample, WakeLayer
 from ..core.waves.wake.outlook import froude_number
 from .float_carrier import carrier_of
-from .floating import level_at, own_hull, ride_of
-from .hull import Hull
 from .settings import settings_of
 from .shots import evaluations
 from .units import metres_per_unit
-from .wake_makers import WakeError, path_of, path_through
+from .wake_makers import InWater, in_water, path_of, path_through
 
 #: m/s for which an area is made at most: what is faster jumps
 _FASTEST = 60.0
@@ -37,24 +35,12 @@ def new_wake(
     Raises WakeError for what is not in the water, or whose path is not known.
     """
     metres = float(metres_per_unit(scene))
-    hull = own_hull(item)
-    if hull is None:
-        raise WakeError(f"{item.name} has no mesh that is rendered, so no hull: choose one that has")
-    carrier = carrier_of(item)
-    ride = None if carrier is None else ride_of(carrier)[1]
-    draught = level_at(item, ocean, ride) + hull.keel
-    if draught <= 0.0:
-        raise WakeError(
-            f"{item.name} is {-draught * metres:.3g} m above the water: lower it, or press Float on Ocean "
-            "first"
-        )
-    path = path_of(item, ocean, scene, hull) or recorded_path(item, ocean, scene, hull)
-    length, beam = hull.length * metres, hull.beam * metres
-    if not min(length, beam) > 0.0:
-        raise WakeError(f"{item.name} is flat, {length:.3g} by {beam:.3g} m: choose what has a width")
+    wetted = in_water(item, ocean, metres)
+    path = path_of(item, ocean, scene, wetted) or recorded_path(item, ocean, scene, wetted)
+    length = wetted.length * metres
     sized = replace(
-        known or WakeLayer(), path=path, headings="OF_SAMPLES", length=length, beam=beam,
-        draught=draught * metres,
+        known or WakeLayer(), path=path, headings="OF_SAMPLES", length=length, beam=wetted.beam * metres,
+        draught=wetted.draught * metres,
     )  # fmt: skip
     if known is not None:
         return sized
@@ -66,7 +52,7 @@ def new_wake(
 
 
 def recorded_path(
-    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, hull: Hull
+    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, wetted: InWater
 ) -> tuple[PathSample, ...]:
     """Where an object is at each frame of the scene, which ends where it was."""
     place, frames = carrier_of(item) or item, range(scene.frame_start, scene.frame_end + 1)
@@ -74,4 +60,4 @@ def recorded_path(
     for depsgraph in evaluations(scene, frames, ocean):
         to_ocean = ocean.evaluated_get(depsgraph).matrix_world.inverted_safe()
         places.append(to_ocean @ place.evaluated_get(depsgraph).matrix_world)
-    return path_through(frames, places, ocean, scene, hull)
+    return path_through(frames, places, ocean, scene, wetted)

@@ -145,6 +145,19 @@ def test_a_hull_along_y_that_goes_backwards_has_its_bow_in_front(ocean, select, 
     assert tuple(ahead) == pytest.approx((0.0, -1.0, 0.0), abs=1e-5)
 
 
+def test_what_hangs_over_the_water_is_no_hull(ocean, select, empty_scene):
+    """A boom, twice as long as the hull, behind it and above the water: the hull is what the water cuts."""
+    ship, boom = new_hull(empty_scene), new_hull(empty_scene, "Boom")
+    boom.parent, boom.location, boom.scale = ship, (-20.0, 0.0, 5.0), (2.0, 0.1, 0.1)
+    ship.location = (0.0, 0.0, 2.0)
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    wake = wake_of(ocean)
+    assert (wake.length, wake.beam, wake.draught) == pytest.approx((LENGTH, BEAM, KEEL), abs=1e-5)
+    place = in_ocean(ocean, (0.0, 0.0, 0.0))
+    assert (wake.path[0].x, wake.path[0].y) == pytest.approx((place.x, place.y), abs=1e-3)
+
+
 def test_what_constraints_move_is_recorded(ocean, ship, select, empty_scene):
     """And stays as it was recorded: the ship follows a tug."""
     tug = bpy.data.objects.new("Tug", None)
