@@ -131,6 +131,9 @@ TARGETS = {
     ),
     "wake alone": Target("six fields of a wake at 512², 60 s of path alone", 40.0, "× one six-field frame"),
     "wake sequence": Target("six fields of a wake at 512², the next frame", 3.0, "× one six-field frame"),
+    "coast pictures": Target("pictures of 600 waves over a bed of 512², two cores", 20.0, "s"),
+    "coast frame": Target("displacement over a bed of about 512²", 5.0, "× one six-field frame"),
+    "coast velocity": Target("displacement and velocity over a bed of 512²", 10.0, "× one six-field frame"),
     "cascades": Target("three 512² patches, 6 fields + minimum eigenvalue each", 3.2, "× one 512² patch"),
     "foam alone": Target(
         "foam of a frame by itself, 512² to 2048², one thread", 25.0, "× one six-field frame",

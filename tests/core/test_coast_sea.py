@@ -25,6 +25,7 @@ from ocean_tweak.core import (
 from ocean_tweak.core.parameters.patch_seas import open_sea
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.sea.coast_outlook import coast_outlook
+from ocean_tweak.core.waves.coast.beds import BEDS, SPACING, grid
 from ocean_tweak.core.waves.coast.breakers import broken_share
 
 SIDE, SAMPLES, DEEP = 200.0, 64, 20.0
@@ -218,6 +219,18 @@ def test_it_is_told_how_high_waves_are_and_what_it_takes() -> None:
     assert 0.2 < told.breaking / told.breaking_depth < 0.6
     assert 0.5 < told.share < 1.0
     assert coast_outlook(Ocean(open_sea(sea()))) is None
+
+
+@pytest.mark.parametrize("name", BEDS)
+def test_beds_to_begin_with_let_waves_in_and_hold_land(name: str) -> None:
+    heights = BEDS[name](*grid())
+    assert heights[:, 0].max() < -5.0
+    assert (heights > 0.5).mean() > 0.005
+    if name != "ISLET":
+        assert heights[:, -1].min() > 0.5
+    parameters = sea(-heights, spacing=SPACING, rim=120.0, step=8.0)
+    parameters = replace(parameters, domain_size=512.0)
+    assert np.isfinite(Ocean(parameters).surface(3.0, on=Places(300.0, [20.0, 256.0])).displacement).all()
 
 
 def test_json_both_ways() -> None:

@@ -32,9 +32,9 @@ _LOOKS = 4
 #: share of waves that break from which on they do for lack of depth
 _FEW = 0.02
 #: share of what breaks that stays on the water as foam when the front has passed
-_STAYS = 0.5
+_STAYS = 0.35
 #: s, by which the shape's rate is taken
-_MOMENT = 0.01
+_MOMENT = 0.001
 
 _BIRTHS = "breakers on coasts"
 MEMO.limit(_BIRTHS, 8)
@@ -67,28 +67,34 @@ class OverBed:
 
     def components(self, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """(rows, columns) of the displacement, and their derivatives."""
-        frame = _Frame(self, time)
-        return {key: frame.component(*key) for key in keys}
+        wanted = frozenset(keys)
+        frame = _Frame(self, time, {by == "t" for _, by in wanted})
+        return {key: frame.component(*key) for key in wanted}
 
     def signal(self, time: float | Fraction) -> ComplexArray:
         """(wet samples,) complex64 m: its real part is the elevation of the waves as sinusoids."""
-        return self._pictures.signal(self._factor(time))
+        return self._pictures.signals(self._factor(time))[0]
 
     def elevation(self, time: float | Fraction) -> RealArray:
         """(rows, columns) m."""
         return self._spread(self._shaped(self.signal(time)))
 
-    def rise(self, time: float | Fraction) -> RealArray:
-        """(rows, columns) m/s: the rate of the elevation."""
-        signal = self.signal(time)
-        step = self._pictures.signal(self._factor(time) * self._rates) * np.float32(_MOMENT)
-        later, earlier = (self._shaped(signal + sign * step) for sign in (1.0, -1.0))
-        return self._spread((later - earlier) / np.float32(2.0 * _MOMENT))
+    def elevations(self, time: float | Fraction, rates: bool) -> tuple[RealArray, RealArray | None]:
+        """(rows, columns) m, and where wanted m/s."""
+        factor = self._factor(time)
+        if not rates:
+            return self.elevation(time), None
+        signal, rate = self._pictures.signals(factor, factor * self._rates)
+        now, later = self._shaped(signal), self._shaped(signal + rate * np.float32(_MOMENT))
+        return self._spread(now), self._spread((later - now) / np.float32(_MOMENT))
 
-    def potential(self, time: float | Fraction, rate: bool) -> RealArray:
-        """(rows, columns) of the horizontal displacement, choppiness applied, or its rate."""
-        factor = self._factor(time) * (self._rates if rate else 1.0)
-        return self._spread(self._pictures.potential_sum(factor * self._sea.choppiness))
+    def potentials(self, time: float | Fraction, rates: bool) -> tuple[RealArray, RealArray | None]:
+        """(rows, columns) of the horizontal displacement, choppiness applied, and where wanted its rate."""
+        factor = self._factor(time) * self._sea.choppiness
+        if not rates:
+            return self._spread(self._pictures.potentials(factor)[0]), None
+        still, moving = self._pictures.potentials(factor, factor * self._rates)
+        return self._spread(still), self._spread(moving)
 
     @cached_property
     def differences(self) -> Differences:
@@ -176,10 +182,17 @@ class OverBed:
 class _Frame:
     """Components at a time, each made when it is first asked for."""
 
-    def __init__(self, waves: OverBed, time: float | Fraction) -> None:
-        self._waves, self._time = waves, time
-        self._potentials: dict[bool, RealArray] = {}
+    def __init__(self, waves: OverBed, time: float | Fraction, rates: set[bool]) -> None:
+        self._waves, self._time, self._moves = waves, time, True in rates
         self._made: dict[Key, RealArray] = {}
+
+    @cached_property
+    def _elevations(self) -> tuple[RealArray, RealArray | None]:
+        return self._waves.elevations(self._time, self._moves)
+
+    @cached_property
+    def _potentials(self) -> tuple[RealArray, RealArray | None]:
+        return self._waves.potentials(self._time, self._moves)
 
     def component(self, component: int, derivative: str) -> RealArray:
         """The displacement's component or its derivative."""
@@ -191,9 +204,6 @@ class _Frame:
     def _new(self, component: int, derivative: str) -> RealArray:
         if derivative in ("x", "y"):
             return self._waves.differences.by(self.component(component, ""), "xy".index(derivative))
-        is_rate = derivative == "t"
-        if component == Z:
-            return self._waves.rise(self._time) if is_rate else self._waves.elevation(self._time)
-        if is_rate not in self._potentials:
-            self._potentials[is_rate] = self._waves.potential(self._time, is_rate)
-        return self._waves.differences.by(self._potentials[is_rate], (X, Y).index(component))
+        of = (self._elevations if component == Z else self._potentials)[derivative == "t"]
+        assert of is not None
+        return of if component == Z else self._waves.differences.by(of, (X, Y).index(component))

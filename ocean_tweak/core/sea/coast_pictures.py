@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
 
+#: energy of a wave over that of the highest, below which it is as good as none
+_FAINTEST = 1e-12
 #: of waves that run towards the shore, the largest angle to the march
 _WIDEST = np.radians(70.0)
 
@@ -59,6 +61,8 @@ def incoming(sea: OceanParameters, state: InitialState, ground: Ground) -> Incom
     # the lattice's own numbers are rounded: which half of it a wave is of must not depend on that
     straight = long & (np.abs(along) >= np.cos(_WIDEST) * grid.k)
     modes = np.stack((straight & (along > 0.0), straight & (along < 0.0)), axis=-1)
+    energy = np.abs(np.stack((state.h_plus, state.h_minus), axis=-1)) ** 2
+    modes &= energy > _FAINTEST * energy.max()
     plus, minus = modes[..., 0], modes[..., 1]
     twice = np.broadcast_to(grid.multiplicity, grid.shape)
     number = np.rint(state.omega * (float(period) / (2.0 * np.pi))).astype(np.intp)
@@ -109,15 +113,19 @@ class Pictures:
         """(wet samples,) root mean square height in m."""
         return 2.0 * np.sqrt(np.einsum("ij,ij->j", self.elevation, self.elevation).astype(np.float64))
 
-    def signal(self, factor: ComplexArray) -> ComplexArray:
-        """(wet samples,) complex64 sum of the elevation's pictures, each times a factor."""
-        real, imaginary = np.stack((_weights(factor), _weights(-1j * factor))) @ self.elevation
-        result: ComplexArray = real + 1j * imaginary
-        return result
+    def signals(self, *factors: ComplexArray) -> list[ComplexArray]:
+        """(wet samples,) complex64 sums of the elevation's pictures, each times a factor, for some factors.
 
-    def potential_sum(self, factor: ComplexArray) -> RealArray:
-        """(wet samples,) float32 real part of the sum of the potential's pictures, each times a factor."""
-        return _weights(factor) @ self.potential
+        All together, for to read the pictures takes longer than all else.
+        """
+        rows = np.stack([_weights(each) for factor in factors for each in (factor, -1j * factor)])
+        found = rows @ self.elevation
+        return [found[2 * each] + 1j * found[2 * each + 1] for each in range(len(factors))]
+
+    def potentials(self, *factors: ComplexArray) -> NDArray[np.float32]:
+        """(factors, wet samples) real parts of the sums of the potential's pictures, each times a factor."""
+        result: NDArray[np.float32] = np.stack([_weights(factor) for factor in factors]) @ self.potential
+        return result
 
 
 def _weights(factor: ComplexArray) -> NDArray[np.float32]:

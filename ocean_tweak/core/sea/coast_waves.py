@@ -192,7 +192,7 @@ class CoastWaves:
             smoothed(wet.astype(float), _AROUND / step), 1e-6
         )
         share = self.ground.bed_share[:, np.newaxis]
-        return 1.0 - share * (1.0 - np.sqrt(np.minimum(around / came, 1.0)))
+        return 1.0 - share * (1.0 - np.sqrt(np.clip(around / came, 0.0, 1.0)))
 
 
 def smoothed(field: Array, samples: float) -> Array:
