@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 from ..data.validation import Validated, number
 
-#: m that water comes in a year of the fastest stream
+#: largest distance in m: a year of the fastest stream
 _FARTHEST = 1e9
 
 
 @dataclass(frozen=True)
 class Current(Validated):
-    """How fast the water moves, and where to. A fixed place sees its waves turn with ω = σ + k·U.
+    """Speed and direction of the water. At a fixed place its waves have the frequency ω = σ + k·U.
 
     Examples
     --------
@@ -47,12 +47,12 @@ class Current(Validated):
         return self.speed * math.cos(self.direction), self.speed * math.sin(self.direction)
 
     def carried(self, time: float) -> tuple[float, float]:
-        """x and y in m that the water has come by a time in s."""
+        """Displacement (x, y) of the water in m at a time in s."""
         x, y = self.velocity
         return self.carried_x + x * time, self.carried_y + y * time
 
     def turned(self, rotation: float) -> Current:
-        """The same current in axes that are turned by `rotation` rad."""
+        """The same current in axes rotated by `rotation` rad."""
         c, s = math.cos(rotation), math.sin(rotation)
         x, y = c * self.carried_x + s * self.carried_y, c * self.carried_y - s * self.carried_x
         return replace(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Heights of waves changed by octave of their wavelength: art direction that leaves all else true."""
+"""Equaliser for wave heights by octave of wavelength, which leaves speeds and directions unchanged."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _gain(where: str) -> Any:
 
 @dataclass(frozen=True)
 class Equaliser(Validated):
-    """Gains of waves by octave of their wavelength, around the spectrum's peak; smooth between.
+    """Gains by octave of wavelength around the spectrum's peak, smooth in between.
 
     Examples
     --------
@@ -51,30 +51,30 @@ class Equaliser(Validated):
 
     @property
     def gains(self) -> tuple[float, ...]:
-        """Those of the ten bands in dB, from long waves to short."""
+        """The gains of the ten bands in dB, from long waves to short."""
         return tuple(getattr(self, name) for name in GAINS)
 
     @property
     def is_flat(self) -> bool:
-        """Whether it changes nothing."""
+        """Whether all gains are 0."""
         return not any(self.gains)
 
 
-#: what of an equaliser can change during a shot: its gains, from long waves to short
+#: fields of an equaliser that can be animated: its gains, from long waves to short
 GAINS = changing_fields(Equaliser)
 
-#: octaves from the peak's wavelength down to that of each band
+#: octaves from the peak's wavelength to that of each band
 OCTAVES: Array = np.arange(len(GAINS), dtype=np.float64) - GAINS.index("peak")
 
 
 class Equalising(NamedTuple):
-    """An equaliser at work: the wave number in rad/m that its bands are counted from is known."""
+    """An equaliser with the reference wave number of its bands, in rad/m."""
 
     equaliser: Equaliser
     peak: float
 
     def gain(self, k: ArrayLike) -> Array:
-        """In dB over k in rad/m: from band to band by a smooth step, beyond the last as there."""
+        """Gain in dB over k in rad/m: smoothsteps from band to band, constant beyond the ends."""
         octaves = np.log2(np.maximum(np.asarray(k, np.float64), 1e-300) / self.peak)
         position = np.clip(octaves - OCTAVES[0], 0.0, len(OCTAVES) - 1.0)
         below = np.minimum(position.astype(np.int64), len(OCTAVES) - 2)
@@ -83,5 +83,5 @@ class Equalising(NamedTuple):
         return gains[below] + x * x * (3.0 - 2.0 * x) * (gains[below + 1] - gains[below])
 
     def energy_gain(self, k: ArrayLike) -> Array:
-        """What energy is multiplied by, over k in rad/m: heights grow by 10^(dB/20), energy by its square."""
+        """Factor of the energy over k in rad/m: heights grow by 10^(dB/20), energy by its square."""
         return np.asarray(10.0 ** (0.1 * self.gain(k)))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Directions of waves from what a buoy tells of them: four moments for each frequency.
+"""Directional distributions from a buoy's four moments per frequency.
 
-A buoy measures a₁ + ib₁ = ∫D e^{iθ} dθ and a₂ + ib₂ = ∫D e^{2iθ} dθ. Of all densities D with these, the one
-of most entropy is nowhere negative and has no waves that the moments do not ask for.
+A buoy measures a₁ + ib₁ = ∫D e^{iθ} dθ and a₂ + ib₂ = ∫D e^{2iθ} dθ. Of all densities D with these moments,
+the one of maximum entropy is nowhere negative and adds no structure beyond them.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-#: of the moments' lengths: as much as can be told apart from waves of one direction alone
+#: largest length of the moments, still distinguishable from waves of a single direction
 _LONGEST = 0.999
 
 
 def feasible(moments: ArrayLike) -> Array:
-    """The nearest moments that some distribution has, (…, 4): a₁, b₁, a₂, b₂.
+    """The nearest feasible moments, (…, 4): a₁, b₁, a₂, b₂.
 
-    Noise can leave moments that no distribution has. It has |c₁| < 1 and |c₂ - c₁²| < 1 - |c₁|²
-    (Toeplitz's condition); where that fails c₂ is drawn towards c₁².
+    Noise can cause moments that no distribution has. It has |c₁| < 1 and |c₂ - c₁²| < 1 - |c₁|² (Toeplitz's
+    condition); if that fails, c₂ is moved towards c₁².
 
     Examples
     --------
@@ -37,11 +37,10 @@ def feasible(moments: ArrayLike) -> Array:
 
 
 def maximum_entropy(moments: ArrayLike, theta: ArrayLike) -> Array:
-    """D in 1/rad of most entropy at directions in rad. Lygre & Krogstad (1986), eq. 13.
+    """D of maximum entropy in 1/rad at directions in rad. Lygre & Krogstad (1986), eq. 13.
 
     moments : (…, 4) a₁, b₁, a₂, b₂, feasible
-    theta : (directions,) rad, evenly over the circle, 1° apart or less: their sum must be an integral of
-        narrow peaks
+    theta : (directions,) rad, evenly spaced over the circle, at most 1° apart, to integrate narrow peaks
 
     Returns (…, directions), with a mean of 1/2π exactly.
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Spectra that somebody measured or forecast, at one place and some times, and their energy E(f, θ) between.
+"""Measured or forecast spectra at one place and several times, with E(f, θ) interpolated in between.
 
-Energy is that of bins: over frequency it is the derivative of a monotone cubic through what lies below each
-bin's edge, so that each bin keeps its energy exactly and E is nowhere negative. Between times it is linear.
+Energies are given per bin. Over frequency, the density is the derivative of a monotone cubic through the
+cumulative energy at the bins' edges, so each bin keeps its energy exactly and E is nowhere negative. Between
+times it is linear.
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ from .maximum_entropy import feasible, maximum_entropy
 
 Array = NDArray[np.float64]
 
-#: directions of a table of E(f, θ): half a degree apart
+#: number of directions in a table of E(f, θ), half a degree apart
 DIRECTIONS = 720
 
-#: of the way from the middle of a bin to the middle of the next, over which the directions change
+#: fraction of the way from the centre of a bin to that of the next over which directions change
 _BLENDED = 0.5
 
 #: of the frequency of the last bin with energy, from which on bins tell how high the tail is
@@ -34,9 +35,9 @@ _TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class MeasuredSpectra(Validated):
-    """Spectra of one place. Directions are those towards which waves run, counter-clockwise from east.
+    """Spectra of one place. Directions are towards which waves travel, counter-clockwise from east.
 
-    Raises ParameterError for numbers that are no spectrum.
+    Raises ParameterError for invalid spectra.
 
     Examples
     --------
@@ -107,22 +108,23 @@ class MeasuredSpectra(Validated):
 
     @property
     def bins(self) -> tuple[Array, Array]:
-        """Middles and widths of the bins in Hz."""
+        """Centres and widths of the bins in Hz."""
         values = self.frequencies.values.astype(np.float64)
         return values[0, :, 0], values[0, :, 1]
 
     @property
     def seconds(self) -> Array:
-        """Of each spectrum, after the first."""
+        """Time of each spectrum after the first, s."""
         return np.zeros(1) if self.times is None else self.times.values[0, :, 0].astype(np.float64)
 
     @property
     def has_directions(self) -> bool:
-        """Whether it tells where waves run, or only how high they are."""
+        """Whether it has directions, or energies only."""
         return self.moments is not None or self.directions is not None
 
     def weights(self, time: float) -> tuple[int, int, float]:
-        """The spectra before and after a time in s, and the share of the later; beyond the ends one alone."""
+        """Indices of the spectra before and after a time in s, and the weight of the later one; beyond the
+        ends a single one."""
         seconds = self.seconds
         later = int(np.clip(np.searchsorted(seconds, time, side="right"), 1, max(1, len(seconds) - 1)))
         if len(seconds) == 1:
@@ -131,7 +133,7 @@ class MeasuredSpectra(Validated):
         return later - 1, later, float(np.clip(share, 0.0, 1.0))
 
     def wind_at(self, time: float) -> complex | None:
-        """Wind in m/s, x + iy, at a time in s after the first spectrum; None where none was measured."""
+        """Wind in m/s, x + iy, at a time in s after the first spectrum; None if not measured."""
         if self.wind is None:
             return None
         before, after, share = self.weights(time)
@@ -148,7 +150,7 @@ class MeasuredSpectra(Validated):
     def table(self, time: float, otherwise: Array | None = None) -> EnergyTable:
         """E(f, θ) at a time in s after the first spectrum.
 
-        otherwise : (bins, DIRECTIONS) D in 1/rad where it tells no directions
+        otherwise : (bins, DIRECTIONS) D in 1/rad for spectra without directions
         """
         before, after, share = self.weights(time)
         parts = [(before, 1.0 - share), (after, share)] if share > 0.0 else [(before, 1.0)]
@@ -182,7 +184,8 @@ def table_directions() -> Array:
 
 
 def _around(values: Array, position: Array) -> Array:
-    """(rows, places) between columns that go around: Catmull and Rom's cubic, which keeps low harmonics."""
+    """(rows, places) periodic interpolation between columns by a Catmull-Rom cubic, which preserves low
+    harmonics."""
     below = np.floor(position).astype(np.int64)
     t = position - below
     count = values.shape[-1]
@@ -200,7 +203,7 @@ class EnergyTable:
     f, width : (bins,) Hz
     energy : (bins,) m²/Hz, means over the bins
     spread : (bins, DIRECTIONS) D in 1/rad
-    tail : whether S goes on beyond the last bin as f⁻⁵
+    tail : whether S continues beyond the last bin as f⁻⁵
     """
 
     def __init__(self, f: Array, width: Array, energy: Array, spread: Array, tail: bool) -> None:
@@ -210,12 +213,12 @@ class EnergyTable:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the spreading, which is all but all."""
+        """Bytes of the spreading, nearly all of the memory."""
         return int(self._spread.nbytes)
 
     @property
     def m0(self) -> float:
-        """Variance of the elevation in m²: the sum of the bins, and of the tail where there is one."""
+        """Variance of the elevation in m²: the sum of the bins and of the tail, if there is one."""
         own = float(self.energy @ self.width)
         return own + self._tail_factor / (4.0 * self._tail_from**4)
 
@@ -277,7 +280,7 @@ class EnergyTable:
         return np.asarray(self._spread @ np.exp(1j * table_directions()) * (_TURN / DIRECTIONS), complex)
 
     def _between_bins(self, f: Array) -> tuple[NDArray[np.int64], Array]:
-        """The bin below and how much of the next: most of each bin has directions of its own alone."""
+        """The bin below, and the weight of the next one, which is 0 or 1 within most of a bin."""
         position = np.interp(f, self.f, np.arange(len(self.f)))
         below = np.minimum(position.astype(np.int64), len(self.f) - 2)
         share = np.clip((position - below - 0.5) / _BLENDED + 0.5, 0.0, 1.0)
@@ -285,16 +288,16 @@ class EnergyTable:
 
 
 def bin_edges(f: Array, width: Array) -> Array:
-    """(bins + 1,) Hz: bins side by side, shifted as a whole to where most of them say that they are."""
+    """(bins + 1,) Hz: edges of adjacent bins, shifted as a whole to match most of the centres."""
     edges = np.concatenate(([0.0], np.cumsum(width)))
     return edges + float(np.median(f - 0.5 * (edges[1:] + edges[:-1])))
 
 
 def bin_widths(f: Array) -> Array:
-    """(bins,) Hz, of bins of which only the middles are told.
+    """(bins,) widths in Hz of bins of which only the centres are known.
 
-    Where the distance to a neighbour is that of the neighbour to the next, it is the width: so instruments
-    divide their spectrum, in runs of equal bins. Else it is half the distance between both neighbours.
+    If the distance to a neighbour equals that of the neighbour to the next, it is the width, as instruments
+    use runs of equal bins. Otherwise it is half the distance between both neighbours.
     """
     step = np.diff(f)
     width = np.gradient(f)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The spectrum over wave vectors of a layer whose energy was measured, also in a current.
+"""The spectrum over wave vectors of a layer with measured energy, also in a current.
 
-A fixed place sees waves turn with ω = σ + k·U, σ that of still water and U the current. Where frequencies
-are those of a fixed place, energy in dω is the same as in dσ: E(σ, θ) = E(ω, θ)·(1 + U cos(θ - θ_U)/c_g).
-Waves against a current whose energy it carries back, c_g + U·k/|k| ≤ 0, come from nowhere: it blocks them.
+At a fixed place waves have the frequency ω = σ + k·U, with σ the frequency in still water and U the current.
+For frequencies at a fixed place, the energy in dω equals that in dσ: E(σ, θ) = E(ω, θ)·(1 + U cos(θ -
+θ_U)/c_g). Waves whose energy the current carries back, c_g + U·k/|k| ≤ 0, are blocked.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ Array = NDArray[np.float64]
 
 _TURN = 2.0 * np.pi
 
-#: directions over which means are taken in a current, and wave numbers among which the fastest is looked for
+#: number of directions for averages in a current, and of wave numbers in the search for the fastest
 _COARSE, _TRIED = 180, 400
-#: parts of a bin of which each is blocked or not
+#: number of parts of a bin, each of which is blocked or not
 _FINE = 16
 
 
@@ -55,12 +55,13 @@ class MeasuredSpectrum(DirectionalSpectrum):
 
     @cached_property
     def scales(self) -> LayerScales:
-        """Of these only the peak frequency is known."""
+        """Only the peak frequency is defined."""
         return LayerScales(float("nan"), _TURN * peak_of_bins(self.table.f, self.table.energy), 1.0, PM_PEAK)
 
     @property
     def peaks(self) -> tuple[float, float]:
-        """ω in rad/s: from a fifth of the first to a hundred of the second there is all of the energy."""
+        """Lowest and highest peak ω in rad/s: all energy lies between a fifth of the first and a hundred
+        times the second."""
         peak = self.peak_frequency
         if not np.isfinite(peak):
             peak = _TURN * float(self.table.f[0])
@@ -77,7 +78,7 @@ class MeasuredSpectrum(DirectionalSpectrum):
 
     @property
     def shares_of_lengths(self) -> tuple[Array, Array]:
-        """Wavelengths in m of the bins, and the share of the energy of each."""
+        """Wavelengths in m of the bins, and the fraction of the energy in each."""
         energy = self.table.energy * self.table.width
         k = dispersion.wave_number(_TURN * self.table.f, self.dispersion, self.water)
         return _TURN / k, energy / max(float(np.sum(energy)), 1e-300)
@@ -143,12 +144,12 @@ class MeasuredSpectrum(DirectionalSpectrum):
         return self.layer.amplitude_scale**2 * self.energy_weight(k) * energy * rate / k
 
     def sampler(self, lowest: float, highest: float) -> Sampler:
-        """It is looked up as it is: its tables are over frequency and direction already."""
+        """The spectrum is sampled directly, as its tables are over frequency and direction already."""
         return DensitySampler(self)
 
     @cached_property
     def blocked_share(self) -> float:
-        """Share of the measured energy, 0…1, whose waves the current blocks."""
+        """Fraction of the measured energy, 0…1, that the current blocks."""
         if not self._is_shifted:
             return 0.0
         theta = table_directions()[:: DIRECTIONS // _COARSE]
@@ -168,7 +169,7 @@ class MeasuredSpectrum(DirectionalSpectrum):
 
 
 class DensitySampler:
-    """Samples a spectrum by its density itself."""
+    """Samples a spectrum by its density."""
 
     def __init__(self, spectrum: DirectionalSpectrum) -> None:
         self._spectrum = spectrum
