@@ -212,6 +212,7 @@ def test_a_file_holds_its_spectra() -> None:
         ({"wind": Raster(np.ones((1, 3, 2)))}, "2 columns"),
         ({"frequencies": Raster(np.ones((1, 24, 2)))}, "ascend"),
         ({"frequencies": Raster(-np.ones((1, 1, 2)))}, "at least 2"),
+        ({"frequencies": Raster(np.stack([F, 9.0 * F], axis=-1)[np.newaxis])}, "above 0 Hz"),
         ({"directions": Raster(np.ones((48, 8, 1)))}, "left out where there are moments"),
         ({"energy": None}, "must be a Raster"),
     ],

@@ -165,11 +165,15 @@ class DirectionalSpectrum:
         relative = np.asarray(theta, np.float64) - self.layer.wind_direction
         return directional_spreading(np.asarray(omega) / self.peak_frequency, relative, self.spreading)
 
-    def mean_vectors(self, omega: Array) -> NDArray[np.complex128]:
-        """∫D e^{iθ} dθ over ω in rad/s: the mean direction, as long as the waves keep to it."""
-        # directions change slowly over ω: every eighth frequency will do
+    def direction_vector(self, omega: Array, energy: Array, weight: Array) -> complex:
+        """∫∫E e^{iθ} dθ dω in m²: the mean direction, as long as the energy that keeps to it.
+
+        omega, energy, weight : nodes in rad/s, this spectrum's S there in m²·s/rad, and weights in rad/s
+        """
+        # directions vary slowly with ω: every eighth frequency is enough
         cosine = mean_cosine(omega[::8] / self.peak_frequency, self.spreading)
-        return np.exp(1j * self.layer.wind_direction) * np.interp(omega, omega[::8], cosine)
+        along = np.sum(energy * np.interp(omega, omega[::8], cosine) * weight)
+        return complex(np.exp(1j * self.layer.wind_direction) * along)
 
     def density(self, kx: ArrayLike, ky: ArrayLike) -> Array:
         """Ψ(kx, ky) = S·D·(dω/dk)/k in m⁴, sampled at wave vectors other than 0. Horvath (2015), eq. 61."""

@@ -80,13 +80,8 @@ class MeasuredSpectra(Validated):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._check_frequencies()
         bins, times = self.frequencies.shape[1], self.energy.shape[0]
-        f, width = self.bins
-        if self.frequencies.shape[0] != 1 or bins < 2 or not np.all((f > 0.0) & (width > 0.0)):
-            reason = "must be one row of at least 2 frequencies and widths above 0"
-            raise ParameterError("frequencies", self.frequencies, reason)
-        if not np.all(np.diff(f) > 0.0):
-            raise ParameterError("frequencies", self.frequencies, "must ascend")
         if self.times is None and times > 1:
             raise ParameterError("times", None, f"must be given for {times} spectra")
         if not np.all(np.diff(self.seconds) > 0.0):
@@ -105,6 +100,17 @@ class MeasuredSpectra(Validated):
                 raise ParameterError(name, values, f"must have {shape[0]} rows and {shape[1]} columns")
             if name in ("energy", "directions") and np.any(values.values < 0.0):
                 raise ParameterError(name, values, "must not be negative anywhere")
+
+    def _check_frequencies(self) -> None:
+        f, width = self.bins
+        if self.frequencies.shape[0] != 1 or len(f) < 2 or not np.all((f > 0.0) & (width > 0.0)):
+            reason = "must be one row of at least 2 frequencies and widths above 0"
+            raise ParameterError("frequencies", self.frequencies, reason)
+        if not np.all(np.diff(f) > 0.0):
+            raise ParameterError("frequencies", self.frequencies, "must ascend")
+        if not bin_edges(f, width)[0] > 0.0:
+            reason = "must leave the lowest bin above 0 Hz: its width is more than twice its frequency"
+            raise ParameterError("frequencies", self.frequencies, reason)
 
     @property
     def bins(self) -> tuple[Array, Array]:
@@ -305,6 +311,7 @@ def bin_widths(f: Array) -> Array:
     width[:-2][same] = step[:-1][same]
     width[2:][same] = step[1:][same]
     width[1:-1][same] = step[:-1][same]
+    width[0] = min(width[0], f[0])  # it must end above 0
     return width
 
 

@@ -93,12 +93,14 @@ class MeasuredSpectrum(DirectionalSpectrum):
             return self.table.frequency_spectrum(omega / _TURN) / _TURN
         return self._over_directions(omega)[0]
 
-    def mean_vectors(self, omega: Array) -> NDArray[np.complex128]:
-        """∫D e^{iθ} dθ over ω in rad/s."""
+    def direction_vector(self, omega: Array, energy: Array, weight: Array) -> complex:
+        """∫∫E e^{iθ} dθ dω in m², of the energies that are given."""
         if not self._is_shifted:
-            return np.exp(1j * self.layer.wind_direction) * self.table.mean_vector(omega / _TURN)
-        energy, vector = self._over_directions(omega)
-        return np.divide(vector, energy, out=np.zeros_like(vector), where=energy > 0.0)
+            vectors = np.exp(1j * self.layer.wind_direction) * self.table.mean_vector(omega / _TURN)
+        else:
+            own, vector = self._over_directions(omega)
+            vectors = np.divide(vector, own, out=np.zeros_like(vector), where=own > 0.0)
+        return complex(np.sum(energy * vectors * weight))
 
     def _over_directions(self, omega: Array) -> tuple[Array, NDArray[np.complex128]]:
         """Integrals of E and of E e^{iθ} over θ, over σ in rad/s."""

@@ -345,7 +345,7 @@ def spectrum_state(sea: SeaSpectrum) -> SeaState:
     spectrum, vector = np.zeros_like(omega), 0.0j
     for layer in sea.layers:
         energy = layer.frequency_spectrum(omega)
-        vector += np.sum(energy * layer.mean_vectors(omega) * weight)
+        vector += layer.direction_vector(omega, energy, weight)
         spectrum += energy
     m0, m2 = np.sum(spectrum * weight), np.sum(omega**2 * spectrum * weight)
     slope = np.sum(k**2 * spectrum * weight)
