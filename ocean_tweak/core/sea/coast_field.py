@@ -15,10 +15,10 @@ from ..foam.model import FAINTEST
 from ..numerics.memo import MEMO
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.transforms import X, Y, Z
-from ..waves.coast.breakers import least_broken, shaped, whiteness
+from ..waves.coast.breakers import Shape, least_broken, shape_of, whiteness
 from ..waves.coast.differences import Differences
 from ..waves.coast.ground import Ground
-from ..waves.coast.march import wave_numbers
+from ..waves.coast.march import SHALLOWEST, wave_numbers
 from ..waves.contribution import OwnFoam
 from .coast_pictures import Pictures
 from .sampling import Key
@@ -73,27 +73,27 @@ class OverBed:
 
     def signal(self, time: float | Fraction) -> ComplexArray:
         """(wet samples,) complex64 m: its real part is the elevation of the waves as sinusoids."""
-        return self._pictures.signals(self._factor(time))[0]
+        return self._pictures.signal(self._factor(time))
 
     def elevation(self, time: float | Fraction) -> RealArray:
         """(rows, columns) m."""
-        return self._spread(self._shaped(self.signal(time)))
+        return self._spread(self._shape.elevation(self.signal(time)))
 
     def elevations(self, time: float | Fraction, rates: bool) -> tuple[RealArray, RealArray | None]:
         """(rows, columns) m, and where wanted m/s."""
         factor = self._factor(time)
         if not rates:
             return self.elevation(time), None
-        signal, rate = self._pictures.signals(factor, factor * self._rates)
-        now, later = self._shaped(signal), self._shaped(signal + rate * np.float32(_MOMENT))
+        signal, rate = (self._pictures.signal(each) for each in (factor, factor * self._rates))
+        now, later = self._shape.elevation(signal), self._shape.elevation(signal + rate * np.float32(_MOMENT))
         return self._spread(now), self._spread((later - now) / np.float32(_MOMENT))
 
     def potentials(self, time: float | Fraction, rates: bool) -> tuple[RealArray, RealArray | None]:
         """(rows, columns) of the horizontal displacement, choppiness applied, and where wanted its rate."""
         factor = self._factor(time) * self._sea.choppiness
         if not rates:
-            return self._spread(self._pictures.potentials(factor)[0]), None
-        still, moving = self._pictures.potentials(factor, factor * self._rates)
+            return self._spread(self._pictures.potential_sum(factor)), None
+        still, moving = (self._pictures.potential_sum(each) for each in (factor, factor * self._rates))
         return self._spread(still), self._spread(moving)
 
     @cached_property
@@ -135,27 +135,15 @@ class OverBed:
         )
         return white
 
-    def _shaped(self, signal: ComplexArray) -> RealArray:
-        return shaped(signal, self._k, self._depth, self._shape)
-
     @cached_property
-    def _depth(self) -> RealArray:
-        return self._ground.depth[self._wet].astype(np.float32)
-
-    @cached_property
-    def _k(self) -> RealArray:
-        """(wet samples,) rad/m of the mean frequency."""
-        omega = -np.imag(self._rates)
-        energy = self._pictures.energy
+    def _shape(self) -> Shape:
+        """Of single waves at wet samples: none over the rim, where the open sea goes over."""
+        omega, energy = -np.imag(self._rates), self._pictures.energy
         mean = float(energy @ omega) / max(float(energy.sum()), 1e-300)
-        depth = np.maximum(self._ground.depth[self._wet], 0.05)
-        return wave_numbers(np.array(mean), depth, self._sea.water.gravity).astype(np.float32)
-
-    @cached_property
-    def _shape(self) -> RealArray:
-        """(wet samples,) how much single waves have a shape of their own: none over the rim."""
-        share = np.broadcast_to(self._ground.bed_share[:, np.newaxis], self._wet.shape)
-        return share[self._wet].astype(np.float32)
+        depth = np.maximum(self._ground.depth[self._wet], SHALLOWEST)
+        share = np.broadcast_to(self._ground.bed_share[:, np.newaxis], self._wet.shape)[self._wet]
+        k = wave_numbers(np.array(mean), depth, self._sea.water.gravity)
+        return shape_of(self._pictures.rms_height / math.sqrt(2.0), k, depth, share)
 
     @property
     def _rates(self) -> ComplexArray:

@@ -89,13 +89,13 @@ class Pictures:
     """Of each frequency the elevation and the potential of the horizontal displacement, over all wet samples.
 
     numbers : (frequencies,) in whole turns in the time after which the sea repeats
-    elevation, potential : (2 frequencies, wet samples) float32, m and m², first all real parts, then all
-        imaginary ones: the fields are the real parts of the pictures times e^(-iωt)
+    elevation, potential : (frequencies, wet samples) complex64, m and m²: the fields are the real parts of
+        the pictures times e^(-iωt)
     """
 
     numbers: NDArray[np.intp]
-    elevation: NDArray[np.float32]
-    potential: NDArray[np.float32]
+    elevation: ComplexArray
+    potential: ComplexArray
 
     @property
     def nbytes(self) -> int:
@@ -105,32 +105,24 @@ class Pictures:
     @cached_property
     def energy(self) -> Array:
         """(frequencies,) mean squares of their elevation over all wet samples, m²."""
-        squares = np.einsum("ij,ij->i", self.elevation, self.elevation).reshape(2, -1).sum(axis=0)
+        parts = self.elevation.view(np.float32)
+        squares = np.einsum("ij,ij->i", parts, parts)
         return squares.astype(np.float64) / max(self.elevation.shape[1], 1)
 
     @cached_property
     def rms_height(self) -> Array:
         """(wet samples,) root mean square height in m."""
-        return 2.0 * np.sqrt(np.einsum("ij,ij->j", self.elevation, self.elevation).astype(np.float64))
+        parts = self.elevation.view(np.float32)
+        squares = np.einsum("ij,ij->j", parts, parts).reshape(-1, 2).sum(axis=1)
+        return 2.0 * np.sqrt(squares.astype(np.float64))
 
-    def signals(self, *factors: ComplexArray) -> list[ComplexArray]:
-        """(wet samples,) complex64 sums of the elevation's pictures, each times a factor, for some factors.
+    def signal(self, factor: ComplexArray) -> ComplexArray:
+        """(wet samples,) complex64 sum of the elevation's pictures, each times a factor."""
+        return factor.astype(np.complex64) @ self.elevation
 
-        All together, for to read the pictures takes longer than all else.
-        """
-        rows = np.stack([_weights(each) for factor in factors for each in (factor, -1j * factor)])
-        found = rows @ self.elevation
-        return [found[2 * each] + 1j * found[2 * each + 1] for each in range(len(factors))]
-
-    def potentials(self, *factors: ComplexArray) -> NDArray[np.float32]:
-        """(factors, wet samples) real parts of the sums of the potential's pictures, each times a factor."""
-        result: NDArray[np.float32] = np.stack([_weights(factor) for factor in factors]) @ self.potential
-        return result
-
-
-def _weights(factor: ComplexArray) -> NDArray[np.float32]:
-    """Of real and imaginary parts, in the real part of a product."""
-    return np.concatenate((factor.real, -factor.imag)).astype(np.float32)
+    def potential_sum(self, factor: ComplexArray) -> RealArray:
+        """(wet samples,) float32 real part of the sum of the potential's pictures, each times a factor."""
+        return (factor.astype(np.complex64) @ self.potential).real
 
 
 def pictures(
@@ -154,7 +146,7 @@ def pictures(
     own = _over_rim(wider, of_number, len(numbers), ground, rim)
     # each wave's own number on the rim, from there on one for all of a frequency: no step between
     late = ground.late_on_rim[:, np.newaxis]
-    elevation, potential = (np.empty((2, len(numbers), int(wet.sum())), np.float32) for _ in range(2))
+    elevation, potential = (np.empty((len(numbers), int(wet.sum())), np.complex64) for _ in range(2))
     depth = np.concatenate((np.broadcast_to(bed.depth[0], (rim, ground.columns)), bed.depth[1:]))
     for index, frequency in enumerate(omega):
         whole = np.concatenate((over_rim[index], marched[index, 1:]))
@@ -163,9 +155,8 @@ def pictures(
         wide = whole * _wider(k, depth if np.isfinite(deep) else np.inf)
         wide[:rim] += (1.0 - late) * (own[index] - wide[:rim])
         for target, field in ((elevation, whole), (potential, wide)):
-            target[0, index], target[1, index] = field.real[wet], field.imag[wet]
-    both = (len(numbers) * 2, -1)
-    return Pictures(numbers, elevation.reshape(both), potential.reshape(both))
+            target[index] = field[wet]
+    return Pictures(numbers, elevation, potential)
 
 
 def _wider(k: Array, depth: Array | float) -> Array:

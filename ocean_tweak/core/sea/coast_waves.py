@@ -26,7 +26,6 @@ from ..numerics.memo import MEMO, total_bytes
 from ..parameters.ocean_parameters import OceanParameters
 from ..synthesis.transforms import Synthesis
 from ..waves.coast.breakers import broken_share
-from ..waves.coast.differences import Differences
 from ..waves.coast.ground import Ground
 from ..waves.contribution import OwnFoam
 from .coast_field import OverBed
@@ -236,12 +235,13 @@ class _BedWeights:
     """Weights on the bed's samples, and beyond its ends those at the ends."""
 
     def __init__(self, ground: Ground, values: Iterable[Array]) -> None:
-        everywhere = Differences(np.ones(ground.depth.shape, bool), ground.step)
         self._ground = ground
         self._fields = []
         c, s = math.cos(ground.turn), math.sin(ground.turn)
         for value in values:
-            along, across = (everywhere.by(value, axis) for axis in (0, 1))
+            # from neighbours alone: where a weight is 0 its derivatives are
+            along = np.gradient(value, ground.step, axis=0)
+            across = (np.roll(value, -1, axis=1) - np.roll(value, 1, axis=1)) / (2.0 * ground.step)
             self._fields.append((value, c * along - s * across, s * along + c * across))
 
     def read(self, index: int, x: Array, y: Array) -> Weights:

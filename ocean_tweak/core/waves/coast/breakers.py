@@ -8,6 +8,8 @@ towards the shore.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,32 +62,55 @@ def whiteness(signal: ComplexArray, least: RealArray) -> RealArray:
     return result
 
 
-def shaped(signal: ComplexArray, k: RealArray, depth: RealArray, share: RealArray) -> RealArray:
-    """Elevation in m of waves that are peaked and pitched forward as far as water is shallow for them.
+class Shape(NamedTuple):
+    """What single waves are instead of sinusoids, at places: r and φ of Abreu and others (2010).
 
-    k : rad/m, of the mean frequency; depth : m; share : 0…1, how much of the shape is wanted
+    height : √(1 - r²), which keeps the height from crest to trough
+    raised : r sin φ/(1 + √(1 - r²)), without which they would have a mean
+    across, along : r cos φ and r sin φ
+    """
+
+    height: RealArray
+    raised: RealArray
+    across: RealArray
+    along: RealArray
+
+    def elevation(self, signal: ComplexArray) -> RealArray:
+        """m, of an analytic signal: eq. 7, sines and cosines of its angle being its parts over its length."""
+        envelope = np.abs(signal)
+        low = envelope - self.across * signal.imag
+        low += self.along * signal.real
+        high = self.raised * envelope
+        high += signal.real
+        high *= self.height
+        high *= envelope
+        result: RealArray = np.divide(high, low, out=np.zeros_like(high), where=low > 0.0)
+        return result
+
+
+def shape_of(amplitude: Array, k: Array, depth: Array, share: Array) -> Shape:
+    """The shape of waves, peaked and pitched forward as far as water is shallow for them, float32.
+
+    amplitude : m, half the significant height; k : rad/m, of the mean frequency; depth : m; share : 0…1, how
+        much of the shape is wanted
 
     Skewness and asymmetry by Ruessink, Ramaekers and van Rijn (2012) from the Ursell number ¾ a k/(kh)³, the
-    wave by Abreu, Silva, Sancho and Temperville (2010, eq. 7): as high from crest to trough as the sinusoid,
-    and without a mean.
+    wave by Abreu, Silva, Sancho and Temperville (2010): as high from crest to trough as the sinusoid, and
+    without a mean.
     """
-    envelope, kh = np.abs(signal), k * depth
-    wet = (kh < _DEEP) & (kh > 0.0) & (envelope > 0.0)
-    ursell = np.maximum(0.75 * envelope[wet] * k[wet] / kh[wet] ** 3, 1e-6)
+    kh = np.maximum(k * depth, 1e-3)
+    ursell = np.maximum(0.75 * amplitude * k / kh**3, 1e-6)
     low, high, middle, width = _NONLINEARITY
     amount = low + (high - low) / (1.0 + np.exp((middle - np.log10(ursell)) / width))
-    amount *= share[wet] * (1.0 - _rise(4.0 * kh[wet] / _DEEP - 3.0))
+    amount *= share * (1.0 - _rise(4.0 * kh / _DEEP - 3.0))
     lean = 0.5 * np.pi * (np.tanh(_FORWARD[0] / ursell ** _FORWARD[1]) - 1.0)
     # the index of skewness (Malarkey and Davies 2012, eq. 26), and the waveform's angle
     b = np.sqrt(2.0) * amount / np.sqrt(9.0 + 2.0 * amount * amount)
     r, phi = 2.0 * b / (1.0 + b * b), -lean - 0.5 * np.pi
     f = np.sqrt(1.0 - r * r)
-    # the sine's angle grows in time, the signal's falls
-    theta = 0.5 * np.pi - np.angle(signal[wet])
-    result: RealArray = signal.real.copy()
-    wave = np.sin(theta) + r * np.sin(phi) / (1.0 + f)
-    result[wet] = envelope[wet] * f * wave / (1.0 - r * np.cos(theta + phi))
-    return result
+    along = r * np.sin(phi)
+    parts = (f, along / (1.0 + f), r * np.cos(phi), along)
+    return Shape(*(part.astype(np.float32) for part in parts))
 
 
 def _rise(part: RealArray) -> RealArray:
