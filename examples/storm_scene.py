@@ -2,7 +2,7 @@
 """Builds storm.blend: one sea in three scenes, each moved in another way.
 
 blender --background --python examples/storm_scene.py --
-        --params examples/storm.json --sequence DIR --frames 1-24 --spray 0.01 0.02 --out storm.blend
+        --params examples/storm.json --sequence DIR --frames 1-24 --spray 0.01 0.01 --out storm.blend
 
 "Displace" and "Geometry nodes" read the EXR sequence and need no extension, "Live" computes each frame.
 """

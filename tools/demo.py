@@ -36,7 +36,7 @@ SCENES = {
 }
 SAMPLES = 10
 #: amount and size in m of the spray: over 2 km few particles, each as much larger
-SPRAY = ("0.01", "0.02")
+SPRAY = ("0.01", "0.01")
 
 
 class Steps:
