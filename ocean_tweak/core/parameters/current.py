@@ -31,13 +31,13 @@ class Current(Validated):
         "any number of turns, to the precision of a float", changes=True,
     )  # fmt: skip
     carried_x: float = number(
-        0.0, -_FARTHEST, _FARTHEST, "m", "How far along x the water has come at time 0: of "
-        "a current that changed, what its present velocity times the time is not",
+        0.0, -_FARTHEST, _FARTHEST, "m", "Displacement of the water along x at time 0: what a changing "
+            "current leaves besides its present velocity times the time",
         "a current of years", left_out=True,
     )  # fmt: skip
     carried_y: float = number(
-        0.0, -_FARTHEST, _FARTHEST, "m", "How far along y the water has come at time 0: of "
-        "a current that changed, what its present velocity times the time is not",
+        0.0, -_FARTHEST, _FARTHEST, "m", "Displacement of the water along y at time 0: what a changing "
+            "current leaves besides its present velocity times the time",
         "a current of years", left_out=True,
     )  # fmt: skip
 

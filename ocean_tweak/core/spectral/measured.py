@@ -72,7 +72,7 @@ class MeasuredSpectra(Validated):
     )
     absolute: bool = switch(
         True,
-        "Frequencies are those that a fixed place sees, which a current changes; else those of still water",
+        "Frequencies are those at a fixed place, which a current changes; otherwise those in still water",
     )
     tail: bool = switch(
         False, "Continue the energy beyond the highest frequency that has some as f⁻⁵, with its directions"

@@ -38,24 +38,24 @@ class Coast(Validated):
     x: float = number(0.0, -1e6, 1e6, "m", "Place of the first sample of the depth", "far outside any domain")
     y: float = number(0.0, -1e6, 1e6, "m", "Place of the first sample of the depth", "far outside any domain")
     shore: str = choice(
-        SHORES[0], SHORES, "Side of the bed where the shore is, towards which waves run. What runs away from "
-        "it, and what is short, does not feel the bed's shape but is limited by the depth",
+        SHORES[0], SHORES, "Side of the bed with the shore, towards which the waves run. Short waves, "
+            "and waves that run away from it, do not follow the bed, but are limited by the depth",
     )  # fmt: skip
     rim: float = number(
-        60.0, 1.0, 1e5, "m", "Width before the bed in which the open sea goes over into the coast, and the "
-        "same again in which the bed sinks to the sea's own depth",
+        60.0, 1.0, 1e5, "m", "Width over which the open sea blends into the coast, and the same again "
+            "over which the bed sinks to the sea's own depth",
         "from a tank to a continent's shelf",
     )  # fmt: skip
     shortest_wavelength: float = number(
-        20.0, 0.1, 1e4, "m", "Shortest waves offshore that are followed over the bed; shorter ones are many, "
-        "and too short to feel it", "from ripples to swell",
+        20.0, 0.1, 1e4, "m", "Shortest waves offshore that follow the bed; shorter ones are many, and "
+            "hardly feel it", "from ripples to swell",
     )  # fmt: skip
     step: float = number(
         0.0, 0.0, 1e3, "m", "Distance between samples of the waves over the bed",
         "from a tank to swell", off=Off(0.0, 1.0, "uses that of the first patch"),
     )  # fmt: skip
     breaking: bool = switch(True, "Let waves break where they are too high for the depth")
-    muted: bool = switch(False, "Show the open sea instead; its waves stay those that come to the coast")
+    muted: bool = switch(False, "Show the open sea instead, with the same waves that reach the coast")
 
     def __post_init__(self) -> None:
         if isinstance(self.depth, Raster):

@@ -64,19 +64,19 @@ class PathSample(Validated):
     """
 
     time: float = number(
-        0.0, -1e6, 1e6, "s", "Ocean time at which the object is here; it moves straight to the next sample, "
-        "and before the first and after the last as it does beside it",
+        0.0, -1e6, 1e6, "s", "Ocean time at which the object is here; it moves straight to the next "
+            "sample, and keeps its velocity before the first and after the last",
         "more than a week either way",
     )  # fmt: skip
-    x: float = number(0.0, -1e6, 1e6, "m", "Place of its origin along x", "far beyond any patch")
-    y: float = number(0.0, -1e6, 1e6, "m", "Place of its origin along y", "far beyond any patch")
+    x: float = number(0.0, -1e6, 1e6, "m", "Position of its origin along x", "far beyond any patch")
+    y: float = number(0.0, -1e6, 1e6, "m", "Position of its origin along y", "far beyond any patch")
     heading: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction of its bow, counter-clockwise from +x, where the samples tell it",
+        0.0, -1e6, 1e6, "rad", "Direction of its bow, counter-clockwise from +x, if the samples set it",
         "any number of turns, to the precision of a float",
     )  # fmt: skip
     immersion: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the draught: 0 is out of the water; what falls in, bobs or slams "
-        "changes it",
+        1.0, 0.0, 100.0, "", "Multiplies the draught: 0 is out of the water; falling in, bobbing and "
+            "slamming change it",
         "an artist's scale",
     )  # fmt: skip
 
@@ -108,30 +108,30 @@ class WakeLayer(Contribution):
 
     path: tuple[PathSample, ...] = nested(PathSample, many=True, empty=True, most=MOST_SAMPLES)
     headings: str = choice(
-        "ALONG_PATH", HEADINGS, "Where the bow points: along the path, or as each sample says"
+        "ALONG_PATH", HEADINGS, "Direction of the bow: along the path, or the heading of each sample"
     )
     length: float = number(60.0, 0.01, 1000.0, "m", "Length of the hull in the water", "beyond any ship")
     beam: float = number(12.0, 0.01, 500.0, "m", "Width of the hull in the water", "beyond any ship")
     draught: float = number(
-        3.0, 1e-4, 50.0, "m", "Depth of the hull below calm water, where it is deepest", "beyond any ship",
+        3.0, 1e-4, 50.0, "m", "Depth of the hull below calm water, at its deepest", "beyond any ship",
         useful=(0.0, 10.0),
     )  # fmt: skip
     footprint: Raster | None = raster(
-        "Share of the draught at each place over length and beam, in rows from starboard to port and from "
-        "the stern to the bow; none for an ellipse that is deepest in its middle",
+        "Fraction of the draught at each place over length and beam, in rows from starboard to "
+        "port and from the stern to the bow; none for an ellipse, deepest in its middle",
         channels=1, left_out=True,
     )  # fmt: skip
     amplitude_scale: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the wave height", "an artist's scale", useful=(0.0, 2.0)
     )
     decay: float = number(
-        _USUAL_DECAY, 1e-4, 10.0, "1/s", "Rate at which waves fade, e^(-rate × age): how long a "
-        "wake keeps its past",
+        _USUAL_DECAY, 1e-4, 10.0, "1/s", "Rate at which waves fade, e^(-rate × age); sets how long a "
+            "wake lasts",
         "from hours to a moment",
     )  # fmt: skip
     foam: float = number(
-        1.0, 0.0, 1.0, "", "How white the water is that the hull has stirred, at its stern and its bow; slow "
-        "hulls make less",
+        1.0, 0.0, 1.0, "", "Whiteness of the water stirred by the hull, at its stern and its bow; slow "
+            "hulls make less",
         "a share",
     )  # fmt: skip
     foam_half_life: float = number(
@@ -139,21 +139,21 @@ class WakeLayer(Contribution):
         "from whitecaps to the slicks of ships",
     )  # fmt: skip
     area_size: float = number(
-        2048.0, 0.1, 1e5, "m", "Side of the square in which the waves are made; from a quarter of it on, "
-        "around its middle, they fade out",
+        2048.0, 0.1, 1e5, "m", "Side of the square in which the waves are computed; they fade out from a "
+            "quarter of it outwards",
         "from a basin to the largest patch",
     )  # fmt: skip
     area_resolution: int = integer(
-        512, 16, 4096, "Samples along each side of that square, an even number; waves shorter than two are "
-        "left out",
+        512, 16, 4096, "Samples along each side of that square, an even number; waves shorter than two "
+            "samples are left out",
         "more need too much memory",
     )  # fmt: skip
-    area_follows: bool = switch(True, "Let the square go with the object; else it rests at its place")
+    area_follows: bool = switch(True, "Let the square move with the object; otherwise it stays in place")
     area_x: float = number(
-        0.0, -1e6, 1e6, "m", "Middle of the square along x, where it rests", "far beyond any patch"
+        0.0, -1e6, 1e6, "m", "Centre of the square along x, if it stays in place", "far beyond any patch"
     )
     area_y: float = number(
-        0.0, -1e6, 1e6, "m", "Middle of the square along y, where it rests", "far beyond any patch"
+        0.0, -1e6, 1e6, "m", "Centre of the square along y, if it stays in place", "far beyond any patch"
     )
     muted: bool = muted()
     mask: Mask | None = nested(Mask, optional=True)
