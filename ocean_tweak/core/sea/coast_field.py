@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves over a bed at a time: the weighted sum of their pictures, shaped as single waves are; their foam."""
+"""Waves over a bed at a time: the weighted sum of their pictures, the shape of individual waves, and foam."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
 
-#: moments in a second at which births of foam are looked for
+#: moments per second at which foam may be born
 _LOOKS = 4
 #: share of waves that break from which on they do for lack of depth
 _FEW = 0.02
-#: share of what breaks that stays on the water as foam when the front has passed
+#: fraction of breaking foam that remains on the water after the front has passed
 _STAYS = 0.35
 #: s, by which the shape's rate is taken
 _MOMENT = 0.001
@@ -72,7 +72,7 @@ class OverBed:
         return {key: frame.component(*key) for key in wanted}
 
     def signal(self, time: float | Fraction) -> ComplexArray:
-        """(wet samples,) complex64 m: its real part is the elevation of the waves as sinusoids."""
+        """(wet samples,) complex64 m; its real part is the elevation of the waves before shaping."""
         return self._pictures.signal(self._factor(time))
 
     def elevation(self, time: float | Fraction) -> RealArray:
@@ -102,7 +102,7 @@ class OverBed:
         return Differences(self._wet, self._ground.step)
 
     def foam(self, time: float | Fraction) -> OwnFoam:
-        """(rows, columns) of waves that break for lack of depth, and what earlier ones left where it lies.
+        """Foam (rows, columns) of depth-limited breaking, and remaining foam of earlier breakers.
 
         As foam is anywhere, the largest of 2^(-age/T) c over the present and over moments before it; but a
         front is a roller, of which the water behind it keeps a share.
@@ -122,7 +122,7 @@ class OverBed:
         return OwnFoam(*(self._spread(each).astype(np.float32) for each in (left, breaking, age)))
 
     def _births(self, index: int) -> RealArray:
-        """Breaking at a moment that all frames look back at, (wet samples,) float32."""
+        """Breaking at one of the moments shared by all frames, (wet samples,) float32."""
         key = (self._pictures, index, self._sea.foam.coverage)
         return MEMO.get(_BIRTHS, key, lambda: self._white(Fraction(index, _LOOKS)))
 

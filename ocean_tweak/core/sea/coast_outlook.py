@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sea's coast will be: how high waves are there, and what it takes."""
+"""Summary of a sea's coast: wave heights and cost."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class CoastOutlook(NamedTuple):
 
 
 def coast_outlook(sea: Ocean) -> CoastOutlook | None:
-    """What to expect of a sea's coast, of which the pictures are made; None without one."""
+    """Summary of a sea's coast, for which its pictures are computed; None without a coast."""
     coast = sea.coast
     if coast is None:
         return None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What becomes of a sea's long waves over a bed: a fixed complex picture of each frequency.
+"""A sea's long waves over a bed: one fixed complex picture per frequency.
 
-The waves are the sea's own. Over the rim, where the depth is the open sea's, a picture is the sum of the
-waves of its frequency, each with its own wave vector; from there on that sum is marched over the bed.
+The waves are those of the sea. Over the rim, where the depth is that of the open sea, a picture is the sum of
+the waves of its frequency, each with its own wave vector; from there this sum is marched over the bed.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _WIDEST = np.radians(70.0)
 
 
 class Incoming(NamedTuple):
-    """The waves of a sea's first patch that come to its coast.
+    """The waves of a sea's first patch that reach its coast.
 
     modes : (N, N//2+1, 2) which of its modes they are, of those along +k and along -k
     number : (waves,) of the frequency, in whole turns in the time after which the sea repeats
@@ -50,7 +50,7 @@ class Incoming(NamedTuple):
 
 
 def incoming(sea: OceanParameters, state: InitialState, ground: Ground) -> Incoming:
-    """Those that are long enough and run towards the shore."""
+    """Select waves that are long enough and run towards the shore."""
     grid, coast, period = state.grid, ground.coast, sea.repeats_after
     assert period is not None
     turn = ground.turn - ground.rotation
@@ -76,7 +76,7 @@ def incoming(sea: OceanParameters, state: InitialState, ground: Ground) -> Incom
 
 
 def most_frequencies(sea: OceanParameters) -> int:
-    """How many frequencies the waves that come to a coast have, at the most."""
+    """Upper bound on the number of frequencies of waves that reach a coast."""
     assert sea.coast is not None
     assert sea.repeats_after is not None
     k = 2.0 * np.pi / sea.coast.shortest_wavelength

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sea's waves over its bed: what they are there instead of the open sea's.
+"""A sea's waves over its bed, which replace those of the open sea.
 
-With W the share of the coast, 0 in the open sea, and L what the depth leaves of waves that do not follow the
-bed, the sea is
+With W the weight of the coast, 0 in the open sea, and L the factor by which depth limits waves that do not
+follow the bed, the sea is
 
     (1 - W + W L) · all waves of the open sea  +  W · the pictures' waves  -  W L · the open sea's long waves
 
-whose first factor is a weight over all patches, as a mask's is, and the rest waves of a place, as those of a
-layer that does not repeat. Where W is 0 nothing is added, and the first factor is 1.
+The first factor is a weight for all patches, like a mask; the rest are added like the waves of a layer that
+does not repeat. Where W is 0, nothing is added and the first factor is 1.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Waves over a bottom: how they turn, shorten, rise and break on their way to a shore."""
+"""Waves over a bed: refraction, shoaling, diffraction and breaking on their way to a shore."""
 
 from .march import propagate
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Beds to begin with: heights above still water, in m, over a square of 512 m with the shore towards +x."""
+"""Built-in beds: heights above still water in m, over a square of 512 m with the shore towards +x."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: m, of the square, and between its samples
+#: side of the square, and sample spacing, m
 SIDE, SPACING = 512.0, 2.0
 
 
@@ -56,7 +56,7 @@ BEDS: dict[str, Callable[[Array, Array], Array]] = {"BEACH": beach, "HARBOUR": h
 
 
 def _rough(x: Array, y: Array) -> Array:
-    """About -1…1: a few waves of different directions, as good as a noise."""
+    """Pseudo-noise of about -1…1, from a few waves in different directions."""
     angles, lengths = (0.3, 1.7, 2.6, 4.1, 5.2, 0.9), (61.0, 43.0, 29.0, 19.0, 13.0, 9.0)
     total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
     for number, (angle, length) in enumerate(zip(angles, lengths, strict=True)):

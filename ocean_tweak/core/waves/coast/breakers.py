@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The single wave over a bed: peaked and pitched forward before it breaks, and where it breaks.
+"""Individual waves over a bed: their shape before breaking, peaked and pitched forward, and where they break.
 
 The sum of a coast's pictures is an analytic signal A, whose real part is the elevation: |A| is the envelope
-of the waves at a place and a time, and the angle of A the phase within the wave, 0 on its crest and growing
+of the waves at a place and time, and the angle of A the phase within the wave, 0 at its crest and growing
 towards the shore.
 """
 
@@ -22,7 +22,7 @@ ComplexArray = NDArray[np.complexfloating]
 #: Ruessink, Ramaekers and van Rijn (2012), p1 to p6 of eq. 9 and 10
 _NONLINEARITY = (0.0, 0.857, -0.471, 0.297)
 _FORWARD = (0.815, 0.672)
-#: kh beyond which water is deep for a wave
+#: kh above which water counts as deep
 _DEEP = np.pi
 #: rad of a wave's phase over which its front is white: none, all, all, none
 _FRONT = (-0.3, 0.05, 0.5, 1.2)
@@ -31,7 +31,7 @@ _SOFT = (0.9, 1.1)
 
 
 def broken_share(rms_height: Array, depth: Array) -> Array:
-    """Q_b, the share of waves that are broken, min(1, (H_rms/γh)⁴): Thornton and Guza (1983).
+    """Q_b, the fraction of broken waves, min(1, (H_rms/γh)⁴): Thornton and Guza (1983).
 
     rms_height, depth : m, of one shape; where depth is 0 or less, there are none
     """
@@ -42,9 +42,9 @@ def broken_share(rms_height: Array, depth: Array) -> Array:
 
 
 def least_broken(rms_height: Array, share: Array) -> Array:
-    """Envelope in m from which on a wave is broken, so that a share of all is: H_rms √(-ln Q_b)/2.
+    """Envelope in m above which waves are broken, for a given fraction of broken waves: H_rms √(-ln Q_b)/2.
 
-    Of waves whose heights have Rayleigh's distribution, the highest break.
+    For Rayleigh-distributed heights, of which the highest break.
     """
     least = np.sqrt(-np.log(np.clip(share, 1e-300, 1.0)))
     result: Array = 0.5 * rms_height * least
@@ -52,7 +52,7 @@ def least_broken(rms_height: Array, share: Array) -> Array:
 
 
 def whiteness(signal: ComplexArray, least: RealArray) -> RealArray:
-    """How strongly waves break, 0…1: those over the least envelope, on their fronts."""
+    """Strength of breaking, 0…1, on the fronts of waves above the threshold envelope."""
     phase, envelope = np.angle(signal), np.abs(signal)
     begin, full, still, end = _FRONT
     front = _rise((phase - begin) / (full - begin)) * (1.0 - _rise((phase - still) / (end - still)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a coast is: the bed, where it lies, and which waves come to it."""
+"""Parameters of a coast: the bed, its position, and the waves that reach it."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import Off, Validated, choice, number, raster, switch
 
-#: sides of the bed, and the quarter turns from +x to them
+#: sides of the bed, and their direction in quarter turns from +x
 SHORES = ("+X", "+Y", "-X", "-Y")
 
-#: s, of which the periods of all waves are whole parts: as few frequencies as eyes do not tell from all
+#: time in s of which all periods are integer fractions: as few frequencies as look like all of them
 REPEATS_AFTER = Fraction(512)
 
 
 @dataclass(frozen=True)
 class Coast(Validated):
-    """A bed over which the long waves of a sea's first patch run ashore; it lies along that patch's sides.
+    """A bed over which the long waves of a sea's first patch run ashore, aligned with that patch's sides.
 
     Examples
     --------
@@ -68,7 +68,7 @@ class Coast(Validated):
 
 
 def repeats_after(loop_duration: Fraction | None) -> Fraction:
-    """Time in s of which the periods of waves that come to a coast are whole parts."""
+    """Time in s of which the periods of waves that reach a coast are integer fractions."""
     if loop_duration is None:
         return REPEATS_AFTER
     return loop_duration / ceil(loop_duration / REPEATS_AFTER)
