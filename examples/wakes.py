@@ -27,7 +27,7 @@ BOAT_LENGTH = 15.0
 FIRST, LAST = 1, 240
 #: m/s and m of the gale's wind and fetch; m/s, times the boat's size, and rad from the direction of the view
 #: to the right, of its ship
-GALE, SHIP_SPEED, SHIP_SIZE, SHIP_COURSE = (17.0, 250e3), 9.0, 3.0, math.radians(112.0)
+GALE, SHIP_SPEED, SHIP_SIZE, SHIP_COURSE = (17.0, 250e3), 9.0, 3.0, math.radians(62.0)
 
 
 def main() -> None:
@@ -55,13 +55,13 @@ def parse(argv: list[str]) -> argparse.Namespace:
 
 def gale(extension: Extension) -> None:
     """A ship of 45 m that runs across the seas of a gale."""
-    light = {"sun_azimuth": math.radians(70.0), "sun_elevation": math.radians(16.0), "clouds": 0.5}
+    light = {"sun_azimuth": math.radians(-105.0), "sun_elevation": math.radians(24.0), "clouds": 0.5}
     build(
         extension,
         Shot(
             "FRESH_BREEZE",
             GALE,
-            {"eye": 13.0, "lens": 40.0, "vertices": 600_000},
+            {"eye": 30.0, "lens": 33.0, "vertices": 600_000},
             is_afloat=False,
             light=light,
         ),
@@ -70,17 +70,25 @@ def gale(extension: Extension) -> None:
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = FIRST, LAST
     camera = scene.camera
+    bpy.context.view_layer.update()
     view = camera.matrix_world.to_3x3() @ Vector((0.0, 0.0, -1.0))
     look = math.atan2(view.y, view.x)
     course = look - SHIP_COURSE
     ahead = Vector((math.cos(course), math.sin(course), 0.0))
     middle = (
-        camera.matrix_world.translation + 78.0 * Vector((math.cos(look), math.sin(look), 0.0)) - 6.0 * ahead
+        camera.matrix_world.translation + 125.0 * Vector((math.cos(look), math.sin(look), 0.0)) + 22.0 * ahead
     )
     middle.z = 0.0
-    camera.rotation_euler.x -= math.radians(5.0)
+    camera.rotation_euler.x -= math.radians(10.0)
     new_ship(extension, "Ship", SHIP_SIZE, middle, ahead, SHIP_SPEED)
     press(extension, ["Ship"])
+    wake = next(layer.wake for layer in ocean_of(scene).ocean_tweak.layers if layer.kind == "WAKE")
+    wake.amplitude_scale, wake.foam_half_life = 0.7, 10.0
+
+
+def ocean_of(scene: bpy.types.Scene) -> bpy.types.Object:
+    """The scene's only ocean."""
+    return next(item for item in scene.objects if item.ocean_tweak.is_ocean)
 
 
 def new_ship(

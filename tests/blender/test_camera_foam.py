@@ -282,3 +282,25 @@ def test_fresh_foam_rises_along_the_ocean_s_axis_whatever_the_surface_s_own(show
     assert (upright - water)[:, 2].max() > 0.05
     # floats of places 1500 m away
     np.testing.assert_allclose(in_world(0.1, (0.5, -0.3, 0.8), 1.5), upright, rtol=0.0, atol=2e-3)
+
+
+def test_a_hull_leaves_its_foam_around_the_camera(shown, core, camera, empty_scene):
+    """Over that of the waves: a band astern, as wide as the beam and as old as its way."""
+    ocean, item = shown
+    _, rest, before = foam_of(item)
+    sea = ocean.ocean_tweak.to_parameters(empty_scene)
+    x, y = eye_of(ocean, camera)
+    start, now = sea.timing.time(0), float(sea.timing.time(9))
+    path = (core.PathSample(float(start), x - 6.0 * now, y + 4.0), core.PathSample(now, x, y + 4.0))
+    wake = core.WakeLayer(path=path, length=4.0, beam=2.0, draught=0.1, area_size=64.0, area_resolution=64)
+    ocean.ocean_tweak.from_parameters(sea.replace(layers=(*sea.layers, wake)), empty_scene)
+    empty_scene.frame_set(8)
+    empty_scene.frame_set(9)
+    _, rest, found = foam_of(item)
+    astern, aside = x - rest[:, 0] - 2.0, np.abs(rest[:, 1] - y - 4.0)
+    band = (astern > 2.0) & (astern < 10.0) & (aside < 0.4)
+    assert np.count_nonzero(band) > 20
+    assert found[band, 0].min() > 0.7
+    assert np.median(found[band, 2] - astern[band] / 6.0) == pytest.approx(0.0, abs=0.2)
+    away = (aside > 8.0) & (np.hypot(*(rest - (x, y)).T) < 20.0)
+    assert np.median(np.abs(found[away, 0])) <= np.median(before[:, 0]) + 0.05
