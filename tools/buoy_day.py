@@ -28,7 +28,7 @@ FILES = [
 PICTURE = ROOT / "docs" / "pictures" / "buoy-day.svg"
 #: pixels; seeds that a height is the mean of; s between two of the sea's
 _WIDTH, _HEIGHT, _MARGIN = 720, 300, 48
-_SEEDS, _STEP = 12, 600.0
+_SEEDS, _STEP = 40, 600.0
 _BUOY, _SEA = "#b45309", "#2563eb"
 
 

@@ -104,6 +104,9 @@ def mode_state(
 
 def modes_state(parts: Sequence[Modes], parameters: OceanParameters) -> SeaState:
     """State of waves of one grid that turn as they like: their periods are those that a place sees."""
+    if not parameters.has_states and len(parts) == 1:
+        (part,) = parts
+        return mode_state(part.along, part.against, part.grid, parameters)
     grid = parts[0].grid
     along, against = (np.sum([part[side] for part in parts], axis=0) for side in (1, 2))
     state = mode_state(along, against, grid, parameters)
