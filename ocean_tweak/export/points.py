@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a sea of several patches as points: PLY files, which Blender's nodes read by themselves.
+"""The parts of a sea of several patches as points in PLY files, which Blender's nodes can read.
 
 NAME_p1_points.####.ply has all samples of the first part, x fastest, in the part's own axes, in metres and
-seconds: where the water is (x, y, z), velocity, slope and strain. Where these are many, a window reads
-NAME_p1_small_points.####.ply, in which a sample is the mean over a cell of its own; `slope_variance` tells
-what the means lack of the squares of the slopes. Binary, little-endian, float.
+seconds: position of the water (x, y, z), velocity, slope and strain. If there are many, the viewport reads
+NAME_p1_small_points.####.ply, whose samples are averages over cells; `slope_variance` is the slope variance
+lost by averaging. Binary, little-endian, float.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from ..core.synthesis.channels import CHANNELS, SurfaceFields
 from .frame_files import POINTS, SMALL_POINTS, frame_file
 from .ply import LONGEST_HEADER, PlyError, read_ply, write_ply
 
-#: samples along each side that a window reads, at most
+#: largest resolution that the viewport reads
 MOST_IN_WINDOW = 256
 
-#: what a sample tells, in the order of its columns; the first three are where the water is instead
+#: columns of a sample; the first three are replaced by the position of the water
 CHANNELS_OF_POINTS = ("displacement", "velocity", "slope", "strain")
 COLUMNS = ("x", "y", "z", *(column for name in CHANNELS_OF_POINTS[1:] for column in CHANNELS[name].columns))
 #: of means
@@ -36,10 +36,10 @@ Array = NDArray[np.floating]
 
 @dataclass(frozen=True)
 class PointSequence:
-    """A sink for the frames of one part of a sea.
+    """Writes the frames of one part of a sea.
 
     number : of the part, from 1
-    part : what it is
+    part : the part
     """
 
     directory: Path
@@ -54,22 +54,22 @@ class PointSequence:
 
     @property
     def samples_by_kind(self) -> dict[bool, int]:
-        """Along each side, in the files of all samples and, where there are such, in those of means."""
+        """Samples along each side, in the files of all samples and, if they exist, in those of averages."""
         few = {True: MOST_IN_WINDOW} if self.samples > MOST_IN_WINDOW else {}
         return {False: self.samples, **few}
 
     def path(self, frame: Frame, small: bool = False) -> Path:
-        """Where a frame's points go."""
+        """Path of a frame's points."""
         return self.directory / frame_file(self.name, SMALL_POINTS if small else POINTS, frame, self.number)
 
     def paths(self, frame: Frame) -> tuple[Path, ...]:
-        """Where all files of a frame go."""
+        """Paths of all files of a frame."""
         return tuple(self.path(frame, small) for small in self.samples_by_kind)
 
     def write(self, frame: Frame, fields: SurfaceFields) -> tuple[Path, ...]:
-        """Write a frame, of fields that hold ADDING. Returns the files' paths.
+        """Write a frame from fields that include ADDING. Returns the files' paths.
 
-        Raises PlyError for a value that is not finite and OSError for what the disk refuses.
+        Raises PlyError for a value that is not finite, and OSError if it cannot be written.
         """
         about = {"part": self.number, "domain_size": self.part.parameters.domain_size,
                  "samples": self.samples, "rotation": self.part.rotation, "time": fields.time}  # fmt: skip
@@ -80,12 +80,12 @@ class PointSequence:
 
     @property
     def bytes(self) -> int:
-        """Of all files of a frame, at most."""
+        """Largest size of all files of a frame."""
         kinds = self.samples_by_kind.items()
         return sum(4 * samples**2 * len(_columns(small)) + LONGEST_HEADER for small, samples in kinds)
 
     def values(self, fields: SurfaceFields) -> Iterator[tuple[bool, NDArray[np.float32]]]:
-        """What each file holds, (samples, samples, columns), and whether it is the one of means."""
+        """The contents of each file, (samples, samples, columns), and whether it contains averages."""
         columns = np.concatenate([fields[name] for name in CHANNELS_OF_POINTS], axis=-1, dtype=np.float64)
         for small, samples in self.samples_by_kind.items():
             values = _means(columns, samples) if small else columns
@@ -93,7 +93,7 @@ class PointSequence:
             yield small, placed.astype("<f4")
 
     def check(self, frame: Frame) -> None:
-        """Read a frame back. Raises PlyError for what is not as it was written."""
+        """Read a frame back. Raises PlyError if it differs from what was written."""
         for small, samples in self.samples_by_kind.items():
             path = self.path(frame, small)
             values = read_points(path)
@@ -106,7 +106,7 @@ class PointSequence:
 def read_points(path: Path) -> dict[str, NDArray[np.float32]]:
     """The columns of a file written here, by name, each (samples²,).
 
-    Raises PlyError for a file that is damaged or not one of ours.
+    Raises PlyError for a file that is damaged or was not written here.
     """
     return read_ply(path, (_columns(False), _columns(True)))
 
@@ -116,9 +116,9 @@ def _columns(small: bool) -> tuple[str, ...]:
 
 
 def _placed(values: Array, size: float, samples: int) -> Array:
-    """The columns with places in the place of displacements: of cells' middles where they are means.
+    """The columns with displacements replaced by positions, relative to cell centres for averages.
 
-    samples : of the part, along each side; the first one lies in the corner
+    samples : of the part, along each side; the first one is in the corner
     """
     along = (np.arange(len(values)) + 0.5) * (size / len(values)) - 0.5 * size / samples
     placed = values.copy()
@@ -128,7 +128,7 @@ def _placed(values: Array, size: float, samples: int) -> Array:
 
 
 def _means(columns: Array, samples: int) -> Array:
-    """Of the samples in each cell, with what they lack of the squares of the slopes as one column more."""
+    """Averages of the samples in each cell, with the lost slope variance as a further column."""
     slope = slice(COLUMNS.index("slope_x"), COLUMNS.index("slope_y") + 1)
     squares = (columns[..., slope] ** 2).sum(axis=-1, keepdims=True)
     means = np.concatenate([columns, squares], axis=-1)
@@ -139,7 +139,7 @@ def _means(columns: Array, samples: int) -> Array:
 
 
 def _means_along(axis: int, values: Array, samples: int) -> Array:
-    """Sample i covers i to i + 1; cells of another length share what they cut."""
+    """Sample i covers i to i + 1; cells of another length are weighted by overlap."""
     count = values.shape[axis]
     sums = np.concatenate([np.zeros_like(np.take(values, [0], axis)), np.cumsum(values, axis)], axis)
     ends = np.arange(samples + 1) * (count / samples)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Baked spray: spray/NAME_spray.####.ply beside the images of its sea, a file a frame.
+"""Baked spray: spray/NAME_spray.####.ply beside the images of its sea, one file per frame.
 
-Each file tells what it was made from. One that tells the same is whole and stays; another amount, size, wind
-or life makes these files anew, and no image. `spray.json` beside them is what was asked for last: by it the
-commands that are given a bake's folder know that it has spray.
+Each file stores the parameters it was computed from. A file with the same parameters is complete and kept;
+changing amount, size, wind or life rewrites these files, but no images. `spray.json` beside them stores the
+last request, from which commands on a bake's folder know that it has spray.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ASKED = "spray.json"
 
 @dataclass(frozen=True)
 class WantedSpray:
-    """Spray that is asked for.
+    """A request for spray.
 
     place : x and y in m that it is made around; None for the sea's own tile
     """
@@ -48,7 +48,7 @@ class WantedSpray:
         return Shot(shot.parameters.replace(spray=self.spray), shot.animation)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as it stands in `spray.json`."""
+        """Plain data, as in `spray.json`."""
         place = None if self.place is None else list(self.place)
         return {"format": formats.SPRAY, "spray": to_plain(self.spray), "place": place}
 
@@ -57,7 +57,7 @@ class WantedSpray:
 class SpraySequence:
     """The files of a shot's spray.
 
-    directory : of the bake, in which the files have a folder
+    directory : of the bake, which contains the folder of the files
     place : x and y in m that it is made around; None for the sea's own tile
     """
 
@@ -68,16 +68,16 @@ class SpraySequence:
     place: tuple[float, float] | None = None
 
     def path(self, frame: Frame) -> Path:
-        """Where a frame's spray goes."""
+        """Path of a frame's spray."""
         return self.directory / SPRAY / frame_file(self.name, SPRAY, frame)
 
     @property
     def wanted(self) -> WantedSpray:
-        """What is asked for."""
+        """The request."""
         return WantedSpray(self.spray, self.place)
 
     def ask(self) -> None:
-        """Let the folder tell that it has this spray. Raises OSError for what the disk refuses."""
+        """Store the request in the folder. Raises OSError if it cannot be written."""
         path = self.directory / SPRAY / ASKED
         path.parent.mkdir(exist_ok=True)
         text = json.dumps(self.wanted.to_dict(), indent=1) + "\n"
@@ -85,12 +85,12 @@ class SpraySequence:
             write_text(path, text)
 
     def is_whole(self, frame: Frame) -> bool:
-        """Whether a frame's file is there and made from this."""
+        """Whether a frame's file exists and has the same parameters."""
         told = told_by_ply(self.path(frame), (COLUMNS,))
         return told is not None and self._is_of_this(frame, told)
 
     def problem(self, frame: Frame) -> str:
-        """What is wrong with a frame's file, which is read; "" where all is well."""
+        """Read a frame's file; returns its problem, or ""."""
         path = self.path(frame)
         told = told_by_ply(path, (COLUMNS,))
         if not path.exists():
@@ -107,7 +107,7 @@ class SpraySequence:
         return "" if is_finite else f"{path.name} holds values that are not finite"
 
     def write(self, frame: Frame, particles: Particles) -> Path:
-        """Write a frame. Returns the file's path. Raises OSError for what the disk refuses."""
+        """Write a frame. Returns the file's path. Raises OSError if it cannot be written."""
         path = self.path(frame)
         path.parent.mkdir(exist_ok=True)
         write_ply(path, COLUMNS, columns(particles), self._about(frame))
@@ -126,9 +126,9 @@ class SpraySequence:
 
 
 def baked_spray(directory: Path, name: str, shot: Shot) -> SpraySequence | None:
-    """The files of the spray that a bake's folder was asked for; None where it has none.
+    """The spray files requested for a bake's folder; None if there are none.
 
-    Raises PlyError where what was asked for cannot be read.
+    Raises PlyError if the request cannot be read.
     """
     path = directory / SPRAY / ASKED
     try:
@@ -151,11 +151,11 @@ def spray_files(directory: Path, name: str) -> dict[Frame, Path]:
 
 
 def remove_empty(directory: Path) -> None:
-    """Remove the folder of spray where no file of a frame is in it any more."""
+    """Remove the folder of spray if it contains no frame any more."""
     folder = directory / SPRAY
     if is_link(folder) or any(folder.glob("*.ply")):
         return
-    for path in (folder / ASKED, *folder.glob(f".*{PART}")):  # also of processes that were killed
+    for path in (folder / ASKED, *folder.glob(f".*{PART}")):  # including those of killed processes
         path.unlink(missing_ok=True)
     with contextlib.suppress(OSError):
         folder.rmdir()

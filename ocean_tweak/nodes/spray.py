@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry nodes that make points of spray: of a live mesh's vertices, or of baked files.
+"""Geometry nodes that create points of spray from a live mesh's vertices, or from baked files.
 
-Both hold the columns of `core.spray.columns`: velocity, radius, age, kind and number, each by itself, as a
-PLY file has them. Between whole frames, as motion blur looks at them, points are moved by their velocity:
-they stay those of the whole frame, so EEVEE can tell which is which, and Cycles blurs by the attribute.
+Both have the columns of `core.spray.columns`: velocity, radius, age, kind and number, as in a PLY file. At
+subframes, as used for motion blur, points are moved by their velocity: they remain those of the whole frame,
+so EEVEE can match them, and Cycles uses the attribute.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The shader group "Ocean Tweak Water": sea water seen from the air, for Cycles and EEVEE.
 
-The surface reflects by Fresnel's equations; its roughness is the slope variance that the mesh cannot hold,
-a part of which is drawn as ripples near the camera, and what the mesh says that it has left out. Beneath it,
-light comes back from the water and from the bottom. Foam lies over it. Lengths are metres, whatever the
+The surface reflects by Fresnel's equations. Its roughness is the slope variance of waves too short for the
+mesh, partly drawn as ripples near the camera, plus the variance that the mesh reports as omitted. Below it,
+light comes back from the water and from the bottom. Foam lies on top. Lengths are in metres, whatever the
 scene's unit scale.
 """
 
@@ -29,15 +29,15 @@ _RIPPLES = ((16.0, 0.0, 0.44), (8.3, 0.42, 0.34), (3.1, -0.35, 0.22))
 #: octaves, the first from two samples on
 _LEFT_OUT = (0.21, -0.27)
 _OCTAVES = math.log2(MOST_WAVES / FEWEST_WAVES)
-#: how quickly ripples become roughness beyond their distance
+#: sharpness of the transition from ripples to roughness at their distance
 _FALL = 3.0
 #: of the largest ripples of an ocean of 400 m and 512 samples, m: Ripple Distance is meant for these
 _USUAL_TILE = 12.5
 #: sizes of gusts, m, and the share of the largest
 _GUSTS = ((1400.0, 0.6), (310.0, 0.4))
-#: what gusts do to the slope variance
+#: effect of gusts on the slope variance
 _GUSTY = (0.15, 1.85)
-#: least roughness of water, which keeps the sun's reflections from being points
+#: smallest roughness of water, so that reflections of the sun are not points
 _SMOOTHEST = 0.03
 #: heights of what a ripple mirrors, as sines, between which it is water and sky
 _BELOW = (-0.1, 0.0)
@@ -135,12 +135,12 @@ OUTPUTS = (
 
 
 class _Ripples(NamedTuple):
-    """A tile of waves that the mesh has not.
+    """A tile of waves that are not in the mesh.
 
     size : of the tile, m
     turn : rad, away from the wind
     share : of the slope variance
-    reach : m, where half of them are roughness
+    reach : distance at which half of them are roughness, m
     """
 
     size: Socket
@@ -204,7 +204,7 @@ def _waves(shade: Shading, given: dict[str, Socket], at: Place) -> tuple[Socket,
 
 
 def _gusty(shade: Shading, at: Place) -> Socket:
-    """What gusts do to the slope variance: cat's paws on calm water, of several sizes."""
+    """Effect of gusts on the slope variance: cat's paws of several sizes on calm water."""
     felt = None
     for size, share in _GUSTS:
         part = shade.math("MULTIPLY", gust(shade, at, size), share)
@@ -213,7 +213,7 @@ def _gusty(shade: Shading, at: Place) -> Socket:
 
 
 def _left_out(shade: Shading, given: dict[str, Socket], at: Place) -> list[_Ripples]:
-    """The waves that a surface around the camera leaves out: from two samples up to its own shortest.
+    """The waves that a camera surface omits: from two samples up to its own shortest wave.
 
     Each octave of them has the same slopes, as in the equilibrium range (Phillips 1958).
     """
@@ -235,7 +235,7 @@ def _left_out(shade: Shading, given: dict[str, Socket], at: Place) -> list[_Ripp
 def _drawn(
     shade: Shading, given: dict[str, Socket], at: Place, variance: Socket, tiles: list[_Ripples]
 ) -> tuple[Socket, Socket]:
-    """The slopes of what is drawn of a variance, and what is left of that for the roughness."""
+    """The slopes of the drawn part of a variance, and the rest for the roughness."""
     total, drawn = None, 0.0
     for size, turn, share, reach in tiles:
         ratio = shade.math("DIVIDE", at.distance, reach)
@@ -249,7 +249,7 @@ def _drawn(
 
 
 def _travelled(shade: Shading, given: dict[str, Socket], size: Socket) -> Socket:
-    """How far typical ripples of a tile have gone, m: deep water, c = √(gλ/2π)."""
+    """Distance that typical ripples of a tile have travelled, m: deep water, c = √(gλ/2π)."""
     speed = shade.math("SQRT", shade.math("MULTIPLY", size, 9.81 / 6.283 * _TYPICAL_WAVE))
     return shade.math("MULTIPLY", speed, given["Time"])
 
@@ -267,7 +267,7 @@ def _normal(shade: Shading, given: dict[str, Socket], slope: Socket) -> Socket:
 
 
 def _in_haze(shade: Shading, given: dict[str, Socket], at: Place, surface: Socket) -> Socket:
-    """The surface behind as much air: contrast falls as exp(-3.9 d/visibility) (Koschmieder 1924)."""
+    """The surface seen through air: contrast falls as exp(-3.9 d/visibility) (Koschmieder 1924)."""
     path = shade.math("DIVIDE", shade.math("MULTIPLY", at.distance, -VISIBILITY), given["Visibility"])
     share = shade.math("SUBTRACT", 1.0, shade.math("EXPONENT", path))
     # division by zero gives zero, and then the share is zero

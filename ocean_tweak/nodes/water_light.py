@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light that has been in the water: what comes back from it, from its bubbles and bottom, and through crests.
+"""Light from the water body: backscatter of water and bubbles, the bottom, and light through crests.
 
 The body is the two-flow model of irradiance: R = 0.33 b/(a + b) over deep water (Morel & Prieur 1977; Gordon
 1975), with the bottom R + (bottom - R) exp(-2(a + b) depth) (Maritorena, Morel & Gentili 1994). What of it
@@ -18,15 +18,15 @@ from .shading import Shading
 from .water_foam import Cover, Foam
 from .water_pattern import DEPTH
 
-#: share of light that a flat surface throws back down from below, and factor of the two-flow model
+#: fraction of light that a flat surface reflects back down from below, and factor of the two-flow model
 THROWN_BACK = 0.47
 SURFACE_FACTOR = 0.33
 
-#: of old foam's bubbles beside fresh foam's
+#: bubbles of old foam relative to fresh foam
 _OLD_BUBBLES = 0.55
 #: cusps between which a crest is sharp
 _SHARP = (0.12, 0.42)
-#: way of light in m through a round crest and a sharp one
+#: path of light in m through a round and through a sharp crest
 _WAYS = (7.0, 1.2)
 #: how much more of the light goes on forward than aside: k of the phase function
 _FORWARD = 0.72
@@ -47,7 +47,7 @@ def coefficients(shade: Shading, given: dict[str, Socket], foam: Foam, cover: Co
 
 
 def sharpness(shade: Shading) -> Socket:
-    """How sharp a crest is, 0…1."""
+    """Sharpness of a crest, 0…1."""
     return shade.smooth(shade.value(CUSP), *_SHARP)
 
 
@@ -55,11 +55,11 @@ def body(shade: Shading, given: dict[str, Socket], absorption: Socket, backscatt
     """Colour of the light that comes back out of the water."""
     lost = shade.vector("MAXIMUM", shade.vector("ADD", absorption, backscatter), (1e-9, 1e-9, 1e-9))
     deep = shade.scale(shade.vector("DIVIDE", backscatter, lost), SURFACE_FACTOR)
-    # over a bed that of the place, else that of the sea
+    # the local depth over a bed, else that of the sea
     here = shade.value(COAST_DEPTH)
     own = shade.mix(shade.math("GREATER_THAN", here, 0.0), shade.value(DEPTH, "OBJECT"), here)
     depth = shade.mix(shade.math("GREATER_THAN", given["Water Depth"], 0.0), own, given["Water Depth"])
-    # a mesh that is no ocean has no depth: then it is deep
+    # a mesh that is not an ocean has no depth, and counts as deep
     depth = shade.mix(shade.math("GREATER_THAN", depth, 0.0), 1e4, depth)
     seen = _left_after(shade, lost, shade.math("MULTIPLY", depth, 2.0))
     difference = shade.vector("SUBTRACT", given["Bottom Color"], deep)
@@ -92,6 +92,6 @@ def crest_glow(shade: Shading, given: dict[str, Socket], absorption: Socket) -> 
 
 
 def _left_after(shade: Shading, lost: Socket, way: Socket) -> Socket:
-    """Share of light that is left after a way in m, of which a metre loses so much, by colour."""
+    """Fraction of light that remains after a path in m, for an attenuation per metre, by colour."""
     parts = shade.separate(shade.scale(lost, shade.math("MULTIPLY", way, -1.0)))
     return shade.combine(*(shade.math("EXPONENT", part) for part in parts))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the fine patterns lie on the water, and what they say there.
+"""Placement and sampling of the fine patterns on the water.
 
-Patterns are laid over the water at rest, so they ride with the waves. A tile's axes in periods of the
-domain are whole numbers (a, b) and (-b, a): whatever its size and direction, the pattern has no seam where
-the domain repeats.
+Patterns are functions of the rest position, so they move with the waves. A tile's axes in periods of the
+domain are integers (a, b) and (-b, a), so the pattern has no seam where the domain repeats, for any size and
+direction.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ WIND_SPEED = "ocean_tweak_wind_speed"
 DEPTH = "ocean_tweak_water_depth"
 METRES = "ocean_tweak_metres_per_unit"
 
-#: what is taken for a mesh that is no ocean, m
+#: defaults for a mesh that is not an ocean, m
 _OTHER_DOMAIN = 100.0
 _OTHER_SPACING = 0.5
 #: cosine of the angle between normal and view, below which a footprint grows no more
@@ -49,7 +49,7 @@ _LIES = (
 
 
 class Place(NamedTuple):
-    """What a shaded point knows of its ocean; lengths in m.
+    """Properties of a shaded point; lengths in m.
 
     rest : point of the water at rest, in periods of the domain
     world : point of the world
@@ -71,7 +71,7 @@ class Place(NamedTuple):
 
 
 class Tile(NamedTuple):
-    """A pattern as it lies at a point.
+    """A pattern sampled at a point.
 
     colour : of its image
     along : the tile's x axis in the ocean's, unit length
@@ -96,7 +96,7 @@ def place(shade: Shading, given: dict[str, Socket]) -> Place:
     facing = shade.math("MAXIMUM", shade.math("ABSOLUTE", facing), _LEAST_FACING)
     across = shade.math("MULTIPLY", distance, given["Pixel Angle"])
     return Place(
-        # tiles are whole in a period: what is left of one is as good, and precise however far away
+        # tiles repeat with the period, so the position within it suffices, and is precise at any distance
         rest=shade.vector("FRACTION", rest),
         world=shade.scale(geometry["Position"], metres),
         domain=shade.mix(is_ocean, _OTHER_DOMAIN, domain),

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Spray of a sea: which crests break at which moments, and what of that is in the air at a time.
+"""Spray of a sea: the crests that break at each moment, and the particles in the air at a time.
 
-Moments are the lattice times of the foam, and cells those of its grids: the samples of a tile, or squares in
-one another around a place, fine near it and coarse far away, whose crests are those that are seen there. What
-broke at a moment is remembered, so that a sequence makes only the newest; another amount, size, wind or life
-makes nothing anew but the particles.
+Moments are the lattice times of the foam, and cells those of its grids: the samples of a tile, or nested
+squares around a place, fine near it and coarse far away, with the crests visible there. Breaking crests of
+each moment are cached, so a sequence only computes the newest; changing amount, size, wind or life only
+recomputes the particles.
 """
 
 from __future__ import annotations
@@ -37,25 +37,25 @@ from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 
-#: m; a cell in which crests break is looked at in parts no larger than this, where that is a few parts
+#: largest size in m of the parts into which a breaking cell is divided, if these are few
 _PART, _MOST_CUTS = 1.0, 4
-#: strength of a breaking crest from which on all of it tears, and the area that tears over the mean strength
+#: strength at which a breaking crest is torn completely, and the torn area relative to the mean strength
 _ALL_TEARS, _TEARS = 0.25, 1.7
-#: m and moments in which wind tears alike
+#: extent of a gust in m and in moments
 _GUST, _GUST_MOMENTS = 2.0, 2
 
-#: the fields that tell how water moves where it breaks
+#: fields needed for the motion of breaking water
 _OF_WATER = frozenset({"displacement", "velocity", "slope", "strain"})
-#: of the machine's memory, what spray may take
+#: fraction of the machine's memory that spray may use
 _SHARE_OF_MEMORY = 0.5
 
 
 class SprayError(ParameterError):
-    """More particles than the memory holds, with the amount that would do."""
+    """More particles than fit into memory; the message has an amount that fits."""
 
 
 def why_none(parameters: OceanParameters) -> str | None:
-    """Why a sea has no spray; None where it has."""
+    """Why a sea has no spray; None if it has."""
     wind = foam_wind(parameters)
     if wind is None:
         return (
@@ -72,9 +72,9 @@ def why_none(parameters: OceanParameters) -> str | None:
 
 
 def check_spray(parameters: OceanParameters, spray: Spray) -> None:
-    """Raise SprayError where a sea's spray needs more memory than there is, before any is made.
+    """Raise SprayError, before computing any, if a sea's spray needs too much memory.
 
-    Raises ParameterError for a sea that has none.
+    Raises ParameterError for a sea without spray.
     """
     if (why := why_none(parameters)) is not None:
         raise ParameterError("spray", "", why)
@@ -82,7 +82,7 @@ def check_spray(parameters: OceanParameters, spray: Spray) -> None:
 
 
 def expected_count(parameters: OceanParameters, spray: Spray) -> float:
-    """Particles of a sea at a time, in the mean, on its tile or around a place; 0 for a sea that has none."""
+    """Expected number of particles at any time, on the tile or around a place; 0 for a sea without spray."""
     wind = foam_wind(parameters)
     if wind is None or why_none(parameters) is not None:
         return 0.0
@@ -93,9 +93,9 @@ def expected_count(parameters: OceanParameters, spray: Spray) -> float:
 
 
 class TileSpray:
-    """Spray of a sea's one tile: crests break on the samples of its foam.
+    """Spray of a sea's tile: crests break on the samples of its foam.
 
-    Raises ValueError, when it is asked for, of separate patches, which have a tile each.
+    Raises ValueError on use for separate patches, which have a tile each.
     """
 
     def __init__(self, sea: Ocean) -> None:
@@ -128,7 +128,7 @@ class TileSpray:
 
 
 class CameraSpray:
-    """Spray of a sea of patches around a camera, in squares in one another. Making it is cheap."""
+    """Spray of a sea of patches around a camera, in nested squares. Creating it is cheap."""
 
     def __init__(self, levels: FoamLevels) -> None:
         self._levels = levels
@@ -148,7 +148,7 @@ class CameraSpray:
         return self._crests.in_the_air(model, time, spray, squares(self._levels, place), self._look)
 
     def _look(self, index: int, missing: Sequence[Square]) -> list[_Looked]:
-        """Crests that are seen in each square, on the water that is drawn: that of all waves."""
+        """Visible crests in each square, on the water of all waves."""
         finest = self._levels.seas[0]
         time = finest.foam_model.reduced(index * finest.foam_model.step)
         found = [_broken(self._levels.seas[square.level], square, time) for square in missing]
@@ -167,9 +167,9 @@ class CameraSpray:
 
 
 class ShotSpray:
-    """Spray of a shot's frames; quickest where they follow each other.
+    """Spray of a shot's frames; fastest for consecutive ones.
 
-    place : x and y in m around which it is made; None for the tile of a sea, which then must have one
+    place : centre (x, y) in m; None for the sea's tile, which must then exist
     """
 
     def __init__(self, shot: Shot, spray: Spray, place: tuple[float, float] | None = None) -> None:
@@ -203,7 +203,7 @@ _TILE = Square(0, (0, 0), None)
 
 
 class _Looked(NamedTuple):
-    """Crests of a square at a moment, and the parts of its cells that they are in."""
+    """Crests of a square at a moment, and their cell parts."""
 
     cells: _Cells
     crests: Crests
@@ -214,7 +214,7 @@ class _Looked(NamedTuple):
         return self.cells.column.nbytes + self.cells.row.nbytes + self.crests.nbytes
 
     def seen_in(self, square: Square) -> Crests:
-        """Those that are not in the next finer square."""
+        """The crests that are not in the next finer square."""
         if square.inner is None:
             return self.crests
         cuts = round(square.size / self.cells.size)
@@ -223,9 +223,9 @@ class _Looked(NamedTuple):
 
 
 class _Remembered:
-    """Crests by square and moment, as many as a frame looks back at.
+    """Cached crests by square and moment, as many as a frame needs.
 
-    One thread at a time goes on with them, and others wait.
+    One thread at a time uses them while others wait.
     """
 
     def __init__(self, parameters: OceanParameters) -> None:
@@ -248,7 +248,7 @@ class _Remembered:
     ) -> Particles:
         """Particles at a time, square by square and moment by moment.
 
-        look : gives the crests of a moment in each of some squares
+        look : function that returns the crests of a moment in some squares
         """
         wind = foam_wind(self._parameters)
         if wind is None or why_none(self._parameters) is not None:
@@ -271,7 +271,7 @@ class _Remembered:
         around: Sequence[Square],
         look: Callable[[int, Sequence[Square]], list[_Looked]],
     ) -> list[tuple[int, Crests]]:
-        """Crests with their moments; others are forgotten."""
+        """Crests with their moments; all others are dropped."""
         before, self._looked = self._looked, {}
         for square in around:
             known = before.get(square.where, {})
@@ -288,7 +288,7 @@ class _Remembered:
 
 
 class _Cells(NamedTuple):
-    """Cells by their numbers in a lattice."""
+    """Cells by their indices in a lattice."""
 
     column: NDArray[np.int64]
     row: NDArray[np.int64]
@@ -306,7 +306,7 @@ class _Water(NamedTuple):
 
 
 def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArray]:
-    """The parts of a square's cells in which crests break, and how strongly."""
+    """The cell parts of a square in which crests break, with strengths."""
     size = square.size
     column, row = square.cells()
     x, y = ((number.astype(np.float64) + 0.5) * size for number in (column, row))
@@ -317,7 +317,7 @@ def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArr
 
 
 def _in_parts(cells: _Cells) -> tuple[_Cells, NDArray[np.int64]]:
-    """Cells cut into parts that are small enough, and of which cell each part is."""
+    """Divide cells into small parts; also returns the cell of each part."""
     cuts = min(max(1, round(cells.size / _PART)), _MOST_CUTS)
     of_cell = np.repeat(np.arange(len(cells.column)), cuts * cuts)
     number = np.tile(np.arange(cuts * cuts), len(cells.column))
@@ -335,7 +335,7 @@ def _crests(
     water: _Water,
     strength: RealArray,
 ) -> Crests:
-    """Crests in cells that lie at rest around x and y in m, with what the water is there."""
+    """Crests in cells around rest positions x and y in m, with the motion of the water there."""
     moments = 0 if model.loop_duration is None else round(model.loop_duration / model.step)
     moment = index % moments if moments else index
     xx, yy, xy = water.strain.T
