@@ -90,6 +90,13 @@ SHOTS = {
             "overcast": 0.12, "exposure": 0.0, "visibility": 35e3,
         },
     ),
+    "golden-hour": Shot(
+        "FRESH_BREEZE", sky="GOLDEN_HOUR", light={"sun_azimuth": math.radians(104.0)},
+        changes={"floats": "BOAT", "eye": 2.0},
+    ),
+    "dusk": Shot("CALM", sky="DUSK", away=(55.0, 75.0)),
+    "moonlit-night": Shot("FRESH_BREEZE", sky="MOONLIT_NIGHT", away=(75.0, 95.0)),
+    "storm-light": Shot("STORM", sky="STORM_LIGHT"),
 }  # fmt: skip
 
 
@@ -185,17 +192,17 @@ def render(scene: bpy.types.Scene, frame: int, path: Path) -> None:
     print(f"{path.name}: {time.perf_counter() - started:.1f} s", flush=True)
 
 
-def save_jpeg(picture: Path, path: Path) -> None:
-    """The picture as the best JPEG below 200 kB. Raises RuntimeError if there is none."""
+def save_jpeg(picture: Path, path: Path, most: int = LARGEST) -> None:
+    """The picture as the best JPEG of so many bytes at most. Raises RuntimeError if there is none."""
     path.parent.mkdir(parents=True, exist_ok=True)
     image = bpy.data.images.load(str(picture))
     image.pixels[0] = image.pixels[0]  # or Blender copies the file as it is
     image.file_format = "JPEG"
     for quality in range(94, 40, -3):
         image.save(filepath=str(path), quality=quality)
-        if path.stat().st_size < LARGEST:
+        if path.stat().st_size < most:
             return
-    raise RuntimeError(f"{path} stays above {LARGEST} bytes")
+    raise RuntimeError(f"{path} stays above {most} bytes")
 
 
 if __name__ == "__main__":
