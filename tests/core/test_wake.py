@@ -172,6 +172,17 @@ def test_a_wake_that_turns_with_its_object() -> None:
     assert np.abs(east - east[::-1]).max() > 0.1 * np.abs(east).max()  # it is curved
 
 
+def test_between_samples_an_object_points_half_way_the_shorter_way_around() -> None:
+    given = {"area": 64.0, "resolution": 64, **bump(1.0, elongation=3.0)}
+
+    def pointing(*headings: float) -> np.ndarray:
+        return wake_elevation([0.0, 2.0], [[-6.0, 0.0], [6.0, 0.0]], 2.0, headings=headings, **given)
+
+    for between, middle in (((0.1, 0.9), 0.5), ((-3.0, 3.1), np.pi + 0.05), ((7.0, 0.5), 3.75 - np.pi)):
+        np.testing.assert_allclose(pointing(*between), pointing(middle, middle), atol=1e-5)
+    assert np.abs(pointing(0.1, 0.1) - pointing(0.5, 0.5)).max() > 0.1
+
+
 def test_around_a_drop_the_water_is_quiet_where_the_slowest_waves_have_left() -> None:
     """With surface tension no group in water is slower than 0.177 m/s: behind it the water is calm."""
     slowest = 0.177
