@@ -22,7 +22,7 @@ from ..export.files import is_link
 from .cache_place import bake_name, cache_folder, own_uid
 from .image_sequence import folder_of
 from .settings import OceanObjectError, all_oceans, maps_of, settings_of, wanted_channels
-from .shots import scene_frames, shot_of
+from .shots import bake_shot_of, scene_frames
 
 
 class Version(NamedTuple):
@@ -71,7 +71,7 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     Raises ParameterError for settings that are no sea, OSError.
     """
     frames = scene_frames(scene)
-    shot, maps = shot_of(item, scene, frames), tuple(maps_of(wanted_channels(settings_of(item))))
+    shot, maps = bake_shot_of(item, scene, frames), tuple(maps_of(wanted_channels(settings_of(item))))
     job = Job(bake_name(item), own_uid(item), shot, maps, frames=frames)
     place = cache_folder(item)
     while not place.is_dir() and place != place.parent:

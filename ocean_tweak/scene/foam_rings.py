@@ -198,8 +198,8 @@ def around(
 
     plan, points : of the ocean and of its bake, if it has one
     """
-    whole, time = (plan.whole, plan.time) if points is None else points.moment[:2]
-    sea = repeating(whole)
+    sea, time = (plan.parameters, plan.time) if points is None else points.moment[:2]
+    sea, whole = repeating(sea), plan.whole
     if not sea.patches or "foam" not in plan.channels or foam_outlook(sea).coverage == 0.0:
         return None
     place = Place(*camera_place(surface, scene, plan.scale))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -14,9 +15,11 @@ from ..core.data.frames import Frame
 from ..core.data.raster import LARGEST_SIDE
 from ..core.data.validation import changing_fields
 from ..core.parameters.shot import OCEAN_TIME, Animation, Samples, Shot
+from ..core.sea.placed_waves import repeating
 from ..core.spectral.equaliser import GAINS
 from . import handlers, mask_place
 from .animated import clock_of, has_own_time, is_animated, key_each_frame, set_keys, shown_settings
+from .plan import camera_surface_of
 from .settings import OceanObjectError, settings_of
 from .view_layers import evaluated, taking_part
 
@@ -49,6 +52,17 @@ def shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Fra
         return Shot(parameters)
     # the sea of the first frame, whatever frame the scene is at
     return Shot(seas[0], Animation(first, tuple(changing.items())))
+
+
+def bake_shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterable[Frame] = ()) -> Shot:
+    """The shot of an ocean's bake: where a camera surface shows what does not repeat, live, without that.
+
+    Raises ParameterError for what is no sea.
+    """
+    shot = shot_of(item, scene, frames)
+    if camera_surface_of(item) is None:
+        return shot
+    return replace(shot, parameters=repeating(shot.parameters))
 
 
 def _joined(path: str, values: list[float | Raster]) -> Samples:

@@ -15,7 +15,7 @@ from ..scene.bake_process import BakeProcess
 from ..scene.image_sequence import find_sequence
 from ..scene.portability import needs_of
 from ..scene.settings import OceanObjectError, settings_of
-from ..scene.shots import scene_frames, shot_of
+from ..scene.shots import bake_shot_of, scene_frames
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
 from .background_operator import BackgroundOperator, StopsProcess
 
@@ -43,7 +43,7 @@ class OCEAN_OT_bake(BackgroundOperator, bpy.types.Operator):
     def begin(self, context: bpy.types.Context) -> BakeProcess:
         """Bake the scene's frames."""
         item, frames = shown_ocean(context), scene_frames(context.scene)
-        return bake_process.start(item, shot_of(item, context.scene, frames), frames)
+        return bake_process.start(item, bake_shot_of(item, context.scene, frames), frames)
 
     def conclude(self, _context: bpy.types.Context) -> set[str]:
         """Report the result, and use the frames."""

@@ -269,3 +269,26 @@ def test_speed_is_in_metres_whatever_the_units(ocean, ship, select, empty_scene,
     speed = core.WakeLayer.outlook(sea_of(ocean)).wakes[0].speed
     assert speed == pytest.approx(24.0 * 0.3048 * 24.0 / (LAST - FIRST), rel=1e-4)
     assert math.isfinite(wake.area_size)
+
+
+def test_a_bake_is_of_the_sea_and_wakes_go_on_over_it(ocean, ship, select, bake, extension, empty_scene):
+    """No image that repeats can hold them: they stay live, and the bake differs in nothing."""
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    shots = extension("scene.shots")
+    shot = shots.bake_shot_of(ocean, empty_scene)
+    assert [layer.muted for layer in shot.parameters.layers] == [False, True]
+    assert not shots.shot_of(ocean, empty_scene).parameters.layers[1].muted
+    job = extension("export.cache.job").Job("sea", "0" * 8, shot, ("disp",), frames=(1, 2))
+    assert job.maps == ("disp",)
+    found = extension("scene.bake_state").differences(shot, 1, ocean.ocean_tweak, empty_scene)
+    assert found == []
+    sequence = bake(shot.parameters, 1, 2)
+    ocean.ocean_tweak.use_sequence(sequence.directory, sequence.name, sequence.frames)
+    empty_scene.frame_set(2)
+    area = next(child for child in ocean.children if child.name.endswith("Area"))
+    moved = np.empty(3 * len(area.data.vertices), np.float32)
+    area.data.attributes["displacement"].data.foreach_get("vector", moved)
+    assert moved.reshape(-1, 3)[:, 2].min() < -0.5
+    (need,) = extension("scene.portability").needs_of(ocean)  # on a machine without the extension
+    assert "shows waves of Ocean that do not repeat" in need.text
