@@ -31,7 +31,7 @@ ROW = """    Channel(
 BEFORE = {
     "class UsdAttribute(": FORMULA,
     ")  # fmt: skip\n\n#: by name\n": ROW,
-    "}\n\n#: maps of which 2^-11": '    "speed": ("speed",),\n',
+    "}\n\n#: maps for which a precision of 2^-11": '    "speed": ("speed",),\n',
 }
 SEA = {"resolution": 16, "domain_size": 90.0, "timing": {"fps": 24}}
 
