@@ -134,16 +134,16 @@ MOODS = {
 COASTS = {
     "BEACH": Mood(
         "Beach", "Swell that turns into a bay, rises, and breaks in lines on a bar and on the sand",
-        waves=partial(_coast, 11.0, 150e3, _degrees(12.0), 20.0, Foam(half_life=3.0)), water="COASTAL",
+        waves=partial(_coast, 11.0, 150e3, _degrees(12.0), 20.0, Foam(half_life=1.5)), water="COASTAL",
         sky=seen(9.0, 60.0, clouds=0.5),
         eye=0.0, crest_distance=0.0, lens=30.0, tilt=0.0, rings=0, floats="",
-        shore=Shore("BEACH", (298.0, 22.0, 21.0), (352.0, 250.0, 0.0)),
+        shore=Shore("BEACH", (298.0, 20.0, 25.0), (346.0, 250.0, -4.0)),
     ),
     "HARBOUR": Mood(
         "Harbour", "Waves that pass the gap between two moles and spread in a fan behind it",
         waves=partial(_coast, 12.0, 120e3, 0.0, 14.0, Foam()), water="COASTAL",
         sky=seen(28.0, 40.0, clouds=0.5),
-        eye=0.0, crest_distance=0.0, lens=30.0, tilt=0.0, rings=0, floats="",
-        shore=Shore("HARBOUR", (10.0, 150.0, 210.0), (262.0, 262.0, 0.0)),
+        eye=0.0, crest_distance=0.0, lens=40.0, tilt=0.0, rings=0, floats="",
+        shore=Shore("HARBOUR", (-60.0, 256.0, 200.0), (245.0, 256.0, 0.0)),
     ),
 }  # fmt: skip
