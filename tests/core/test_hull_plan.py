@@ -131,7 +131,7 @@ def test_a_decked_ship_has_water_on_its_deck():
 
 def test_masts_do_not_take_levels_from_the_hull():
     ship = box((-10.0, -2.0, -1.0), (10.0, 2.0, 1.0))
-    mast = box((-0.1, -0.1, 0.0), (0.1, 0.1, 20.0))
+    mast = box((-0.4, -0.4, 0.0), (0.4, 0.4, 20.0))
     assert hull_plan(*together(ship, mast)).spacing < 0.12
 
 
