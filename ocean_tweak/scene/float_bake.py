@@ -25,10 +25,10 @@ from .view_layers import evaluated, taking_part
 class _Rider:
     """An object that is being baked.
 
-    place : stands where the object would be on land; its carrier, or an empty for as long as this takes
-    was_live : whether that is its carrier
-    hull : of the object, where the water is to touch it
-    level : how high above its origin the water stands
+    place : has the object's transform without waves; its carrier, or a temporary empty
+    was_live : whether it is its carrier
+    hull : of the object, if the water is to touch it
+    level : height of the water above its origin
     track : where the object was so far
     felt : of a damped one on a sequence: the water so far
     """
@@ -45,15 +45,14 @@ class _Rider:
 
 
 class FloatBake:
-    """A bake that can be done a frame at a time, and given up.
+    """A bake in steps of one frame, which can be cancelled.
 
-    An object that floats already keeps its ocean, ride and collar, others get the given ones. Keys are
-    written by `finish`, after `advance` was called once for each of `frames`; `cancel` leaves everything as
-    it was. The scene's frame goes along, so that parents, animation and the ocean's settings are those of
-    each frame.
+    Objects that already float keep their ocean, ride and collar; others get the given ones. Keys are written
+    by `finish`, after `advance` was called once for each of `frames`; `cancel` restores everything. The
+    scene's frame is changed, so that parents, animation and the ocean's settings are those of each frame.
 
-    Raises FloatError for what cannot float, and OceanObjectError or ParameterError for an ocean without a
-    surface.
+    Raises FloatError for objects that cannot float, and OceanObjectError or ParameterError for an ocean
+    without a surface.
     """
 
     def __init__(
@@ -87,9 +86,9 @@ class FloatBake:
         return _Rider(item, carrier, True, known or ocean, ride, None, 0.0, float_keys.Track(item))
 
     def advance(self) -> None:
-        """Go on by one frame. Raises what a missing or broken image raises."""
+        """Process one frame. Raises the errors of missing or broken images."""
         frame = self.frames[self.done]
-        with handlers.asleep():  # the waves in the viewport are not needed
+        with handlers.asleep():  # waves in the viewport are not needed
             self._scene.frame_set(frame)
             depsgraph = evaluated(self._scene)
         metres = float(metres_per_unit(self._scene))
@@ -121,7 +120,7 @@ class FloatBake:
         return float_riding.solve_by_frames(rider.felt, seconds, rider.ride, under, gravity)
 
     def finish(self) -> int:
-        """Write the keys; what floated live is left to them. Returns how many objects there are."""
+        """Write the keys, and stop live floating. Returns the number of objects."""
         stretch = time_stretch(self._scene)
         self._clear()
         for rider in self._riders:
@@ -133,12 +132,12 @@ class FloatBake:
         return len(self._riders)
 
     def cancel(self) -> None:
-        """Leave everything as it was before."""
+        """Restore everything."""
         self._clear()
         self._go_back()
 
     def abandon(self) -> None:
-        """Nothing goes on beside Blender."""
+        """Nothing runs in the background."""
 
     def _clear(self) -> None:
         self._taking_part.close()

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Carriers: what takes floating objects to the surface, out of sight.
+"""Carriers: hidden helpers that take floating objects to the surface.
 
-A carrier is a small triangle that has its object's place: parent, transform, animation and constraints. Its
-node group moves it onto the surface, and constraints take the object there. The object's own transform stays
-what the hand makes of it; `follow` brings the carriers into step with it. An object cannot be the carrier
-itself, nor drive one: that is a cycle of dependencies.
+A carrier is a small triangle with its object's parent, transform, animation and constraints. Its node group
+moves it onto the surface, and constraints take the object there. The object's own transform remains as set by
+the user; `follow` updates the carriers from it. An object cannot be the carrier itself, nor drive one, as
+that would be a dependency cycle.
 
-Carriers are in no collection: nobody sees, selects or deletes them, and Blender evaluates them for the sake
-of their objects.
+Carriers are in no collection, so users do not see, select or delete them, and Blender evaluates them because
+their objects depend on them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from . import float_keys
 
 #: of the modifiers and constraints
 NAME = "Float on Ocean"
-# what stands in a custom property of helpers, by which they are recognised whatever they are called
+# values of the custom property by which helpers are recognised, whatever their names
 _KEY = "ocean_tweak_float_part"
 _CARRIER, _RIDER = "follower", "rider"
 _VISIBLE = "carrier"  # of files in which the carrier was what one moved
@@ -39,12 +39,12 @@ _DRAWN = {"active", "show_expanded"}
 
 
 def is_carrier(item: bpy.types.Object | None) -> bool:
-    """Whether an object was made to carry another."""
+    """Whether an object is a carrier."""
     return item is not None and item.get(_KEY) in (_CARRIER, _VISIBLE)
 
 
 def carrier_of(item: bpy.types.Object) -> bpy.types.Object | None:
-    """What carries a floating object; None for one that does not float, or whose carrier was deleted."""
+    """The carrier of a floating object; None for one that does not float, or whose carrier was deleted."""
     for constraint in own_constraints(item):
         target = constraint.target
         carrier = target.parent if target.get(_KEY) == _RIDER else target
@@ -54,7 +54,7 @@ def carrier_of(item: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def own_constraints(item: bpy.types.Object) -> list[bpy.types.Constraint]:
-    """Those of an object's constraints that take it to its carrier."""
+    """The constraints that take an object to its carrier."""
     return [each for each in item.constraints if _KEY in (getattr(each, "target", None) or ())]
 
 
@@ -64,7 +64,7 @@ def carried_by(carrier: bpy.types.Object) -> Iterator[bpy.types.Object]:
 
 
 def modifier_of(carrier: bpy.types.Object) -> bpy.types.NodesModifier | None:
-    """What moves a carrier; None where somebody took it away."""
+    """The modifier of a carrier; None if it was removed."""
     return next(
         (each for each in carrier.modifiers if each.type == "NODES" and is_of_kind(each.node_group, CARRIER)),
         None,
@@ -72,7 +72,7 @@ def modifier_of(carrier: bpy.types.Object) -> bpy.types.NodesModifier | None:
 
 
 def set_inputs(carrier: bpy.types.Object, values: dict[str, Any]) -> None:
-    """Give the node group of a carrier its inputs."""
+    """Set the inputs of a carrier's node group."""
     modifier = modifier_of(carrier)
     if modifier is None:
         modifier = carrier.modifiers.new(NAME, "NODES")
@@ -83,7 +83,7 @@ def set_inputs(carrier: bpy.types.Object, values: dict[str, Any]) -> None:
 
 
 def new_carrier(item: bpy.types.Object) -> bpy.types.Object:
-    """A carrier where an object is, which the object goes along with from now on."""
+    """Create a carrier at an object, which from now on follows it."""
     mesh = bpy.data.meshes.new(f"{item.name} Float")
     # a vertex parent has the axes of such a triangle, whose first side runs along x
     corners = [(-_HALF, -_HALF, 0.0), (_HALF, -_HALF, 0.0), (0.0, 2.0 * _HALF, 0.0)]
@@ -96,7 +96,7 @@ def new_carrier(item: bpy.types.Object) -> bpy.types.Object:
 
 
 def stand_in(item: bpy.types.Object) -> bpy.types.Object:
-    """An empty with an object's place where it does not float: before its floating was baked, if it was."""
+    """An empty with an object's transform without floating, or as it was before floating was baked."""
     empty = bpy.data.objects.new(f"{item.name} Place", None)
     stand_where(item, empty)
     float_keys.restore_place(item, empty)
@@ -114,16 +114,16 @@ def remove_carrier(carrier: bpy.types.Object) -> None:
 
 
 def follow() -> None:
-    """Bring all carriers into step with their objects.
+    """Update all carriers from their objects.
 
-    Copies of a floating object get a carrier of their own, and the carriers of deleted objects go. Where
-    nothing has changed nothing is written, so that this may be done at every evaluation.
+    Copies of a floating object get their own carrier, and carriers of deleted objects are removed. Nothing is
+    written unless something has changed, so this may be called after every evaluation.
     """
     if not any(is_of_kind(group, CARRIER) for group in bpy.data.node_groups):
         return
     found = {item: carrier_of(item) for item in bpy.data.objects if item.library is None}
     afloat = [(item, carrier) for item, carrier in found.items() if carrier is not None and item.users]
-    # a copy is younger than what it was made from
+    # a copy is younger than its original
     afloat.sort(key=lambda pair: pair[0].session_uid)
     taken: set[bpy.types.Object] = set()
     for item, carrier in afloat:
@@ -139,7 +139,7 @@ def follow() -> None:
 
 
 def take_over() -> None:
-    """Let the objects of files in which the carrier was what one moved be moved themselves."""
+    """Convert objects of older files, in which users moved the carrier."""
     for carrier in [item for item in bpy.data.objects if item.get(_KEY) == _VISIBLE and item.library is None]:
         items = [item for item in carried_by(carrier) if item.library is None]
         for item in items:
@@ -154,9 +154,9 @@ def take_over() -> None:
 def stand_where(
     item: bpy.types.Object, other: bpy.types.Object, keep: list[bpy.types.Constraint] | None = None
 ) -> None:
-    """Give another object the place of an object, its animation, and its constraints besides those of ours.
+    """Copy an object's transform, animation and constraints, except ours, to another object.
 
-    keep : constraints that the other has of its own. Only what differs is written.
+    keep : own constraints of the other object. Only differences are written.
     """
     for name in _PLACE:
         value = getattr(item, name)
@@ -200,7 +200,7 @@ def _plain(value: Any) -> Any:
 
 
 def _put_last(item: bpy.types.Object) -> None:
-    """Let the water have the last word on where an object is, whatever constraint was added since."""
+    """Move our constraints to the end of an object's stack."""
     if item.override_library is not None:  # constraints of its library keep their order
         return
     count, ours = len(item.constraints), [each.name for each in own_constraints(item)]
@@ -210,7 +210,7 @@ def _put_last(item: bpy.types.Object) -> None:
 
 
 def _copied(item: bpy.types.Object, carrier: bpy.types.Object) -> bpy.types.Object:
-    """A carrier of its own for an object that shares another one's."""
+    """Create a carrier for an object that shares that of another one."""
     copy = carrier.copy()
     copy.name = f"{item.name} Float"
     if copy.data.library is not None:
@@ -231,7 +231,7 @@ def _riders(carrier: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def _hide(helper: bpy.types.Object, role: str) -> None:
-    """Keep a helper for as long as it is needed, and out of sight."""
+    """Keep a helper alive and hidden."""
     helper[_KEY] = role
     helper.use_fake_user = True
     helper.hide_viewport = helper.hide_render = helper.hide_select = True

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Baked movement of an object, as an action of its own; the object's earlier state waits beside it."""
+"""Baked movement of an object as a separate action, with its earlier state stored beside it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _VALUES = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_a
 
 @dataclass(frozen=True)
 class State:
-    """What a bake changes of an object, besides its action.
+    """The state of an object that a bake changes, besides its action.
 
     values : location and rotations
     slot : identifier of the action's slot, "" without one
@@ -34,7 +34,7 @@ class State:
 
 
 def rotation_path(item: bpy.types.Object) -> str:
-    """The property that holds the object's rotation in its mode."""
+    """The rotation property of an object's rotation mode."""
     return _ROTATIONS.get(item.rotation_mode, "rotation_euler")
 
 
@@ -51,12 +51,12 @@ def state_of(item: bpy.types.Object) -> State:
 
 
 def is_baked(item: bpy.types.Object) -> bool:
-    """Whether the object's movement was baked here."""
+    """Whether the object's movement was baked by this module."""
     return _STATE in item
 
 
 def unbake(item: bpy.types.Object) -> None:
-    """Give a baked object its earlier state back; its baked action goes where nothing else uses it."""
+    """Restore a baked object's earlier state, and remove its baked action unless it has other users."""
     if not is_baked(item):
         return
     state, action = State(**json.loads(item[_STATE])), item.get(_ACTION)
@@ -70,13 +70,13 @@ def unbake(item: bpy.types.Object) -> None:
 
 
 def restore_place(item: bpy.types.Object, other: bpy.types.Object) -> None:
-    """Give another object the earlier place of a baked one."""
+    """Copy the earlier transform of a baked object to another one."""
     if is_baked(item):
         apply_state(other, State(**json.loads(item[_STATE])), item.get(_ACTION))
 
 
 def apply_state(item: bpy.types.Object, state: State, action: bpy.types.Action | None) -> None:
-    """Give an object a state that it had, and its action of then."""
+    """Restore a stored state and action of an object."""
     if action is not None:
         _assign(item, action, state.slot)
     elif item.animation_data is not None:
@@ -91,7 +91,7 @@ def apply_state(item: bpy.types.Object, state: State, action: bpy.types.Action |
 
 
 class Track:
-    """Places of one object, frame by frame, until they become keys."""
+    """Transforms of one object, collected per frame before they become keys."""
 
     def __init__(self, item: bpy.types.Object) -> None:
         self.item = item
@@ -99,7 +99,7 @@ class Track:
         self._last: Quaternion | None = None
 
     def add(self, place: Matrix) -> None:
-        """Where the object is at the next frame, in the world: a rotation and a location.
+        """Add the object's world rotation and location at the next frame.
 
         The parent must have been evaluated at that frame. The object's transform is left as it was.
         """
@@ -129,7 +129,8 @@ class Track:
         return list(turned)
 
     def write(self, first: Fraction, step: Fraction) -> None:
-        """Make them keys from a frame on, linear between, in a new action; keys outside of them stay.
+        """Write keys from a frame, with linear interpolation, to a new action; keys outside the range are
+        kept.
 
         first, step : frames of the animation, which Time Stretching makes others than the scene's
         """

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where an object is at other frames, by its keys and those of what carries it, without going there."""
+"""Computes an object's transform at other frames from its keys and those of its parents, without evaluating
+them."""
 
 from __future__ import annotations
 
@@ -12,7 +13,8 @@ from .animated import channel_bags
 
 
 def is_known(item: bpy.types.Object) -> bool:
-    """Whether keys say all: no constraint, driver, nonlinear animation, bone or vertex moves it."""
+    """Whether keys determine an object's transform: no constraint, driver, NLA strip, bone or vertex moves
+    it."""
     return all(
         not any(constraint.enabled for constraint in each.constraints)
         and (each.parent is None or each.parent_type == "OBJECT")
@@ -24,7 +26,7 @@ def is_known(item: bpy.types.Object) -> bool:
 
 
 def matrix_at(item: bpy.types.Object, frame: float) -> Matrix:
-    """An object's place in the world at a frame of its animation, where keys say all about it."""
+    """An object's world matrix at a frame of its animation, if keys determine it."""
     own = _own_matrix(item, frame)
     if item.parent is None:
         return own

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that float on an ocean: each has a carrier, out of sight, and is moved, keyed and parented itself.
+"""Objects that float on an ocean: each has a hidden carrier, and is moved, keyed and parented as usual.
 
-The object keeps its own transform, overruled by constraints, so that it is back where it stands as soon as
-those are gone.
+The object keeps its own transform, which constraints override, so it returns there when they are removed.
 """
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ from .hull import Hull, hull_of
 from .settings import OceanObjectError, is_ocean, oceans_in
 from .units import shortest_decimal
 
-#: kinds of objects that look at the sea or light it: they stay above the water
+#: types of objects that view or light the sea, and stay above the water
 _ABOVE = {"CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER"}
-#: of a ship; it has inertia, and goes through the steepest waves
+#: tilt of a ship, which has inertia and does not follow the steepest waves
 _SHIP_TILT = 0.8
-#: how an object may float by itself: label and description
+#: ways of floating: label and description
 RIDES = {
     "OBJECT": (
         "By Object",
@@ -90,11 +89,11 @@ def float_on(
     ride: Ride | None = None,
     is_wet: bool = False,
 ) -> bpy.types.Object:
-    """Let an object float on an ocean, or on another one or otherwise than before. Returns its carrier.
+    """Let an object float on an ocean, or change how it floats. Returns its carrier.
 
-    is_wet : whether it gets a collar of foam and a wet band, where the water cuts it
+    is_wet : whether to add a collar of foam and a wet band, if the water reaches it
 
-    Raises FloatError for what cannot float there.
+    Raises FloatError for an object that cannot float there.
     """
     check(item, ocean)
     ride = ride or Ride()
@@ -110,7 +109,7 @@ def float_on(
 
 
 def own_hull(item: bpy.types.Object) -> Hull | None:
-    """The hull of an object as it stands without floating; None where it has none."""
+    """The hull of an object in its transform without floating; None if it has none."""
     carrier = carrier_of(item)
     upright = item if carrier is None else carrier
     return hull_of(item, upright.matrix_world, bpy.context.evaluated_depsgraph_get())
@@ -144,9 +143,9 @@ def _damped_ride(hull: Hull) -> Ride:
 
 
 def level_at(item: bpy.types.Object, ocean: bpy.types.Object, ride: Ride | None = None) -> float:
-    """How high above an object's origin the water stands, Blender units.
+    """Height of the water above an object's origin, Blender units.
 
-    ride : None for what stands still
+    ride : None for an object that stands still
     """
     if ride is not None and not ride.keep_height:
         return ride.level
@@ -200,7 +199,7 @@ def take_off(item: bpy.types.Object) -> None:
 
 
 def check(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
-    """Raise FloatError where an object cannot float on an ocean."""
+    """Raise FloatError if an object cannot float on an ocean."""
     if is_ocean(item) or not is_ocean(ocean):
         raise FloatError(
             f"{item.name} cannot float on {ocean.name}: choose an ocean, and an object that is not one"
@@ -229,25 +228,25 @@ def chosen_ocean(
 
 
 def outermost(items: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
-    """Those that no other of them carries as its parent: children go along anyway."""
+    """Objects without a parent among the others, as children move along anyway."""
     everything = list(items)
     return [item for item in everything if not any(other in everything for other in _ancestors(item))]
 
 
 def floats(item: bpy.types.Object) -> bool:
-    """Whether an object floats, or goes with a parent that does."""
+    """Whether an object floats, or has a parent that does."""
     return any(float_carrier.carrier_of(each) is not None for each in (item, *_ancestors(item)))
 
 
 def let_ride(carrier: bpy.types.Object, ocean: bpy.types.Object, ride: Ride) -> None:
-    """Give a carrier its ocean and its ride."""
+    """Set a carrier's ocean and ride."""
     float_carrier.set_inputs(
         carrier, {"Ocean": ocean, **{_title(name): value for name, value in vars(ride).items()}}
     )
 
 
 def ride_of(carrier: bpy.types.Object) -> tuple[bpy.types.Object | None, Ride]:
-    """A carrier's ocean, None where it was deleted, and its ride."""
+    """A carrier's ocean, or None if it was deleted, and its ride."""
     modifier = float_carrier.modifier_of(carrier)
     given = {} if modifier is None else all_inputs(modifier)
     # a linked one may be of a version with fewer inputs

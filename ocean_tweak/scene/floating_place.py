@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where an object floats, reckoned from the samples of a sea: what the node groups do, without a mesh.
+"""Computes where an object floats from the samples of a sea, like the node groups, but without a mesh.
 
-The sea is that of the render, whatever the viewport shows.
+The sea is that of renders, whatever the viewport shows.
 """
 
 from __future__ import annotations
@@ -63,9 +63,9 @@ def water_at(
 ) -> Water:
     """The sea of an ocean at the scene's present frame.
 
-    depsgraph : in which the ocean takes part
+    depsgraph : that includes the ocean
 
-    Raises ParameterError, OceanObjectError or MemoryError for an ocean that has no surface there.
+    Raises ParameterError, OceanObjectError or MemoryError for an ocean without a surface.
     """
     if not is_ocean(ocean):
         raise FloatError(f"{ocean.name} is no longer an ocean: its modifier was applied or removed")
@@ -82,7 +82,7 @@ def water_at(
 def place_on(
     water: Water, place: Matrix, ocean: Matrix, ride: Ride, metres: float, solved: Solved | None = None
 ) -> Matrix:
-    """Where something floats whose place on land is known, in the world: a rotation and a location.
+    """World rotation and location of a floating object, from its transform without waves.
 
     place, ocean : world matrices, Blender units
     metres : in a Blender unit
