@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pictures of docs/wakes.md: a ship in a gale, and boats in a harbour seen from above.
+"""Renders the ship in a gale of docs/wakes.md.
 
 python3 -m tools.blender --in 5.2 examples/wakes.py -- --out build/wakes
 
