@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters, Places
-from ..core.numerics.memo import MEMO
+from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS
-from ..nodes.names import COAST_DEPTH
+from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
 from . import vertex_attributes, water_material
 from .plan import Plan
 from .settings import link_beside
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 _COAST = "ocean_tweak_coast"
 #: what the material reads of the waves
-_CHANNELS = ("displacement", "velocity")
+_CHANNELS = ("displacement", "velocity", "cusp")
 #: m offshore that the mesh goes on, and how much longer each step is there than the one before
 _OFFSHORE, _GROWS = 2500.0, 1.06
 #: m of land behind the farthest waterline that it covers
@@ -56,7 +56,8 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
         item.data.materials.append(material)
     sea = MEMO.get("seas over beds", plan.over_bed, lambda: Ocean(plan.over_bed))
     grid = MEMO.get(_MESHES, (sea.coast.ground, plan.scale), lambda: _Grid(sea))
-    if len(item.data.vertices) != grid.x.size or item.get(_COAST) != grid.tag:
+    fits = len(item.data.vertices) == grid.x.size and TEXTURE_COORDINATES in item.data.uv_layers
+    if not fits or item.get(_COAST) != grid.tag:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
     _move(item.data, sea, grid, plan)
@@ -82,12 +83,15 @@ class _Grid:
         depth = ground.between(self.x, self.y).read(ground.depth)
         # what is drawn on land is a film of water
         self.depth = np.maximum(depth, _FILM).astype(np.float32)
+        places = np.stack((self.x, self.y), axis=-1) / sea.parameters.domain_size
+        # as on the ocean's own mesh
+        self.texture_coordinates = (places + 0.5 / sea.parameters.resolution).astype(np.float32)
         self.tag = f"{self.rows} {self.columns} {ground.step!r} {ground.first!r} {ground.turn!r}"
 
     @property
     def nbytes(self) -> int:
         """Bytes of the places."""
-        return self.x.nbytes + self.y.nbytes + self.depth.nbytes
+        return total_bytes((self.x, self.y, self.depth, self.texture_coordinates))
 
     def corners(self) -> NDArray[np.int32]:
         """(quads, 4) vertices of each quad, counter-clockwise from above."""
@@ -106,6 +110,8 @@ def _fill(mesh: bpy.types.Mesh, grid: _Grid) -> None:
     mesh.polygons.foreach_set("loop_start", np.arange(0, corners.size, 4, dtype=np.int32))
     mesh.update(calc_edges=True)
     mesh.shade_smooth()
+    uv_map = mesh.uv_layers.new(name=TEXTURE_COORDINATES, do_init=False)
+    uv_map.uv.foreach_set("vector", grid.texture_coordinates[corners.reshape(-1)].reshape(-1))
     mesh.attributes.new(COAST_DEPTH, "FLOAT", "POINT").data.foreach_set("value", grid.depth)
 
 

@@ -134,7 +134,7 @@ MOODS = {
 COASTS = {
     "BEACH": Mood(
         "Beach", "Swell that turns into a bay, rises, and breaks in lines on a bar and on the sand",
-        waves=partial(_coast, 11.0, 150e3, _degrees(12.0), 20.0, Foam(half_life=1.5)), water="COASTAL",
+        waves=partial(_coast, 11.0, 150e3, _degrees(12.0), 20.0, Foam(half_life=4.0)), water="COASTAL",
         sky=seen(9.0, 60.0, clouds=0.5),
         eye=0.0, crest_distance=0.0, lens=30.0, tilt=0.0, rings=0, floats="",
         shore=Shore("BEACH", (298.0, 20.0, 25.0), (346.0, 250.0, -4.0)),

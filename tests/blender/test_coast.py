@@ -90,6 +90,19 @@ def test_the_mesh_over_the_bed_is_the_sea_there(ocean, core, coast_of):
     assert np.diff(x)[-1] < 0.5 * np.diff(x)[0]
 
 
+def test_patterns_of_the_material_lie_on_the_water_at_rest(ocean, coast_of):
+    ocean.ocean_tweak.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    mesh = coast_of(ocean).data
+    rest = (values(mesh, "position", 3) - values(mesh, "displacement", 3))[:, :2]
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    found = np.empty(2 * len(corners), np.float32)
+    mesh.uv_layers["st"].uv.foreach_get("vector", found)
+    np.testing.assert_allclose(np.ptp(found.reshape(-1, 2) - rest[corners] / SIDE, axis=0), 0.0, atol=1e-5)
+    assert values(mesh, "cusp").max() > 0.0
+
+
 def test_it_goes_when_it_is_switched_off(ocean, coast_of):
     settings = ocean.ocean_tweak
     settings.coast.bed = slope()

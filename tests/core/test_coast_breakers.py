@@ -112,6 +112,20 @@ def test_foam_is_born_on_fronts_left_behind_and_fades() -> None:
     assert foam_along(parameters.replace(foam=Foam(coverage=0.0)), 40.0).foam.max() == 0.0
 
 
+def test_in_the_surf_lines_are_white_and_most_of_the_water_between_them_is_not() -> None:
+    parameters = sea().replace(foam=Foam(half_life=4.0))
+    coast = Ocean(parameters).coast
+    assert coast is not None
+    surf = (coast.broken_share > 0.3) & (coast.ground.depth > 0.0)
+    fields = [coast.over_bed.foam(time) for time in np.arange(0.0, 60.0, 7.3)]
+    white = np.mean([(each.foam > 0.5)[surf].mean() for each in fields])
+    assert 0.15 < white < 0.40
+    for each in fields:
+        assert each.breaking.max() > 0.9
+        # what is as old as half of it lives is lace
+        assert each.foam[each.age >= 4.0].max() < 0.3
+
+
 def test_breakers_run_ashore() -> None:
     over_bed = Ocean(sea()).coast.over_bed  # type: ignore[union-attr]
     fields = [over_bed.foam(20.0 + 0.25 * step).breaking for step in range(6)]

@@ -31,8 +31,9 @@ ComplexArray = NDArray[np.complexfloating]
 _LOOKS = 4
 #: share of waves that break from which on they do for lack of depth
 _FEW = 0.02
-#: fraction of breaking foam that remains on the water after the front has passed
-_STAYS = 0.35
+#: fraction of a front's foam that stays on the water, and s in which half of the rest, whose bubbles are
+#: still rising, has gone
+_STAYS, _RISING = 0.4, 0.6
 #: s, by which the shape's rate is taken
 _MOMENT = 0.001
 
@@ -105,7 +106,7 @@ class OverBed:
         """Foam (rows, columns) of depth-limited breaking, and remaining foam of earlier breakers.
 
         As foam is anywhere, the largest of 2^(-age/T) c over the present and over moments before it; but a
-        front is a roller, of which the water behind it keeps a share.
+        front is a roller, of which the water behind it soon keeps only a share.
         """
         foam = self._sea.foam
         breaking = self._white(time)
@@ -115,7 +116,10 @@ class OverBed:
         memory = math.floor(-math.log2(FAINTEST) * foam.half_life * _LOOKS)
         for index in range(last, last - memory, -1):
             since = float(now - Fraction(index, _LOOKS))
-            then = self._births(index) * np.float32(_STAYS * 2.0 ** (-since / foam.half_life))
+            left_of_it = (_STAYS + (1.0 - _STAYS) * 2.0 ** (-since / _RISING)) * 2.0 ** (
+                -since / foam.half_life
+            )
+            then = self._births(index) * np.float32(left_of_it)
             more = then > left
             np.copyto(left, then, where=more)
             np.copyto(age, np.float32(since), where=more)
