@@ -9,6 +9,7 @@ without going there. Where constraints or drivers move an object, its path is re
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator, Set
 from dataclasses import replace
@@ -19,12 +20,15 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
-from ..core import PathSample
+from ..core import PathSample, Raster
+from ..core.sea.hull_plan import hull_plan
+from ..core.sea.underwater_hull import draughts_below
 from ..core.waves.wake.parameters import MOST_SAMPLES
 from . import float_path
 from .animated import curves_of, has_own_time, shown_settings
 from .float_carrier import carrier_of
 from .floating import level_at, own_hull, ride_of
+from .hull import Hull
 from .refinement import show
 from .refresh import Wanted
 from .settings import OceanObjectError, oceans_in, settings_of
@@ -34,6 +38,12 @@ Array = NDArray[np.float64]
 
 #: of a path, by which a sample may be left out: m a metre of hull, and rad
 _ASIDE, _TURNED = 0.002, 0.01
+#: of a footprint, rows and columns, steps from 0 to the greatest draught, and the least block coefficient:
+#: a capsized hull displaces its planking
+_SHAPE, _STEPS, _LEAST_BLOCK = (24, 64), 255.0, 0.05
+
+#: custom property of an object that moves with the end ahead that its -x or -y points to
+_REVERSED = "ocean_tweak_bow_reversed"
 
 
 class WakeError(OceanObjectError):
@@ -43,16 +53,41 @@ class WakeError(OceanObjectError):
 class InWater(NamedTuple):
     """What of a hull is in the water; Blender units, in its upright axes.
 
-    length, beam, draught : of the part below calm water
-    middle : of that, x and y
-    is_along_y : whether its length is along y
+    level : of calm water, z
+    low, high : corners of the part below it, x and y
+    draught : how deep it is
+    ahead : direction of its bow, rad from +x: along its length
     """
 
-    length: float
-    beam: float
+    hull: Hull
+    level: float
+    low: tuple[float, float]
+    high: tuple[float, float]
     draught: float
-    middle: tuple[float, float]
-    is_along_y: bool
+    ahead: float
+
+    @property
+    def length(self) -> float:
+        """Its larger horizontal size."""
+        return max(self._sizes)
+
+    @property
+    def beam(self) -> float:
+        """Its smaller horizontal size."""
+        return min(self._sizes)
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Of its horizontal bounds."""
+        return 0.5 * (self.low[0] + self.high[0]), 0.5 * (self.low[1] + self.high[1])
+
+    @property
+    def _sizes(self) -> tuple[float, float]:
+        return self.high[0] - self.low[0], self.high[1] - self.low[1]
+
+    def turned(self) -> InWater:
+        """With its bow at the other end."""
+        return self._replace(ahead=self.ahead + math.pi)
 
 
 def in_water(item: bpy.types.Object, ocean: bpy.types.Object, metres: float) -> InWater:
@@ -72,14 +107,51 @@ def in_water(item: bpy.types.Object, ocean: bpy.types.Object, metres: float) -> 
             f"{item.name} is {-draught * metres:.3g} m above the water: lower it, or press Float on Ocean "
             "first"
         )
-    low, high = hull.below(level)
-    sizes, middle = (high - low).tolist(), (0.5 * (low + high)).tolist()
-    length, beam = max(sizes), min(sizes)
-    if not beam > 0.0:
+    (west, south), (east, north) = (end.tolist() for end in hull.below(level))
+    along_y = north - south > east - west
+    ahead = (0.5 * math.pi if along_y else 0.0) + (math.pi if item.get(_REVERSED) else 0.0)
+    found = InWater(hull, level, (west, south), (east, north), draught, ahead)
+    if not found.beam > 0.0:
         raise WakeError(
-            f"{item.name} is flat, {length * metres:.3g} by {beam * metres:.3g} m: choose what has a width"
+            f"{item.name} is flat, {found.length * metres:.3g} by {found.beam * metres:.3g} m: choose what "
+            "has a width"
         )
-    return InWater(length, beam, draught, (middle[0], middle[1]), sizes[1] > sizes[0])
+    return found
+
+
+def bow_first(
+    item: bpy.types.Object, wetted: InWater, path: tuple[PathSample, ...]
+) -> tuple[InWater, tuple[PathSample, ...]]:
+    """With the bow at the end that is ahead along the path; kept with the object, whose keys may change."""
+    if not _goes_astern(path):
+        return wetted, path
+    if item.library is None:
+        item[_REVERSED] = not item.get(_REVERSED)
+    return wetted.turned(), tuple(replace(each, heading=each.heading + math.pi) for each in path)
+
+
+def footprint_of(wetted: InWater) -> Raster:
+    """How deep a hull is at each place, as shares of its draught, the bow ahead.
+
+    Raises ValueError, with the reason, for one that encloses nothing below the water.
+    """
+    hull, low, high = wetted.hull, wetted.low, wetted.high
+    if not len(hull.triangles):
+        raise ValueError("it has no faces")
+    plan = hull_plan(hull.vertices, hull.triangles)
+    along_y = high[1] - low[1] > high[0] - low[0]
+    shape = _SHAPE[::-1] if along_y else _SHAPE
+    shares = draughts_below(plan, wetted.level, low, high, shape) / wetted.draught
+    if shares.mean() < _LEAST_BLOCK:
+        raise ValueError(
+            f"it displaces {100.0 * shares.mean():.2g} % of its length, width and draught: it may be upside "
+            "down, or have gaps below the water"
+        )
+    if along_y:
+        shares = shares.T[::-1]  # x ahead, y to port
+    if math.cos(wetted.ahead) < -0.5 or math.sin(wetted.ahead) < -0.5:
+        shares = shares[::-1, ::-1]
+    return Raster(np.rint(_STEPS * np.clip(shares, 0.0, 1.0)) / _STEPS)
 
 
 def path_of(
@@ -177,27 +249,29 @@ def path_through(
     metres = float(metres_per_unit(scene))
     scale = settings.time_scale if has_own_time(settings) else 1.0
     start, fps, stretch = settings.timing.start_frame, float(frame_rate(scene)), float(time_stretch(scene))
-    middle, ahead = Vector((*wetted.middle, 0.0)), 0.5 * math.pi if wetted.is_along_y else 0.0
+    middle = Vector((*wetted.middle, 0.0))
     found = []
     for frame, place in zip(frames, places, strict=True):
         origin, turn, _ = place.decompose()
         yaw = 2.0 * math.atan2(turn.z, turn.w)
         x, y, _ = (origin + Matrix.Rotation(yaw, 3, "Z") @ middle) * metres
         time = (frame / stretch - start) / fps * scale
-        found.append(PathSample(time, x, y, yaw + ahead))
-    return _thinned(_bow_first(found), _ASIDE * wetted.length * metres)
+        found.append(PathSample(time, x, y, yaw + wetted.ahead))
+    return _thinned(_unwound(found), _ASIDE * wetted.length * metres)
 
 
-def _bow_first(samples: list[PathSample]) -> list[PathSample]:
-    """With headings that turn without a jump, and so that the bow is in front where it moves."""
-    headings = np.unwrap([each.heading for each in samples])
-    steps = np.diff([(each.x, each.y) for each in samples], axis=0)
-    ahead = steps[:, 0] * np.cos(headings[1:]) + steps[:, 1] * np.sin(headings[1:]) if len(steps) else steps
-    backwards = math.pi if np.sum(ahead) < 0.0 else 0.0
-    return [
-        replace(each, heading=float(heading) + backwards)
-        for each, heading in zip(samples, headings, strict=True)
-    ]
+def _unwound(samples: list[PathSample]) -> list[PathSample]:
+    """With headings that turn without a jump."""
+    headings = np.unwrap([each.heading for each in samples]).tolist()
+    return [replace(each, heading=heading) for each, heading in zip(samples, headings, strict=True)]
+
+
+def _goes_astern(path: tuple[PathSample, ...]) -> bool:
+    """Whether the bow is behind on most of the way."""
+    ahead = 0.0
+    for before, each in itertools.pairwise(path):
+        ahead += (each.x - before.x) * math.cos(each.heading) + (each.y - before.y) * math.sin(each.heading)
+    return ahead < 0.0
 
 
 def _thinned(samples: list[PathSample], aside: float) -> tuple[PathSample, ...]:

@@ -7,6 +7,7 @@ A path that keys do not tell is recorded, frame by frame.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import bpy
@@ -17,7 +18,7 @@ from .float_carrier import carrier_of
 from .settings import settings_of
 from .shots import evaluations
 from .units import metres_per_unit
-from .wake_makers import InWater, in_water, path_of, path_through
+from .wake_makers import InWater, bow_first, footprint_of, in_water, path_of, path_through
 
 #: m/s for which an area is made at most: what is faster jumps
 _FASTEST = 60.0
@@ -26,21 +27,32 @@ _SLOW, _USUAL = 0.1, 0.35
 
 
 def new_wake(
-    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, known: WakeLayer | None
+    item: bpy.types.Object,
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    known: WakeLayer | None,
+    warn: Callable[[str], None],
 ) -> WakeLayer:
-    """The waves of an object on an ocean, of the size of its hull and on its path.
+    """The waves of an object on an ocean, of the size and shape of its hull and on its path.
 
     known : the layer that it has already, of which the rest stays
+    warn : is told where its mesh has no shape below the water, so that its waves are those of an ellipse
 
     Raises WakeError for what is not in the water, or whose path is not known.
     """
     metres = float(metres_per_unit(scene))
     wetted = in_water(item, ocean, metres)
     path = path_of(item, ocean, scene, wetted) or recorded_path(item, ocean, scene, wetted)
+    wetted, path = bow_first(item, wetted, path)
+    footprint = None
+    try:
+        footprint = footprint_of(wetted)
+    except ValueError as error:
+        warn(f"{item.name} makes the waves of an ellipse of its size: {error}")
     length = wetted.length * metres
     sized = replace(
         known or WakeLayer(), path=path, headings="OF_SAMPLES", length=length, beam=wetted.beam * metres,
-        draught=wetted.draught * metres,
+        draught=wetted.draught * metres, footprint=footprint,
     )  # fmt: skip
     if known is not None:
         return sized

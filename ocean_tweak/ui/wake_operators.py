@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Make Waves: what the artist presses to let objects leave wakes on an ocean."""
 
+from collections.abc import Callable
+
 import bpy
 from bpy.app.translations import pgettext_rpt as translated
 
@@ -28,37 +30,38 @@ class OBJECT_OT_ocean_wake(OnOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Give the ocean a layer for each of them, or the one it has a new size and path."""
-        done, refused = 0, []
+        done, told = 0, []
         try:
             ocean = self.chosen_ocean(context)
             if ocean.library is not None or ocean.override_library is not None:
                 raise OceanObjectError(f"{ocean.name} is of another file: make it local first")
             for item in floating.outermost(floatable(context)):
                 try:
-                    _make(item, ocean, context.scene)
+                    _make(item, ocean, context.scene, told.append)
                     done += 1
                 except (OceanObjectError, ParameterError) as error:
-                    refused.append(f"{item.name}: {error}" if item.name not in str(error) else str(error))
+                    told.append(f"{item.name}: {error}" if item.name not in str(error) else str(error))
         except (OceanObjectError, ParameterError) as error:
             return refuse(self, error)
-        if refused:
-            self.report({"WARNING" if done else "ERROR"}, "; ".join(refused))
+        if told:
+            self.report({"WARNING" if done else "ERROR"}, "; ".join(told))
         else:
             text = translated("Objects that make waves on {ocean}: {count}")
             self.report({"INFO"}, text.format(ocean=ocean.name, count=done))
         return {"FINISHED"} if done else {"CANCELLED"}
 
 
-def _make(item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene) -> None:
+def _make(
+    item: bpy.types.Object, ocean: bpy.types.Object, scene: bpy.types.Scene, warn: Callable[[str], None]
+) -> None:
     """Give an ocean the wake of an object, and a surface that can show it."""
     settings = settings_of(ocean)
     makers = {maker: number for number, maker in settings.wake_makers()}
     sea = settings.to_parameters(scene)
     layers, number = list(sea.layers), makers.get(item, len(sea.layers))
     known = layers[number] if item in makers else None
-    layers[number : number + 1] = [
-        new_wake(item, ocean, scene, known if isinstance(known, WakeLayer) else None)
-    ]
+    known = known if isinstance(known, WakeLayer) else None
+    layers[number : number + 1] = [new_wake(item, ocean, scene, known, warn)]
     changed = sea.replace(layers=tuple(layers))
     if camera_surface_of(ocean) is None:
         add_camera_surface(ocean, scene)

@@ -292,3 +292,78 @@ def test_a_bake_is_of_the_sea_and_wakes_go_on_over_it(ocean, ship, select, bake,
     assert moved.reshape(-1, 3)[:, 2].min() < -0.5
     (need,) = extension("scene.portability").needs_of(ocean)  # on a machine without the extension
     assert "shows waves of Ocean that do not repeat" in need.text
+
+
+def lofted(scene, name, half_beam, keel=1.5, above=1.0, upside=1.0):
+    """An open boat of 20 m along x, its half beam at each of some stations, from its stern to its bow."""
+    stations = np.linspace(-LENGTH / 2, LENGTH / 2, len(half_beam))
+    corners, faces = [], []
+    for x, half in zip(stations, half_beam, strict=True):
+        corners += [(x, side * half, upside * z) for side in (-1, 1) for z in (-keel, above)]
+    for first in range(0, 4 * (len(half_beam) - 1), 4):
+        for a, b in ((0, 1), (2, 3), (0, 2)):  # starboard, port, bottom
+            faces.append((first + a, first + b, first + b + 4, first + a + 4))
+    last = 4 * (len(half_beam) - 1)
+    faces += [(0, 1, 3, 2), (last, last + 1, last + 3, last + 2)]
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(corners, [], faces)
+    item = bpy.data.objects.new(name, mesh)
+    scene.collection.objects.link(item)
+    return item
+
+
+def volume(wake):
+    return float(wake.footprint.values.mean()) * wake.length * wake.beam * wake.draught
+
+
+def test_the_footprint_is_the_part_of_the_mesh_below_the_water(ocean, select, empty_scene):
+    """An open wedge, sharp at its bow, displaces half of its box, and comes to a point ahead."""
+    half = BEAM / 2 * np.linspace(1.0, 0.02, 9)
+    for turn, name in ((0.0, "Wedge"), (0.5 * math.pi, "Turned")):
+        ship = lofted(empty_scene, name, half)
+        ship.data.transform(Matrix.Rotation(turn, 4, "Z"))
+        ship.location.z = 2.0  # the calm water's height
+        way = Matrix.Rotation(turn, 3, "Z") @ Vector((20.0, 0.0, 0.0))
+        key(ship, {FIRST: (0.0, 0.0, 2.0), LAST: (way.x, way.y, 2.0)})
+        select(ship)
+        bpy.ops.object.ocean_tweak_wake()
+        wake = next(layer for layer in reversed(sea_of(ocean).layers) if layer.kind == "WAKE")
+        assert volume(wake) == pytest.approx(0.51 * LENGTH * BEAM * KEEL, rel=0.05)
+        rows, columns, _ = wake.footprint.shape
+        shares = wake.footprint.values[..., 0].mean(axis=0)
+        assert shares[4] > 0.85  # the stern
+        assert shares[-4] < 0.15
+        assert columns > rows
+
+
+def test_a_wedge_that_goes_blunt_end_first_has_its_blunt_end_ahead(ocean, select, empty_scene):
+    """And it stays the bow when its keys are turned round: then it goes astern."""
+    ship = lofted(empty_scene, "Wedge", BEAM / 2 * np.linspace(1.0, 0.02, 9))
+    key(ship, {FIRST: (20.0, 0.0, 2.0), LAST: (0.0, 0.0, 2.0)})
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    before = wake_of(ocean)
+    assert before.footprint.values[:, -4].mean() > 0.85
+    key(ship, {FIRST: (0.0, 0.0, 2.0), LAST: (20.0, 0.0, 2.0)})
+    bpy.context.view_layer.update()
+    after = wake_of(ocean)
+    assert after.path[0].heading == pytest.approx(before.path[0].heading)
+    assert after.footprint == before.footprint
+    assert after.path != before.path
+
+
+def test_a_hull_without_an_inside_makes_the_waves_of_an_ellipse(ocean, select, empty_scene, extension):
+    """One that is upside down, or has no sides, is told of."""
+    capsized = lofted(empty_scene, "Capsized", np.full(3, BEAM / 2), upside=-1.0)
+    leaky = lofted(empty_scene, "Leaky", np.full(3, BEAM / 2))
+    leaky.data.clear_geometry()
+    leaky.data.from_pydata([(-9, -2, -1), (9, -2, -1), (9, 2, -1), (-9, 2, -1)], [], [(0, 1, 2, 3)])
+    for item in (capsized, leaky):
+        item.location.z = 2.0
+        select(item)
+        assert bpy.ops.object.ocean_tweak_wake() == {"FINISHED"}
+        wake = next(layer for layer in reversed(sea_of(ocean).layers) if layer.kind == "WAKE")
+        assert wake.footprint is None
+        told = []
+        extension("scene.wake_recording").new_wake(item, ocean, empty_scene, None, told.append)
+        assert f"{item.name} makes the waves of an ellipse of its size: the hull encloses nothing" in told[0]

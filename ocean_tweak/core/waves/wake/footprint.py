@@ -23,9 +23,11 @@ _FINER, _WHOLE, _MOST = 12, 64, 2048
 #: of the largest number of a transform, up to which it has no imaginary part
 _ALIKE = 1e-9
 
-#: of a hull: samples across its beam, how soft its edges are in beams, and samples beyond them by which it
+#: of a hull: samples across its beam, how soft its edges are in beams, and beams beyond them by which it
 #: has gone down to 0
-_FINE, _SOFTNESS, _SOFT_REACH = 8, 0.15, 6
+_FINE, _SOFTNESS, _SOFT_REACH = 8, 0.15, 0.75
+#: of a hull of any shape: samples across its beam, and share of its greatest draught from which it is there
+_FINE_SHAPE, _THERE = 16, 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,26 +113,53 @@ def hull_footprint(length: float, beam: float, draught: float, shape: Array | No
     shape : (rows, columns) shares of the draught over length and beam, [y, x] from the stern's starboard to
         the bow's port, or None for 1 - r² over an ellipse
 
-    Towards the sides of the box it goes down to 0, and it is softened as by exp(-(0.15 k beam)²): blunt edges
-    would make waves of any shortness, which fold.
+    Towards its edges it goes down to 0 as 1 - r², over half the breadth b of its widest part, and it is
+    softened as by exp(-(0.15 k b)²): blunt edges would make waves of any shortness, which fold.
     """
-    spacing = beam / _FINE
-    rows, columns = (2 * math.ceil(0.5 * side / spacing + _SOFT_REACH) + 1 for side in (beam, length))
+    spacing = beam / (_FINE if shape is None else _FINE_SHAPE)
+    reach = _SOFT_REACH * beam / spacing
+    rows, columns = (2 * math.ceil(0.5 * side / spacing + reach) + 1 for side in (beam, length))
     y = (np.arange(rows) - rows // 2)[:, np.newaxis] * (2.0 * spacing / beam)
     x = (np.arange(columns) - columns // 2) * (2.0 * spacing / length)
     if shape is None:
+        breadth = beam
         depth = np.maximum(1.0 - x * x - y * y, 0.0)
     else:
-        inside = (np.abs(x) <= 1.0) & (np.abs(y) <= 1.0)
-        across, along = (
-            np.clip((0.5 * place + 0.5) * count - 0.5, 0.0, count - 1.0)
-            for place, count in zip((y, x), shape.shape, strict=True)
-        )
-        row, column = np.broadcast_arrays(across, along)
-        depth = inside * (1.0 - x * x) * (1.0 - y * y) * between(row, column, shape.shape).read(shape)
+        depth = _between_samples(shape, x, y)
+        edge = _from_edge(depth > _THERE * np.max(depth), 0.5 * beam / spacing)
+        half = float(np.max(edge))
+        breadth = 2.0 * half * spacing
+        depth *= 1.0 - (1.0 - edge / half) ** 2
     k = np.hypot(
         2.0 * np.pi * np.fft.fftfreq(rows, spacing)[:, np.newaxis],
         2.0 * np.pi * np.fft.rfftfreq(columns, spacing),
     )
-    soft = np.exp(-((_SOFTNESS * beam * k) ** 2))
+    soft = np.exp(-((_SOFTNESS * breadth * k) ** 2))
     return Footprint.of(draught * np.fft.irfft2(np.fft.rfft2(depth) * soft, (rows, columns)), spacing)
+
+
+def _between_samples(shape: Array, x: NDArray[np.floating], y: NDArray[np.floating]) -> Array:
+    """Shares (Y, X) over -1…1 either way, x (X,) and y (Y, 1); 0 beyond."""
+    across, along = (
+        np.clip((0.5 * place + 0.5) * count - 0.5, 0.0, count - 1.0)
+        for place, count in zip((y, x), shape.shape, strict=True)
+    )
+    row, column = np.broadcast_arrays(across, along)
+    inside = (np.abs(x) <= 1.0) & (np.abs(y) <= 1.0)
+    found: Array = inside * between(row, column, shape.shape).read(shape)
+    return found
+
+
+def _from_edge(there: NDArray[np.bool_], most: float) -> Array:
+    """Distance in samples of those that are there from the nearest edge, half a sample off what is not."""
+    reach = math.ceil(most + 0.5)
+    rows, columns = there.shape
+    beyond = np.pad(~there, reach, constant_values=True)
+    nearest = np.full(there.shape, most)
+    for down in range(2 * reach + 1):
+        for right in range(2 * reach + 1):
+            off = math.hypot(down - reach, right - reach) - 0.5
+            if off < most:
+                near = beyond[down : down + rows, right : right + columns]
+                np.minimum(nearest, max(off, 0.0), out=nearest, where=near)
+    return nearest
