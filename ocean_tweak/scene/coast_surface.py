@@ -13,7 +13,7 @@ from ..core import Ocean, OceanParameters, Places
 from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
-from . import vertex_attributes, water_material
+from . import vertex_attributes, water_material, wet_bed
 from .plan import Plan
 from .settings import link_beside
 
@@ -61,6 +61,7 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
     _move(item.data, sea, grid, plan)
+    wet_bed.refresh(ocean, sea, plan)
 
 
 class _Grid:

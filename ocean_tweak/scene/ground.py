@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ..core.waves.coast.beds import BEDS, SIDE
+from ..nodes.names import WET
 from ..nodes.shading import Shading, Socket
 
 _SAND, _WET_SAND, _ROCK = (0.46, 0.36, 0.24, 1.0), (0.17, 0.125, 0.08, 1.0), (0.075, 0.068, 0.06, 1.0)
@@ -14,8 +15,8 @@ _SAND, _WET_SAND, _ROCK = (0.46, 0.36, 0.24, 1.0), (0.17, 0.125, 0.08, 1.0), (0.
 _STEEP = (0.86, 0.94)
 #: cells along each side of the mesh
 _CELLS = 512
-#: m above still water up to which sand is wet, and where it is dry
-_WET, _DRY = 0.7, 1.15
+#: attribute between which sand goes from dry to wet; the edge is uneven by so much
+_DRY, _WET, _UNEVEN = 0.05, 0.4, 0.5
 
 
 def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scale: float) -> bpy.types.Object:
@@ -59,8 +60,11 @@ def _material(scale: float) -> bpy.types.Material:
     geometry = shade.node("ShaderNodeNewGeometry").outputs
     place = geometry["Position"]
     fine, coarse = shade.noise(place, 1.7 / scale, Detail=5.0), shade.noise(place, 0.06 / scale, Detail=4.0)
-    height = shade.math("MULTIPLY_ADD", coarse, 0.5 * scale, shade.separate(place)[2])
-    wet = shade.smooth(height, _WET * scale, _DRY * scale, 1.0, 0.0)
+    told = shade.value(WET)
+    uneven = shade.math("MULTIPLY", shade.math("SUBTRACT", fine, 0.5), _UNEVEN)
+    # even where it is all wet or all dry
+    edge = shade.math("MULTIPLY", told, shade.math("SUBTRACT", 1.0, told))
+    wet = shade.smooth(shade.math("MULTIPLY_ADD", uneven, edge, told), _DRY, _WET)
     grain = shade.math("MULTIPLY_ADD", fine, 0.35, 0.95)
     sand = shade.scale(shade.mix_vectors(wet, _SAND[:3], _WET_SAND[:3]), grain)
     steep = shade.math("MULTIPLY_ADD", fine, 0.18, shade.separate(geometry["True Normal"])[2])

@@ -103,6 +103,25 @@ def test_patterns_of_the_material_lie_on_the_water_at_rest(ocean, coast_of):
     assert values(mesh, "cusp").max() > 0.0
 
 
+def test_the_bed_is_wet_up_to_where_waves_run(ocean):
+    bed = slope()
+    bpy.context.view_layer.objects.active = bed
+    modifier = bed.modifiers.new("Fine", "SUBSURF")
+    modifier.subdivision_type, modifier.levels = "SIMPLE", 6
+    bpy.ops.object.modifier_apply(modifier=modifier.name)
+    bpy.context.view_layer.objects.active = ocean
+    ocean.ocean_tweak.coast.bed = bed
+    bpy.ops.ocean.make_coast()
+    bpy.context.scene.frame_set(10)
+    height, wet = values(bed.data, "position", 3)[:, 2], values(bed.data, "wet")
+    assert (wet[height < -0.1] == 1.0).all()
+    assert (wet[height > 0.95] == 0.0).all()
+    shore = wet[(height > 0.1) & (height < 0.3)]
+    assert shore.mean() > 0.3
+    bpy.context.scene.frame_set(200)
+    assert np.abs(values(bed.data, "wet") - wet).max() > 0.01
+
+
 def test_it_goes_when_it_is_switched_off(ocean, coast_of):
     settings = ocean.ocean_tweak
     settings.coast.bed = slope()

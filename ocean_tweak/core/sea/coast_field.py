@@ -74,7 +74,7 @@ class OverBed:
 
     def signal(self, time: float | Fraction) -> ComplexArray:
         """(wet samples,) complex64 m; its real part is the elevation of the waves before shaping."""
-        return self._pictures.signal(self._factor(time))
+        return self._pictures.signal(self.factor(time))
 
     def elevation(self, time: float | Fraction) -> RealArray:
         """(rows, columns) m."""
@@ -82,7 +82,7 @@ class OverBed:
 
     def elevations(self, time: float | Fraction, rates: bool) -> tuple[RealArray, RealArray | None]:
         """(rows, columns) m, and where wanted m/s."""
-        factor = self._factor(time)
+        factor = self.factor(time)
         if not rates:
             return self.elevation(time), None
         signal, rate = (self._pictures.signal(each) for each in (factor, factor * self._rates))
@@ -91,7 +91,7 @@ class OverBed:
 
     def potentials(self, time: float | Fraction, rates: bool) -> tuple[RealArray, RealArray | None]:
         """(rows, columns) of the horizontal displacement, choppiness applied, and where wanted its rate."""
-        factor = self._factor(time) * self._sea.choppiness
+        factor = self.factor(time) * self._sea.choppiness
         if not rates:
             return self._spread(self._pictures.potential_sum(factor)), None
         still, moving = (self._pictures.potential_sum(each) for each in (factor, factor * self._rates))
@@ -156,7 +156,7 @@ class OverBed:
         assert period is not None
         return -2j * np.pi / float(period) * self._pictures.numbers
 
-    def _factor(self, time: float | Fraction) -> ComplexArray:
+    def factor(self, time: float | Fraction) -> ComplexArray:
         """e^(-iωt), exact after any number of repeats."""
         period = self._sea.repeats_after
         assert period is not None

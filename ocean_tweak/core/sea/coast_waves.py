@@ -24,12 +24,15 @@ from numpy.typing import NDArray
 from ..masks.weights import Weights, unweighted, weighted
 from ..numerics.memo import MEMO, total_bytes
 from ..parameters.ocean_parameters import OceanParameters
+from ..statistics.sea_spectrum import SeaSpectrum
+from ..statistics.sea_statistics import continuous_state
 from ..synthesis.transforms import Synthesis
 from ..waves.coast.breakers import broken_share
 from ..waves.coast.ground import Ground
 from ..waves.contribution import OwnFoam
 from .coast_field import OverBed
 from .coast_pictures import Incoming, Pictures, incoming, pictures
+from .coast_swash import Swash
 from .part_waves import PartWaves, components, real_type
 from .placed_waves import as_field
 from .sampling import Grid, Key, closed, turned
@@ -41,8 +44,8 @@ RealArray = NDArray[np.floating]
 #: of waves that break for lack of depth, significant height over depth: √2 · 0.42
 _LARGEST = 0.6
 
-#: m, over which it is told how high the long waves around a place are
-_AROUND = 12.0
+#: m, over which it is told how high the long waves around a place are, and how steep the foreshore is
+_AROUND, _FORESHORE = 12.0, 5.0
 
 _PICTURES = "pictures of coasts"
 _FIELDS = "fields of coasts"
@@ -128,6 +131,23 @@ class CoastWaves:
         where, share = self.ground.between(x, y), self._weights.read(1, x, y).value
         here = [where.read(each).astype(np.float32) for each in (foam, breaking, age)]
         return OwnFoam(here[0] * share.astype(np.float32), here[1] * share.astype(np.float32), here[2])
+
+    def wet(self, x: Array, y: Array, time: float | Fraction) -> NDArray[np.float32]:
+        """0…1 at places of the bed and the land in m, of one flat shape: 1 in water, and on land less the
+        longer ago a wave ran up there.
+        """
+        return self.swash.wet(x, y, time)
+
+    @cached_property
+    def swash(self) -> Swash:
+        """How far up the shore waves run."""
+        state = continuous_state(SeaSpectrum(self._sea))
+        # a flat sea has no period
+        wavelength = self._sea.water.gravity * np.nan_to_num(state.peak_period) ** 2 / (2.0 * math.pi)
+        depth = smoothed(self.ground.depth, _FORESHORE / self.ground.step)
+        slope = np.hypot(*np.gradient(depth, self.ground.step))
+        height = state.significant_wave_height
+        return Swash(self.over_bed, self.pictures, self.ground, self.broken_share, slope, height, wavelength)
 
     @cached_property
     def _weights(self) -> _BedWeights:

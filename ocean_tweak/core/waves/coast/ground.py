@@ -136,10 +136,19 @@ class Ground:
 
     def between(self, x: Array, y: Array) -> Between:
         """Where places in m lie among the samples: beyond the first and last rows on these."""
+        return between(*self._samples(x, y), self.depth.shape)
+
+    def nearest(self, x: Array, y: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Row and column of the sample next to places in m."""
+        row, column = self._samples(x, y)
+        return np.rint(row).astype(np.intp), np.rint(column).astype(np.intp) % self.columns
+
+    def _samples(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Places in m in samples: rows end with the first and the last."""
         c, s = math.cos(self.turn), math.sin(self.turn)
         along, across = c * x + s * y, c * y - s * x
         row = np.clip((along - self.first[0]) / self.step, 0.0, self.rows - 1 - 1e-9)
-        return between(row, (across - self.first[1]) / self.step, self.depth.shape)
+        return row, (across - self.first[1]) / self.step
 
     def _along(self, rows: int) -> Array:
         return self.first[0] + self.step * np.arange(rows, dtype=np.float64)
