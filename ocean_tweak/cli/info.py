@@ -174,7 +174,7 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         lines.append(f"  {what} of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
     of_coast = coast_outlook(Ocean(parameters))
     lines += [f"  {line}" for line in of_coast.lines()] if of_coast is not None else []
-    warnings = [*statistics.warnings]
+    warnings = [*statistics.warnings, *(of_coast.warnings if of_coast is not None else ())]
     for _, outlook in _outlooks(parameters):
         lines += [f"  {line}" for line in outlook.lines()]
         warnings += outlook.warnings

@@ -237,3 +237,20 @@ def test_json_both_ways() -> None:
     given = sea(shore="+Y", breaking=False)
     assert OceanParameters.from_json(given.to_json()) == given
     assert "coast" not in OceanParameters().to_dict()
+
+
+def test_where_no_waves_follow_the_bed_the_others_are_there_all_the_same() -> None:
+    parameters = sea(bed=np.full((21, 21), 18.0), spacing=10.0, shortest_wavelength=5000.0)
+    deep = Places(*np.meshgrid(100.0 + STEP * np.arange(24), STEP * np.arange(24)))
+    over_bed, open_one = (
+        Ocean(each).surface(7.3, ("displacement",), deep).displacement
+        for each in (parameters, open_sea(parameters))
+    )
+    assert over_bed[..., 2].std() == pytest.approx(open_one[..., 2].std(), rel=0.1)
+    told = coast_outlook(Ocean(parameters))
+    assert told is not None
+    assert told.frequencies == 0
+    assert "coast.shortest_wavelength" in told.warnings[0]
+    whole = coast_outlook(Ocean(sea()))
+    assert whole is not None
+    assert not whole.warnings

@@ -143,7 +143,8 @@ class OverBed:
     def _shape(self) -> Shape:
         """Of single waves at wet samples: none over the rim, where the open sea goes over."""
         omega, energy = -np.imag(self._rates), self._pictures.energy
-        mean = float(energy @ omega) / max(float(energy.sum()), 1e-300)
+        # of no waves any frequency will do
+        mean = float(energy @ omega) / float(energy.sum()) if energy.any() else 1.0
         depth = np.maximum(self._ground.depth[self._wet], SHALLOWEST)
         share = np.broadcast_to(self._ground.bed_share[:, np.newaxis], self._wet.shape)[self._wet]
         k = wave_numbers(np.array(mean), depth, self._sea.water.gravity)

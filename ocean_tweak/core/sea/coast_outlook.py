@@ -52,12 +52,23 @@ class CoastOutlook(NamedTuple):
             second += f", {self.shore:.2f} m at the shore"
         return [first, second]
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence each, with the remedy."""
+        if self.frequencies:
+            return ()
+        return (
+            "No waves follow the coast's bed: none that is longer than coast.shortest_wavelength runs "
+            "towards coast.shore. Make that wavelength shorter, or turn the waves or the shore",
+        )
+
     def to_plain(self) -> dict[str, Any]:
         """What `info --json` says."""
-        return {
+        numbers = {
             name: None if isinstance(value, float) and not np.isfinite(value) else value
             for name, value in self._asdict().items()
         }
+        return {**numbers, "warnings": list(self.warnings)}
 
 
 def coast_outlook(sea: Ocean) -> CoastOutlook | None:

@@ -204,6 +204,8 @@ class CoastWaves:
         do not reach, shorter ones do not either.
         """
         wet, step = self.ground.depth > 0.0, self.ground.step
+        if not len(self.pictures.numbers):
+            return np.ones(wet.shape)  # none came that a shelter could be seen by
         squares = np.zeros(wet.shape)
         squares[wet] = self.pictures.rms_height**2
         came = max(float(squares[: self.ground.rim_rows].mean()), 1e-12)
