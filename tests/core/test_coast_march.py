@@ -268,6 +268,10 @@ def test_waves_that_do_not_run_ashore_and_other_wrong_numbers_are_refused():
         (([0.0], [0.0]), "above 0"),
         (([1.0], [np.nan]), "finite"),
         (([1.0, 2.0], [0.0]), "one length"),
+        (([], []), "no waves"),
+        (([1e-300], [0.0]), "omega = 1e-300"),
+        (([1e300], [0.0]), r"omega = 1e\+300"),
+        (([1j], [0.0]), "omega = 'list': must hold real numbers"),
     ):
         with pytest.raises(ValueError, match=words):
             propagate(bed(), 1.0, *arguments)
@@ -275,3 +279,7 @@ def test_waves_that_do_not_run_ashore_and_other_wrong_numbers_are_refused():
         propagate(bed(), 0.0, [1.0], [0.0])
     with pytest.raises(ValueError, match="breaking"):
         propagate(bed(), 1.0, [1.0], [0.0], breaking=[-1.0])
+    with pytest.raises(ValueError, match=r"breaking = 1e\+300"):
+        propagate(bed(), 1.0, [1.0], [0.0], breaking=[1e300])
+    with pytest.raises(ValueError, match=r"spacing = 1e\+300"):
+        propagate(bed(), 1e300, [1.0], [0.0])

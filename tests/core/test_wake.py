@@ -220,6 +220,17 @@ BAD = {
     "decay = 0.0": {"decay": 0.0},
     "surface_tension = -1.0": {"surface_tension": -1.0},
     "time = nan": {"time": np.nan},
+    "time = '3'": {"time": "3"},
+    "resolution = 16.0: must be an even": {"resolution": 16.0},
+    "resolution = 100000: must be an even number from 4 to 8192": {"resolution": 100_000},
+    "gravity = inf": {"gravity": np.inf},
+    "surface_tension = inf": {"surface_tension": np.inf},
+    "decay = inf": {"decay": np.inf},
+    "decay = 1e-300": {"decay": 1e-300},
+    "footprint: must be finite, of draughts up to": {"footprint": [[1e300]]},
+    "footprint = 'list': must hold real numbers": {"footprint": [[1.0, 2.0], [3.0]]},
+    "positions = 'list': must hold real numbers": {"positions": [[0j, 0.0], [1.0, 0.0], [2.0, 0.0]]},
+    "begin the path after it": {"positions": [[0.0, 0.0], [1e300, 0.0], [1e300, 0.0]]},
 }
 
 

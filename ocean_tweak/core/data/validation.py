@@ -8,7 +8,11 @@ import math
 import re
 from collections.abc import Sequence
 from fractions import Fraction
+from numbers import Real
 from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
 from .raster import Raster
@@ -158,6 +162,25 @@ def rational(
 def _range_text(minimum: float, maximum: float, unit: str) -> str:
     span = f"from {minimum:g} to {maximum:g}" if math.isfinite(maximum) else "of any size"
     return f"{span} {unit}".rstrip()
+
+
+def check_range(name: str, value: object, minimum: float, maximum: float, unit: str) -> None:
+    """Raise ParameterError for an argument that is not a number within a range."""
+    if not isinstance(value, Real) or isinstance(value, bool) or not minimum <= float(value) <= maximum:
+        is_open = maximum == math.inf
+        span = f"of {minimum:g} {unit} or more" if is_open else _range_text(minimum, maximum, unit)
+        raise ParameterError(name, value, f"must be a number {span}")
+
+
+def real_array(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """An argument as float64. Raises ParameterError, naming it, for what is no array of numbers."""
+    try:
+        if np.iscomplexobj(values):
+            raise TypeError
+        return np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        reason = "must hold real numbers, as many in each row"
+        raise ParameterError(name, type(values).__name__, reason) from None
 
 
 def _checked_number(name: str, value: object, meta: Any) -> float:

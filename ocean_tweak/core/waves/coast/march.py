@@ -24,6 +24,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...data.validation import check_range, real_array
 from ...numerics.threads import run_blocks
 from ...spectral import constants
 
@@ -43,6 +44,10 @@ _DIRECTION_OVER, _MOST_OF_WIDTH = 60.0, 0.125
 _UNEVEN = 1.5
 #: B and γ of Thornton and Guza (1983)
 _INTENSITY, BREAKER_INDEX = 1.0, 0.42
+#: rad/s, least and greatest, and m, the highest: beyond them numbers overflow
+_SLOWEST, _QUICKEST, _HIGHEST = 1e-6, 1e6, 1e6
+#: m, deeper than any wave feels
+_DEEPEST = 1e9
 #: waves that are marched together
 _TOGETHER = 16
 
@@ -115,15 +120,15 @@ class Bed:
     @classmethod
     def of(cls, depth: ArrayLike, spacing: float, gravity: float) -> Bed:
         """Raises ValueError, with the remedy, for depths that cannot be marched over."""
-        h = np.asarray(depth, np.float64)
+        h = real_array("depth", depth)
         if h.ndim != 2 or h.shape[0] < 2 or h.shape[1] < 2:
             raise ValueError(f"depth: must be at least 2 rows of 2 depths, not of shape {h.shape}")
         if not np.isfinite(h).all():
             raise ValueError("depth: holds what is no number: fill the holes of the bed")
-        if not (math.isfinite(spacing) and spacing > 0.0):
-            raise ValueError(f"spacing = {spacing!r}: must be a length above 0 m")
-        if not (math.isfinite(gravity) and gravity > 0.0):
-            raise ValueError(f"gravity = {gravity!r}: must be above 0 m/s²")
+        # no wave feels what lies deeper, and powers of it overflow
+        h = np.minimum(h, _DEEPEST)
+        check_range("spacing", spacing, 1e-6, 1e6, "m")
+        check_range("gravity", gravity, 1e-6, 1e6, "m/s²")
         water = h > 0.0
         if not water[0].all():
             raise ValueError(
@@ -146,11 +151,15 @@ class Bed:
 
 
 def _waves(omega: ArrayLike, ky: ArrayLike) -> tuple[Array, Array]:
-    w, k = np.atleast_1d(np.asarray(omega, np.float64)), np.atleast_1d(np.asarray(ky, np.float64))
+    w, k = np.atleast_1d(real_array("omega", omega)), np.atleast_1d(real_array("ky", ky))
     if w.ndim != 1 or w.shape != k.shape:
         raise ValueError(f"omega and ky: must be rows of one length, not of shapes {w.shape} and {k.shape}")
+    if not len(w):
+        raise ValueError("omega: has no waves: give the frequency of one at least")
     if not (np.isfinite(w).all() and (w > 0.0).all()):
         raise ValueError("omega: must be finite and above 0 rad/s")
+    for value in (w.min(), w.max()):
+        check_range("omega", float(value), _SLOWEST, _QUICKEST, "rad/s")
     if not np.isfinite(k).all():
         raise ValueError("ky: must be finite")
     return w, k
@@ -168,9 +177,11 @@ def _check_shoreward(bed: Bed, omega: Array, ky: Array) -> None:
 
 
 def _amplitudes(breaking: ArrayLike, count: int) -> Array:
-    a = np.asarray(breaking, np.float64)
-    if a.shape != (count,) or not np.isfinite(a).all() or (a < 0.0).any():
-        raise ValueError(f"breaking: must be {count} amplitudes of 0 m or more, one of each wave")
+    a = real_array("breaking", breaking)
+    if a.shape != (count,):
+        raise ValueError(f"breaking: must be {count} amplitudes, one of each wave, not of shape {a.shape}")
+    for value in a:
+        check_range("breaking", float(value), 0.0, _HIGHEST, "m")
     return a
 
 

@@ -21,6 +21,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...data.errors import ParameterError
+from ...data.validation import check_range
 from ...numerics.threads import row_blocks, run_blocks
 from ...spectral import constants
 from .footprint import Footprint
@@ -32,6 +34,22 @@ ComplexArray = NDArray[np.complex64]
 
 #: below this |z|, e^z - 1 is taken from its series
 _SMALL = 1e-3
+
+#: m/s, up to which phases hold in single precision
+_FASTEST = 1e9
+#: samples along a side of an area, at the most
+_MOST_SAMPLES = 8192
+#: s, up to which a time is known to some milliseconds
+_LATEST = 1e12
+#: least and greatest of a basin's numbers, and their units: beyond them single precision holds no wave
+_RANGES = {
+    "area": (1e-6, 1e9, "m"),
+    "depth": (1e-6, math.inf, "m"),
+    "gravity": (1e-6, 1e6, "m/s²"),
+    "surface_tension": (0.0, 1e6, "N/m"),
+    "decay": (1e-12, 1e6, "1/s"),
+    "density": (1e-6, 1e6, "kg/m³"),
+}
 
 
 def wake_elevation(
@@ -61,7 +79,7 @@ def wake_elevation(
     surface_tension : N/m, for the density of fresh water
     decay : γ, rate at which waves fade, 1/s
 
-    Raises ValueError with the name of an argument out of range.
+    Raises ParameterError with the name of an argument out of range.
 
     Examples
     --------
@@ -74,9 +92,14 @@ def wake_elevation(
     (128, 128)
     """
     track = Track.of(times, positions, headings)
+    speed, sample = track.fastest
+    if not speed <= _FASTEST:
+        raise ParameterError(
+            f"positions.{sample}", f"{speed:.3g} m/s",
+            f"must be reached at {_FASTEST:g} m/s or less: where the object jumps, begin the path after it",
+        )  # fmt: skip
     basin = Basin(area, resolution, depth, gravity, surface_tension, decay)
-    if not math.isfinite(time):
-        raise ValueError(f"time = {time!r}: must be a finite number of seconds")
+    check_range("time", time, -_LATEST, _LATEST, "s")
     past = Past.until(basin, _fitting(Footprint.of(footprint, spacing), area), track, time)
     shape = np.fft.irfft2(past.elevation(), basin.shape) * basin.scale
     return np.fft.fftshift(shape)
@@ -109,15 +132,11 @@ class Basin:
     density: float = constants.WATER_DENSITY
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.area) and self.area > 0.0):
-            raise ValueError(f"area = {self.area!r}: must be a length above 0 m")
-        if self.resolution < 4 or self.resolution % 2:
-            raise ValueError(f"resolution = {self.resolution!r}: must be an even number from 4")
-        for name in ("depth", "gravity", "decay", "density"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} = {getattr(self, name)!r}: must be above 0")
-        if not self.surface_tension >= 0.0:
-            raise ValueError(f"surface_tension = {self.surface_tension!r}: must be 0 or more")
+        for name, (least, most, unit) in _RANGES.items():
+            check_range(name, getattr(self, name), least, most, unit)
+        samples = self.resolution
+        if not isinstance(samples, (int, np.integer)) or not 4 <= samples <= _MOST_SAMPLES or samples % 2:
+            raise ParameterError("resolution", samples, f"must be an even number from 4 to {_MOST_SAMPLES}")
 
     @property
     def shape(self) -> tuple[int, int]:

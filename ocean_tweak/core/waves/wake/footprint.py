@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...data.validation import check_range, real_array
 from ...numerics.interpolation import between
 
 Array = NDArray[np.float64]
@@ -22,6 +23,9 @@ _FINER, _WHOLE, _MOST = 12, 64, 2048
 
 #: of the largest number of a transform, up to which it has no imaginary part
 _ALIKE = 1e-9
+
+#: m, the largest draught
+_DEEPEST = 1e6
 
 #: of a hull: samples across its beam, how soft its edges are in beams, and beams beyond them by which it
 #: has gone down to 0
@@ -40,13 +44,12 @@ class Footprint:
     @classmethod
     def of(cls, draught: ArrayLike, spacing: float) -> Footprint:
         """A checked footprint. Raises ValueError for one without size, or whose numbers are not finite."""
-        d = np.asarray(draught, np.float64)
+        d = real_array("footprint", draught)
         if d.ndim != 2 or not d.size:
             raise ValueError(f"footprint: must be rows of draughts [y, x], not of shape {d.shape}")
-        if not np.isfinite(d).all():
-            raise ValueError("footprint: must be finite")
-        if not (math.isfinite(spacing) and spacing > 0.0):
-            raise ValueError(f"spacing = {spacing!r}: must be a length above 0 m")
+        if not (np.abs(d) <= _DEEPEST).all():
+            raise ValueError(f"footprint: must be finite, of draughts up to {_DEEPEST:g} m")
+        check_range("spacing", spacing, 1e-6, 1e6, "m")
         return cls(d, float(spacing))
 
     def transform(self, kx: Array, ky: Array, heading: float) -> RealArray | ComplexArray:

@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...data.validation import real_array
+
 Array = NDArray[np.float64]
 
 #: of a path, by which a bend is none: of the distance covered, and of a turn in rad
@@ -70,7 +72,7 @@ class Track:
         immersions: ArrayLike | None = None,
     ) -> Track:
         """A checked track. Raises ValueError for samples that are none, not finite or out of order."""
-        t, x = np.asarray(times, np.float64), np.asarray(positions, np.float64)
+        t, x = real_array("times", times), real_array("positions", positions)
         if t.ndim != 1 or not len(t):
             raise ValueError(f"times: must be one row of at least one time, not of shape {t.shape}")
         if x.shape != (len(t), 2):
@@ -78,7 +80,8 @@ class Track:
                 f"positions: must have the shape ({len(t)}, 2), x and y of each time, not {x.shape}"
             )
         theta, immersed = (
-            None if given is None else np.asarray(given, np.float64) for given in (headings, immersions)
+            None if given is None else real_array(name, given)
+            for name, given in (("headings", headings), ("immersions", immersions))
         )
         for name, values in (("headings", theta), ("immersions", immersed)):
             if values is not None and values.shape != t.shape:
