@@ -247,6 +247,7 @@ BAD = {
     r"Make the area larger, or the object slower than 14\.1 m/s; where it jumps": {
         "path": (PathSample(), PathSample(1.0, 80.0))
     },
+    r"layers\.1\.path\.1 = '1e\+306 m/s': is too fast": {"path": (PathSample(), PathSample(1e-300, 1e6))},
     r"layers\.1\.area_size = 256\.0: must be at least 600 m, 3 times the hull": {"length": 200.0},
     r"layers\.1\.area_resolution = 128: must be at least 1280": {"beam": 0.2},
     "area_resolution = 127: must be an even number": {"area_resolution": 127},
@@ -297,6 +298,7 @@ def test_transverse_waves_of_a_depth_go_as_fast_as_the_object() -> None:
     k = 2.0 * math.pi / length
     assert math.sqrt(9.81 * math.tanh(8.0 * k) / k) == pytest.approx(6.0)
     assert transverse_wavelength(0.0, sea()) == 0.0
+    assert transverse_wavelength(1e-200, sea()) == 0.0
     assert wake_angle(0.4) == pytest.approx(math.radians(19.47), abs=1e-4)
     assert [wake_angle(froude) * froude for froude in (4.0, 8.0)] == pytest.approx([0.2, 0.2], abs=0.003)
 

@@ -166,7 +166,7 @@ def _range_text(minimum: float, maximum: float, unit: str) -> str:
 
 def check_range(name: str, value: object, minimum: float, maximum: float, unit: str) -> None:
     """Raise ParameterError for an argument that is not a number within a range."""
-    if not isinstance(value, Real) or isinstance(value, bool) or not minimum <= float(value) <= maximum:
+    if isinstance(value, bool) or not isinstance(value, Real) or not minimum <= float(value) <= maximum:
         is_open = maximum == math.inf
         span = f"of {minimum:g} {unit} or more" if is_open else _range_text(minimum, maximum, unit)
         raise ParameterError(name, value, f"must be a number {span}")

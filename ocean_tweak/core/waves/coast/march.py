@@ -158,8 +158,8 @@ def _waves(omega: ArrayLike, ky: ArrayLike) -> tuple[Array, Array]:
         raise ValueError("omega: has no waves: give the frequency of one at least")
     if not (np.isfinite(w).all() and (w > 0.0).all()):
         raise ValueError("omega: must be finite and above 0 rad/s")
-    for value in (w.min(), w.max()):
-        check_range("omega", float(value), _SLOWEST, _QUICKEST, "rad/s")
+    for value in w.tolist():
+        check_range("omega", value, _SLOWEST, _QUICKEST, "rad/s")
     if not np.isfinite(k).all():
         raise ValueError("ky: must be finite")
     return w, k
@@ -180,8 +180,8 @@ def _amplitudes(breaking: ArrayLike, count: int) -> Array:
     a = real_array("breaking", breaking)
     if a.shape != (count,):
         raise ValueError(f"breaking: must be {count} amplitudes, one of each wave, not of shape {a.shape}")
-    for value in a:
-        check_range("breaking", float(value), 0.0, _HIGHEST, "m")
+    for value in a.tolist():
+        check_range("breaking", value, 0.0, _HIGHEST, "m")
     return a
 
 

@@ -56,17 +56,17 @@ def transverse_wavelength(speed: float, sea: OceanParameters) -> float:
 
     In deep water 2π U²/g; shallow water has none above √(gh).
     """
-    gravity, depth = sea.water.gravity, sea.water.depth
+    gravity, depth, square = sea.water.gravity, sea.water.depth, speed * speed
     if sea.dispersion == "DEEP":
-        return 2.0 * math.pi * speed**2 / gravity
-    if speed**2 >= gravity * depth:
+        return 2.0 * math.pi * square / gravity
+    if square >= gravity * depth:
         return math.inf
-    long, short = 1e-9 / depth, gravity / speed**2 if speed > 0.0 else math.inf
-    if not math.isfinite(short):
+    if square == 0.0:
         return 0.0
+    long, short = 1e-9 / depth, gravity / square
     for _ in range(100):  # g tanh(kh)/k falls with k
         k = math.sqrt(long * short)
-        long, short = (k, short) if gravity * math.tanh(k * depth) / k > speed**2 else (long, k)
+        long, short = (k, short) if gravity * math.tanh(k * depth) / k > square else (long, k)
     return 2.0 * math.pi / math.sqrt(long * short)
 
 

@@ -205,7 +205,7 @@ class WakeLayer(Contribution):
 
     def _check_speed(self, sea: OceanParameters, path: str) -> None:
         speed, index = self.track.fastest
-        longest = min(transverse_wavelength(speed, sea), 2.0 * math.pi * speed**2 / sea.water.gravity)
+        longest = min(transverse_wavelength(speed, sea), 2.0 * math.pi * speed * speed / sea.water.gravity)
         most = self.area_size / _WAVES
         if longest > most:
             fitting = math.sqrt(most * sea.water.gravity / (2.0 * math.pi))
