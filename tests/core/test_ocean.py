@@ -114,6 +114,7 @@ def test_only_separate_patches_are_several_tiles() -> None:
     [
         (0.0, 4, r"size = 0\.0: must be a length above 0 m"),
         (np.inf, 4, "size = inf"),
+        (1e300, 4, r"size = 1e\+300.* must be within 1e\+12 m"),
         (1.0, 0, "resolution = 0"),
     ],
 )

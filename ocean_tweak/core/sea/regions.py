@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 #: largest number of samples along a side of an area in a file, as for a sea
 MOST_SAMPLES = 8192
+#: m, side of an area and distance of its corner at the most: fields are single precision
+_LARGEST = 1e12
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class Area:
     resolution : samples along each side
     corner : x and y of the first sample, m
 
-    Raises ValueError for a size or resolution of 0 or less.
+    Raises ValueError for a size or resolution of 0 or less, and for one that is too far away.
 
     Examples
     --------
@@ -64,6 +66,10 @@ class Area:
             raise ValueError(f"resolution = {self.resolution!r}: must be 1 or more samples")
         if len(self.corner) != 2 or not all(map(math.isfinite, self.corner)):
             raise ValueError(f"corner = {self.corner!r}: must be x and y in m")
+        if self.size > _LARGEST or not all(abs(place) <= _LARGEST for place in self.corner):
+            raise ValueError(
+                f"size = {self.size!r}, corner = {self.corner!r}: must be within {_LARGEST:g} m of the origin"
+            )
 
     def rest_positions(self) -> tuple[Array, Array]:
         """x and y in m, (N, N) each.
