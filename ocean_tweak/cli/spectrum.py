@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 from ..core import Ocean, OceanParameters
@@ -14,7 +15,7 @@ from ..core.parameters.shot import Shot
 from ..export.sea_files import write_sea
 from ..export.spectra.reading import chosen_place, chosen_times, measured_sea, read_spectra
 from ..export.spectra.records import Record, time_text
-from .outcome import DONE
+from .outcome import DONE, UsageError
 
 #: places and times of which a line is printed
 _MOST_LINES = 60
@@ -22,6 +23,9 @@ _MOST_LINES = 60
 
 def run(arguments: argparse.Namespace) -> int:
     """Print what the files hold and what is chosen of it, and write the sea."""
+    out = arguments.out
+    if out is not None and any(Path(out).resolve() == Path(file).resolve() for file in arguments.files):
+        raise UsageError(f"--out {out} is one of the files that are read: give the sea another name")
     records = read_spectra(arguments.files)
     place = chosen_place(records, arguments.place)
     chosen = chosen_times(place, arguments.time)
@@ -30,8 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(_plain(records, chosen)))
     else:
         print("\n".join([*_places(records), *_report(chosen, sea)]))
-    if arguments.out is not None:
-        write_sea(arguments.out, Shot(sea))
+    if out is not None:
+        write_sea(out, Shot(sea))
     return DONE
 
 

@@ -220,6 +220,7 @@ def test_the_weather_gives_the_wind(tmp_path: Path) -> None:
         ("SWAN 1\nTIME\n4\n", "line 3.*option 4"),
         ("SWAN 1\nLOCATIONS\n1\n0 0\nAFREQ\n1\n", "line 6.*from 2 to"),
         ("SWAN 1\nLOCATIONS\n1\n0 0\nAFREQ\n2\n0.1\n0.1\n", "line 8.*all different"),
+        ("SWAN 1\nLOCATIONS\n1\n0 0\nAFREQ\n2\n0.1\n0.1000000001\n", "line 8.*all different"),
         ("SWAN 1\nLOCATIONS\n1\n0 x\n", "line 4.*x is no number"),
         ("SWAN 1\nQUANT\n", "line 2.*comes before LOCATIONS"),
         ("SWAN 1\nWIND\n", "line 2.*WIND is none of"),
@@ -241,6 +242,7 @@ def test_a_spectrum_that_is_cut_off_uneven_or_empty(tmp_path: Path) -> None:
         (swan_text(["ZERO"], directions=NAUTICAL), "no spectrum with energy"),
         (whole.replace("FACTOR", "FACTORY"), "none of FACTOR"),
         (whole.replace("20200101.000000", "1 Jan"), "no time"),
+        (swan_text([bump(NAUTICAL, 0.0, True, height=1e4)], directions=NAUTICAL), r"of 1e\+04 m.*factor"),
     ):
         with pytest.raises(ParameterError, match=what):
             read_spectra([written(tmp_path, content)])
@@ -285,3 +287,23 @@ def test_the_command_prints_what_it_found_and_writes_a_sea(
     assert sea.layers[0].definition == "MEASURED"
     assert out.stat().st_size < 20_000  # eleven hours of a buoy
     assert main(["spectrum", str(BUOY_FILES[0]), "--time", "2020-06-09"]) == 2
+
+
+def test_a_sea_is_not_written_over_what_it_is_read_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = written(tmp_path, swan_text([bump(NAUTICAL, 0.0, True)], directions=NAUTICAL))
+    before = path.read_bytes()
+    assert main(["spectrum", str(path), "--out", str(tmp_path / ".." / tmp_path.name / path.name)]) == 2
+    assert "give the sea another name" in capsys.readouterr().err
+    assert path.read_bytes() == before
+
+
+def test_shares_of_what_a_grid_leaves_out_are_plain_numbers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All waves of 30 Hz and above are shorter than two samples of any sea."""
+    f = np.array([30.0, 50.0, 90.0])
+    path = written(tmp_path, swan_text([np.full((3, 4), 1e-4)], f=f, directions=np.arange(4) * 90.0))
+    assert main(["spectrum", str(path)]) == 0
+    assert "100 % of the measured energy" in capsys.readouterr().out

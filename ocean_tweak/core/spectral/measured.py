@@ -85,7 +85,7 @@ class MeasuredSpectra(Validated):
         if self.times is None and times > 1:
             raise ParameterError("times", None, f"must be given for {times} spectra")
         if not np.all(np.diff(self.seconds) > 0.0):
-            raise ParameterError("times", list(self.seconds), "must ascend")
+            raise ParameterError("times", self.seconds.tolist(), "must ascend")
         if self.moments is not None and self.directions is not None:
             raise ParameterError("directions", self.directions, "must be left out where there are moments")
         directions = 1 if self.directions is None else max(4, self.directions.shape[1])

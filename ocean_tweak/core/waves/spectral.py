@@ -262,17 +262,17 @@ class WaveLayer(Contribution):
         )
         if longer > _TOLD and not sea.is_cascade:
             yield (
-                f"{100.0 * longer:.2g} % of the measured energy is in waves longer than the domain of "
+                f"{100.0 * longer:.3g} % of the measured energy is in waves longer than the domain of "
                 f"{sea.domain_size:g} m: make it larger, or give it patches"
             )
         if shorter > _TOLD and not sea.is_cascade:
             yield (
-                f"{100.0 * shorter:.2g} % of the measured energy is in waves shorter than two samples, "
+                f"{100.0 * shorter:.3g} % of the measured energy is in waves shorter than two samples, "
                 f"{2.0 * samples:.3g} m: raise the resolution, or give it patches"
             )
         if spectrum.blocked_share > _TOLD_OF_BLOCKED:
             yield (
-                f"The current blocks waves with {100.0 * spectrum.blocked_share:.2g} % of the measured "
+                f"The current blocks waves with {100.0 * spectrum.blocked_share:.3g} % of the measured "
                 "energy, which are left out: make the current slower, or turn it"
             )
 

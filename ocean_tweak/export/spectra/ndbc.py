@@ -180,7 +180,7 @@ def _values(lines: Lines, kind: str, words: Sequence[str], factor: float) -> Arr
 def _checked_frequencies(lines: Lines, f: Array) -> Array:
     if not 2 <= len(f) <= MOST_FREQUENCIES:
         lines.refuse(f"has {len(f)} frequencies: must have from 2 to {MOST_FREQUENCIES}")
-    if not (bool(np.all(f > 0.0)) and bool(np.all(np.diff(f) > 0.0)) and f[-1] < 100.0):
+    if not (bool(np.all(f > 0.0)) and bool(np.all(np.diff(f.astype(np.float32)) > 0.0)) and f[-1] < 100.0):
         lines.refuse("has frequencies that do not ascend from above 0 Hz to below 100 Hz")
     return f
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...core.data.printable import printable
 from .records import MOST_DIRECTIONS, MOST_FREQUENCIES, MOST_NUMBERS, Record, ordered, towards
-from .text import Lines
+from .text import Lines, refuse_file
 
 Array = NDArray[np.float64]
 
@@ -31,6 +31,9 @@ _TIME_FORMATS = {
 }  # fmt: skip
 
 _MOST_PLACES = 10_000
+
+#: m, significant, above which a file must be wrong: four times the highest ever measured
+_HIGHEST = 80.0
 
 #: N/m³: from energy in J/m² to variance, with SWAN's own density of water and gravity
 _WEIGHT = 1025.0 * 9.81
@@ -158,9 +161,14 @@ def _frequencies(lines: Lines) -> Array:
         _first(lines, "the number of frequencies"), "number of frequencies", 2, MOST_FREQUENCIES
     )
     f = np.array([lines.decimal(_first(lines, "a frequency"), "a frequency") for _ in range(count)])
-    if not (bool(np.all(f > 0.0)) and bool(np.all(f < 100.0)) and len(np.unique(f)) == count):
+    if not (bool(np.all(f > 0.0)) and bool(np.all(f < 100.0)) and _differ(f)):
         lines.refuse("ends frequencies that are not all different and between 0 and 100 Hz")
     return f
+
+
+def _differ(f: Array) -> bool:
+    """Whether all are different in the precision in which a layer keeps them."""
+    return len(np.unique(f.astype(np.float32))) == len(f)
 
 
 def _directions(lines: Lines, is_nautical: bool) -> Array:
@@ -288,6 +296,12 @@ def _record(
         sums = whole.sum(axis=-1, keepdims=True)
         shares = np.divide(whole, sums, out=np.zeros_like(whole), where=sums > 0.0)
         record = Record(place, own_times, head.f[order], energy, shares=shares, first_direction=first)
+    heights = [record.summary(index).significant_wave_height for index in range(len(kept))]
+    if heights and max(heights) > _HIGHEST:
+        reason = (
+            f"has waves of {max(heights):.3g} m at place {place}, higher than any sea's: its factor, unit"
+        )
+        refuse_file(lines.path, f"{reason} or frequencies may be wrong")
     return ordered(
         Record(**{**vars(record), "absolute": head.is_absolute, "notes": tuple(notes)}) if kept else record
     )
