@@ -4,9 +4,9 @@
 What rides feels the plane of least squares through the surface over its waterline, a disc; waves shorter than
 the disc cancel out. The stencil of points that stands for it is that of `core.sea.waterline`.
 
-A carrier may ride damped: where its hull is then depends on the past, which nodes do not see. The extension
-works it out, `core.sea.riding`, and gives it to the carrier for one frame; at any other the hull follows the
-surface.
+A carrier may ride damped: where its hull is then depends on the past, which nodes do not see. Nor do they
+see the waves over a bed, which has a mesh of its own. The extension works out where the hull is,
+`core.sea.riding`, and gives it to the carrier for one frame; at any other the hull follows the surface.
 """
 
 from __future__ import annotations
@@ -68,11 +68,12 @@ DAMPED_INPUTS = (
     ),
     Plug("Roll Damping", "NodeSocketFloat", 0.1, "Of roll: 1 does not swing at all, 0.1 is usual for ships"),
 )  # fmt: skip
-#: where a damped hull is, and at which frame of the scene
+#: where a hull is that rides damped or over a bed, and at which frame of the scene
 SOLVED_INPUTS = (
     Plug(
         "Solved", "NodeSocketVector", None,
-        "Height of a damped hull and its slopes along x and y, in the ocean's space", hidden=True,
+        "Height of a damped hull, or of one over a bed, and its slopes along x and y, in the ocean's space",
+        hidden=True,
     ),
     Plug("Solved Frame", "NodeSocketFloat", -1e6, "The scene's frame at which it is so", hidden=True),
 )  # fmt: skip
@@ -333,8 +334,7 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
     away = alone(
         build, "ABSOLUTE", build.math("SUBTRACT", frame, build.given("Solved Frame")), "ShaderNodeMath"
     )
-    is_now = build.compare("LESS_THAN", away, _SAME_FRAME, "FLOAT")
-    is_solved = build.logic("AND", build.given("Damped"), is_now)
+    is_solved = build.compare("LESS_THAN", away, _SAME_FRAME, "FLOAT")
     ride = _ride(build, _origin(build), {"Is Solved": is_solved, "Solved": build.given("Solved")})
     position, rotation = _of_place(build, ride, 0)
     moved = _moved(build, ride, build.given("Geometry"))
@@ -345,4 +345,4 @@ def _build_carrier(tree: bpy.types.NodeTree) -> None:
 STENCIL = GroupKind("Ocean Tweak Stencil", 1, _build_stencil)
 RIDE = GroupKind("Ocean Tweak Ride", 5, _build_ride)
 FLOAT = GroupKind("Float on Ocean", 5, _build_float)
-CARRIER = GroupKind("Float on Ocean Carrier", 5, _build_carrier)
+CARRIER = GroupKind("Float on Ocean Carrier", 6, _build_carrier)

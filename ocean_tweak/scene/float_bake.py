@@ -98,21 +98,25 @@ class FloatBake:
                 waters[rider.ocean] = water_at(rider.ocean, self._scene, depsgraph, frame)
             water = waters[rider.ocean]
             places = [each.evaluated_get(depsgraph).matrix_world for each in (rider.place, rider.ocean)]
-            solved = None
-            if float_riding.can_ride(rider.ride):
-                solved = self._solved(rider, water, *places, depsgraph)
+            solved = self._solved(rider, water, *places, depsgraph)
             rider.track.add(place_on(water, *places, rider.ride, metres, solved))
         self.done += 1
 
     def _solved(
         self, rider: _Rider, water: Water, place: Matrix, ocean: Matrix, depsgraph: bpy.types.Depsgraph
-    ) -> float_riding.Solved:
-        """Where a damped hull is: on a live sea from all of its past, on a sequence from what was baked."""
+    ) -> float_riding.Solved | None:
+        """Where a damped hull is: on a live sea from all of its past, on a sequence from what was baked; and
+        where any is over a bed. None for one that is on the surface of the water.
+        """
         scene, settings = self._scene, shown_settings(rider.ocean, depsgraph)
         plan = plan_for(rider.ocean, settings, scene)
         if settings.source == "LIVE":
+            if not float_riding.is_solved(plan, rider.ride):
+                return None
             at = float_riding.place_of(rider.place, depsgraph)
             return float_riding.solve(plan, rider.ride, ocean, scene, at)
+        if not float_riding.can_ride(rider.ride):
+            return None
         under = float_riding.footprint(place, ocean, rider.ride, float(plan.metres))
         under = float_riding.gone_along(under, water.come)
         rider.felt.append(float_riding.felt(under, water.carried, lambda x, y: water.surface(x, y)[0]))

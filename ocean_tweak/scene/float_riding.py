@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hulls that ride damped: where each is at the frame that is shown, from what it felt of the sea before.
 
+And hulls over a bed, damped or not: the waves that nodes see are those of the open sea.
+
 Nodes see one frame only, so this is worked out here and given to the carrier, with the frame for which it
 holds. Of the past only moments are asked for that frames share, and what a hull felt then is kept: a frame
 more needs the water at one moment or none. In a window, a hull that is moved by hand follows the surface
@@ -21,12 +23,12 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters, ParameterError
 from ..core.numerics.memo import MEMO
-from ..core.sea.placed_waves import repeating
+from ..core.sea.placed_waves import repeating, without_placed
 from ..core.sea.regions import Places
 from ..core.sea.riding import Moments, Oscillator, moments, natural_periods, ride
 from ..core.sea.waterline import Plane, fitted_plane, stencil
 from ..nodes.floating import CARRIER
-from ..nodes.modifier_inputs import get_input
+from ..nodes.modifier_inputs import all_inputs, get_input
 from ..nodes.versioned import is_of_kind
 from . import float_carrier, float_path
 from .animated import is_animated, shown_settings
@@ -47,6 +49,8 @@ _MOST, _BYTES = 50_000, 400
 _IN_BEAM = 3.0
 #: digits of m and of rad below which two places are one
 _DIGITS = 3, 5
+#: m, half of the size of what follows the surface at a point of a bed's waves
+_POINT = 0.25
 #: s before a frame at which keys that were changed are noticed
 _LOOKS = (0, 1, 3, 10, 30)
 #: s that a hand must rest
@@ -133,6 +137,11 @@ def can_ride(ride: Ride) -> bool:
     return ride.damped and ride.waterline > 0.0
 
 
+def is_solved(plan: Plan, ride: Ride) -> bool:
+    """Whether a hull on a live sea is where it is solved to be, and not where nodes find the surface."""
+    return can_ride(ride) or plan.over_bed is not None
+
+
 def why_not(carrier: bpy.types.Object) -> str:
     """Why a carrier that shall ride damped does not, or not as it should; "" where all is well."""
     ocean, ride = ride_of(carrier)
@@ -203,7 +212,7 @@ def solve(
     scene: bpy.types.Scene,
     place_at: Callable[[Fraction], Matrix],
 ) -> Solved:
-    """Where a hull is on a live sea at the frame of a plan.
+    """Where a hull is on a live sea at the frame of a plan; one that is not damped is on the surface.
 
     place_at : its place on land, in the world, at a frame of the animation
     """
@@ -215,13 +224,18 @@ def solve(
         return gone_along(place, come(plan.parameters.current, float(time)))
 
     now = lies(plan.time)
-    modes = modes_of(ride_of_hull, now, plan.parameters.water.gravity)
-    known = moments(plan.time, modes)
-    sea = _sea_of(plan.parameters, now)
+    sea = _sea_of(plan, now)
     felt = MEMO.get(_FELT, sea, lambda: _Felt(sea))
-    water = np.array([felt.at(time, lies(time)) for time in known.times])
+    if can_ride(ride_of_hull):
+        modes = modes_of(ride_of_hull, now, plan.parameters.water.gravity)
+        known = moments(plan.time, modes)
+        water = np.array([felt.at(time, lies(time)) for time in known.times])
+        found = in_ocean(ride(water, known, plan.time, modes), now)
+    else:
+        half = max(now.half_length, _POINT)
+        found = in_ocean(np.array(felt.at(plan.time, now._replace(half_length=half, half_beam=half))), now)
     MEMO.put(_FELT, sea, felt)  # it has grown
-    return in_ocean(ride(water, known, plan.time, modes), now)
+    return found
 
 
 def solve_by_frames(
@@ -239,17 +253,20 @@ def solve_by_frames(
     return in_ocean(ride(np.array(rows), known, Fraction(0), modes), place)
 
 
-def _sea_of(parameters: OceanParameters, place: Footprint) -> OceanParameters:
-    """The same sea on as many samples as a hull feels."""
-    parameters = repeating(parameters)  # or it would lie in the dent that it makes itself
+def _sea_of(plan: Plan, place: Footprint) -> OceanParameters:
+    """The same sea on as many samples as a hull feels, and over its bed on all of them."""
+    # without what hulls make, or it would lie in the dent that it makes itself
+    if plan.over_bed is not None:
+        return without_placed(plan.over_bed)
+    parameters = repeating(plan.parameters)
     beam = 2.0 * min(place.half_beam, place.half_length)
     wanted = 2 ** math.ceil(math.log2(max(_IN_BEAM * parameters.domain_size / beam, 16.0)))
     return parameters.at_resolution(min(wanted, parameters.resolution))
 
 
 def follow_before_frame(scene: bpy.types.Scene) -> None:
-    """Let damped hulls be where they are at the frame that the scene is about to evaluate."""
-    for carrier in _damped():
+    """Let hulls be where they are at the frame that the scene is about to evaluate."""
+    for carrier in _solved():
         ocean, ride = ride_of(carrier)
         if ocean is not None and not is_animated(ocean) and float_path.is_known(carrier):
             _give(carrier, ocean, ride, scene, None)
@@ -257,20 +274,20 @@ def follow_before_frame(scene: bpy.types.Scene) -> None:
 
 def follow_after_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None) -> None:
     """As `follow_before_frame`, of oceans that are animated and hulls that something else than keys moves."""
-    for carrier in _damped():
+    for carrier in _solved():
         ocean, ride = ride_of(carrier)
         if ocean is not None and (is_animated(ocean) or not float_path.is_known(carrier)):
             _give(carrier, ocean, ride, scene, depsgraph)
 
 
 def follow_by_hand(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None) -> None:
-    """Let damped hulls be where they are, whatever was moved or set."""
+    """Let hulls be where they are, whatever was moved or set."""
     in_window = not bpy.app.background and (depsgraph is None or depsgraph.mode == "VIEWPORT")
-    for carrier in _damped():
+    for carrier in _solved():
         ocean, ride = ride_of(carrier)
         if ocean is None:
             continue
-        if not in_window:
+        if not in_window or not ride.damped:
             _give(carrier, ocean, ride, scene, depsgraph)
         elif _reasons(carrier, ocean, ride, scene, depsgraph) != _known.get(carrier.session_uid):
             float_carrier.set_inputs(carrier, {"Solved Frame": _NEVER})
@@ -291,19 +308,23 @@ def _wait() -> None:
 
 
 def _after_pause() -> None:
-    for carrier in _damped():
+    for carrier in _solved():
         ocean, ride = ride_of(carrier)
         if ocean is not None:
             _give(carrier, ocean, ride, bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
-def _damped() -> Iterator[bpy.types.Object]:
-    """The carriers of this file that ride damped."""
+def _solved() -> Iterator[bpy.types.Object]:
+    """The carriers of this file that are told where they are, or were and are to be told no longer."""
     if not any(is_of_kind(group, CARRIER) for group in bpy.data.node_groups):
         return
     for item in list(bpy.data.objects):
-        if item.library is None and float_carrier.is_carrier(item) and ride_of(item)[1].damped:
-            yield item
+        if item.library is None and float_carrier.is_carrier(item):
+            ocean, ride = ride_of(item)
+            over_bed = ocean is not None and is_ocean(ocean) and settings_of(ocean).coast.use
+            told = all_inputs(float_carrier.modifier_of(item)).get("Solved Frame", _NEVER)
+            if ride.damped or over_bed or told != _NEVER:
+                yield item
 
 
 class _Reasons(NamedTuple):
@@ -325,8 +346,8 @@ def _reasons(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph | None,
 ) -> _Reasons | None:
-    """None where a hull follows the surface: of no size, or on a sea that is not live."""
-    if ocean not in oceans_in(scene) or not can_ride(ride):
+    """None where a hull follows the surface that nodes see, as on a sea that is not live."""
+    if ocean not in oceans_in(scene) or not (can_ride(ride) or settings_of(ocean).coast.use):
         return None
     settings = shown_settings(ocean, depsgraph)
     if settings.source != "LIVE":
@@ -335,6 +356,8 @@ def _reasons(
         plan = plan_for(ocean, settings, scene)
     except (ParameterError, OceanObjectError):
         return None  # the ocean tells
+    if not is_solved(plan, ride):
+        return None
     at, fps, stretch = place_of(carrier, depsgraph), frame_rate(scene), time_stretch(scene)
     places = [at((plan.frame - seconds * fps) / stretch) for seconds in _LOOKS]
     return _Reasons(plan, ride, _plain(ocean.matrix_world), tuple(map(_plain, places)))

@@ -122,6 +122,40 @@ def test_the_bed_is_wet_up_to_where_waves_run(ocean):
     assert np.abs(values(bed.data, "wet") - wet).max() > 0.01
 
 
+@pytest.mark.parametrize("drawn", [False, True])
+def test_what_floats_rides_the_waves_over_the_bed(extension, ocean, core, drawn):
+    settings, scene = ocean.ocean_tweak, bpy.context.scene
+    settings.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    item = bpy.data.objects.new("Buoy", None)
+    item.location = (130.0, 70.0, 0.0)
+    scene.collection.objects.link(item)
+    floating = extension("scene.floating")
+    floating.float_on(item, ocean, floating.Ride(tilt=0.0))
+    if drawn:
+        bpy.context.view_layer.objects.active = item
+        item.select_set(True)
+        scene.frame_start, scene.frame_end = 20, 22
+        bpy.ops.object.ocean_tweak_float_bake()
+    sea = core.Ocean(settings.to_parameters(scene))
+    found, expected = [], []
+    for frame in (20, 22):
+        scene.frame_set(frame)
+        found.append(item.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z)
+        # the mean of its least disc, 0.25 m
+        expected.append(sea.height_at(130.0, 70.0, sea.parameters.timing.time(frame)))
+    np.testing.assert_allclose(found, np.ravel(expected), atol=0.01)
+    settings.coast.muted = True
+    scene.frame_set(20)
+    if not drawn:
+        open_sea = core.Ocean(settings.to_parameters(scene)).height_at(
+            130.0, 70.0, sea.parameters.timing.time(20)
+        )
+        height = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.translation.z
+        assert height == pytest.approx(float(open_sea), abs=0.01)
+        assert abs(height - found[0]) > 0.02
+
+
 def test_it_goes_when_it_is_switched_off(ocean, coast_of):
     settings = ocean.ocean_tweak
     settings.coast.bed = slope()

@@ -106,7 +106,11 @@ def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
 
 def repeating(sea: OceanParameters) -> OceanParameters:
     """The sea without these layers, and the open sea of one with a coast; the same one where it has none."""
-    sea = open_sea(sea)
+    return without_placed(open_sea(sea))
+
+
+def without_placed(sea: OceanParameters) -> OceanParameters:
+    """The sea without these layers; the same one where it has none."""
     if not placed_waves(sea):
         return sea
     layers = (layer.changed(muted=True) if Gives.FIELDS in layer.gives else layer for layer in sea.layers)
