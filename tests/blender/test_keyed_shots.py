@@ -36,7 +36,8 @@ def test_what_can_be_keyed_is_what_is_tried_here(ocean):
     settings = ocean.ocean_tweak
     layer = settings.layers[0]
     known = {"rna_type", "name"}
-    assert animatable(layer) - known == {*RANGES, "wind_direction"}
+    # keys of a measured layer are tried with those layers
+    assert animatable(layer) - known == {*RANGES, "wind_direction", "measured_time"}
     assert animatable(settings) - known == {"choppiness", "ocean_time", "mask_motion"}
     others = (settings.water, settings.foam, settings.timing, layer.mask, layer.wind_field, layer.hero_wave,
               layer.image_waves, settings.usd)  # fmt: skip
