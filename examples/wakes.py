@@ -82,8 +82,11 @@ def gale(extension: Extension) -> None:
     camera.rotation_euler.x -= math.radians(10.0)
     new_ship(extension, "Ship", SHIP_SIZE, middle, ahead, SHIP_SPEED)
     press(extension, ["Ship"])
-    wake = next(layer.wake for layer in ocean_of(scene).ocean_tweak.layers if layer.kind == "WAKE")
-    wake.amplitude_scale, wake.foam_half_life = 0.7, 10.0
+    settings = ocean_of(scene).ocean_tweak
+    wake = next(layer.wake for layer in settings.layers if layer.kind == "WAKE")
+    wake.foam_half_life = 10.0
+    settings.use_spray = True
+    scene.cycles.transparent_max_bounces = 64
 
 
 def ocean_of(scene: bpy.types.Scene) -> bpy.types.Object:
@@ -110,7 +113,7 @@ def new_ship(
 
 
 def press(extension: Extension, names: list[str]) -> None:
-    """Float on Ocean, and Make Waves: at the waterline that the boats are made for."""
+    """Float on Ocean, Make Waves and Cut Out Hull: at the waterline that the boats are made for."""
     for item in bpy.context.scene.objects:
         item.select_set(item.name in names)
     bpy.context.view_layer.objects.active = bpy.data.objects[names[0]]
@@ -120,6 +123,7 @@ def press(extension: Extension, names: list[str]) -> None:
         ride="CUSTOM", waterline=hull.length, draft=hull.keel, tilt=0.8, use_contact=True
     )
     bpy.ops.object.ocean_tweak_wake()
+    bpy.ops.object.ocean_tweak_cut_out()
 
 
 SHOTS = {"ship-in-a-gale": gale}

@@ -28,6 +28,7 @@ from ..core.data.frames import held_frame
 from ..core.data.plain_data import from_plain, to_plain
 from ..core.data.printable import without_exponent
 from ..core.numerics.memo import MEMO
+from ..core.parameters.patch_seas import open_sea
 from ..core.parameters.spray import Spray
 from ..core.sea.foam_levels import FoamLevels
 from ..core.sea.placed_waves import repeating
@@ -158,10 +159,12 @@ def wanted(
     if spray is None or why_none(plan.whole) is not None or spray.amount == 0.0:
         return None
     shown = dataclasses.replace(spray, amount=spray.amount * share, size=min(spray.size / share**0.5, 1.0))
-    sea, surface = repeating(plan.parameters), camera_surface_of(ocean)
+    surface = camera_surface_of(ocean)
+    is_around = surface is not None and bool(plan.parameters.patches)
+    # a tile has no waves that do not repeat
+    sea = open_sea(plan.whole) if is_around else repeating(plan.parameters)
     goes_on = surface is not None or any(water_material.is_far(child) for child in ocean.children)
     repeats = (0, 0) if goes_on else plan.render.repeats
-    is_around = surface is not None and bool(sea.patches)
     return Wanted(sea, _time(plan, scene), shown, _place(ocean, surface, plan, scene), is_around, repeats)
 
 

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
+import ocean_tweak.core
 from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.patch_plan import Wish, planned
@@ -132,6 +133,26 @@ def test_a_sea_of_patches_has_it_around_the_camera(around):
     ocean, sea, spray = around
     expected = CameraSpray(FoamLevels(sea)).at(1 / 24.0, spray, (100.0, 50.0))
     assert len(expected.age) > 1000
+    np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
+
+
+def ship_of(core):
+    """A ship of 8 m/s, with its bow under the camera, of the extension's core or of this test's."""
+    path = (core.PathSample(0.0, 90.0, 50.0), core.PathSample(10.0, 170.0, 50.0))
+    return core.WakeLayer(path=path, length=30.0, beam=8.0, area_size=256.0, area_resolution=128, decay=0.1)
+
+
+def test_bows_around_the_camera_have_it(around, core, empty_scene):
+    """What they throw is there besides."""
+    ocean, sea, spray = around
+    shown = ocean.ocean_tweak.to_parameters(empty_scene)
+    shown = shown.replace(layers=(*shown.layers, ship_of(core)), patches=shown.patches)
+    ocean.ocean_tweak.from_parameters(shown, empty_scene)
+    empty_scene.frame_set(3)
+    with_ship = sea.replace(layers=(*sea.layers, ship_of(ocean_tweak.core)), patches=sea.patches)
+    expected = CameraSpray(FoamLevels(with_ship)).at(2 / 24.0, spray, (100.0, 50.0))
+    without = CameraSpray(FoamLevels(sea)).at(2 / 24.0, spray, (100.0, 50.0))
+    assert len(expected.age) > len(without.age) + 100
     np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
 
 

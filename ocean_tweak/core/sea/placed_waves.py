@@ -17,7 +17,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import open_sea
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
 from ..synthesis.transforms import X, Y, Z
-from ..waves.contribution import Contribution, Gives, OwnFoam
+from ..waves.contribution import Contribution, Gives, OwnFoam, OwnSpray
 from .regions import Area
 from .sampling import Key, Summed
 from .surfaces import Field, Values
@@ -65,19 +65,47 @@ class PlacedWaves:
 
     def foam(self, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """What the layer makes of its own at rest positions in m, of one flat shape."""
-        layer, current = self._layer, self._sea.current
-        if current is not None and self._sea.moves:
-            come_x, come_y = current.carried(float(time))
-            layer = layer.in_current(current)
-            found = layer.own_foam(self._sea, x - come_x, y - come_y, time)
-        else:
-            found = layer.own_foam(self._sea, x, y, time)
-        masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
-        if found is None or not masks:
+        layer, (come_x, come_y), _ = self._in_water(time)
+        found = layer.own_foam(self._sea, x - come_x, y - come_y, time)
+        share = None if found is None else self._share(x, y, time)
+        if found is None or share is None:
             return found
-        share = weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration)).value
         share = share.astype(np.float32)
         return OwnFoam(found.foam * share, found.breaking * share, found.age)
+
+    def spray(
+        self, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
+    ) -> OwnSpray | None:
+        """What the layer throws up at rest positions in m, of one flat shape.
+
+        height, velocity : of the water there, (places,) m and (places, 3) m/s
+        """
+        layer, (come_x, come_y), drift = self._in_water(time)
+        found = layer.own_spray(self._sea, x - come_x, y - come_y, time, height, velocity - drift)
+        if found is None:
+            return None
+        share = self._share(x, y, time)
+        strength = found.strength if share is None else found.strength * share
+        return OwnSpray(strength, found.velocity + drift)
+
+    def _in_water(self, time: float | Fraction) -> tuple[Contribution, tuple[float, float], Array]:
+        """The layer as the water has it that the current moves, how far this came in m, and its velocity
+        (3,) in m/s."""
+        current = self._sea.current
+        if current is None or not self._sea.moves:
+            return self._layer, (0.0, 0.0), np.zeros(3)
+        return (
+            self._layer.in_current(current),
+            current.carried(float(time)),
+            np.array((*current.velocity, 0.0)),
+        )
+
+    def _share(self, x: Array, y: Array, time: float | Fraction) -> Array | None:
+        """What masks leave (places,); None without any."""
+        masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
+        if not masks:
+            return None
+        return weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration)).value
 
     def field(self, time: float | Fraction) -> Field:
         """The surface of these waves at a time."""
@@ -153,6 +181,35 @@ def with_own_foam(
         if own is not None:
             whitecaps = whitecaps.over(*own)
     return whitecaps
+
+
+def throws(sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> NDArray[np.bool_]:
+    """Whether layers throw up water at flat rest positions in m."""
+    found = np.zeros(x.size, bool)
+    for waves in placed_waves(sea):
+        own = waves.foam(x, y, time)
+        if own is not None:
+            found |= own.breaking > 0.0
+    return found
+
+
+def own_spray(
+    sea: OceanParameters, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
+) -> OwnSpray:
+    """What layers throw up at flat rest positions in m: of several, that of which there is most.
+
+    height, velocity : of the water there, (places,) m and (places, 3) m/s
+    """
+    strongest = OwnSpray(np.zeros(x.size), velocity)
+    for waves in placed_waves(sea):
+        own = waves.spray(x, y, time, height, velocity)
+        if own is not None:
+            more = own.strength > strongest.strength
+            strongest = OwnSpray(
+                np.where(more, own.strength, strongest.strength),
+                np.where(more[:, np.newaxis], own.velocity, strongest.velocity),
+            )
+    return strongest
 
 
 def check_repeats(sea: OceanParameters) -> None:

@@ -31,6 +31,7 @@ from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
 from .foam_levels import FoamLevels
 from .ocean import Ocean
+from .placed_waves import own_spray, throws
 from .regions import TILE, Places
 from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 
@@ -148,20 +149,26 @@ class CameraSpray:
         return self._crests.in_the_air(model, time, spray, squares(self._levels, place), self._look)
 
     def _look(self, index: int, missing: Sequence[Square]) -> list[_Looked]:
-        """Visible crests in each square, on the water of all waves."""
+        """Visible crests in each square, on the water of all waves, and what hulls throw up."""
         finest = self._levels.seas[0]
         time = finest.foam_model.reduced(index * finest.foam_model.step)
         found = [_broken(self._levels.seas[square.level], square, time) for square in missing]
         rest = [np.stack((cells.column + 0.5, cells.row + 0.5), axis=-1) * cells.size for cells, _ in found]
         x, y = np.concatenate(rest).T
         fields = finest.surface(time, _OF_WATER, Places(x, y))
+        water = _Water(*(fields[name].astype(np.float64) for name in _Water._fields))
+        strength = np.concatenate([each for _, each in found])
+        own = own_spray(finest.parameters, x, y, time, water.displacement[:, 2], water.velocity)
+        more = own.strength > strength
+        strength = np.where(more, own.strength, strength).astype(np.float32)
+        water = water._replace(velocity=np.where(more[:, np.newaxis], own.velocity, water.velocity))
         ends = np.cumsum([len(each) for each in rest])
         made = []
-        for square, (cells, strength), at, end in zip(missing, found, rest, ends, strict=True):
+        for square, (cells, _), at, end in zip(missing, found, rest, ends, strict=True):
             part = slice(end - len(at), end)
-            water = _Water(*(fields[name][part].astype(np.float64) for name in _Water._fields))
+            of_part = _Water._make(each[part] for each in water)
             sea = self._levels.seas[square.level]
-            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, water, strength)
+            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, strength[part])
             made.append(_Looked(cells, crests))
         return made
 
@@ -306,12 +313,12 @@ class _Water(NamedTuple):
 
 
 def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArray]:
-    """The cell parts of a square in which crests break, with strengths."""
+    """The cell parts of a square in which crests break, with strengths, or layers throw up spray."""
     size = square.size
     column, row = square.cells()
     x, y = ((number.astype(np.float64) + 0.5) * size for number in (column, row))
     strength = breaking_of(sea.foam_model, sea.compression_at(x, y, time))
-    broken = np.flatnonzero(strength)
+    broken = np.flatnonzero((strength > 0.0) | throws(sea.parameters, x, y, time))
     cells, of_cell = _in_parts(_Cells(column[broken], row[broken], size, square.level))
     return cells, strength[broken][of_cell]
 

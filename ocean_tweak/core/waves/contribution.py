@@ -131,6 +131,17 @@ class OwnFoam(NamedTuple):
     age: RealArray
 
 
+class OwnSpray(NamedTuple):
+    """Water that a layer throws up beside that of breaking waves.
+
+    strength : (places,) 1 where it is as much as of a crest that breaks
+    velocity : (places, 3) of this water, m/s
+    """
+
+    strength: Array
+    velocity: Array
+
+
 class Sharing(Protocol):
     """Computes contributions to the coefficients of the displacement's components."""
 
@@ -227,6 +238,15 @@ class Contribution(Validated):
 
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """Foam beside that of breaking waves, at rest positions in m, of one flat shape; None without any."""
+        return None
+
+    def own_spray(
+        self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
+    ) -> OwnSpray | None:
+        """Spray beside that of breaking waves, at rest positions in m, of one flat shape; None without any.
+
+        height, velocity : of the water there above calm water in m, (places,), and (places, 3) in m/s
+        """
         return None
 
     def in_current(self, current: Current) -> Self:

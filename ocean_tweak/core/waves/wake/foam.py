@@ -65,6 +65,17 @@ class HullFoam:
         breaking = np.minimum(breaking, foam)
         return OwnFoam(foam, breaking, age * (breaking == 0.0))
 
+    def bow(self, x: Array, y: Array, time: float) -> tuple[Array, Array]:
+        """Where the bow throws up water now, (places,): how much, 0 to 1, and 1 to port, -1 to starboard."""
+        breaking, side = np.zeros(x.size), np.zeros(x.size)
+        for stretch in self._stretches(time)[-1:]:
+            there = stretch.near(x, y, self._reach)
+            since, aside = stretch.passed(x[there], y[there], time)
+            for born, _, is_new in self._bands(stretch, since, aside):
+                breaking[there] = np.maximum(breaking[there], born * is_new)
+            side[there] = np.sign(aside)
+        return breaking, side
+
     @property
     def _reach(self) -> float:
         """m to either side, within which there may be foam."""

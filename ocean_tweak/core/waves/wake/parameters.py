@@ -18,7 +18,8 @@ from ...data.raster import Raster
 from ...data.validation import Validated, choice, integer, nested, number, raster, switch
 from ...masks.parameters import Mask
 from ...numerics.memo import MEMO, remembered
-from ..contribution import Contribution, Gives, Key, MemoryNeed, Names, OwnFoam, muted
+from ..contribution import Contribution, Gives, Key, MemoryNeed, Names, OwnFoam, OwnSpray, muted
+from .bow_spray import bow_spray
 from .elevation import Basin
 from .fields import WakeWaves, Where
 from .foam import HullFoam
@@ -243,10 +244,15 @@ class WakeLayer(Contribution):
 
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """The band astern, and what the bow throws aside."""
+        return self._hull_foam(sea).at(x, y, float(time)) if self.foam > 0.0 else None
+
+    def own_spray(
+        self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
+    ) -> OwnSpray | None:
+        """What the bow throws up."""
         if not self.foam > 0.0:
             return None
-        hull = HullFoam(self.track, self.length, self.beam, self.foam, self.foam_half_life, sea.water.gravity)
-        return hull.at(x, y, float(time))
+        return bow_spray(self._hull_foam(sea), self.draught, x, y, float(time), height, velocity)
 
     def in_current(self, current: Current) -> Self:
         """With the path through the water, which is another than that over the ground."""
@@ -256,6 +262,10 @@ class WakeLayer(Contribution):
     def _of_waves(self) -> Self:
         """The layer without what the waves are made without."""
         return self.changed(mask=None, foam=0.0)
+
+    def _hull_foam(self, sea: OceanParameters) -> HullFoam:
+        gravity = sea.water.gravity
+        return HullFoam(self.track, self.length, self.beam, self.foam, self.foam_half_life, gravity)
 
     def _basin(self, sea: OceanParameters) -> Basin:
         water, is_deep = sea.water, sea.dispersion == "DEEP"

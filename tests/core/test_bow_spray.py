@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spray of bows: where, how much and which way, and that it is part of the sea's."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ocean_tweak.core import Current, Mask, OceanParameters, PathSample, Spray, WakeLayer, WaveLayer
+from ocean_tweak.core.sea.foam_levels import FoamLevels
+from ocean_tweak.core.sea.patch_plan import Wish, planned
+from ocean_tweak.core.sea.placed_waves import own_spray
+from ocean_tweak.core.sea.spray import CameraSpray
+from ocean_tweak.core.spray.particles import Particles
+
+SPEED = 9.0
+#: its middle is at the origin at 10 s, its bow at x = 20 m
+SHIP = WakeLayer(
+    path=(PathSample(0.0, -10.0 * SPEED), PathSample(20.0, 10.0 * SPEED)),
+    length=40.0, beam=10.0, draught=3.0, area_size=512.0, area_resolution=256, decay=0.06,
+)  # fmt: skip
+TIME = 10.0
+
+
+def around(ship: WakeLayer = SHIP, wind: float = 17.0, **changes: object) -> OceanParameters:
+    breeze = WaveLayer(wind_speed=wind, fetch=30e3)
+    sea = planned(OceanParameters(seed=3, layers=(breeze,)), Wish(finest=2.0, area=200.0))
+    return sea.replace(layers=(breeze, ship), **changes)
+
+
+def thrown(
+    height: float = 0.0,
+    water: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    ship: WakeLayer = SHIP,
+    **changes: object,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places (P, 2) around the bow, strengths and velocities."""
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(-30.0, 30.0, 0.5), np.arange(-15.25, 15.5, 0.5)))
+    own = own_spray(around(ship, **changes), x, y, TIME, np.full(x.size, height), np.tile(water, (x.size, 1)))
+    return np.stack((x, y), axis=-1), own.strength, own.velocity
+
+
+def test_a_bow_throws_water_ahead_aside_and_up() -> None:
+    """From its own quarter of the hull, to either side alike, away from the hull."""
+    place, strength, velocity = thrown()
+    there = strength > 0.05
+    assert place[there, 0].min() >= 10.0 - 1e-9
+    assert place[there, 0].max() <= 20.0 + 1e-9
+    port, starboard = there & (place[:, 1] > 0.0), there & (place[:, 1] < 0.0)
+    assert strength[port].sum() == pytest.approx(strength[starboard].sum(), rel=1e-6)
+    assert np.all(velocity[port, 1] > 2.0)
+    assert np.all(velocity[starboard, 1] < -2.0)
+    assert np.all(velocity[there, 2] > 0.5 * SPEED)
+    assert np.all(velocity[there, 0] < SPEED)  # the hull overtakes it
+
+
+def test_the_faster_hull_and_water_meet_the_more_is_thrown() -> None:
+    """As the square: water that comes towards the bow, or rises at it; none that goes with the hull."""
+    calm = thrown()[1].sum()
+    assert thrown(water=(-SPEED, 0.0, 0.0))[1].sum() == pytest.approx(4.0 * calm, rel=1e-6)
+    assert thrown(water=(0.0, 0.0, SPEED))[1].sum() == pytest.approx(2.0 * calm, rel=1e-6)
+    assert thrown(water=(0.0, 0.0, -SPEED))[1].sum() == pytest.approx(calm, rel=1e-6)
+    assert thrown(water=(SPEED, 0.0, 0.0))[1].sum() == 0.0
+
+
+def test_a_bow_in_a_trough_throws_nothing() -> None:
+    calm = thrown()[1].sum()
+    assert thrown(height=-SHIP.draught)[1].sum() == 0.0
+    assert thrown(height=SHIP.draught)[1].sum() == pytest.approx(2.0 * calm, rel=1e-6)
+
+
+def test_a_slow_hull_one_without_foam_and_one_under_a_mask_throw_nothing() -> None:
+    slow = SHIP.changed(path=(PathSample(0.0, -10.0), PathSample(20.0, 10.0)))
+    for ship in (slow, SHIP.changed(foam=0.0), SHIP.changed(mask=Mask(x=500.0, y=0.0))):
+        assert thrown(ship=ship)[1].max() < 0.02
+
+
+def test_a_current_along_with_hull_and_water_changes_nothing() -> None:
+    """They meet as fast: what is thrown has the current's velocity besides."""
+    _, strength, velocity = thrown()
+    current = Current(speed=1.5, direction=0.0)
+    carried = SHIP.changed(
+        path=tuple(PathSample(each.time, each.x + 1.5 * (each.time - TIME)) for each in SHIP.path)
+    )
+    _, moved, faster = thrown(water=(1.5, 0.0, 0.0), ship=carried, current=current)
+    np.testing.assert_allclose(moved, strength, atol=1e-6)
+    there = strength > 0.05
+    np.testing.assert_allclose(
+        faster[there] - velocity[there], np.tile((1.5, 0.0, 0.0), (there.sum(), 1)), atol=1e-6
+    )
+
+
+def at_bow(particles: Particles) -> int:
+    x, y, _ = particles.position.T
+    return int(np.count_nonzero((x > 0.0) & (x < 25.0) & (np.abs(y) < 12.0)))
+
+
+def test_bows_are_part_of_the_sea_s_spray() -> None:
+    """Around a camera there is much more at the bow than without a hull, and any frame is made alone."""
+    with_ship, spray = CameraSpray(FoamLevels(around())), Spray(life=1.0)
+    before, found = (with_ship.at(time, spray, (10.0, 0.0)) for time in (TIME - 1.0 / 24.0, TIME))
+    without = CameraSpray(FoamLevels(around(SHIP.changed(muted=True)))).at(TIME, spray, (10.0, 0.0))
+    assert at_bow(found) > 300 + 3 * at_bow(without)
+    assert not set(found.id.tolist()).isdisjoint(before.id.tolist())
+    alone = CameraSpray(FoamLevels(around())).at(TIME, spray, (10.0, 0.0))
+    assert all(one.tobytes() == other.tobytes() for one, other in zip(found, alone, strict=True))
+    high = found.position[:, 2][(np.abs(found.position[:, 0] - 12.0) < 12.0)]
+    assert 2.0 < np.quantile(high, 0.98) < 12.0
+    assert math.isfinite(float(found.velocity.sum()))
