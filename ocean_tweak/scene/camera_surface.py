@@ -12,7 +12,7 @@ from ..nodes.camera_surface import CAMERA_SURFACE, PILE_INPUT
 from ..nodes.globe import EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
-from . import patch_objects, portability, solid_foam, water_material
+from . import coast_surface, patch_objects, portability, solid_foam, water_material
 from .plan import camera_surface_of
 from .refinement import show_new
 from .refresh import AROUND_CAMERA, Wanted
@@ -45,11 +45,15 @@ def add_camera_surface(
     camera : None for the scene's active camera
     budget : largest number of vertices
 
-    Raises OceanObjectError if the object is not an ocean.
+    Raises OceanObjectError if the object is not an ocean, or has a coast.
     """
     if not is_ocean(ocean):
         raise OceanObjectError(f"{ocean.name} is not an ocean: choose one to show around the camera")
     parameters = settings_of(ocean).to_parameters(scene)
+    if parameters.has_coast:
+        raise OceanObjectError(
+            f"{ocean.name} has a coast, over which a camera surface would lie: switch Coast off"
+        )
     metres = float(metres_per_unit(scene))
     name = f"{ocean.name} Camera Surface"
     surface = bpy.data.objects.new(name, bpy.data.meshes.new(name))
@@ -97,8 +101,7 @@ def remove_camera_surface(ocean: bpy.types.Object) -> None:
 
 
 def _make_room(ocean: bpy.types.Object, is_there: bool = True) -> None:
-    ocean.hide_render = is_there
-    ocean.display_type = "BOUNDS" if is_there else "TEXTURED"
+    coast_surface.make_room(ocean)
     for child in ocean.children:
         if water_material.is_far(child):
             child.hide_render = child.hide_viewport = is_there

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 
 import bpy
 import numpy as np
@@ -14,8 +15,8 @@ from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
 from . import vertex_attributes, water_material, wet_bed
-from .plan import Plan
-from .settings import link_beside
+from .plan import Plan, camera_surface_of
+from .settings import OceanObjectError, link_beside
 
 Array = NDArray[np.float64]
 
@@ -35,20 +36,52 @@ _MESHES = "meshes of coasts"
 
 def coast_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
     """The mesh that shows an ocean over its bed; None where there is none."""
-    return next((child for child in ocean.children if _COAST in child), None)
+    return next((child for child in ocean.children if is_ours(child)), None)
+
+
+def is_ours(item: bpy.types.Object) -> bool:
+    """Whether an object is the mesh over a bed, of whichever ocean."""
+    return _COAST in item
+
+
+def remove(ocean: bpy.types.Object) -> None:
+    """Show an ocean by its own mesh again, if it had one over its bed."""
+    item = coast_of(ocean)
+    if item is not None:
+        mesh = item.data
+        bpy.data.objects.remove(item)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
+        make_room(ocean)
+
+
+def make_room(ocean: bpy.types.Object) -> None:
+    """Draw an ocean's own mesh as a box, and in no render, while a coast or a camera surface shows it."""
+    is_shown = coast_of(ocean) is not None or camera_surface_of(ocean) is not None
+    ocean.hide_render = is_shown
+    ocean.display_type = "BOUNDS" if is_shown else "TEXTURED"
 
 
 def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
-    """Make, move or remove the mesh over the bed. Raises ParameterError for a bed that waves cannot reach."""
-    present = coast_of(ocean)
+    """Make, move or remove the mesh over the bed.
+
+    Raises ParameterError for a bed that waves cannot reach, OceanObjectError for a mesh that is linked or
+    edited, or beside a camera surface.
+    """
     if plan.over_bed is None:
-        if present is not None:
-            _remove(ocean, present)
+        remove(ocean)
         return
+    surface = camera_surface_of(ocean)
+    if surface is not None:
+        raise OceanObjectError(f"{surface.name} would lie over the coast: remove the camera surface")
+    present = coast_of(ocean)
+    if ocean.library is not None:  # Blender discards changes to it
+        name = ocean.name if present is None else present.name
+        raise OceanObjectError(f"{name} is linked and its coast stands still: make a library override")
     item = present or _new(ocean, plan.over_bed)
-    if item.data.library is not None:
-        return
-    if item.data.users > 1:  # of a duplicate
+    if item.data.is_editmode:
+        raise OceanObjectError(f"{item.name} is in Edit Mode: leave Edit Mode to let its waves move")
+    if item.data.users > 1:  # of a duplicate, or of what an override is of
         item.data = item.data.copy()
     material = ocean.material_slots[0].material if ocean.material_slots else None
     if material is not None and list(item.data.materials) != [material]:
@@ -87,7 +120,10 @@ class _Grid:
         places = np.stack((self.x, self.y), axis=-1) / sea.parameters.domain_size
         # as on the ocean's own mesh
         self.texture_coordinates = (places + 0.5 / sea.parameters.resolution).astype(np.float32)
-        self.tag = f"{self.rows} {self.columns} {ground.step!r} {ground.first!r} {ground.turn!r}"
+        self.tag = (
+            f"{self.rows} {self.columns} {ground.step!r} {ground.first!r} {ground.turn!r} "
+            f"{zlib.crc32(self.depth)}"
+        )
 
     @property
     def nbytes(self) -> int:
@@ -145,18 +181,5 @@ def _new(ocean: bpy.types.Object, parameters: OceanParameters) -> bpy.types.Obje
     item.parent = ocean
     link_beside(item, ocean)
     water_material.describe_near(item, parameters)
-    _make_room(ocean)
+    make_room(ocean)
     return item
-
-
-def _remove(ocean: bpy.types.Object, item: bpy.types.Object) -> None:
-    mesh = item.data
-    bpy.data.objects.remove(item)
-    if not mesh.users:
-        bpy.data.meshes.remove(mesh)
-    _make_room(ocean, is_there=False)
-
-
-def _make_room(ocean: bpy.types.Object, is_there: bool = True) -> None:
-    ocean.hide_render = is_there
-    ocean.display_type = "BOUNDS" if is_there else "TEXTURED"

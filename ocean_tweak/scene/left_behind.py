@@ -11,20 +11,23 @@ import bpy
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.horizon import HORIZON
 from ..nodes.versioned import is_of_kind
-from . import contact, float_carrier, floating, hull_cut, mask_place, patch_objects, spray
+from . import coast_surface, contact, float_carrier, floating, hull_cut, mask_place, patch_objects, spray
 from .settings import was_ocean
+
+#: what a child is that reads its ocean no more than the ocean reads it
+_READ_BY_NO_OCEAN = (spray.is_ours, coast_surface.is_ours, mask_place.is_unread)
 
 
 def clear() -> bool:
-    """Remove horizons, surfaces, patches, spray and masks' places of deleted oceans, and let nothing float on
-    or touch them.
+    """Remove horizons, surfaces, coasts, patches, spray and masks' places of deleted oceans, and let nothing
+    float on or touch them.
 
     Returns whether there are any.
     """
     deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
-    # an ocean is not referenced because of its spray or masks: it is freed, and its child loses its parent
+    # an ocean is not referenced because of these: it is freed, and its child loses its parent
     parted = [each for each in bpy.data.objects if each.parent is None and each.library is None]
-    own = (item for item in parted if spray.is_ours(item) or mask_place.is_unread(item))
+    own = [each for each in parted if any(is_own(each) for is_own in _READ_BY_NO_OCEAN)]
     alone = [item for item in own if item.users_collection]
     for item in alone:
         _take_away(item)
@@ -55,9 +58,9 @@ def _take_away(item: bpy.types.Object) -> None:
 
 
 def is_made_for_oceans(item: bpy.types.Object) -> bool:
-    """Whether the extension gave an ocean this child: its horizon, a surface, a patch
-    or its spray."""
+    """Whether the extension gave an ocean this child: its horizon, a surface, a coast,
+    a patch or its spray."""
     kinds = (HORIZON, CAMERA_SURFACE)
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
-    is_part = patch_objects.is_ours(item) or spray.is_ours(item)
+    is_part = patch_objects.is_ours(item) or spray.is_ours(item) or coast_surface.is_ours(item)
     return is_part or any(is_of_kind(group, kind) for group in groups for kind in kinds)

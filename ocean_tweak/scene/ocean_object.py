@@ -10,7 +10,7 @@ import bpy
 from ..core import OceanParameters
 from ..core.data.frames import format_frames
 from ..nodes.names import MAP_INPUTS
-from . import grid_mesh, modifiers, patch_objects, spray, vertex_attributes
+from . import coast_surface, grid_mesh, modifiers, patch_objects, spray, vertex_attributes
 from .cache_place import new_uid
 from .camera_surface import camera_surface_of, remove_camera_surface
 from .image_sequence import ImageSequence, LoadedSequence, SequenceError, load_sequence
@@ -96,12 +96,13 @@ def use_sequence(item: bpy.types.Object, scene: bpy.types.Scene, sequence: Image
 def end(item: bpy.types.Object) -> None:
     """Turn an ocean whose modifier was applied or removed into an ordinary mesh.
 
-    The camera surface and the patches of the moving sea are removed, so that the mesh is visible.
+    The camera surface, the coast and the patches of the moving sea are removed, so that the mesh is visible.
     """
     settings = settings_of(item)
     has_surface = camera_surface_of(item) is not None
     if has_surface:
         remove_camera_surface(item)
+    coast_surface.remove(item)
     patch_objects.remove(item)
     spray.remove(item)
     if item.data.library is None:

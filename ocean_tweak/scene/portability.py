@@ -13,7 +13,7 @@ from typing import NamedTuple
 import bpy
 
 from ..nodes.modifier_inputs import all_inputs
-from . import float_carrier, patch_objects, spray
+from . import coast_surface, float_carrier, patch_objects, spray
 from .cache_place import shown_bake
 from .plan import camera_surface_of
 from .settings import all_oceans, is_ocean, oceans_in, settings_of, was_ocean
@@ -33,6 +33,13 @@ class Need(NamedTuple):
     def text(self) -> str:
         """As one line of text."""
         return f"{self.name} {self.reason}: {self.remedy}"
+
+
+#: why the mesh over a bed needs the extension, and what helps
+_OVER_BED = (
+    "shows a coast, which no bake in Blender has",
+    "enable the extension wherever it is rendered, or switch Coast off",
+)
 
 
 class Neighbours(NamedTuple):
@@ -158,9 +165,12 @@ def forget_all() -> None:
 def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     """The ocean and objects that read it, as far as they need the extension; none if everything is baked."""
     surface = camera_surface_of(ocean)
+    coast = coast_surface.coast_of(ocean)
+    over_bed = () if coast is None else (Need(coast.name, *_OVER_BED),)
     if settings_of(ocean).source == "LIVE":
-        return (_live(ocean), *_readers(ocean))
-    dry = tuple(_dry(ocean))
+        # a bake would not have the coast either
+        return (*(over_bed or (_live(ocean),)), *_readers(ocean))
+    dry = (*over_bed, *_dry(ocean))
     if surface is not None and patch_objects.shows_area(ocean):
         reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile does not have"
         return (Need(surface.name, reason, "mute their layers"), *dry)

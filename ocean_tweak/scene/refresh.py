@@ -89,14 +89,14 @@ _OF_SEA = Wanted.SURFACE | Wanted.PATCHES | Wanted.RENDER
 def of_a_frame(item: bpy.types.Object) -> Wanted:
     """The parts that change with the frame; Blender itself reads the files of a baked ocean.
 
-    Its patches are live if there are no baked points.
+    Its patches are live if there are no baked points; what lies over a bed always is.
     """
     if is_live(item):
         return Wanted.ALL & ~Wanted.NEIGHBOURS
     wanted = Wanted.FILES
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
-    if patch_objects.are_live(item) or spray.is_live(item):
+    if patch_objects.are_live(item) or spray.is_live(item) or coast_surface.coast_of(item) is not None:
         wanted |= AROUND_CAMERA
     return wanted
 

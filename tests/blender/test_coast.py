@@ -183,3 +183,111 @@ def test_what_is_no_bed_is_refused_in_words(ocean):
     ocean.ocean_tweak.coast.shore = "-X"
     bpy.ops.ocean.make_coast()
     assert "choose another side" in ocean.ocean_tweak.error
+
+
+@pytest.fixture
+def coast(ocean, coast_of):
+    """The mesh over a bed."""
+    ocean.ocean_tweak.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    return coast_of(ocean)
+
+
+def test_it_goes_with_its_ocean(ocean, coast, window):
+    for item in bpy.context.scene.objects:
+        item.select_set(item == ocean)
+    with window.override():
+        bpy.ops.object.delete()
+    bpy.context.view_layer.update()
+    assert [item.name for item in bpy.context.scene.objects] == ["Bed"]
+
+
+def test_a_converted_ocean_is_seen(ocean, coast, window):
+    for item in bpy.context.scene.objects:
+        item.select_set(item == ocean)
+    with window.override():
+        bpy.ops.object.convert(target="MESH")
+    bpy.context.view_layer.update()
+    assert sorted(item.name for item in bpy.context.scene.objects) == ["Bed", "Ocean"]
+    assert not ocean.hide_render
+
+
+def test_a_deeper_bed_of_the_same_size_shows_its_depth(ocean, coast):
+    before = values(coast.data, "depth").copy()
+    for vertex in ocean.ocean_tweak.coast.bed.data.vertices:
+        vertex.co.z *= 2.0
+    bpy.context.view_layer.update()
+    bpy.ops.ocean.make_coast()
+    at_twelve = np.abs(before - 12.0).argmin()
+    assert values(coast.data, "depth")[at_twelve] == pytest.approx(24.0, abs=0.1)
+
+
+def test_waves_too_short_for_the_bed_leave_it_at_rest(ocean, coast):
+    ocean.ocean_tweak.coast.shortest_wavelength = 2.0 * SIDE
+    assert ocean.ocean_tweak.error == ""
+    assert np.isfinite(values(coast.data, "position", 3)).all()
+
+
+def test_an_edited_coast_is_told(ocean, coast, window):
+    bpy.context.view_layer.objects.active = coast
+    with window.override():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.context.scene.frame_set(6)
+        assert "leave Edit Mode" in ocean.ocean_tweak.error
+        bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.scene.frame_set(7)
+    assert ocean.ocean_tweak.error == ""
+
+
+def test_a_coast_and_a_camera_surface_exclude_each_other(ocean, coast):
+    with pytest.raises(RuntimeError, match="switch Coast off"):
+        bpy.ops.ocean.add_camera_surface()
+    ocean.ocean_tweak.coast.use = False
+    bpy.ops.ocean.add_camera_surface()
+    ocean.ocean_tweak.coast.use = True
+    assert "remove the camera surface" in ocean.ocean_tweak.error
+    bpy.ops.ocean.remove_camera_surface()
+    bpy.context.scene.frame_set(2)
+    assert ocean.ocean_tweak.error == ""
+    assert ocean.hide_render
+
+
+def test_over_a_bake_the_coast_goes_on_live_and_says_so(ocean, coast, calm, bake, extension):
+    scene = bpy.context.scene
+    assert [need.name for need in extension("scene.portability").needs_of(ocean)] == ["Ocean Coast"]
+    extension("scene.ocean_object").use_sequence(ocean, scene, bake(calm, 1, 6))
+    scene.frame_set(2)
+    before = values(coast.data, "displacement", 3).copy()
+    scene.frame_set(5)
+    assert np.abs(values(coast.data, "displacement", 3) - before).max() > 0.01
+    assert [need.name for need in extension("scene.portability").needs_of(ocean)] == ["Ocean Coast"]
+
+
+@pytest.mark.parametrize("overridden", [False, True])
+def test_a_linked_coast_says_that_it_stands_and_an_override_moves(
+    ocean, coast, tmp_path, overridden, coast_of
+):
+    scene = bpy.context.scene
+    beach = bpy.data.collections.new("Beach")
+    scene.collection.children.link(beach)
+    for item in list(scene.collection.objects):
+        beach.objects.link(item)
+        scene.collection.objects.unlink(item)
+    file = str(tmp_path / "beach.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    with bpy.data.libraries.load(file, link=True) as (_, chosen):
+        chosen.collections = ["Beach"]
+    scene, beach = bpy.context.scene, bpy.data.collections["Beach"]
+    scene.collection.children.link(beach)
+    if overridden:
+        beach = beach.override_hierarchy_create(scene, bpy.context.view_layer)
+    shown = coast_of(next(item for item in beach.all_objects if item.ocean_tweak.is_ocean))
+    found = []
+    for frame in (2, 5):
+        scene.frame_set(frame)
+        found.append(values(shown.data, "displacement", 3).copy())
+    if overridden:
+        assert np.abs(found[1] - found[0]).max() > 0.01
+    else:
+        assert "make a library override" in shown.parent.ocean_tweak.error
