@@ -88,6 +88,7 @@ def follow_before_frame(scene: bpy.types.Scene, _depsgraph: object = None) -> No
     float_carrier.follow()
     float_current.follow_before_frame(scene)
     float_riding.follow_before_frame(scene)
+    wake_makers.follow(scene, frozenset())
     mask_following.bind(scene)
 
 
@@ -275,6 +276,8 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     float_carrier.take_over()
     solid_foam.mend()
     scene_sky.look_for_panoramas()
+    for scene in bpy.data.scenes:
+        wake_makers.follow(scene, frozenset())
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
 
@@ -436,6 +439,7 @@ def _forget_all() -> None:
     refinement.forget_all()
     mask_following.forget_all()
     float_riding.forget_all()
+    wake_makers.forget_all()
     refresh.forget_all()
     forget_cameras()
     portability.forget_all()

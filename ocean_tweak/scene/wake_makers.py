@@ -36,6 +36,9 @@ from .units import frame_rate, metres_per_unit, time_stretch
 
 Array = NDArray[np.float64]
 
+# by the session uid of an ocean: what its wakes' paths follow from besides the objects
+_followed: dict[int, object] = {}
+
 #: of a path, by which a sample may be left out: m a metre of hull, and rad
 _ASIDE, _TURNED = 0.002, 0.01
 #: of a footprint, rows and columns, steps from 0 to the greatest draught, and the least block coefficient:
@@ -183,18 +186,37 @@ def frames_of(place: bpy.types.Object, scene: bpy.types.Scene) -> range:
 
 
 def follow(scene: bpy.types.Scene, moved: Set[str]) -> None:
-    """Let the wakes of a scene's oceans follow objects that were moved or keyed otherwise.
+    """Let the wakes of a scene's oceans follow objects that were moved or keyed otherwise, and another frame
+    rate, unit or place of the ocean.
 
     moved : names of objects and actions that an evaluation has anew
     """
-    for ocean in oceans_in(scene) if moved else ():
-        settings = settings_of(ocean)
+    for ocean in oceans_in(scene):
+        makers = [] if ocean.library is not None else list(settings_of(ocean).wake_makers())
+        if not makers:
+            continue
+        now, before = _clock_and_place(ocean, scene), _followed.get(ocean.session_uid)
+        _followed[ocean.session_uid] = now
+        is_other = before not in (None, now)
         changed = False
-        for number, item in settings.wake_makers():
-            if ocean.library is None and moved & set(_names(item)):
+        for number, item in makers:
+            if is_other or moved & set(_names(item)):
                 changed |= _follow(ocean, number, item, scene)
         if changed:
             show(ocean, scene, Wanted.CHANGE)
+
+
+def _clock_and_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> object:
+    """What tells a frame's time, and of an ocean that is not keyed, how fast it runs and where it lies."""
+    settings = settings_of(ocean)
+    own = None if _moves(ocean) else (settings.time_scale, tuple(map(tuple, ocean.matrix_world)))
+    clock = frame_rate(scene), time_stretch(scene), settings.timing.start_frame
+    return scene.session_uid, clock, metres_per_unit(scene), own
+
+
+def forget_all() -> None:
+    """Another file is opened, or the extension is disabled."""
+    _followed.clear()
 
 
 def _follow(ocean: bpy.types.Object, number: int, item: bpy.types.Object, scene: bpy.types.Scene) -> bool:

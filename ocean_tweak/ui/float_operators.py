@@ -39,9 +39,9 @@ class OnOcean:
         elif not has_ocean(context.scene):
             cls.poll_message_set("There is no ocean in this scene: add one first")
         elif not context.selected_objects:
-            cls.poll_message_set("Select the objects to float")
+            cls.poll_message_set("Nothing is selected: select one or more objects")
         elif not floatable(context):
-            cls.poll_message_set("Only oceans are selected: select the objects to float on them")
+            cls.poll_message_set("Only oceans are selected: select other objects")
         else:
             return True
         return False

@@ -96,7 +96,7 @@ def test_what_is_said_when_it_cannot_be(ocean_object, buoy, select, make_paramet
             operator()
     select()
     for operator in operators:
-        with pytest.raises(RuntimeError, match="Select the objects to float"):
+        with pytest.raises(RuntimeError, match="Nothing is selected"):
             operator()
     select(buoy)
     with pytest.raises(RuntimeError, match="first frame lies after the last"):

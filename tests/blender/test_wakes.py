@@ -367,3 +367,38 @@ def test_a_hull_without_an_inside_makes_the_waves_of_an_ellipse(ocean, select, e
         told = []
         extension("scene.wake_recording").new_wake(item, ocean, empty_scene, None, told.append)
         assert f"{item.name} makes the waves of an ellipse of its size: the hull encloses nothing" in told[0]
+
+
+def test_it_stays_at_its_ship_at_another_frame_rate_and_start(ocean, ship, select, empty_scene):
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    empty_scene.render.fps = 48
+    empty_scene.frame_set(3)
+    assert [sample.time for sample in wake_of(ocean).path] == pytest.approx([0.0, (LAST - FIRST) / 48.0])
+    ocean.ocean_tweak.timing.start_frame = FIRST + 12
+    empty_scene.frame_set(4)
+    assert wake_of(ocean).path[0].time == pytest.approx(-0.25)
+
+
+def test_a_moved_ocean_leaves_the_wake_where_the_ship_is(ocean, ship, select, empty_scene):
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    bpy.context.view_layer.update()
+    ocean.location.x += 10.0
+    ocean.rotation_euler.z += 0.3
+    bpy.context.view_layer.update()
+    first, place = wake_of(ocean).path[0], in_ocean(ocean, (20.0, 10.0, 0.0))
+    assert (first.x, first.y) == pytest.approx((place.x, place.y), abs=1e-3)
+    assert first.heading == pytest.approx(-0.9, abs=1e-5)
+
+
+def test_other_units_keep_path_and_hull_together(ocean, ship, select, empty_scene):
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    before = wake_of(ocean)
+    bpy.context.view_layer.update()
+    empty_scene.unit_settings.scale_length = 0.5
+    empty_scene.frame_set(3)
+    after = wake_of(ocean)
+    assert after.length == pytest.approx(0.5 * before.length)
+    assert after.path[0].x == pytest.approx(0.5 * before.path[0].x)
