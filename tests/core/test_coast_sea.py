@@ -17,8 +17,10 @@ from ocean_tweak.core import (
     OceanParameters,
     ParameterError,
     Patch,
+    PathSample,
     Places,
     Raster,
+    WakeLayer,
     Water,
     WaveLayer,
 )
@@ -254,3 +256,25 @@ def test_where_no_waves_follow_the_bed_the_others_are_there_all_the_same() -> No
     whole = coast_outlook(Ocean(sea()))
     assert whole is not None
     assert not whole.warnings
+
+
+def test_a_wake_over_a_bed_ends_at_the_shore() -> None:
+    """Deeper than a metre it is the open sea's, and land and what lies beyond it are still."""
+    path = (PathSample(0.0, y=100.0), PathSample(50.0, x=300.0, y=100.0))
+    wake = WakeLayer(path=path, length=20.0, beam=4.0, draught=1.0, area_size=256.0, area_resolution=128)
+    calm = sea()
+    both = calm.replace(layers=(*calm.layers, wake))
+    x, y = np.meshgrid(4.0 * np.arange(70), 4.0 * np.arange(50))
+    for time in (20.0, 45.0):
+        over_bed, without, open_one, open_without = (
+            Ocean(each).surface(time, ("displacement", "strain"), Places(x, y))
+            for each in (both, calm, open_sea(both), open_sea(calm))
+        )
+        made = over_bed.displacement - without.displacement
+        whole = open_one.displacement - open_without.displacement
+        deep = x < 160.0  # the bed is 1 m deep at 169 m, and the shore at 185 m
+        assert_allclose(made[deep], whole[deep], atol=1e-5)
+        land = x > 192.0
+        assert np.abs(whole[land]).max() > 0.02
+        assert np.abs(made[land]).max() < 1e-5
+        assert np.abs(over_bed.strain[land]).max() < 1e-5

@@ -47,6 +47,9 @@ _LARGEST = 0.6
 #: m, over which it is told how high the long waves around a place are, and how steep the foreshore is
 _AROUND, _FORESHORE = 12.0, 5.0
 
+#: m, depth from which waves of objects are whole
+_AFLOAT = 1.0
+
 _PICTURES = "pictures of coasts"
 _FIELDS = "fields of coasts"
 MEMO.limit(_FIELDS, 4)
@@ -82,6 +85,10 @@ class CoastWaves:
     def shares(self, x: Array, y: Array) -> Weights:
         """Of the open sea, at places in m."""
         return self._weights.read(0, x, y)
+
+    def afloat(self, x: Array, y: Array) -> Weights:
+        """Of waves that come from elsewhere, as wakes do, at places in m: 0 on land."""
+        return self._weights.read(3, x, y)
 
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """What is added at rest positions in m, of one flat shape."""
@@ -153,7 +160,9 @@ class CoastWaves:
     def _weights(self) -> _BedWeights:
         share = np.repeat(self.ground.blend[:, np.newaxis], self.ground.columns, axis=1)
         limited = share * self._limit
-        return _BedWeights(self.ground, (1.0 - share + limited, share, limited))
+        under = np.clip(self.ground.depth / _AFLOAT, 0.0, 1.0)
+        afloat = under * under * (3.0 - 2.0 * under)
+        return _BedWeights(self.ground, (1.0 - share + limited, share, limited, afloat))
 
     @property
     def share_of_energy(self) -> float:

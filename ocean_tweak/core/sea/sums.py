@@ -204,6 +204,21 @@ def border_shares(place: Array, side: float, border: float) -> tuple[tuple[Array
     return (cosine, -sine * rate, 0.0), (sine, cosine * rate, side)
 
 
+class _AfloatWaves:
+    """Waves of a layer without a grid over the bed of a coast: none on land."""
+
+    def __init__(self, waves: PlacedWaves, coast: CoastWaves) -> None:
+        self._waves, self._coast = waves, coast
+
+    def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
+        """Components of the displacement at flat arrays of rest positions in m."""
+        return weighted(self._waves.at(x, y, time, unweighted(keys)), self._coast.afloat(x, y))
+
+    def field(self, time: float | Fraction) -> Field:
+        """The surface of these waves at a time."""
+        return weighted_field(self._waves.field(time), self._coast.afloat)
+
+
 class AnywhereSum:
     """The sum of a sea's waves at any rest positions, with interpolated parts.
 
@@ -221,7 +236,9 @@ class AnywhereSum:
     ) -> None:
         self._parameters = parameters
         self._parts = parts
-        self._placed: Sequence[PlacedWaves | CoastWaves] = placed if coast is None else (*placed, coast)
+        self._placed: Sequence[PlacedWaves | _AfloatWaves | CoastWaves] = (
+            placed if coast is None else (*(_AfloatWaves(waves, coast) for waves in placed), coast)
+        )
         self._coast = coast
         self._precision = precision
 
