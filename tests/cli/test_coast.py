@@ -54,6 +54,19 @@ def test_an_area_is_baked_and_a_tile_refused_in_words(
     assert np.abs(pixels[..., 2]).max() > 0.3
 
 
+def test_spray_has_no_tile_and_nothing_is_begun(
+    coast: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = [*coast, "--set", "layers.0.wind_speed=15", "--area", "240", "16", "--frames", "1", "--spray"]
+    for command in (["bake", "--out", str(tmp_path / "out")],
+                    ["usd", "--form", "points", "--out", str(tmp_path / "out" / "sea.usd")]):  # fmt: skip
+        assert main([*command, *given]) == 2
+        told = capsys.readouterr().err
+        assert "spray = '': is made on the tile" in told
+        assert "give the sea patches" in told
+        assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

@@ -31,7 +31,7 @@ from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
 from .foam_levels import FoamLevels
 from .ocean import Ocean
-from .placed_waves import own_spray, throws
+from .placed_waves import check_repeats, own_spray, throws
 from .regions import TILE, Places
 from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 
@@ -75,10 +75,16 @@ def why_none(parameters: OceanParameters) -> str | None:
 def check_spray(parameters: OceanParameters, spray: Spray) -> None:
     """Raise SprayError, before computing any, if a sea's spray needs too much memory.
 
-    Raises ParameterError for a sea without spray.
+    Raises ParameterError for a sea without spray, and for one that has neither patches nor a tile.
     """
     if (why := why_none(parameters)) is not None:
         raise ParameterError("spray", "", why)
+    if not parameters.is_cascade:
+        try:
+            check_repeats(parameters)
+        except ParameterError as error:
+            reason = f"is made on the tile of a sea without patches, and with {error.field} this one has none"
+            raise ParameterError("spray", "", f"{reason}: leave it out, or give the sea patches") from None
     _check_memory(expected_count(parameters, spray), spray)
 
 
