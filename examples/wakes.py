@@ -84,7 +84,7 @@ def gale(extension: Extension) -> None:
     press(extension, ["Ship"])
     settings = ocean_of(scene).ocean_tweak
     wake = next(layer.wake for layer in settings.layers if layer.kind == "WAKE")
-    wake.foam_half_life = 10.0
+    wake.amplitude_scale, wake.foam_half_life = 0.7, 10.0
     settings.use_spray = True
     scene.cycles.transparent_max_bounces = 64
 

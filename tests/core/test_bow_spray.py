@@ -103,6 +103,9 @@ def test_bows_are_part_of_the_sea_s_spray() -> None:
     before, found = (with_ship.at(time, spray, (10.0, 0.0)) for time in (TIME - 1.0 / 24.0, TIME))
     without = CameraSpray(FoamLevels(around(SHIP.changed(muted=True)))).at(TIME, spray, (10.0, 0.0))
     assert at_bow(found) > 300 + 3 * at_bow(without)
+    quarter = CameraSpray(FoamLevels(around(SHIP.changed(foam=0.25)))).at(TIME, spray, (10.0, 0.0))
+    own, own_quarter = (at_bow(each) - at_bow(without) for each in (found, quarter))
+    assert own == pytest.approx(4.0 * own_quarter, rel=0.25)  # not bounded by a cell's area
     assert not set(found.id.tolist()).isdisjoint(before.id.tolist())
     alone = CameraSpray(FoamLevels(around())).at(TIME, spray, (10.0, 0.0))
     assert all(one.tobytes() == other.tobytes() for one, other in zip(found, alone, strict=True))

@@ -130,7 +130,7 @@ class TileSpray:
         water = _Water(*(fields[name][row, column].astype(np.float64) for name in _Water._fields))
         cells = _Cells(column, row, side / n, 0)
         rest = np.stack((column, row), axis=-1).astype(np.float64) * (side / n)
-        crests = _crests(model, foam.parameters, index, cells, rest, water, strength[row, column])
+        crests = _crests(model, foam.parameters, index, cells, rest, water, _torn(strength[row, column]))
         return [_Looked(cells, crests)]
 
 
@@ -163,10 +163,10 @@ class CameraSpray:
         x, y = np.concatenate(rest).T
         fields = finest.surface(time, _OF_WATER, Places(x, y))
         water = _Water(*(fields[name].astype(np.float64) for name in _Water._fields))
-        strength = np.concatenate([each for _, each in found])
+        torn = np.concatenate([_torn(strength) for _, strength in found])
         own = own_spray(finest.parameters, x, y, time, water.displacement[:, 2], water.velocity)
-        more = own.strength > strength
-        strength = np.where(more, own.strength, strength).astype(np.float32)
+        more = own.strength > torn
+        torn = np.where(more, own.strength, torn).astype(np.float32)
         water = water._replace(velocity=np.where(more[:, np.newaxis], own.velocity, water.velocity))
         ends = np.cumsum([len(each) for each in rest])
         made = []
@@ -174,7 +174,7 @@ class CameraSpray:
             part = slice(end - len(at), end)
             of_part = _Water._make(each[part] for each in water)
             sea = self._levels.seas[square.level]
-            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, strength[part])
+            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, torn[part])
             made.append(_Looked(cells, crests))
         return made
 
@@ -346,9 +346,12 @@ def _crests(
     cells: _Cells,
     rest: Array,
     water: _Water,
-    strength: RealArray,
+    torn: RealArray,
 ) -> Crests:
-    """Crests in cells around rest positions x and y in m, with the motion of the water there."""
+    """Crests in cells around rest positions x and y in m, with the motion of the water there.
+
+    torn : share of each cell's area that is torn; more than 1 where a hull throws up more than wind tears off
+    """
     moments = 0 if model.loop_duration is None else round(model.loop_duration / model.step)
     moment = index % moments if moments else index
     xx, yy, xy = water.strain.T
@@ -367,12 +370,17 @@ def _crests(
     return Crests(
         random.hash_cells(cells.column, cells.row, parameters.seed, moment, cells.level),
         gust,
-        (area * np.minimum(strength / _ALL_TEARS, 1.0)).astype(np.float32),
+        (area * torn).astype(np.float32),
         np.full(len(rest), STANDS_FOR[cells.level], np.float32),
         place.astype(np.float32),
         along,
         water.velocity.astype(np.float32),
     )
+
+
+def _torn(strength: RealArray) -> RealArray:
+    """Share of the area of breaking crests of some strength that is torn, float32."""
+    return np.minimum(strength / np.float32(_ALL_TEARS), np.float32(1.0))
 
 
 def _check_memory(count: float, spray: Spray) -> None:

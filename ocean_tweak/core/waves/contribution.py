@@ -134,7 +134,7 @@ class OwnFoam(NamedTuple):
 class OwnSpray(NamedTuple):
     """Water that a layer throws up beside that of breaking waves.
 
-    strength : (places,) 1 where it is as much as of a crest that breaks
+    strength : (places,) 1 where it is as much as wind tears off a crest that breaks
     velocity : (places, 3) of this water, m/s
     """
 

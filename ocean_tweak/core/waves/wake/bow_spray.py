@@ -16,8 +16,8 @@ from .foam import HullFoam
 
 Array = NDArray[np.float64]
 
-#: relative speed in m/s at which a bow tears off as much as a crest that breaks
-_AS_A_CREST = 10.0
+#: relative speed in m/s at which a bow throws up as much as wind tears off a crest that breaks
+_AS_A_CREST = 5.0
 #: velocity at which water is thrown, forwards, aside and up, in relative speeds
 _AHEAD, _ASIDE, _UP = 0.35, 0.45, 0.8
 
