@@ -9,6 +9,7 @@ them, in the lee of a headland or on a wall, they run up less in proportion.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 
@@ -55,17 +56,17 @@ class Swash:
         wet = ground.depth > 0.0
         shore = wet & _beside(~wet)
         self._number = np.where(shore, np.cumsum(shore).reshape(wet.shape) - 1, -1)
-        self._pictures = pictures.elevation[:, shore[wet]]
+        self._pictures = np.ascontiguousarray(pictures.elevation[:, shore[wet]])
         self._envelope = 0.5 * _HIGHEST * np.maximum(pictures.rms_height[shore[wet]], 1e-6)
         setup, swash = run_up(height, wavelength, slope[shore])
         arrives = broken_share[shore] ** 0.25  # height over what the depth lets through
         self.highest = arrives * highest_run_up(setup, swash)
         self._swash = arrives * highest_run_up(np.zeros_like(swash), swash)
 
-    def reach(self, time: float | Fraction) -> Array:
-        """(shore samples,) m above still water that waves run up at a time."""
-        envelope = np.abs(self._over_bed.factor(time).astype(np.complex64) @ self._pictures)
-        part = np.minimum(envelope / self._envelope, 1.0)
+    def reach(self, times: Sequence[float | Fraction]) -> Array:
+        """(times, shore samples) m above still water that waves run up."""
+        factors = np.stack([self._over_bed.factor(time) for time in times]).astype(np.complex64)
+        part = np.minimum(np.abs(factors @ self._pictures) / self._envelope, 1.0)
         result: Array = self.highest - self._swash * (1.0 - part)
         return result
 
@@ -78,11 +79,11 @@ class Swash:
         there = np.flatnonzero((depth <= 0.0) & (depth > -highest - _EDGE) & (number >= 0))
         height, beside = -depth[there], number[there]
         last = math.floor(Fraction(time) * _LOOKS)
-        moments = [Fraction(time), *(Fraction(last - back, _LOOKS) for back in range(_DRIES * _LOOKS))]
+        times = [Fraction(time), *(Fraction(last - back, _LOOKS) for back in range(_DRIES * _LOOKS))]
         found = np.zeros(len(there))
-        for moment in moments:
-            left = 1.0 - float(Fraction(time) - moment) / _DRIES
-            edge = np.clip((self.reach(moment)[beside] - height) / _EDGE + 0.5, 0.0, 1.0)
+        for then, reach in zip(times, self.reach(times), strict=True):
+            left = 1.0 - float(Fraction(time) - then) / _DRIES
+            edge = np.clip((reach[beside] - height) / _EDGE + 0.5, 0.0, 1.0)
             np.maximum(found, left * edge, out=found)
         wet[there] = found
         return wet
