@@ -153,12 +153,18 @@ def view_of(scene: bpy.types.Scene) -> float:
 
 
 def other_suns(scene: bpy.types.Scene) -> list[str]:
-    """Names of sun lamps in a scene that are not its sky's, and light it as well."""
+    """Names of sun lamps in a scene that do not follow its sky, such as copies of its sun."""
+    own = [_marked(scene, role) for role in _NAMES]
     return [
         item.name
         for item in scene.objects
-        if item.type == "LIGHT" and item.data.type == "SUN" and _MARK not in item and not item.hide_render
+        if item.type == "LIGHT" and item.data.type == "SUN" and item not in own and not item.hide_render
     ]
+
+
+def _marked(scene: bpy.types.Scene, role: str) -> bpy.types.Object | None:
+    """The lamp that is a scene's sun or moon."""
+    return next((item for item in scene.objects if item.get(_MARK) == role), None)
 
 
 def _usable(scene: bpy.types.Scene) -> bpy.types.Image | None:
@@ -187,8 +193,7 @@ def _lamp(
 ) -> bpy.types.Object | None:
     """The scene's sun or moon, made where it has to shine and there is none."""
     light = irradiance or (0.0, 0.0, 0.0)
-    item = next((item for item in scene.objects if item.get(_MARK) == role), None)
-    item = item or (_former_sun(scene) if role == _SUN else None)
+    item = _marked(scene, role) or (_former_sun(scene) if role == _SUN else None)
     if item is None:
         if max(light) <= 0.0:
             return None

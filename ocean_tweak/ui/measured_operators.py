@@ -16,12 +16,12 @@ from ..export.spectra.records import Record, time_text
 from ..scene import middle, ocean_object, water_material
 from ..scene.settings import VIEWPORT_RESOLUTION, OceanObjectError, settings_of
 from .active_ocean import refuse, shown_ocean
-from .adding import default_sea, make_active
+from .adding import InObjectMode, default_sea, make_active
 
 _ERRORS = (ParameterError, OceanObjectError, OSError, *ocean_object.EXPECTED_ERRORS)
 
 
-class OCEAN_OT_import_measured(bpy.types.Operator, ImportHelper):
+class OCEAN_OT_import_measured(InObjectMode, bpy.types.Operator, ImportHelper):
     """Read spectra that buoys measured or wave models made."""
 
     bl_idname = "ocean.import_measured"
@@ -82,6 +82,8 @@ class OCEAN_OT_import_measured(bpy.types.Operator, ImportHelper):
         if self.target == "OCEAN" or item is None:
             _add_ocean(context, measured_sea(chosen, self.tail))
             return
+        if item.library is not None or item.override_library is not None:
+            raise OceanObjectError(f"{item.name} is of another file: make it local, or import a new ocean")
         settings = settings_of(item)
         before = settings.to_parameters(context.scene)
         own = [index for index, layer in enumerate(before.layers) if isinstance(layer, WaveLayer)]

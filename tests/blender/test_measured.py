@@ -47,6 +47,18 @@ def test_a_buoy_becomes_a_layer_and_its_time_can_be_keyed(ocean, empty_scene):
     assert 0.0 < sea_of(ocean).layers[1].measured_time < 36000.0
 
 
+def test_a_linked_ocean_gets_no_layer(ocean, empty_scene, tmp_path):
+    file = str(tmp_path / "sea.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    with bpy.data.libraries.load(file, link=True) as (_, chosen):
+        chosen.objects = ["Ocean"]
+    bpy.context.scene.collection.objects.link(bpy.data.objects["Ocean"])
+    with pytest.raises(RuntimeError, match="make it local"):
+        import_buoy(target="LAYER")
+    assert len(bpy.data.objects["Ocean"].ocean_tweak.layers) == 1
+
+
 def test_bad_files_are_refused_in_a_line(ocean, empty_scene, tmp_path):
     path = tmp_path / "41010.spec"
     path.write_text("SWAN 1\nTIME\n4\n")

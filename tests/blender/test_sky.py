@@ -233,6 +233,16 @@ def test_other_suns_are_told(scene, capfd):
     assert "also lit by Key" in capfd.readouterr().out
 
 
+def test_a_copy_of_the_sun_is_told(scene, capfd):
+    bpy.ops.ocean.use_sky(sky="NOON")
+    assert "also lit" not in capfd.readouterr().out
+    twin = scene.objects["Ocean Sun"].copy()
+    twin.data = twin.data.copy()
+    scene.collection.objects.link(twin)
+    bpy.ops.ocean.use_sky(sky="NOON")
+    assert "also lit by Ocean Sun.001" in capfd.readouterr().out
+
+
 def test_the_sun_of_a_former_file_goes_on(scene, ocean, extension):
     sun = bpy.data.objects.new("Ocean Sun", bpy.data.lights.new("Ocean Sun", "SUN"))
     scene.collection.objects.link(sun)
