@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
+from ocean_tweak.core.sea import coast_waves, memory
 from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.sea_files import read_sea
 
@@ -65,6 +67,17 @@ def test_spray_has_no_tile_and_nothing_is_begun(
         assert "spray = '': is made on the tile" in told
         assert "give the sea patches" in told
         assert not (tmp_path / "out").exists()
+
+
+def test_a_coast_that_no_memory_holds_is_refused_before_it_is_begun(
+    coast: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(memory, "usable_memory", lambda: 4 * 2**30)
+    monkeypatch.setattr(coast_waves, "pictures", lambda *_: pytest.fail("it was begun"))
+    assert main(["info", *coast, "--set", "coast.step=0.1"]) == 1
+    assert re.search(
+        r"of the waves needs \d+\.\d GB of memory.*: set a larger coast\.step or", capsys.readouterr().err
+    )
 
 
 @pytest.mark.parametrize(

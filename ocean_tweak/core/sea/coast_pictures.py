@@ -7,6 +7,7 @@ the waves of its frequency, each with its own wave vector; from there this sum i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -79,7 +80,8 @@ def most_frequencies(sea: OceanParameters) -> int:
     """Upper bound on the number of frequencies of waves that reach a coast."""
     assert sea.coast is not None
     assert sea.repeats_after is not None
-    k = 2.0 * np.pi / sea.coast.shortest_wavelength
+    # no grid has shorter waves than along its diagonal
+    k = np.pi * min(2.0 / sea.coast.shortest_wavelength, math.sqrt(2.0) * sea.resolution / sea.domain_size)
     highest = float(dispersion.angular_frequency(np.array(k), sea.dispersion, sea.water))
     return int(highest * float(sea.repeats_after) / (2.0 * np.pi)) + 1
 

@@ -109,8 +109,8 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
     return MemoryNeed(state, max(need.building for need in needs), surface)
 
 
-def _coast_need(parameters: OceanParameters) -> MemoryNeed:
-    """That of what becomes of waves over a bed."""
+def coast_need(parameters: OceanParameters) -> MemoryNeed:
+    """That of what becomes of waves over a bed; nothing without one."""
     if parameters.coast is None or not parameters.has_coast:
         return MemoryNeed(0, 0, 0)
     first = parameters.patches[0] if parameters.patches else None
@@ -134,7 +134,7 @@ def _need_in_area(
     real = 4 if precision == "single" else 8
     numbers = sum(max(1, CHANNELS[name].components) for name in outputs)
     a_sample = _READING + (2 * numbers + (len(needs) + 1) * len(keys)) * real
-    coast = _coast_need(parameters)
+    coast = coast_need(parameters)
     needs.append(coast)
     surface = sum(need.surface for need in needs)
     if outputs & OF_MEMORY:
@@ -158,13 +158,13 @@ def _columns(group: Iterable[str], gradient: bool) -> int:
     return len({term(*need, gradient=gradient).column for name in group for need in CHANNELS[name].needs})
 
 
-def check_memory(need: int, what: str) -> None:
+def check_memory(need: int, what: str, remedy: str = "lower the resolution or the number of workers") -> None:
     """Raise MemoryError, with a remedy, if the machine or container has less memory than needed."""
     available = usable_memory()
     if available is not None and need > available:
         raise MemoryError(
             f"{what} needs {need / 2**30:.1f} GB of memory and this machine has {available / 2**30:.1f} GB: "
-            "lower the resolution or the number of workers"
+            f"{remedy}"
         )
 
 
