@@ -25,6 +25,8 @@ from gallery import Shot, build, picture_parser, render, save_jpeg, set_quality
 BOAT_LENGTH = 15.0
 #: frames of a shot, between which ships are keyed
 FIRST, LAST = 1, 240
+#: frame of the picture, in which a crest stands at the bow
+PICTURED = 130
 #: m/s and m of the gale's wind and fetch; m/s, times the boat's size, and rad from the direction of the view
 #: to the right, of its ship
 GALE, SHIP_SPEED, SHIP_SIZE, SHIP_COURSE = (17.0, 250e3), 9.0, 3.0, math.radians(62.0)
@@ -49,7 +51,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     """The arguments after "--"."""
     parser = picture_parser("wakes.py")
     parser.add_argument("--shots", nargs="+", default=tuple(SHOTS), choices=tuple(SHOTS))
-    parser.set_defaults(frame=LAST // 2)
+    parser.set_defaults(frame=PICTURED)
     return parser.parse_args(argv)
 
 
