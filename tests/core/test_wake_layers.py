@@ -171,7 +171,7 @@ def test_outside_the_hull_the_water_never_folds(froude: float) -> None:
         ship = WakeLayer(path=path, footprint=shape, draught=3.0, area_size=1024.0, area_resolution=512)
         left = fields(ship, 0.0, area, "jacobian").jacobian
         beyond = (np.abs(x) > 30.0) | (np.abs(y) > 6.0)
-        assert left[beyond].min() > 0.0
+        assert left[beyond].min() > 0.2
 
 
 def test_a_boat_in_a_sea_rides_through_its_waves() -> None:
