@@ -285,6 +285,10 @@ def test_what_is_expected_of_a_wake() -> None:
     assert "too coarse. Raise area_resolution" in coarse.warnings[0]
     around = WakeLayer.outlook(sea(ship.changed(area_size=512.0)))
     assert "come around the area" in around.warnings[0]
+    deep = WakeLayer.outlook(sea(ship.changed(draught=12.0)))
+    assert "folds beside it. Make draught" in deep.warnings[0]
+    aground = WakeLayer.outlook(sea(ship, water=Water(depth=2.5)))
+    assert "more than the water's depth of 2.5 m" in aground.warnings[-1]
     assert len(told.lines()) == 3
     assert json.dumps(told.to_plain())
     shallow = WakeLayer.outlook(sea(ship, water=Water(depth=5.0))).wakes[0]

@@ -21,6 +21,8 @@ NARROWS = 0.5
 _SAMPLES, _AROUND = 4.0, 0.03
 #: m/s, below which there is no wake
 _SLOW = 0.05
+#: draught at a choppiness of 1, in beams, from which the water folds beside hulls that are longer than wide
+_FOLDS = 0.7
 
 
 def froude_number(speed: float, length: float, gravity: float) -> float:
@@ -81,6 +83,8 @@ class WakeOutlook(NamedTuple):
     spacing : between the samples of its area, m
     around : what is left of waves that have come around the area while the object crossed it, 0 to 1
     pieces : straight ones of its path
+    draught, narrow : of its hull at its deepest, and the shorter of its length and beam, m
+    choppiness, depth : of the sea, and m of its water
     """
 
     number: int
@@ -91,6 +95,10 @@ class WakeOutlook(NamedTuple):
     spacing: float
     around: float
     pieces: int
+    draught: float
+    narrow: float
+    choppiness: float
+    depth: float
 
     def line(self) -> str:
         """What `info` says."""
@@ -121,6 +129,17 @@ class WakeOutlook(NamedTuple):
                 f"Wake {self.number}: {100.0 * self.around:.0f} % of its waves come around the area and show "
                 "ahead of it. Make area_size or decay larger"
             )
+        if self.choppiness * self.draught > _FOLDS * self.narrow:
+            found.append(
+                f"Wake {self.number}: its draught of {self.draught:.3g} m is deep for {self.narrow:.3g} m of "
+                "width: the water folds beside it. Make draught, immersion, amplitude_scale or choppiness "
+                "smaller"
+            )
+        if self.draught > self.depth:
+            found.append(
+                f"Wake {self.number}: its draught of {self.draught:.3g} m is more than the water's depth of "
+                f"{self.depth:.3g} m. Make the draught smaller, or the water deeper"
+            )
         return tuple(found)
 
 
@@ -148,11 +167,13 @@ class WakeOutlooks(NamedTuple):
 
 
 def wake_outlooks(
-    sea: OceanParameters, wakes: Iterable[tuple[int, Track, float, Basin]]
+    sea: OceanParameters, wakes: Iterable[tuple[int, Track, tuple[float, float, float], Basin]]
 ) -> WakeOutlooks | None:
-    """Of objects by number, on tracks, so many m long, in some water; None where there are none."""
+    """Of objects by number, on tracks, with a length, a beam and a draught in m, in some water; None where
+    there are none.
+    """
     found = []
-    for number, track, length, basin in wakes:
+    for number, track, (length, beam, draught), basin in wakes:
         speed, _ = track.fastest
         froude = froude_number(speed, length, sea.water.gravity)
         wave = transverse_wavelength(speed, sea)
@@ -167,6 +188,10 @@ def wake_outlooks(
                 basin.area / basin.resolution,
                 around,
                 len(track.pieces),
+                draught,
+                min(length, beam),
+                sea.choppiness,
+                sea.water.depth,
             )
         )
     return WakeOutlooks(tuple(found)) if found else None

@@ -306,11 +306,16 @@ class WakeLayer(Contribution):
         numbers = sum(layer.area_resolution**2 for layer in sea.active(cls))
         return MemoryNeed(8 * numbers * 9, 0, 4 * numbers * 12)
 
+    @property
+    def _deepest(self) -> float:
+        """Of its draught over its path, m."""
+        return self.amplitude_scale * self.draught * max(each.immersion for each in self.path)
+
     @classmethod
     def outlook(cls, sea: OceanParameters) -> WakeOutlooks | None:
         """How fast each object is, and how long its waves are."""
         found = [
-            (number, layer.track, layer.length, layer._basin(sea))
+            (number, layer.track, (layer.length, layer.beam, layer._deepest), layer._basin(sea))
             for number, layer in enumerate(sea.of(cls))
             if not layer.muted
         ]
