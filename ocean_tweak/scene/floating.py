@@ -108,11 +108,14 @@ def float_on(
     return carrier
 
 
-def own_hull(item: bpy.types.Object) -> Hull | None:
-    """The hull of an object in its transform without floating; None if it has none."""
+def own_hull(item: bpy.types.Object, depsgraph: bpy.types.Depsgraph | None = None) -> Hull | None:
+    """The hull of an object in its transform without floating; None if it has none.
+
+    depsgraph : that of a handler, in which Blender must not evaluate anew
+    """
     carrier = carrier_of(item)
     upright = item if carrier is None else carrier
-    return hull_of(item, upright.matrix_world, bpy.context.evaluated_depsgraph_get())
+    return hull_of(item, upright.matrix_world, depsgraph or bpy.context.evaluated_depsgraph_get())
 
 
 def usual_ride(kind: str, item: bpy.types.Object, hull: Hull | None, damped: bool = False) -> Ride:

@@ -83,12 +83,12 @@ def _loud(handler: Callable[..., None]) -> Callable[..., None]:
 
 
 @_loud
-def follow_before_frame(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+def follow_before_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """A script may have moved floating objects or keyed masks since the last evaluation."""
     float_carrier.follow()
     float_current.follow_before_frame(scene)
     float_riding.follow_before_frame(scene)
-    wake_makers.follow(scene, frozenset())
+    wake_makers.follow(scene, frozenset(), depsgraph)
     mask_following.bind(scene)
 
 
@@ -168,9 +168,8 @@ def refresh_for_wakes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
     """Let wakes follow their objects where these are moved by hand or keyed otherwise."""
     if depsgraph is not None and any(map(depsgraph.id_type_updated, ("OBJECT", "ACTION"))):
         kinds = (bpy.types.Object, bpy.types.Action)
-        wake_makers.follow(
-            scene, {update.id.name for update in depsgraph.updates if isinstance(update.id, kinds)}
-        )
+        names = {update.id.name for update in depsgraph.updates if isinstance(update.id, kinds)}
+        wake_makers.follow(scene, names, depsgraph)
 
 
 @persistent
@@ -277,7 +276,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     solid_foam.mend()
     scene_sky.look_for_panoramas()
     for scene in bpy.data.scenes:
-        wake_makers.follow(scene, frozenset())
+        wake_makers.follow(scene, frozenset(), None)
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.ALL if cache_place.find_moved(item) or is_live(item) else baked)
 

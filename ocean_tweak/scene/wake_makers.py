@@ -93,14 +93,20 @@ class InWater(NamedTuple):
         return self._replace(ahead=self.ahead + math.pi)
 
 
-def in_water(item: bpy.types.Object, ocean: bpy.types.Object, metres: float) -> InWater:
+def in_water(
+    item: bpy.types.Object,
+    ocean: bpy.types.Object,
+    metres: float,
+    depsgraph: bpy.types.Depsgraph | None = None,
+) -> InWater:
     """The part of an object that presses the water aside.
 
     metres : in a Blender unit, for what is said
+    depsgraph : that of a handler
 
     Raises WakeError for what is above the water, or has no width.
     """
-    hull, carrier = own_hull(item), carrier_of(item)
+    hull, carrier = own_hull(item, depsgraph), carrier_of(item)
     if hull is None:
         raise WakeError(f"{item.name} has no mesh that is rendered, so no hull: choose one that has")
     level = level_at(item, ocean, None if carrier is None else ride_of(carrier)[1])
@@ -185,11 +191,12 @@ def frames_of(place: bpy.types.Object, scene: bpy.types.Scene) -> range:
     return frames if len(frames) <= MOST_SAMPLES else frames[:MOST_SAMPLES]
 
 
-def follow(scene: bpy.types.Scene, moved: Set[str]) -> None:
+def follow(scene: bpy.types.Scene, moved: Set[str], depsgraph: bpy.types.Depsgraph | None) -> None:
     """Let the wakes of a scene's oceans follow objects that were moved or keyed otherwise, and another frame
     rate, unit or place of the ocean.
 
     moved : names of objects and actions that an evaluation has anew
+    depsgraph : that of the handler which this is called from
     """
     for ocean in oceans_in(scene):
         makers = [] if ocean.library is not None else list(settings_of(ocean).wake_makers())
@@ -201,7 +208,7 @@ def follow(scene: bpy.types.Scene, moved: Set[str]) -> None:
         changed = False
         for number, item in makers:
             if is_other or moved & set(_names(item)):
-                changed |= _follow(ocean, number, item, scene)
+                changed |= _follow(ocean, number, item, scene, depsgraph)
         if changed:
             show(ocean, scene, Wanted.CHANGE)
 
@@ -219,12 +226,19 @@ def forget_all() -> None:
     _followed.clear()
 
 
-def _follow(ocean: bpy.types.Object, number: int, item: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+def _follow(
+    ocean: bpy.types.Object,
+    number: int,
+    item: bpy.types.Object,
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph | None,
+) -> bool:
     """Give a layer the path of its object; whether that is another one."""
     if item.name not in scene.objects:
         return False
     try:
-        path = path_of(item, ocean, scene, in_water(item, ocean, float(metres_per_unit(scene))))
+        wetted = in_water(item, ocean, float(metres_per_unit(scene)), depsgraph)
+        path = path_of(item, ocean, scene, wetted)
     except WakeError:  # out of the water for now: its layer stays as it was
         return False
     return bool(path) and settings_of(ocean).set_wake_path(number, path)

@@ -402,3 +402,12 @@ def test_other_units_keep_path_and_hull_together(ocean, ship, select, empty_scen
     after = wake_of(ocean)
     assert after.length == pytest.approx(0.5 * before.length)
     assert after.path[0].x == pytest.approx(0.5 * before.path[0].x)
+
+
+def test_what_makes_waves_may_float_afterwards(ocean, ship, select, empty_scene):
+    """Blender 4.5 crashes where a handler evaluates what another one has just changed."""
+    select(ship)
+    bpy.ops.object.ocean_tweak_wake()
+    assert bpy.ops.object.ocean_tweak_float(riding="DAMPED") == {"FINISHED"}
+    empty_scene.frame_set(12)
+    assert wake_of(ocean).path[0].time == 0.0
