@@ -150,6 +150,14 @@ def test_only_bakes_with_foam_are_others_where_foam_is():
     assert Job("sea", "1", Shot(SEA), ("disp", "vel"), foam=1) == Job("sea", "1", Shot(SEA), ("disp", "vel"))
 
 
+def test_a_job_that_a_killed_process_began_to_write_goes(tmp_path):
+    job = Job("sea", uid_of("sea"), Shot(SEA), ("disp",), "ZIP", (1, 2))
+    folder = open_folder(tmp_path, job)
+    (folder / ".bake.json.0224252bd22a4c2c.part").write_text("{")
+    assert open_folder(tmp_path, job) == folder
+    assert [path.name for path in folder.iterdir() if path.is_file()] == ["bake.json"]
+
+
 @pytest.fixture
 def with_former_foam(tmp_path, monkeypatch):
     """A bake of two frames whose foam is of the first version, which no file tells."""

@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 from PIL import Image
 
@@ -38,6 +39,8 @@ def images(tmp_path):
     for name in ("lee.png", "sea.png"):
         Image.fromarray(grey).save(tmp_path / name)
     Image.fromarray(np.stack([grey] * 3, axis=-1)).save(tmp_path / "wind.png")
+    beach = np.tile(np.linspace(20.0, -2.0, 256, dtype=np.float32), (256, 1))
+    OpenEXR.File({}, {"Y": beach}).write(str(tmp_path / "bed.exr"))
     return tmp_path
 
 

@@ -20,7 +20,7 @@ from ...core.data.frames import Frame, frame_label
 from ...core.parameters.shot import Shot
 from ...core.sea.regions import told_area
 from ..exr import ExrError, read_header
-from ..files import LARGEST_JSON, alone, is_link, new_file, read_bytes, sync_folder, write_text
+from ..files import LARGEST_JSON, PART, alone, is_link, new_file, read_bytes, sync_folder, write_text
 from ..frame_files import SPRAY
 from .job import UID, CacheError, Job, NewerBakeError, maps_for, safe_name
 
@@ -55,6 +55,8 @@ def open_folder(cache: Path, job: Job) -> Path:
         for part in (RECORDS, LOCKS):
             (folder / part).mkdir(parents=True, exist_ok=True)
         write_job(folder, job)
+        for begun in folder.glob(f".{JOB_FILE}.*{PART}"):  # of killed processes: whoever writes it is alone
+            begun.unlink(missing_ok=True)
         sync_folder(home)
     return folder
 
