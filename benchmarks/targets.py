@@ -54,6 +54,7 @@ TARGETS = {
     "two workers": Target(
         "two threads against one, N ≥ 1024", 1.5, "×", at_least=True, needs_two_cores=True,
         what_limits="the memory that both threads share: most in the transposed store, and with all outputs",
+        tried="smaller blocks for threads to pull, which lose",
     ),
     "initial state": Target(
         "initial state at 512² after one spectral parameter changed", 8.0, "× one six-field frame"
@@ -129,9 +130,20 @@ TARGETS = {
     "wind fields": Target(
         "20,000 wave particles, displacement, slopes and Jacobian, 1024²", 3.0, "× one six-field frame"
     ),
-    "wake alone": Target("six fields of a wake at 512², 60 s of path alone", 40.0, "× one six-field frame"),
+    "wake alone": Target(
+        "six fields of a wake at 512², 60 s of path alone", 40.0, "× one six-field frame",
+        what_limits="120 pieces of the path, each of which turns two numbers of every wave vector and adds "
+        "the integral over the piece to both",
+        tried="phases as products of one exponential along each axis, and turns shared by pieces that last "
+        "equally long: both kept",
+    ),
     "wake sequence": Target("six fields of a wake at 512², the next frame", 3.0, "× one six-field frame"),
-    "coast pictures": Target("pictures of 600 waves over a bed of 512², two cores", 20.0, "s"),
+    "coast pictures": Target(
+        "pictures of 600 waves over a bed of 512², two cores", 20.0, "s",
+        what_limits="512 rows one after another, each with a series of third order along the shore for every "
+        "wave, in double precision",
+        tried="waves marched in blocks, which all cores share: kept; single precision is untried",
+    ),
     "coast frame": Target("displacement over a bed of about 512²", 5.0, "× one six-field frame"),
     "coast velocity": Target("displacement and velocity over a bed of 512²", 10.0, "× one six-field frame"),
     "cascades": Target("three 512² patches, 6 fields + minimum eigenvalue each", 3.2, "× one 512² patch"),
