@@ -182,7 +182,7 @@ def _plain_fields(kind: type, without: tuple[str, ...]) -> Iterator[_Field]:
 
 def _property(field: _Field, update: _Update) -> Any:
     common = {
-        "name": wording.label(field.name),
+        "name": wording.label(field.name, field.metadata.get("unit", "")),
         "default": default_of(field),
         "update": _limited(field, update) if _is_length(field) else update,
         "options": {"ANIMATABLE"} if field.metadata.get("changes") else set(),

@@ -36,8 +36,7 @@ LABELS = {
     "minimum_wind_speed": "Minimum Wind",
     "height": "Height By",
     "height_per_speed": "Per Wind Speed",
-    "group_length": "Length (waves)",
-    "life": "Life (waves)",
+    "group_length": "Length",
     "mesh_resolution": "Mesh Quads",
     "law": "Foam Law",
     "noise_size": "Size",
@@ -174,9 +173,10 @@ CHOICES = {
 }
 
 
-def label(name: str) -> str:
-    """The label of a field."""
-    return LABELS.get(name, name.replace("_", " ").title())
+def label(name: str, unit: str = "") -> str:
+    """The label of a field, which says its unit where that is a number of waves."""
+    own = LABELS.get(name, name.replace("_", " ").title())
+    return f"{own} (waves)" if unit == "wavelengths" else own
 
 
 def place(path: str) -> str:

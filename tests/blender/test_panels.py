@@ -272,6 +272,15 @@ def test_messages_name_what_the_window_names(extension):
     assert wording.place("water.depth") == "Water, Depth"
 
 
+def test_a_life_is_in_waves_or_in_seconds(ocean):
+    """Of a wave in a wind field, and of spray."""
+    settings = ocean.ocean_tweak
+    named = [
+        group.bl_rna.properties["life"].name for group in (settings.layers[0].wind_field, settings.spray)
+    ]
+    assert named == ["Life (waves)", "Life"]
+
+
 def test_a_hero_wave_says_when_and_how_fast(draw, item, empty_scene):
     """In deep water crests run with √(g·λ/2π), the group half as fast."""
     item.ocean_tweak.dispersion = "DEEP"
