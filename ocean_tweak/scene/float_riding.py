@@ -5,15 +5,16 @@ And hulls over a bed, damped or not: the waves that nodes see are those of the o
 
 Nodes see one frame only, so this is worked out here and given to the carrier, with the frame for which it
 holds. Of the past only moments are asked for that frames share, and what a hull felt then is kept: a frame
-more needs the water at one moment or none. In a window, a hull that is moved by hand follows the surface
-until the hand rests.
+more needs the water at one moment of each mode or none. In a window, a hull that is moved by hand follows the
+surface until the hand rests.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from typing import NamedTuple
 
 import bpy
@@ -25,7 +26,7 @@ from ..core import Ocean, OceanParameters, ParameterError
 from ..core.numerics.memo import MEMO
 from ..core.sea.placed_waves import repeating, without_placed
 from ..core.sea.regions import Places
-from ..core.sea.riding import Moments, Oscillator, moments, natural_periods, ride
+from ..core.sea.riding import LEAST_DAMPING, Moments, Oscillator, moments, natural_periods, ride
 from ..core.sea.waterline import Plane, fitted_plane, stencil
 from ..nodes.floating import CARRIER
 from ..nodes.modifier_inputs import all_inputs, get_input
@@ -184,7 +185,10 @@ def gone_along(place: Footprint, way: tuple[float, float]) -> Footprint:
 
 
 def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator, Oscillator, Oscillator]:
-    """Heave, pitch and roll, with the periods that are set, or else those of the size."""
+    """Heave, pitch and roll, with the periods that are set, or else those of the size.
+
+    A damping that a script set beyond its range is the end of that range.
+    """
     length, beam = 2.0 * place.half_length, 2.0 * place.half_beam
     scale = length / ride.waterline
     draft = ride.draft * scale if ride.draft > 0.0 else beam / 3.0
@@ -193,14 +197,15 @@ def modes_of(ride: Ride, place: Footprint, gravity: float) -> tuple[Oscillator, 
         given if given > 0.0 else own
         for given, own in zip((ride.heave_period, ride.pitch_period, ride.roll_period), of_size, strict=True)
     )
-    return (
-        Oscillator(heave, ride.damping), Oscillator(pitch, ride.damping), Oscillator(roll, ride.roll_damping)
-    )  # fmt: skip
+    damping, roll_damping = (
+        min(max(share, LEAST_DAMPING), 1.0) for share in (ride.damping, ride.roll_damping)
+    )
+    return Oscillator(heave, damping), Oscillator(pitch, damping), Oscillator(roll, roll_damping)
 
 
-def in_ocean(along: Array, place: Footprint) -> Solved:
+def in_ocean(along: Sequence[float], place: Footprint) -> Solved:
     """Height and slopes, of which these are along a hull and across it, in the ocean's axes."""
-    height, slope, heel = (float(value) for value in along)
+    height, slope, heel = along
     cosine, sine = math.cos(place.heading), math.sin(place.heading)
     return Solved(height, slope * cosine - heel * sine, slope * sine + heel * cosine)
 
@@ -227,13 +232,16 @@ def solve(
     sea = _sea_of(plan, now)
     felt = MEMO.get(_FELT, sea, lambda: _Felt(sea))
     if can_ride(ride_of_hull):
-        modes = modes_of(ride_of_hull, now, plan.parameters.water.gravity)
-        known = moments(plan.time, modes)
-        water = np.array([felt.at(time, lies(time)) for time in known.times])
-        found = in_ocean(ride(water, known, plan.time, modes), now)
+        water = cache(lambda time: felt.at(time, lies(time)))  # modes have moments in common
+        along = []
+        for number, mode in enumerate(modes_of(ride_of_hull, now, plan.parameters.water.gravity)):
+            known = moments(plan.time, mode)
+            forcing = np.array([water(time)[number] for time in known.times])
+            along.append(ride(forcing, known, plan.time, mode))
+        found = in_ocean(along, now)
     else:
         half = max(now.half_length, _POINT)
-        found = in_ocean(np.array(felt.at(plan.time, now._replace(half_length=half, half_beam=half))), now)
+        found = in_ocean(felt.at(plan.time, now._replace(half_length=half, half_beam=half)), now)
     MEMO.put(_FELT, sea, felt)  # it has grown
     return found
 
@@ -249,8 +257,9 @@ def solve_by_frames(
     count = max(len(felt), math.ceil(max(mode.memory for mode in modes) / float(seconds)))
     known = Moments(seconds, range(-count, 2))
     # the next one is not known, and not needed
-    rows = [felt[0]] * (count + 1 - len(felt)) + felt + [felt[-1]]
-    return in_ocean(ride(np.array(rows), known, Fraction(0), modes), place)
+    water = np.array([felt[0]] * (count + 1 - len(felt)) + felt + [felt[-1]])
+    along = [ride(water[:, number], known, Fraction(0), mode) for number, mode in enumerate(modes)]
+    return in_ocean(along, place)
 
 
 def _sea_of(plan: Plan, place: Footprint) -> OceanParameters:

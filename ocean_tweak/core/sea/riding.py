@@ -12,7 +12,8 @@ q − f oscillates freely, and each change of slope of f acts as an impulse:
     q(t) = f(t) − Σ_j Δf'(t_j) g(t − t_j),     g(t) = e^(−ζω₀t) sin(ω_d t)/ω_d,     ω_d = ω₀ √(1 − ζ²)
 
 The moments are multiples of a step, whatever time is asked for. Any time therefore follows from its own past
-alone, with the same bytes in whatever order times are asked for.
+alone, with the same bytes in whatever order times are asked for. Each mode has a step of its own, a power of
+two: a slow one remembers long and a quick one needs short steps, but none needs both.
 """
 
 from __future__ import annotations
@@ -33,9 +34,7 @@ _PER_PERIOD = 16
 _FORGOTTEN = 0.005
 #: oldest part of the past over which responses are faded out, so that the cut-off causes no jump
 _FADES = 0.25
-#: upper bound of the number of moments
-MOST_MOMENTS = 512
-#: lowest damping ratio offered to users: with less, that bound cuts responses off early
+#: lowest damping ratio: with it, a response lasts 42 periods, and up to 1352 moments
 LEAST_DAMPING = 0.02
 #: block coefficient over waterplane coefficient, of boats and ships
 _FULLNESS = 0.8
@@ -58,7 +57,7 @@ class Oscillator:
     """One mode of a hull.
 
     period : natural, without damping, s
-    damping : share of the critical one, above 0 and at most 1
+    damping : share of the critical one, from `LEAST_DAMPING` to 1
 
     Raises ValueError for others.
     """
@@ -69,8 +68,8 @@ class Oscillator:
     def __post_init__(self) -> None:
         if not 0.0 < self.period < math.inf:
             raise ValueError(f"period = {self.period!r}: must be a finite number of seconds above 0")
-        if not 0.0 < self.damping <= 1.0:
-            raise ValueError(f"damping = {self.damping!r}: must be above 0 and at most 1")
+        if not LEAST_DAMPING <= self.damping <= 1.0:
+            raise ValueError(f"damping = {self.damping!r}: must be from {LEAST_DAMPING:g} to 1")
 
     @property
     def memory(self) -> float:
@@ -129,40 +128,35 @@ def natural_periods(length: float, beam: float, draft: float, gravity: float = 9
     return Periods(heave, heave, roll)
 
 
-def moments(time: Fraction, modes: tuple[Oscillator, ...]) -> Moments:
-    """The moments needed for a time in s: a bounded number, shared with neighbouring times.
+def moments(time: Fraction, mode: Oscillator) -> Moments:
+    """The moments needed for a mode at a time in s: a bounded number, shared with neighbouring times.
 
-    The step is a power of two in s, and at most a sixteenth of each mode's period.
+    The step is a power of two in s, and at most a sixteenth of the mode's period. The moments reach back as
+    far as its memory.
     """
-    shortest = min(mode.period for mode in modes) / _PER_PERIOD
-    step = Fraction(2) ** math.floor(math.log2(shortest))
+    step = Fraction(2) ** math.floor(math.log2(mode.period / _PER_PERIOD))
     last = math.floor(time / step) + 1
-    count = math.ceil(max(mode.memory for mode in modes) / float(step)) + 2
-    return Moments(step, range(last + 1 - min(count, MOST_MOMENTS), last + 1))
+    count = math.ceil(mode.memory / float(step)) + 2
+    return Moments(step, range(last + 1 - count, last + 1))
 
 
-def ride(water: Array, known: Moments, time: Fraction, modes: tuple[Oscillator, ...]) -> Array:
-    """(modes,) position of a hull at a time in s, in the unit of the forcing.
+def ride(water: Array, known: Moments, time: Fraction, mode: Oscillator) -> float:
+    """Position of a hull in one mode at a time in s, in the unit of the forcing.
 
-    water : (moments, modes) forcing: height and slopes of the water under the hull. Before the first moment
-        it is taken to continue with constant slope
+    water : (moments,) forcing: height or slope of the water under the hull. Before the first moment it is
+        taken to continue with constant slope
 
     Raises ValueError for forcing of another shape, or that is not finite.
     """
-    if water.shape != (len(known.numbers), len(modes)) or len(known.numbers) < 2:
-        raise ValueError(
-            f"water is {water.shape}: must be ({len(known.numbers)}, {len(modes)}), of 2 moments or more"
-        )
+    if water.shape != (len(known.numbers),) or len(water) < 2:
+        raise ValueError(f"water is {water.shape}: must be ({len(known.numbers)},), of 2 moments or more")
     if not np.all(np.isfinite(water)):
         raise ValueError("water has values that are not finite")
     step = float(known.step)
     # all from the last moment: large numbers would cost digits
     since = np.array([float(time - moment) for moment in known.times])
-    slopes = np.diff(water, axis=0) / step
-    place: Array = water[-2] + slopes[-1] * since[-2]
+    slopes = np.diff(water) / step
     age = since[1:-1]
     rest = np.clip((1.0 - age / (step * len(age))) / _FADES, 0.0, 1.0)
-    kinks = np.diff(slopes, axis=0) * (rest**2 * (3.0 - 2.0 * rest))[:, np.newaxis]
-    for column, mode in enumerate(modes):
-        place[column] -= kinks[:, column] @ mode.impulse_response(age)
-    return place
+    kinks = np.diff(slopes) * rest**2 * (3.0 - 2.0 * rest)
+    return float(water[-2] + slopes[-1] * since[-2] - kinks @ mode.impulse_response(age))
