@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Ocean, OceanParameters, ParameterError, WaveLayer
+from ocean_tweak.core import Current, Ocean, OceanParameters, ParameterError, WaveLayer
 from ocean_tweak.core.data.raster import Raster
 from ocean_tweak.core.foam.threshold import foam_wind
 from ocean_tweak.core.parameters.ocean_parameters import MeasuredSpectra, Patch
@@ -119,6 +119,19 @@ def test_heights_and_directions_of_a_sea() -> None:
         assert state.directional_spread == pytest.approx(math.sqrt(2.0 - 1.8), abs=0.02)
     turned = sea.replace(layers=(sea.layers[0].changed(wind_direction=1.0),))
     assert spectrum_state(SeaSpectrum(turned)).mean_direction == pytest.approx(1.7, abs=0.001)
+
+
+@pytest.mark.parametrize("towards", [0.0, 45.0, 47.3])
+def test_waves_of_a_single_direction_keep_their_height_on_any_lattice(towards: float) -> None:
+    """Directions narrower than the angle between two cells, along its axes, its diagonal, and neither."""
+    sea = sea_of(measured(towards=math.radians(towards), r1=1.0, r2=1.0), resolution=256, size=900.0)
+    statistics = Ocean(sea).statistics()
+    assert statistics.resolved.significant_wave_height == pytest.approx(2.0, rel=0.03)
+    assert statistics.resolved.mean_direction == pytest.approx(math.radians(towards), abs=0.01)
+    carried = SeaSpectrum(
+        sea.replace(current=Current(1.2, 1.0))
+    )  # the same waves, as a fixed place sees them
+    assert spectrum_state(carried).significant_wave_height == pytest.approx(2.0, rel=0.01)
 
 
 def test_the_variance_of_seeds_is_the_measured_one() -> None:

@@ -37,8 +37,8 @@ _NODES_PER_LOG = 1024
 _LEAST_ENERGY = 1e-300
 
 #: cells within this radius, in cells, of the origin are averaged over sub-cells: n x n at radius r, with n
-# the smallest power of two that is at least _FINEST_RADIUS / r
-_FINEST_RADIUS = 32.0
+# the smallest power of two that is at least FINEST_RADIUS / r
+FINEST_RADIUS = 32.0
 
 #: sub-cells along a side of a cell that is cut by the end of a band
 _BAND_SUBCELLS = 8
@@ -186,6 +186,11 @@ class DirectionalSpectrum:
         """S·(dω/dk)/k in m⁴·rad, before band and cut-off."""
         rate = dispersion.group_velocity(k, self.dispersion, self.water)
         return self.layer.amplitude_scale**2 * self._own_spectrum(omega) * rate / k
+
+    @property
+    def finest_radius(self) -> float:
+        """Distance from the origin, in cells, from which the centre of a cell stands for all of it."""
+        return FINEST_RADIUS
 
     def sampler(self, lowest: float, highest: float) -> Sampler:
         """What samples Ψ quickly at wave numbers between these, in rad/m."""
@@ -344,15 +349,16 @@ class CellMeans:
             column, row = np.nonzero(subdivisions == n)
             yield int(n), column, row
 
-    def _subdivisions(self) -> NDArray[np.int8]:
+    def _subdivisions(self) -> NDArray[np.int16]:
         """(N//2+1, N) numbers of sub-cells along a side: more towards the origin, where cells are wide
         relative to their wave number, and where a sharp end of a band cuts a cell."""
         grid = self._grid
-        result = np.zeros(grid.shape[::-1], np.int8)
-        near = int(min(_FINEST_RADIUS, grid.resolution // 2))
+        result = np.zeros(grid.shape[::-1], np.int16)
+        finest = self._spectrum.finest_radius
+        near = int(min(finest, grid.resolution // 2))
         for rows in (slice(0, near), slice(-near, None)):
             radius = np.hypot(np.arange(near)[:, np.newaxis], grid.ky[rows, 0] / grid.spacing)
-            wanted = _FINEST_RADIUS / np.clip(radius, 1.0, _FINEST_RADIUS)
+            wanted = finest / np.clip(radius, 1.0, finest)
             result[:near, rows] = 2 ** np.ceil(np.log2(wanted))
         ends = self._spectrum.sharp_ends
         k = grid.k.T if len(ends) else None

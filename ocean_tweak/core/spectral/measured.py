@@ -282,6 +282,11 @@ class EnergyTable:
         return of_bins[below] + share * (of_bins[below + 1] - of_bins[below])
 
     @cached_property
+    def sharpest(self) -> float:
+        """The largest D in 1/rad of bins with energy; 0 without any."""
+        return float(np.max(self._spread[self.energy > 0.0], initial=0.0))
+
+    @cached_property
     def _vectors(self) -> NDArray[np.complex128]:
         return np.asarray(self._spread @ np.exp(1j * table_directions()) * (_TURN / DIRECTIONS), complex)
 

@@ -18,7 +18,7 @@ from ..numerics.grid import WaveVectorGrid
 from ..numerics.memo import remembered
 from . import dispersion
 from .constants import PM_PEAK
-from .directional_spectrum import DirectionalSpectrum, Sampler
+from .directional_spectrum import FINEST_RADIUS, DirectionalSpectrum, Sampler
 from .measured import DIRECTIONS, EnergyTable, MeasuredSpectra, table_directions
 from .spectra import LayerScales, refined_peak
 from .spreading import Spreading, directional_spreading
@@ -27,10 +27,13 @@ Array = NDArray[np.float64]
 
 _TURN = 2.0 * np.pi
 
-#: number of directions for averages in a current, and of wave numbers in the search for the fastest
+#: number of directions for averages in a current, unless waves keep to few; and of wave numbers in the search
+# for the fastest
 _COARSE, _TRIED = 180, 400
 #: number of parts of a bin, each of which is blocked or not
 _FINE = 16
+#: cells in a radian for each 1/rad of the highest D: so sampled, a Lorentzian keeps its integral to 1 %
+_SHARPNESS = 2.5
 
 
 @dataclass(frozen=True)
@@ -102,13 +105,25 @@ class MeasuredSpectrum(DirectionalSpectrum):
             vectors = np.divide(vector, own, out=np.zeros_like(vector), where=own > 0.0)
         return complex(np.sum(energy * vectors * weight))
 
+    @property
+    def finest_radius(self) -> float:
+        """In cells; farther out where waves keep to fewer directions than lie between two cells, up to where
+        cells are as near each other as the table's directions."""
+        return min(max(FINEST_RADIUS, _SHARPNESS * self.table.sharpest), DIRECTIONS / _TURN)
+
+    @property
+    def _directions(self) -> Array:
+        """rad, evenly around the circle, as many as integrals over direction need."""
+        return table_directions()[:: 1 if self.finest_radius > FINEST_RADIUS else DIRECTIONS // _COARSE]
+
     def _over_directions(self, omega: Array) -> tuple[Array, NDArray[np.complex128]]:
         """Integrals of E and of E e^{iθ} over θ, over σ in rad/s."""
         energy, vector = np.zeros(omega.shape), np.zeros(omega.shape, complex)
         k = dispersion.wave_number(omega, self.dispersion, self.water)
         rate = dispersion.group_velocity(np.maximum(k, 1e-12), self.dispersion, self.water)
-        for theta in table_directions()[:: DIRECTIONS // _COARSE]:
-            part = self._energy(omega, k, rate, np.asarray(theta)) * (_TURN / _COARSE)
+        directions = self._directions
+        for theta in directions:
+            part = self._energy(omega, k, rate, np.asarray(theta)) * (_TURN / len(directions))
             energy += part
             vector += part * np.exp(1j * theta)
         return energy, vector
@@ -154,7 +169,7 @@ class MeasuredSpectrum(DirectionalSpectrum):
         """Fraction of the measured energy, 0…1, that the current blocks."""
         if not self._is_shifted:
             return 0.0
-        theta = table_directions()[:: DIRECTIONS // _COARSE]
+        theta = self._directions
         along = self.current[0] * np.cos(theta) + self.current[1] * np.sin(theta)
         k = np.geomspace(1e-4, 400.0, _TRIED)[:, np.newaxis]
         rate = dispersion.group_velocity(k, self.dispersion, self.water)
