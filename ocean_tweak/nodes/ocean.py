@@ -35,7 +35,7 @@ from .patch import EARLY_IMAGE_INPUTS, IMAGE_INPUTS, PATCH, SCALE_INPUTS
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
-_VERSION = 5
+_VERSION = 6
 _NAME = "Ocean Tweak"
 
 #: largest number of patches that a group can add
@@ -50,7 +50,7 @@ _SEA_INPUTS = (
     *SCALE_INPUTS,
     Plug(
         "Warn Out of Range", "NodeSocketBool", False,
-        "Show a warning at frames without a file. The nearest file is held either way",
+        "Show a warning at frames without a file. The last one before, or else the first, is held either way",
     ),
     *ABSENCE_INPUTS,
     Plug(

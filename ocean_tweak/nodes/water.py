@@ -75,7 +75,7 @@ FOAM_PANEL = Panel(
     "Foam",
     (
         ("Foam Amount", "NodeSocketFloat", 1.0, "Multiplies the ocean's foam"),
-        ("Foam Map", "NodeSocketFloat", 0.0, "Foam from an image, added to the ocean's own"),
+        ("Foam Map", "NodeSocketFloat", 0.0, "From an image: the larger of it and the ocean's own counts"),
         ("Foam Color", "NodeSocketColor", (0.90, 0.91, 0.91, 1.0), "Of dense foam"),
         ("Foam Roughness", "NodeSocketFloat", 0.8, "Of the surface of foam"),
         ("Foam Size", "NodeSocketFloat", 6.0, "Size of the foam pattern, in metres"),
@@ -287,4 +287,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 11, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 12, _build, "ShaderNodeTree")

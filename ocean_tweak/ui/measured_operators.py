@@ -78,10 +78,12 @@ class OCEAN_OT_import_measured(InObjectMode, bpy.types.Operator, ImportHelper):
         return [Path(self.directory) / name for name in names] or [Path(self.filepath)]
 
     def _add(self, context: bpy.types.Context, chosen: Record) -> None:
-        item = shown_ocean(context)
-        if self.target == "OCEAN" or item is None:
+        if self.target == "OCEAN":
             _add_ocean(context, measured_sea(chosen, self.tail))
             return
+        item = shown_ocean(context)
+        if item is None:
+            raise OceanObjectError("There is no ocean for a layer: choose As New Ocean, or add one first")
         if item.library is not None or item.override_library is not None:
             raise OceanObjectError(f"{item.name} is of another file: make it local, or import a new ocean")
         settings = settings_of(item)

@@ -59,6 +59,13 @@ def test_a_linked_ocean_gets_no_layer(ocean, empty_scene, tmp_path):
     assert len(bpy.data.objects["Ocean"].ocean_tweak.layers) == 1
 
 
+def test_without_an_ocean_a_layer_is_refused(empty_scene):
+    with pytest.raises(RuntimeError, match="choose As New Ocean"):
+        import_buoy(target="LAYER")
+    assert not list(empty_scene.objects)
+    assert import_buoy() == {"FINISHED"}
+
+
 def test_bad_files_are_refused_in_a_line(ocean, empty_scene, tmp_path):
     path = tmp_path / "41010.spec"
     path.write_text("SWAN 1\nTIME\n4\n")
