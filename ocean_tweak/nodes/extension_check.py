@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A node group that detects whether the extension, without which a live ocean does not move, is running.
+"""Nodes that detect whether the extension, without which a live ocean does not move, is running.
 
-While it runs, the group has an image that is never saved. In a file opened without the extension, the image
+While it runs, their group has an image that is never saved. In a file opened without the extension, the image
 is missing: the modifier shows a warning, and Blender's console a line, once per session. A linked group
 cannot have such an image; there, the extension marks the modifier's sea as not live. Nodes cannot print, but
 Blender prints the name of a file that cannot be opened, and that name can be a sentence.
@@ -11,13 +11,17 @@ from __future__ import annotations
 
 import bpy
 
-from .building import Builder, Plug, output
+from .building import Builder, Plug, Socket, output
 from .frame_warnings import joined_text
-from .versioned import GroupKind, is_of_kind
+from .versioned import GroupKind, kind_name
 
 _BEACON = ".Ocean Tweak Runs"
 _NODE = "Beacon"
 _LINE = "Ocean Tweak: live oceans stand still, as the extension does not run here; enable it, or bake them"
+_REMEDY = (
+    "because it is live and the Ocean Tweak extension does not run here: enable the extension, or bake the "
+    "ocean"
+)
 
 INPUTS = (
     Plug("Live", "NodeSocketBool", False, "The extension computes the sea of each frame", hidden=True),
@@ -29,16 +33,22 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(
         tree, INPUTS, (Plug("Is Absent", "NodeSocketBool", None, "Nothing will move a live sea"),)
     )
+    build.finish_with({"Is Absent": is_absent(build, "The sea", _REMEDY)})
+
+
+def is_absent(build: Builder, subject: str, remedy: str) -> Socket:
+    """Whether a group with INPUTS is live and nothing will move it; the modifier and the console then say so.
+
+    subject : what stands still, first word of the message
+    remedy : end of the message
+    """
     information = build.add("GeometryNodeImageInfo", {"Image": _beacon()})
     information.name = _NODE
     dark = build.compare("EQUAL", output(information, "Width"), 0)
     absent = build.logic("AND", build.given("Live"), dark)
     message = joined_text(
-        build,
-        "The sea stands still as it was in frame", build.given("Held Frame"),
-        "because it is live and the Ocean Tweak extension does not run here: enable the "
-        "extension, or bake the ocean",
-    )  # fmt: skip
+        build, f"{subject} stands still as it was in frame", build.given("Held Frame"), remedy
+    )
     warning = build.add("GeometryNodeWarning", {"Show": absent, "Message": message}, warning_type="WARNING")
     line = output(build.add("GeometryNodeImportCSV", {"Path": _LINE}), "Point Cloud")
     told = build.add("GeometryNodeSwitch", {"Switch": absent, "True": line}, input_type="GEOMETRY")
@@ -47,7 +57,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     )
     # warnings and files are only evaluated if the output depends on them
     rows = build.compare("GREATER_THAN", output(size, "Point Count"), 0)
-    build.finish_with({"Is Absent": build.logic("OR", output(warning, "Show"), rows)})
+    return build.logic("OR", output(warning, "Show"), rows)
 
 
 ABSENCE = GroupKind("Ocean Tweak Absence", 2, _build)
@@ -71,7 +81,7 @@ def show_that_it_ends() -> None:
 
 def _beacon_nodes() -> list[bpy.types.Node]:
     # Blender discards changes to linked data
-    groups = (group for group in bpy.data.node_groups if group.library is None and is_of_kind(group, ABSENCE))
+    groups = (group for group in bpy.data.node_groups if group.library is None and kind_name(group))
     return [group.nodes[_NODE] for group in groups if _NODE in group.nodes]
 
 

@@ -13,14 +13,19 @@ from numpy.typing import NDArray
 from ..core import Ocean, OceanParameters, Places
 from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS
+from ..nodes.coast import COAST
+from ..nodes.modifier_inputs import set_inputs
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
+from ..nodes.versioned import is_of_kind, node_group
 from . import vertex_attributes, water_material, wet_bed
+from .modifiers import is_of_library, set_changed
 from .plan import Plan, camera_surface_of
 from .settings import OceanObjectError, link_beside
 
 Array = NDArray[np.float64]
 
 _COAST = "ocean_tweak_coast"
+_NAME = "Ocean Tweak Coast"
 #: what the material reads of the waves
 _CHANNELS = ("displacement", "velocity", "cusp")
 #: m offshore that the mesh goes on, and how much longer each step is there than the one before
@@ -77,6 +82,8 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
     present = coast_of(ocean)
     if ocean.library is not None:  # Blender discards changes to it
         name = ocean.name if present is None else present.name
+        for modifier in () if present is None else _own_modifiers(present):
+            set_inputs(modifier, {"Live": False})  # not saved: the ocean's panel says what it would
         raise OceanObjectError(f"{name} is linked and its coast stands still: make a library override")
     item = present or _new(ocean, plan.over_bed)
     if item.data.is_editmode:
@@ -94,6 +101,7 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
     _move(item.data, sea, grid, plan)
+    set_inputs(_modifier(item), {"Live": True, "Held Frame": math.floor(plan.frame)})
     wet_bed.refresh(ocean, sea, plan)
 
 
@@ -172,6 +180,25 @@ def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: _Grid, plan: Plan) -> None:
     places = (places + moved).astype(np.float32)
     mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     mesh.update_tag()
+
+
+def _own_modifiers(item: bpy.types.Object) -> list[bpy.types.Modifier]:
+    return [each for each in item.modifiers if each.type == "NODES" and is_of_kind(each.node_group, COAST)]
+
+
+def _modifier(item: bpy.types.Object) -> bpy.types.Modifier:
+    """The one that says that the coast stands still, made where there is none. The group of one that an
+    override has from its library is linked and cannot know that the extension runs: another replaces it."""
+    found = _own_modifiers(item)
+    for modifier in found:
+        if is_of_library(modifier):
+            set_changed(modifier, show_viewport=False, show_render=False)
+    own = [modifier for modifier in found if not is_of_library(modifier)]
+    if own:
+        return own[0]
+    modifier = item.modifiers.new(_NAME, "NODES")
+    modifier.node_group = node_group(COAST)
+    return modifier
 
 
 def _new(ocean: bpy.types.Object, parameters: OceanParameters) -> bpy.types.Object:

@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+from .other_blender import look, run_script
+
 SIDE = 200.0
 
 
@@ -291,3 +293,81 @@ def test_a_linked_coast_says_that_it_stands_and_an_override_moves(
         assert np.abs(found[1] - found[0]).max() > 0.01
     else:
         assert "make a library override" in shown.parent.ocean_tweak.error
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """Save the file and move it to another folder; gives its path there."""
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    project, moved = tmp_path / "project", tmp_path / "moved"
+    project.mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(project / "shot.blend"))
+
+    def move():
+        bpy.ops.wm.save_mainfile()
+        project.rename(moved)
+        return moved / "shot.blend"
+
+    return move
+
+
+@pytest.mark.parametrize("baked", [False, True])
+def test_without_the_extension_it_stands_and_says_so(
+    ocean, coast, calm, bake, extension, elsewhere, tmp_path, baked
+):
+    scene = bpy.context.scene
+    if baked:
+        extension("scene.ocean_object").use_sequence(ocean, scene, bake(calm, 1, 12))
+    scene.frame_set(12)
+    held = values(coast.data, "position", 3)
+    seen, said = look(elsewhere(), [coast.name], [1, 12], tmp_path)
+    assert "Ocean Tweak: live oceans stand still" in said
+    for frame in (1, 12):
+        np.testing.assert_allclose(seen[f"{coast.name} render {frame}"], held, atol=1e-6)
+        told = seen[f"{coast.name} warnings {frame}"]
+        assert any(text.startswith("The coast stands still as it was in frame 12 ") for text in told)
+        assert not any("bake the ocean" in text for text in told)
+
+
+def test_where_the_extension_runs_it_says_nothing_and_exports_move(ocean, coast, tmp_path):
+    scene = bpy.context.scene
+    scene.frame_set(2)
+    moving = coast.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    assert not [text for modifier in coast.modifiers for text in modifier.node_warnings]
+    assert "velocity" in moving.data.attributes
+    if not bpy.app.build_options.alembic:
+        pytest.skip("this Blender was built without Alembic")
+    path, name = str(tmp_path / "coast.abc"), coast.name
+    bpy.ops.wm.alembic_export(filepath=path, start=1, end=3, as_background_job=False)
+    wanted = []
+    for frame in (1, 3):
+        scene.frame_set(frame)
+        wanted.append(values(coast.data, "position", 3))
+    assert np.abs(wanted[1] - wanted[0]).max() > 0.01
+    bpy.data.objects.remove(coast)
+    bpy.ops.wm.alembic_import(filepath=path, as_background_job=False)
+    (item,) = (each for each in bpy.context.selected_objects if name.replace(" ", "_") in each.name)
+    for frame, places in zip((1, 3), wanted, strict=True):
+        scene.frame_set(frame)
+        shown = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        np.testing.assert_allclose(values(shown, "position", 3), places, atol=1e-4)
+
+
+def test_a_coast_of_a_file_without_the_modifier_gets_it(ocean, coast):
+    coast.modifiers.clear()
+    bpy.context.scene.frame_set(4)
+    assert [each.name for each in coast.modifiers] == ["Ocean Tweak Coast"]
+
+
+def test_the_farm_s_render_of_a_coast_over_a_bake_ends_with_3(
+    ocean, coast, calm, bake, extension, elsewhere, tmp_path
+):
+    extension("scene.ocean_object").use_sequence(ocean, bpy.context.scene, bake(calm, 1, 2))
+    script = extension("export.farm.render_baked").__file__
+    folder = tmp_path / "Ocean-12345678" / "v001-01234567"
+    folder.mkdir(parents=True)
+    (folder / "bake.json").write_text('{"shot": {"domain_size": 200.0, "timing": {}}}')
+    arguments = ["--cache", str(tmp_path), "--bake", "Ocean-12345678/01234567", "--frames", "1"]
+    said = run_script(script, "--pictures", str(tmp_path / "out"), *arguments, blend=elsewhere())
+    assert said.returncode == 3, said.stdout + said.stderr
+    assert f"moves {coast.name} of " in said.stderr

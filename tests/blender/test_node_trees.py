@@ -38,6 +38,7 @@ KINDS = {
     "camera-fan": ("nodes.camera_foam", lambda module: module.CAMERA_FAN),
     "foam-pile": ("nodes.foam_pile", lambda module: module.FOAM_PILE),
     "camera-surface": ("nodes.camera_surface", lambda module: module.CAMERA_SURFACE),
+    "coast": ("nodes.coast", lambda module: module.COAST),
     "grid-facts": ("nodes.surface", lambda module: module.GRID_FACTS),
     "cell": ("nodes.surface", lambda module: module.CELL),
     "surface": ("nodes.surface", lambda module: module.SURFACE),
