@@ -73,6 +73,12 @@ def number(
     )  # fmt: skip
 
 
+def angle(description: str, *, changes: bool = False, left_out: bool = False) -> Any:
+    """A dataclass field that holds an angle in rad, which may be any number of turns."""
+    why = "any number of turns, to the precision of a float"
+    return number(0.0, -1e6, 1e6, "rad", description, why, changes=changes, left_out=left_out)
+
+
 def changing_fields(kind: type) -> tuple[str, ...]:
     """The fields of a parameter class that can be animated."""
     return tuple(field.name for field in dataclasses.fields(kind) if field.metadata.get("changes"))

@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters.ocean_parameters import FOAM_LAWS, OceanParameters
+from ..parameters.foam import FOAM_LAWS
+from ..parameters.ocean_parameters import OceanParameters
 from ..spectral import constants
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import Wind

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..data.errors import ParameterError
 from ..data.raster import Raster
-from ..data.validation import Off, Validated, choice, integer, number, raster, switch
+from ..data.validation import Off, Validated, angle, choice, integer, number, raster, switch
 
 MASK_SOURCES = ("IMAGE", "DISTANCE", "NOISE")
 #: fields that change for a mask whose object moves
@@ -67,10 +67,9 @@ class Mask(Validated):
         10.0, 0.0, 1000.0, "m/s", "Noise: speed at which it moves; gusts move about as fast as the wind",
         "any wind", useful=(0.0, 50.0), left_out=True,
     )  # fmt: skip
-    noise_direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Noise: direction towards which it moves, counter-clockwise from +x",
-        "any number of turns", left_out=True,
-    )  # fmt: skip
+    noise_direction: float = angle(
+        "Noise: direction towards which it moves, counter-clockwise from +x", left_out=True
+    )
     noise_evolution: float = number(
         30.0, 0.0, 1e6, "s", "Noise: time in which it changes shape, besides moving",
         "from a flicker to days", useful=(0.0, 300.0), left_out=True,

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from ..data.validation import Validated, number
+from ..data.validation import Validated, angle, number
 
 #: largest distance in m: a year of the fastest stream
 _FARTHEST = 1e9
@@ -26,10 +26,9 @@ class Current(Validated):
         0.0, 0.0, 20.0, "m/s", "Speed of the current, which carries waves, foam and floating objects",
         "more than the fastest tidal stream", useful=(0.0, 3.0), changes=True,
     )  # fmt: skip
-    direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which the current runs, counter-clockwise from +x",
-        "any number of turns, to the precision of a float", changes=True,
-    )  # fmt: skip
+    direction: float = angle(
+        "Direction towards which the current runs, counter-clockwise from +x", changes=True
+    )
     carried_x: float = number(
         0.0, -_FARTHEST, _FARTHEST, "m", "Displacement of the water along x at time 0: what a changing "
             "current leaves besides its present velocity times the time",

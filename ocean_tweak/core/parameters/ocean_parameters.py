@@ -21,7 +21,6 @@ from ..data.plain_data import from_plain, parse_json, to_plain
 from ..data.raster import check_numbers, numbers_in
 from ..data.validation import (
     OPEN,
-    Off,
     Validated,
     choice,
     default_of,
@@ -44,9 +43,11 @@ from ..waves.spectral import WaveLayer
 from ..waves.wake.parameters import PathSample, WakeLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
 from .current import Current
+from .foam import Foam
 from .former_json import modern
 from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, resampled
 from .spray import Spray
+from .timing import Timing, check_loop
 
 __all__ = [
     "Coast",
@@ -74,102 +75,10 @@ __all__ = [
 DISPERSIONS = ("CAPILLARY", "FINITE_DEPTH", "DEEP")
 AMPLITUDES = ("RANDOM", "DETERMINISTIC")
 ORBITS = ("DEEP", "FINITE_DEPTH")
-#: laws for the whitecap coverage
-FOAM_LAWS = ("CALLAGHAN_2008", "MONAHAN_1980")
-
 #: fields derived from the patches, if there are any
 _TILE = ("resolution", "domain_size")
 
 _Layer = TypeVar("_Layer", bound=Contribution)
-
-
-@dataclass(frozen=True)
-class Foam(Validated):
-    """How much of the sea is covered by foam, and how long it lasts.
-
-    Examples
-    --------
-    >>> Foam(half_life=4.0).coverage
-    1.0
-    """
-
-    coverage: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the whitecap coverage; 1 is the coverage measured at sea for "
-        "this wind",
-        "from no foam to a light breeze's sea all white",
-    )  # fmt: skip
-    law: str = choice(
-        FOAM_LAWS[0], FOAM_LAWS, "Which measurements set the whitecap coverage: Callaghan and others "
-        "(2008), from 3.7 to 23 m/s, or Monahan and O'Muircheartaigh (1980), measured below 20 "
-        "m/s, with twice as much foam in a storm", left_out=True,
-    )  # fmt: skip
-    half_life: float = number(
-        2.5, 0.0, 60.0, "s", "Time in which foam fades to half; 0 shows foam only where it forms",
-        "whitecaps fade in seconds, patches in a minute",
-    )  # fmt: skip
-    drift: float = number(
-        0.02, 0.0, 0.2, "", "Speed of the foam along the wind, as a fraction of the wind speed",
-        "the surface drifts with 2 to 3 % of the wind",
-    )  # fmt: skip
-    resolution: int = integer(
-        0, 0, 8192, "Samples along each side at which foam is made, an even number",
-        "as the resolution of the sea", off=Off(0, 512, "uses the sea's own"),
-    )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.resolution % 2 or 0 < self.resolution < 16:
-            raise ParameterError("resolution", self.resolution, "must be 0 or an even number from 16 to 8192")
-
-
-@dataclass(frozen=True)
-class Timing(Validated):
-    """The relation of frames to ocean time, which is 0 at ``start_frame``.
-
-    ``fps`` is stored as an exact fraction, such as 24000/1001.
-
-    Examples
-    --------
-    >>> Timing(fps=Fraction(24000, 1001), start_frame=1001).time(1025)
-    Fraction(1001, 1000)
-    """
-
-    fps: Fraction = rational(
-        Fraction(24), 0.01, 1000.0, "frames per second", "Frames per second of the shot",
-        "from time-lapse to high speed",
-    )  # fmt: skip
-    start_frame: int = integer(
-        1,
-        -1_000_000,
-        10_000_000,
-        "Frame at which the ocean's time is zero",
-        "more than Blender's frame range",
-    )
-    stretch: Fraction = rational(
-        Fraction(1), 0.001, 1000.0, "", "Frames of the shot per frame of its animation: 2 is half speed. "
-        "In Blender, the scene's Time Stretching",
-        "more than Blender's 1/900 to 900", left_out=True,
-    )  # fmt: skip
-
-    def time(self, frame: float | Fraction) -> Fraction:
-        """Ocean time in seconds at a frame or subframe; exact.
-
-        Examples
-        --------
-        >>> Timing(fps=25).time(51)
-        Fraction(2, 1)
-        """
-        return (Fraction(frame) / self.stretch - self.start_frame) / self.fps
-
-    def frame(self, time: float) -> float:
-        """The frame at an ocean time in seconds.
-
-        Examples
-        --------
-        >>> Timing(fps=25).frame(2.0)
-        51.0
-        """
-        return float(self.stretch) * (self.start_frame + time * float(self.fps))
 
 
 @dataclass(frozen=True)
@@ -248,14 +157,8 @@ class OceanParameters(Validated):
         if self.resolution % 2:
             raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
         object.__setattr__(self, "layers", _identified(self.layers))
-        _check_loop(self.loop_duration, self.timing)
+        check_loop(self.loop_duration, self.timing)
         self._check_layers()
-        if self.moves and self.has_coast:
-            raise ParameterError(
-                "current", to_plain(self.current),
-                "must be still over a coast, whose waves are followed in water that rests: remove it, or set "
-                "coast.muted",
-            )  # fmt: skip
         on_the_first = [
             kind.former_list or kind.names.noun
             for kind in KINDS
@@ -272,23 +175,8 @@ class OceanParameters(Validated):
                 "must be 0 in a sea with masks: waves under a mask cannot be damped by the "
                 "troughs of the others",
             )  # fmt: skip
-        if self.has_coast:
-            self._check_coast()
-
-    def _check_coast(self) -> None:
-        """Raise ParameterError for what cannot be in a sea with a coast."""
-        if self.trough_damping > 0.0:
-            reason = "must be 0 with a coast: its waves are damped by no others"
-            raise ParameterError("trough_damping", self.trough_damping, reason)
-        if self.is_masked:
-            reason = "cannot be in a sea with masks: remove them; the bed itself gives shelter"
-            raise ParameterError("coast", "given", reason)
-        if self.moves:
-            reason = "must be 0 with a coast: remove it, or set coast.muted"
-            raise ParameterError("current", to_plain(self.current), reason)
-        if self.dispersion == "DEEP":
-            reason = "must be FINITE_DEPTH or CAPILLARY with a coast: in DEEP water no wave feels a bed"
-            raise ParameterError("dispersion", self.dispersion, reason)
+        if self.coast is not None and not self.coast.muted:
+            self.coast.check(self)
 
     def _settle_tile(self) -> None:
         """Fill in the domain size and resolution if they were not given: with patches they are those of the
@@ -518,16 +406,3 @@ def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
             result[index] = layer.changed(id=next(number for number in count() if number not in ids))
             ids.add(result[index].id)
     return tuple(result)
-
-
-def _check_loop(duration: Fraction | None, timing: Timing) -> None:
-    if duration is None:
-        return
-    frames = duration * timing.fps
-    if frames.denominator != 1:
-        nearest = max(1, round(frames))
-        raise ParameterError(
-            "loop_duration", str(duration),
-            f"is {float(frames):.6g} frames at {timing.fps} frames per second, not a whole number; "
-            f"the nearest that is: {to_plain(nearest / timing.fps)} s, {nearest} frames",
-        )  # fmt: skip

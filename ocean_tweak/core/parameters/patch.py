@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from ..data.errors import ParameterError
-from ..data.validation import Off, Validated, integer, nested, number
+from ..data.validation import Off, Validated, angle, integer, nested, number
 from ..masks.parameters import Mask
 
 #: largest number of patches of a sea
@@ -39,11 +39,9 @@ class Patch(Validated):
         400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
         "as the domain of a sea of one patch",
     )  # fmt: skip
-    rotation: float = number(
-        0.0, -1e6, 1e6, "rad",
-        "Rotation of the patch's sides, counter-clockwise from +x; its waves keep their directions",
-        "any number of turns, to the precision of a float",
-    )  # fmt: skip
+    rotation: float = angle(
+        "Rotation of the patch's sides, counter-clockwise from +x; its waves keep their directions"
+    )
     shortest_wavelength: float = number(
         NO_SHORTEST, 0.0, 1e6, "m", "Shortest wavelength of the patch; the next patch holds shorter ones",
         "any domain", off=Off(NO_SHORTEST, 1.0, "keeps all short waves"),

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..data.validation import Off, Validated, integer, number, switch
+from ..data.validation import Off, Validated, angle, integer, number, switch
 
 if TYPE_CHECKING:
     from ..masks.parameters import Mask
@@ -301,8 +301,13 @@ def direction(
     changes: bool = False,
 ) -> Any:
     """Marks a field: the direction towards which the layer's waves or wind go."""
-    why = "any number of turns, to the precision of a float"
-    return number(0.0, -1e6, 1e6, "rad", description, why, changes=changes)
+    return angle(description, changes=changes)
+
+
+def amplitude_scale(description: str = "Multiplies the wave height", changes: bool = False) -> Any:
+    """Marks a field: what the height of the layer's waves is multiplied by."""
+    why = "an artist's scale"
+    return number(1.0, 0.0, 100.0, "", description, why, useful=(0.0, 2.0), changes=changes)
 
 
 def muted() -> Any:

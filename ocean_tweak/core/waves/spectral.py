@@ -19,7 +19,18 @@ from ..spectral.equaliser import Equaliser, Equalising
 from ..spectral.measured import MeasuredSpectra
 from ..spectral.measured_spectrum import MeasuredSpectrum
 from ..spectral.spectra import combined_peak, wind_at_10_m
-from .contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
+from .contribution import (
+    Contribution,
+    Gives,
+    MemoryNeed,
+    Names,
+    Wind,
+    amplitude_scale,
+    direction,
+    identity,
+    muted,
+    own_seed,
+)
 
 if TYPE_CHECKING:
     from ..parameters.ocean_parameters import OceanParameters
@@ -76,10 +87,9 @@ class WaveLayer(Contribution):
         0.3, 0.0, 4.0, "", "Stretches waves into long parallel trains; 0 to 1 is the useful range",
         "beyond 4, all waves run in one direction", useful=(0.0, 1.0), changes=True,
     )  # fmt: skip
-    amplitude_scale: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height; 1 is physically correct",
-        "an artist's scale", useful=(0.0, 2.0), changes=True,
-    )  # fmt: skip
+    amplitude_scale: float = amplitude_scale(
+        "Multiplies the layer's wave height; 1 is physically correct", changes=True
+    )
     peak_enhancement: float = number(
         constants.PEAK_ENHANCEMENT, 1.0, 10.0, "", "Peak enhancement γ of JONSWAP and TMA: how strongly "
         "the longest waves dominate",

@@ -6,10 +6,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
+from typing import TYPE_CHECKING
 
 from ...data.errors import ParameterError
+from ...data.plain_data import to_plain
 from ...data.raster import Raster
 from ...data.validation import Off, Validated, choice, number, raster, switch
+
+if TYPE_CHECKING:
+    from ...parameters.ocean_parameters import OceanParameters
 
 #: sides of the bed, and their direction in quarter turns from +x
 SHORES = ("+X", "+Y", "-X", "-Y")
@@ -65,6 +70,24 @@ class Coast(Validated):
             raise ParameterError("depth", None, 'give the bed: a raster of depths, or {"file": "bed.exr"}')
         if min(self.depth.shape[:2]) < 2:
             raise ParameterError("depth", f"shape {self.depth.shape[:2]}", "must be 2 samples a side or more")
+
+    def check(self, sea: OceanParameters) -> None:
+        """Raise ParameterError for what cannot be in a sea whose waves run over this bed."""
+        if sea.trough_damping > 0.0:
+            reason = "must be 0 with a coast: its waves are damped by no others"
+            raise ParameterError("trough_damping", sea.trough_damping, reason)
+        if sea.is_masked:
+            reason = "cannot be in a sea with masks: remove them; the bed itself gives shelter"
+            raise ParameterError("coast", "given", reason)
+        if sea.moves:
+            raise ParameterError(
+                "current", to_plain(sea.current),
+                "must be still over a coast, whose waves are followed in water that rests: remove it, or set "
+                "coast.muted",
+            )  # fmt: skip
+        if sea.dispersion == "DEEP":
+            reason = "must be FINITE_DEPTH or CAPILLARY with a coast: in DEEP water no wave feels a bed"
+            raise ParameterError("dispersion", sea.dispersion, reason)
 
 
 def repeats_after(loop_duration: Fraction | None) -> Fraction:

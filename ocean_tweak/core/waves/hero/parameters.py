@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from ...data.errors import ParameterError
-from ...data.validation import number, switch
+from ...data.validation import angle, number, switch
 from ..contribution import Contribution, Gives, Names
 from .group import add_hero_wave, check_hero_wave, needed_samples
 from .outlook import HeroWaveOutlooks, hero_wave_outlooks
@@ -59,10 +59,7 @@ class HeroWave(Contribution):
         0.0, -1e6, 1e6, "s", "Ocean time at which the group is at its focus",
         "more than a week either way",
     )  # fmt: skip
-    direction: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction towards which the wave runs, counter-clockwise from +x",
-        "any number of turns, to the precision of a float",
-    )  # fmt: skip
+    direction: float = angle("Direction towards which the wave runs, counter-clockwise from +x")
     wavelength: float = number(
         60.0, 1e-3, 1e5, "m", "Distance from crest to crest; sets the speed, with depth and gravity",
         "from ripples to the largest patch",
@@ -82,10 +79,7 @@ class HeroWave(Contribution):
         "Width of the crests across the direction, between the places where they are half as high",
         "from ripples to the largest patch",
     )  # fmt: skip
-    phase: float = number(
-        0.0, -1e6, 1e6, "rad", "Phase of the wave at the focus: 0 for a crest, π for a trough",
-        "any number of turns, to the precision of a float",
-    )  # fmt: skip
+    phase: float = angle("Phase of the wave at the focus: 0 for a crest, π for a trough")
     muted: bool = switch(False, "Leave the wave out; nothing else changes")
 
     def __post_init__(self) -> None:

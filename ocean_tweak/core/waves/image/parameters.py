@@ -13,7 +13,18 @@ from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import choice, integer, nested, number, raster
 from ...masks.parameters import Mask
-from ..contribution import Contribution, Gives, MemoryNeed, Names, Wind, direction, identity, muted, own_seed
+from ..contribution import (
+    Contribution,
+    Gives,
+    MemoryNeed,
+    Names,
+    Wind,
+    amplitude_scale,
+    direction,
+    identity,
+    muted,
+    own_seed,
+)
 from .animation import angular_frequency
 from .source import side
 from .state import filtered, image_waves, peak_wavelength, state_of, wanted_variance
@@ -85,9 +96,7 @@ class ImageLayer(Contribution):
         "standard deviations",
         "three times the largest ever measured",
     )  # fmt: skip
-    amplitude_scale: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the layer's wave height", "an artist's scale", useful=(0.0, 2.0)
-    )
+    amplitude_scale: float = amplitude_scale("Multiplies the layer's wave height")
     fractal_dimension: float = number(
         2.1, 2.0, 4.0, "", "Dimension D of the filters 1/f^β with β = 8 - 2D: 2 is smooth, 3 rough, 4 no "
         "filter",

@@ -15,10 +15,20 @@ from numpy.typing import NDArray
 
 from ...data.errors import ParameterError
 from ...data.raster import Raster
-from ...data.validation import Validated, choice, integer, nested, number, raster, switch
+from ...data.validation import Validated, angle, choice, integer, nested, number, raster, switch
 from ...masks.parameters import Mask
 from ...numerics.memo import MEMO, remembered
-from ..contribution import Contribution, Gives, Key, MemoryNeed, Names, OwnFoam, OwnSpray, muted
+from ..contribution import (
+    Contribution,
+    Gives,
+    Key,
+    MemoryNeed,
+    Names,
+    OwnFoam,
+    OwnSpray,
+    amplitude_scale,
+    muted,
+)
 from .bow_spray import bow_spray
 from .elevation import Basin
 from .fields import WakeWaves, Where
@@ -71,10 +81,7 @@ class PathSample(Validated):
     )  # fmt: skip
     x: float = number(0.0, -1e6, 1e6, "m", "Position of its origin along x", "far beyond any patch")
     y: float = number(0.0, -1e6, 1e6, "m", "Position of its origin along y", "far beyond any patch")
-    heading: float = number(
-        0.0, -1e6, 1e6, "rad", "Direction of its bow, counter-clockwise from +x, if the samples set it",
-        "any number of turns, to the precision of a float",
-    )  # fmt: skip
+    heading: float = angle("Direction of its bow, counter-clockwise from +x, if the samples set it")
     immersion: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the draught: 0 is out of the water; falling in, bobbing and "
             "slamming change it",
@@ -122,9 +129,7 @@ class WakeLayer(Contribution):
         "port and from the stern to the bow; none for an ellipse, deepest in its middle",
         channels=1, left_out=True,
     )  # fmt: skip
-    amplitude_scale: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the wave height", "an artist's scale", useful=(0.0, 2.0)
-    )
+    amplitude_scale: float = amplitude_scale()
     decay: float = number(
         _USUAL_DECAY, 1e-4, 10.0, "1/s", "Rate at which waves fade, e^(-rate × age); sets how long a "
             "wake lasts",

@@ -13,7 +13,17 @@ from ...data.errors import ParameterError
 from ...data.raster import Raster
 from ...data.validation import Validated, choice, integer, nested, number, raster, switch
 from ...masks.parameters import Mask
-from ..contribution import Contribution, Gives, MemoryNeed, Names, direction, identity, muted, own_seed
+from ..contribution import (
+    Contribution,
+    Gives,
+    MemoryNeed,
+    Names,
+    amplitude_scale,
+    direction,
+    identity,
+    muted,
+    own_seed,
+)
 from .bounds import bytes_of, check_bounds
 from .outlook import WindWaveOutlook, wind_wave_outlook
 from .shape import MOST_CLASSES
@@ -135,9 +145,7 @@ class WindFieldLayer(Contribution):
         "Factor k of the height k·V of a particle, V being the wind speed",
         "an artist's scale",
     )
-    amplitude_scale: float = number(
-        1.0, 0.0, 100.0, "", "Multiplies the wave height", "an artist's scale", useful=(0.0, 2.0)
-    )
+    amplitude_scale: float = amplitude_scale()
     muted: bool = muted()
     id: int = identity()
     seed: int = own_seed()
