@@ -10,7 +10,7 @@ import pytest
 
 from ocean_tweak.core import Current, Ocean, OceanParameters, ParameterError, WaveLayer
 from ocean_tweak.core.data.raster import Raster
-from ocean_tweak.core.foam.threshold import foam_wind
+from ocean_tweak.core.foam.threshold import foam_wind, has_windrows
 from ocean_tweak.core.parameters.ocean_parameters import MeasuredSpectra, Patch
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.spectral.maximum_entropy import feasible, maximum_entropy
@@ -153,6 +153,24 @@ def test_spectra_in_time_blend_in_energy_with_the_same_random_numbers() -> None:
     shot = Shot(seas[0], Animation(1, (("layers.0.measured_time", (0.0, 1800.0, 3600.0)),)))
     assert shot.at(2).parameters.layers[0].measured_time == 1800.0
     assert Shot.from_json(shot.to_json()) == shot
+
+
+def test_keys_of_a_time_that_changes_nothing_are_refused() -> None:
+    """Of a layer whose spectra lie by while it is defined by its wind, and of one that has none."""
+    kept = sea_of(measured(np.stack([S, S]), **HOURS)).layers[0].changed(definition="WIND", wind_speed=9.0)
+    keys = Animation(1, (("layers.0.measured_time", (0.0, 1800.0)),))
+    for layer in (kept, WaveLayer()):
+        with pytest.raises(ParameterError, match="set its definition to MEASURED, or leave this out"):
+            Shot(OceanParameters(layers=(layer,)), keys)
+
+
+def test_a_wind_that_is_measured_later_may_draw_the_foam_out() -> None:
+    """A bake tells the version of its windrows for all of its frames, not for the first alone."""
+    gale = measured(np.stack([S, S]), wind=Raster([[[4.0, 0.0], [0.0, 25.0]]]), **HOURS)
+    breeze = measured(np.stack([S, S]), wind=Raster([[[4.0, 0.0], [0.0, 8.0]]]), **HOURS)
+    keys = Animation(1, (("layers.0.measured_time", (0.0, 3600.0)),))
+    assert [has_windrows(Shot(sea_of(spectra), keys)) for spectra in (gale, breeze)] == [True, False]
+    assert not has_windrows(Shot(sea_of(gale)))  # it stays at the first
 
 
 def test_heights_without_directions_take_the_layers_own() -> None:

@@ -12,9 +12,15 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
 from ocean_tweak.cli import main
+from ocean_tweak.core import OceanParameters
+from ocean_tweak.core.data import formats
+from ocean_tweak.core.foam import threshold
+from ocean_tweak.core.parameters.shot import Shot
 from ocean_tweak.export.usd import isolated
+from ocean_tweak.export.usd.export import Export
+from ocean_tweak.export.usd.package import Package
 
-from .conftest import FORMS, write
+from .conftest import FORMS, SEA, write
 
 LAYERS = {
     "points": ("geo.usdc", "payload.usd", "mtl.usd"),
@@ -142,3 +148,23 @@ def test_openusd_that_breaks_off_ends_nobody_else(
         said = capsys.readouterr().err
         assert said.startswith(f"ocean_tweak: {copy / 'sea.usd'}: OpenUSD crashes on it")
         assert said.count("\n") == 1
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_foam_in_windrows_of_an_earlier_version_is_not_compared(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They lay elsewhere; of the present version they must be where this program lays them."""
+    storm = {**SEA, "domain_size": 400.0, "layers": [{"wind_speed": 25.0}]}
+    for version, code in ((1, 0), (formats.WINDROWS, 1)):
+        top = tmp_path / str(version) / "sea.usd"
+        top.parent.mkdir()
+        shot = Shot(OceanParameters.from_dict(storm))
+        export = Export(Package("sea", shot, (1001,), proxy=0, windrows=version), top)
+        with monkeypatch.context() as former:
+            former.setattr(threshold, "windrows", lambda *_: None)
+            for _ in export.make((1001,)):
+                pass
+            export.finish()
+        assert main(["usd-verify", str(top)]) == code
+    assert "foam differs" in capsys.readouterr().out

@@ -9,7 +9,7 @@ whitecap coverage measured for the wind.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 
 from ..parameters.foam import FOAM_LAWS
 from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.shot import Shot
 from ..spectral import constants
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import Wind
 from .model import FAINTEST, FoamModel, births
-from .windrows import windrows
+from .windrows import are_there, windrows
 
 Array = NDArray[np.float64]
 
@@ -49,6 +50,24 @@ def foam_wind(parameters: OceanParameters) -> Wind | None:
     """The strongest wind of the layers; None if there is none, as swell does not break."""
     winds = [wind for layer in parameters.active() if (wind := layer.wind(parameters)) is not None]
     return max(winds, key=lambda wind: wind.speed) if winds else None
+
+
+def has_windrows(shot: Shot) -> bool:
+    """Whether the wind may draw the foam out in any frame of a shot."""
+    parameters = shot.parameters
+    winds = [foam_wind(parameters)]
+    for path, values in () if shot.animation is None else shot.animation.samples:
+        owner, _, name = path.rpartition(".")
+        if name not in ("wind_speed", "measured_time") or not isinstance(values, tuple):
+            continue
+        layer = parameters.layers[int(owner.rpartition(".")[2])]
+        measured = getattr(layer, "measured", None)
+        if name == "wind_speed":
+            strongest: Sequence[float] = (max(values),)
+        else:  # in between, and beyond the ends, no wind is stronger than at a time that was measured
+            strongest = () if measured is None or measured.wind is None else measured.seconds.tolist()
+        winds += [layer.changed(**{name: value}).wind(parameters) for value in strongest]
+    return any(wind is not None and are_there(wind.speed) for wind in winds)
 
 
 def callaghan_2008(wind_speed: float) -> float:

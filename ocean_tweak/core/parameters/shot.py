@@ -192,8 +192,10 @@ class Shot:
                 self._with(values)
             except ParameterError as error:
                 raise error.inside(_KEY) from None
-        if self.animation is not None and self.parameters.has_coast:
-            _check_beside_a_coast(self.animation)
+        if self.animation is not None:
+            _check_times(self.animation, self.parameters)
+            if self.parameters.has_coast:
+                _check_beside_a_coast(self.animation)
 
     def _extremes(self) -> Iterator[dict[str, float | Raster]]:
         """The minimum and maximum of each value, and the longest lines; it suffices to check these, as
@@ -349,6 +351,19 @@ def _belonging(before: Any, name: str, path: str, value: float | Raster) -> Any:
         return replace(before, **{field: value})
     except ParameterError as error:
         raise error.inside(owner) from None
+
+
+def _check_times(animation: Animation, parameters: OceanParameters) -> None:
+    """Raise ParameterError where the time of measured spectra changes and nothing with it."""
+    for path, _ in animation.samples:
+        if path.endswith(".measured_time"):
+            layer = parameters.layers[int(path.split(".")[1])]
+            if getattr(layer, "definition", None) != "MEASURED":
+                raise ParameterError(
+                    f"{_KEY}.samples.{path}", "animated",
+                    "changes nothing, as this layer's waves are not those measured: set its definition to "
+                    "MEASURED, or leave this out",
+                )  # fmt: skip
 
 
 def _check_beside_a_coast(animation: Animation) -> None:

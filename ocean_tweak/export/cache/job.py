@@ -18,8 +18,7 @@ from ...core.data import formats
 from ...core.data.errors import ParameterError
 from ...core.data.frames import Frame, format_frames, parse_frames
 from ...core.data.printable import shown
-from ...core.foam.threshold import foam_wind
-from ...core.foam.windrows import are_there
+from ...core.foam.threshold import has_windrows
 from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashed
 from ...core.parameters.ocean_parameters import OceanParameters
 from ...core.parameters.patch_seas import PARTS, parts
@@ -129,15 +128,7 @@ class Job:
     @cached_property
     def _has_windrows(self) -> bool:
         """Whether its maps have foam that the wind may draw out, in any frame."""
-        if not self.outputs & OF_MEMORY:
-            return False
-        wind = foam_wind(self.shot.parameters)
-        speeds = [0.0 if wind is None else wind.speed]
-        samples = () if self.shot.animation is None else self.shot.animation.samples
-        for path, values in samples:
-            if path.endswith("wind_speed") and isinstance(values, tuple):
-                speeds += values
-        return any(map(are_there, speeds))
+        return bool(self.outputs & OF_MEMORY) and has_windrows(self.shot)
 
     def _told_encoding(self) -> dict[str, int]:
         return formats.told_encoding(self.encoding, bool(halved_maps(self.maps, self.compression)))

@@ -15,6 +15,7 @@ from typing import Any
 from ...core import ParameterError
 from ...core.data import formats
 from ...core.data.frames import Frame, as_frame, format_frames, frame_label, parse_frames
+from ...core.foam.threshold import has_windrows
 from ...core.parameters.fingerprint import fingerprint, hashed, shot_fingerprint
 from ...core.parameters.shot import Shot
 from ...core.sea.placed_waves import check_repeats
@@ -47,6 +48,7 @@ class Package:
     area : the square covered by the mesh, with as many quads along each side as it has samples; None for the
         sea's tile
     foam : version of the foam in its attributes; ignored without such attributes
+    windrows : version of those in that foam; ignored without them
 
     Raises ParameterError for settings that do not fit together.
     """
@@ -64,6 +66,7 @@ class Package:
     variants: tuple[int, ...] = ()
     area: Area | None = None
     foam: int = field(default=formats.FOAM, kw_only=True)
+    windrows: int = field(default=formats.WINDROWS, kw_only=True)
 
     def __post_init__(self) -> None:
         _check_choice("form", self.form, FORMS)
@@ -175,7 +178,20 @@ class Package:
         )
 
     def _told_foam(self) -> dict[str, int]:
-        return formats.told_foam(self.foam, bool(outputs_of(self.attributes) & OF_MEMORY))
+        return {
+            **formats.told_foam(self.foam, bool(outputs_of(self.attributes) & OF_MEMORY)),
+            **formats.told_windrows(self.windrows, self._has_windrows),
+        }
+
+    @property
+    def foam_is_made_now(self) -> bool:
+        """Whether its foam is of the versions that this program makes."""
+        return self.foam == formats.FOAM and (self.windrows == formats.WINDROWS or not self._has_windrows)
+
+    @cached_property
+    def _has_windrows(self) -> bool:
+        """Whether its attributes have foam that the wind may draw out, in any frame."""
+        return bool(outputs_of(self.attributes) & OF_MEMORY) and has_windrows(self.shot)
 
     def _told_area(self) -> dict[str, str]:
         return {} if self.area is None else {"area": " ".join(self.area.words())}
@@ -205,6 +221,7 @@ class Package:
         """The package described by a `record`. Raises ValueError or KeyError for invalid data."""
         formats.check_format(data, formats.LAYER)
         formats.check_format(data, formats.FOAM, "foam")
+        formats.check_format(data, formats.WINDROWS, "windrows")
         across, along = str(data["tiles"]).split("x")
         package = cls(
             data["name"],
@@ -220,6 +237,7 @@ class Package:
             variants=tuple(map(int, _listed(data["variants"]))),
             area=Area.of_words(data["area"].split()) if "area" in data else None,
             foam=data.get("foam", 1),
+            windrows=data.get("windrows", 1),
         )
         if package.fingerprint != data["fingerprint"]:
             raise ValueError("was changed: its fingerprint does not match its parameters")

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.data import formats
 from ...core.data.frames import Frame, format_frames
 from ...core.sea.bake import ShotSeas
 from ...core.sea.regions import TILE
@@ -220,8 +219,8 @@ def _check_values(opened: _Opened, frames: Sequence[Frame]) -> Iterator[Problem]
 
 
 def _as_made_now(package: Package, attributes: tuple[Attribute, ...]) -> tuple[Attribute, ...]:
-    """The attributes that this program makes as they were made: foam of an earlier version it does not."""
-    if package.foam == formats.FOAM:
+    """The attributes that this program makes as they were made: not foam of an earlier version."""
+    if package.foam_is_made_now:
         return attributes
     return tuple(attribute for attribute in attributes if not attribute.outputs & OF_MEMORY)
 
