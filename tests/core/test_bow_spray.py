@@ -77,6 +77,16 @@ def test_a_slow_hull_one_without_foam_and_one_under_a_mask_throw_nothing() -> No
         assert thrown(ship=ship)[1].max() < 0.02
 
 
+def test_a_hull_that_has_stopped_throws_nothing() -> None:
+    """Not at the moment of its stop either, when its way so far still has a bow."""
+    stops = SHIP.changed(path=(PathSample(0.0, -10.0 * SPEED), PathSample(TIME), PathSample(2.0 * TIME)))
+    with np.errstate(divide="raise", invalid="raise"):
+        place, strength, velocity = thrown(ship=stops)
+    assert strength.max() == 0.0
+    assert np.all(velocity == 0.0)
+    assert len(place) == len(velocity)
+
+
 def test_a_current_along_with_hull_and_water_changes_nothing() -> None:
     """They meet as fast: what is thrown has the current's velocity besides."""
     _, strength, velocity = thrown()

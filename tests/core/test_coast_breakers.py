@@ -7,11 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
-from ocean_tweak.core import Foam, Ocean, OceanParameters, Places, WaveLayer
+from ocean_tweak.core import Foam, Ocean, OceanParameters, Patch, Places, WaveLayer
+from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.waves.coast.breakers import broken_share, least_broken, shape_of, whiteness
-from tests.core.test_coast_sea import SIDE, STEP, sea
+from tests.core.test_coast_sea import SAMPLES, SIDE, STEP, sea
 
 TURNS = np.linspace(0.0, 2.0 * np.pi, 4000, endpoint=False)
 
@@ -110,6 +111,20 @@ def test_foam_is_born_on_fronts_left_behind_and_fades() -> None:
     fresh = foam_along(parameters.replace(foam=Foam(half_life=0.2)), 40.0)
     assert fresh.foam.sum() < 0.8 * now.foam.sum()
     assert foam_along(parameters.replace(foam=Foam(coverage=0.0)), 40.0).foam.max() == 0.0
+
+
+def test_foam_follows_from_all_patches_whatever_sea_was_asked_before() -> None:
+    """Short waves of another patch break too: what their sea and one without them made stays apart."""
+    swell = Patch(SIDE, resolution=SAMPLES, shortest_wavelength=20.0)
+    one = sea(patches=(swell,))
+    both = sea(patches=(swell, Patch(50.0, resolution=64, longest_wavelength=20.0)))
+    MEMO.drop()
+    alone = foam_along(both, 40.0)
+    MEMO.drop()
+    other, after = foam_along(one, 40.0), foam_along(both, 40.0)
+    assert_array_equal(after.foam, alone.foam)
+    assert_array_equal(after.foam_age, alone.foam_age)
+    assert np.abs(other.foam - alone.foam).max() > 0.01
 
 
 def test_in_the_surf_lines_are_white_and_most_of_the_water_between_them_is_not() -> None:

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from ocean_tweak.core import (
     Area,
     Coast,
+    Current,
     Mask,
     Ocean,
     OceanParameters,
@@ -164,6 +165,7 @@ def test_a_bed_that_is_turned_has_the_same_waves_turned(shore: str) -> None:
         ({"trough_damping": 0.5}, "damped by no others"),
         ({"mask": Mask()}, "remove them"),
         ({"dispersion": "DEEP"}, "FINITE_DEPTH or CAPILLARY"),
+        ({"current": Current(speed=1.0)}, "must be still over a coast"),
     ],
 )
 def test_what_cannot_be_beside_a_coast_is_refused(changes: dict[str, object], words: str) -> None:

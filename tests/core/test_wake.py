@@ -115,6 +115,7 @@ def test_a_frame_alone_has_the_bytes_of_any_other_order() -> None:
     again = [wake_elevation(times, places, time, **given).tobytes() for time in (10.0, 7.0, 3.3)]
     assert first == again[::-1]
     longer = wake_elevation(times[:9], places[:9], 7.0, **given)
+    assert longer.dtype == np.float64
     assert longer.tobytes() == first[1]  # the future has no part in it
 
 

@@ -11,17 +11,24 @@ range of the samples.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
-
+_Real = TypeVar("_Real", bound=np.floating)
 
 #: places processed together
 _PLACES = 2**14
+
+
+def smoothstep(part: NDArray[_Real]) -> NDArray[_Real]:
+    """From 0 at 0 and below to 1 at 1 and above, level at both ends: p²(3 - 2p)."""
+    share = np.clip(part, 0.0, 1.0)
+    result: NDArray[_Real] = share * share * (3.0 - 2.0 * share)
+    return result
 
 
 class Between(NamedTuple):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Iterable
 from fractions import Fraction
@@ -64,6 +65,7 @@ class OverBed:
         self._least = least_broken(pictures.rms_height, broken_share[self._wet]).astype(np.float32)
         # single waves may break far out: such are whitecaps, which the open sea's foam has
         share = broken_share[self._wet]
+        self._of_breaking = hashlib.sha256(share.tobytes()).digest()
         self._breaks, self._strength = share > _FEW, np.clip(share / _FEW - 1.0, 0.0, 1.0).astype(np.float32)
 
     def components(self, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
@@ -127,7 +129,7 @@ class OverBed:
 
     def _births(self, index: int) -> RealArray:
         """Breaking at one of the moments shared by all frames, (wet samples,) float32."""
-        key = (self._pictures, index, self._sea.foam.coverage)
+        key = (self._pictures, self._of_breaking, index, self._sea.foam.coverage)
         return MEMO.get(_BIRTHS, key, lambda: self._white(Fraction(index, _LOOKS)))
 
     def _white(self, time: float | Fraction) -> RealArray:

@@ -12,6 +12,9 @@ from ..data.printable import readable_bytes
 from .coast_waves import CoastWaves
 from .ocean import Ocean
 
+#: share of broken waves from which on they begin to break
+_BEGINS = 0.1
+
 
 class CoastOutlook(NamedTuple):
     """Of waves over a bed.
@@ -100,7 +103,3 @@ def _heights(coast: CoastWaves) -> tuple[float, float, float, float]:
         float(height[:-1][shore].mean()) if shore.any() else nan,
         float(depth[first][found].mean()) if found.any() else nan,
     )
-
-
-#: share of broken waves from which on they begin to break
-_BEGINS = 0.1

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..masks.weights import Weights, unweighted, weighted
+from ..numerics.interpolation import smoothstep
 from ..numerics.memo import MEMO, total_bytes
 from ..parameters.ocean_parameters import OceanParameters
 from ..statistics.sea_spectrum import SeaSpectrum
@@ -133,7 +134,8 @@ class CoastWaves:
 
     def foam(self, x: Array, y: Array, time: float | Fraction) -> OwnFoam:
         """Of waves that break for lack of depth, at rest positions in m, of one flat shape."""
-        key = (self._waves.parameters, self.ground, self._sea.foam, time, "foam")
+        # of the whole sea: which waves break follows from those of all patches
+        key = (self._sea, self._waves.precision, time, "foam")
         foam, breaking, age = MEMO.get(_FIELDS, key, lambda: _FoamOverBed(self.over_bed.foam(time))).fields
         where, share = self.ground.between(x, y), self._weights.read(1, x, y).value
         here = [where.read(each).astype(np.float32) for each in (foam, breaking, age)]
@@ -160,8 +162,7 @@ class CoastWaves:
     def _weights(self) -> _BedWeights:
         share = np.repeat(self.ground.blend[:, np.newaxis], self.ground.columns, axis=1)
         limited = share * self._limit
-        under = np.clip(self.ground.depth / _AFLOAT, 0.0, 1.0)
-        afloat = under * under * (3.0 - 2.0 * under)
+        afloat = smoothstep(self.ground.depth / _AFLOAT)
         return _BedWeights(self.ground, (1.0 - share + limited, share, limited, afloat))
 
     @property

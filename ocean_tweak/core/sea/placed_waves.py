@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..data.errors import ParameterError
 from ..foam.model import Whitecaps
 from ..masks.noise import SeaTime
+from ..masks.parameters import Mask
 from ..masks.weights import Weights, move, unweighted, weighted, weights
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import open_sea
@@ -38,24 +39,20 @@ class PlacedWaves:
 
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """Components of the displacement at flat arrays of rest positions in m."""
-        masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
-        if not masks:
+        under = self._weights(x, y, time)
+        if under is None:
             return dict(self._fields(x, y, time, frozenset(keys)))
-        under = weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration))
-        wanted = unweighted(keys, moves=move(masks))
-        return weighted(self._fields(x, y, time, wanted), under)
+        return weighted(self._fields(x, y, time, unweighted(keys, moves=move(self._masks))), under)
 
     def _fields(
         self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]
     ) -> Mapping[Key, RealArray]:
         """As the layer gives them, carried by the sea's current."""
-        current = self._sea.current
-        if current is None or not self._sea.moves:
+        if not self._sea.moves:
             return self._layer.fields(self._sea, x, y, time, frozenset(keys))
         moving = [key for key in keys if key[1] == "t"]
         wanted = frozenset(keys) | {(component, by) for component, _ in moving for by in "xy"}
-        (come_x, come_y), (ux, uy) = current.carried(float(time)), current.velocity
-        layer = self._layer.in_current(current)
+        layer, (come_x, come_y), (ux, uy, _) = self._in_water(time)
         found = dict(layer.fields(self._sea, x - come_x, y - come_y, time, wanted))
         for component, by in moving:
             found[component, by] = found[component, by] - (
@@ -67,10 +64,10 @@ class PlacedWaves:
         """What the layer makes of its own at rest positions in m, of one flat shape."""
         layer, (come_x, come_y), _ = self._in_water(time)
         found = layer.own_foam(self._sea, x - come_x, y - come_y, time)
-        share = None if found is None else self._share(x, y, time)
-        if found is None or share is None:
+        under = None if found is None else self._weights(x, y, time)
+        if found is None or under is None:
             return found
-        share = share.astype(np.float32)
+        share = under.value.astype(np.float32)
         return OwnFoam(found.foam * share, found.breaking * share, found.age)
 
     def spray(
@@ -84,8 +81,8 @@ class PlacedWaves:
         found = layer.own_spray(self._sea, x - come_x, y - come_y, time, height, velocity - drift)
         if found is None:
             return None
-        share = self._share(x, y, time)
-        strength = found.strength if share is None else found.strength * share
+        under = self._weights(x, y, time)
+        strength = found.strength if under is None else found.strength * under.value
         return OwnSpray(strength, found.velocity + drift)
 
     def _in_water(self, time: float | Fraction) -> tuple[Contribution, tuple[float, float], Array]:
@@ -100,12 +97,16 @@ class PlacedWaves:
             np.array((*current.velocity, 0.0)),
         )
 
-    def _share(self, x: Array, y: Array, time: float | Fraction) -> Array | None:
-        """What masks leave (places,); None without any."""
-        masks = [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
-        if not masks:
+    @property
+    def _masks(self) -> list[Mask]:
+        return [mask for mask in (self._sea.mask, self._layer.mask) if mask is not None]
+
+    def _weights(self, x: Array, y: Array, time: float | Fraction) -> Weights | None:
+        """What masks leave at places; None without any."""
+        if not self._masks:
             return None
-        return weights(masks, self._sea.domain_size, x, y, SeaTime(time, self._sea.loop_duration)).value
+        when = SeaTime(time, self._sea.loop_duration)
+        return weights(self._masks, self._sea.domain_size, x, y, when)
 
     def field(self, time: float | Fraction) -> Field:
         """The surface of these waves at a time."""
@@ -176,21 +177,23 @@ def with_own_foam(
     sea: OceanParameters, whitecaps: Whitecaps, x: Array, y: Array, time: float | Fraction
 ) -> Whitecaps:
     """The foam of a sea's waves with that which layers make of their own, at flat rest positions in m."""
-    for waves in placed_waves(sea):
-        own = waves.foam(x, y, time)
-        if own is not None:
-            whitecaps = whitecaps.over(*own)
+    for own in _own_foams(sea, x, y, time):
+        whitecaps = whitecaps.over(*own)
     return whitecaps
 
 
 def throws(sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> NDArray[np.bool_]:
     """Whether layers throw up water at flat rest positions in m."""
     found = np.zeros(x.size, bool)
-    for waves in placed_waves(sea):
-        own = waves.foam(x, y, time)
-        if own is not None:
-            found |= own.breaking > 0.0
+    for own in _own_foams(sea, x, y, time):
+        found |= own.breaking > 0.0
     return found
+
+
+def _own_foams(sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> Iterator[OwnFoam]:
+    """The foam of each layer that makes some of its own, at flat rest positions in m."""
+    found = (waves.foam(x, y, time) for waves in placed_waves(sea))
+    return (own for own in found if own is not None)
 
 
 def own_spray(

@@ -26,6 +26,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numerics.interpolation import smoothstep
+
 Array = NDArray[np.float64]
 
 #: moments per natural period, at least: at resonance the linear interpolation loses 1 %
@@ -157,6 +159,5 @@ def ride(water: Array, known: Moments, time: Fraction, mode: Oscillator) -> floa
     since = np.array([float(time - moment) for moment in known.times])
     slopes = np.diff(water) / step
     age = since[1:-1]
-    rest = np.clip((1.0 - age / (step * len(age))) / _FADES, 0.0, 1.0)
-    kinks = np.diff(slopes) * rest**2 * (3.0 - 2.0 * rest)
+    kinks = np.diff(slopes) * smoothstep((1.0 - age / (step * len(age))) / _FADES)
     return float(water[-2] + slopes[-1] * since[-2] - kinks @ mode.impulse_response(age))

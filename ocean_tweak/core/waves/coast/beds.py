@@ -8,6 +8,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ...numerics.interpolation import smoothstep
+
 Array = NDArray[np.float64]
 
 #: side of the square, and sample spacing, m
@@ -29,26 +31,27 @@ def beach(x: Array, y: Array) -> Array:
     out = shore - x
     bar = 1.1 * np.exp(-(((out - 75.0 - 8.0 * np.sin(off / 40.0)) / 18.0) ** 2))
     below = -np.minimum(0.09 * np.maximum(out, 0.0) ** 0.84 * 1.15, 13.0) + bar * (out > 0.0)
-    above = 6.0 * (1.0 - np.exp(-np.maximum(-out, 0.0) / 70.0)) + 3.5 * _rise((-out - 38.0) / 35.0)
-    rock = _rise((head - 22.0) / 55.0) * (9.0 * _rise(-out / 16.0) + 3.0 * _rise((25.0 - out) / 30.0))
+    above = 6.0 * (1.0 - np.exp(-np.maximum(-out, 0.0) / 70.0)) + 3.5 * smoothstep((-out - 38.0) / 35.0)
+    cliff = 9.0 * smoothstep(-out / 16.0) + 3.0 * smoothstep((25.0 - out) / 30.0)
+    rock = smoothstep((head - 22.0) / 55.0) * cliff
     return np.where(out > 0.0, below, above) + rock * (1.0 + 0.35 * _rough(x, y))
 
 
 def harbour(x: Array, y: Array) -> Array:
     """A basin behind two moles with a gap between them, a quay at its end."""
-    bottom = -12.0 + 5.0 * _rise((x - 200.0) / 200.0)
+    bottom = -12.0 + 5.0 * smoothstep((x - 200.0) / 200.0)
     off = y - 0.5 * SIDE
     mole = np.hypot(np.maximum(np.abs(x - 210.0) - 4.0, 0.0), np.maximum(36.0 - np.abs(off), 0.0))
-    wall = 2.6 * _rise((3.0 - mole) / 3.0)
-    quay = _rise((x - 455.0) / 3.0)
-    stone = np.where(wall > 0.0, wall - 14.0 * (1.0 - _rise((3.0 - mole) / 2.0)), bottom)
+    wall = 2.6 * smoothstep((3.0 - mole) / 3.0)
+    quay = smoothstep((x - 455.0) / 3.0)
+    stone = np.where(wall > 0.0, wall - 14.0 * (1.0 - smoothstep((3.0 - mole) / 2.0)), bottom)
     return stone * (1.0 - quay) + 2.4 * quay
 
 
 def islet(x: Array, y: Array) -> Array:
     """A rock of a hundred metres in deep water."""
     r = np.hypot(x - 250.0, (y - 0.5 * SIDE) * 0.8) + 9.0 * _rough(x, y)
-    return np.maximum(-16.0, 11.0 - 0.30 * r + 6.0 * _rise((30.0 - r) / 30.0))
+    return np.maximum(-16.0, 11.0 - 0.30 * r + 6.0 * smoothstep((30.0 - r) / 30.0))
 
 
 #: by name
@@ -63,9 +66,3 @@ def _rough(x: Array, y: Array) -> Array:
         phase = 2.0 * np.pi / length * (x * np.cos(angle) + y * np.sin(angle)) + 1.9 * number
         total += np.sin(phase) / (1.0 + 0.5 * number)
     return 0.6 * total
-
-
-def _rise(part: Array) -> Array:
-    share = np.clip(part, 0.0, 1.0)
-    result: Array = share * share * (3.0 - 2.0 * share)
-    return result

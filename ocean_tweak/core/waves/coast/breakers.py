@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...numerics.interpolation import smoothstep
 from .march import BREAKER_INDEX
 
 Array = NDArray[np.float64]
@@ -55,9 +56,9 @@ def whiteness(signal: ComplexArray, least: RealArray) -> RealArray:
     """Strength of breaking, 0…1, on the fronts of waves above the threshold envelope."""
     phase, envelope = np.angle(signal), np.abs(signal)
     begin, full, still, end = _FRONT
-    front = _rise((phase - begin) / (full - begin)) * (1.0 - _rise((phase - still) / (end - still)))
+    front = smoothstep((phase - begin) / (full - begin)) * (1.0 - smoothstep((phase - still) / (end - still)))
     low, high = _SOFT
-    broken = _rise((envelope - low * least) / np.maximum((high - low) * least, 1e-3))
+    broken = smoothstep((envelope - low * least) / np.maximum((high - low) * least, 1e-3))
     result: RealArray = front * broken * (envelope > 0.0)
     return result
 
@@ -102,7 +103,7 @@ def shape_of(amplitude: Array, k: Array, depth: Array, share: Array) -> Shape:
     ursell = np.maximum(0.75 * amplitude * k / kh**3, 1e-6)
     low, high, middle, width = _NONLINEARITY
     amount = low + (high - low) / (1.0 + np.exp((middle - np.log10(ursell)) / width))
-    amount *= share * (1.0 - _rise(4.0 * kh / _DEEP - 3.0))
+    amount *= share * (1.0 - smoothstep(4.0 * kh / _DEEP - 3.0))
     lean = 0.5 * np.pi * (np.tanh(_FORWARD[0] / ursell ** _FORWARD[1]) - 1.0)
     # the index of skewness (Malarkey and Davies 2012, eq. 26), and the waveform's angle
     b = np.sqrt(2.0) * amount / np.sqrt(9.0 + 2.0 * amount * amount)
@@ -111,9 +112,3 @@ def shape_of(amplitude: Array, k: Array, depth: Array, share: Array) -> Shape:
     along = r * np.sin(phi)
     parts = (f, along / (1.0 + f), r * np.cos(phi), along)
     return Shape(*(part.astype(np.float32) for part in parts))
-
-
-def _rise(part: RealArray) -> RealArray:
-    share = np.clip(part, 0.0, 1.0)
-    result: RealArray = share * share * (3.0 - 2.0 * share)
-    return result

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...data.errors import ParameterError
-from ...numerics.interpolation import Between, between
+from ...numerics.interpolation import Between, between, smoothstep
 from ..contribution import RealArray
 from .parameters import SHORES, Coast
 
@@ -102,7 +102,7 @@ class Ground:
                 "extend it to deeper water, choose another side, or give depths, positive downwards",
             )  # fmt: skip
         # the open sea's own depth over the first rim, and over the second from there to the bed's own edge
-        sinks = _smooth((along - (begin - coast.rim)) / coast.rim)[:, np.newaxis]
+        sinks = smoothstep((along - (begin - coast.rim)) / coast.rim)[:, np.newaxis]
         return np.where(along[:, np.newaxis] < begin, self.deep + sinks * (edge - self.deep), bed)
 
     @property
@@ -116,23 +116,23 @@ class Ground:
         """(rows,) share of the coast: 0 in the open sea, 1 over the bed, and less again behind water."""
         along = self._along(self.rows)
         (begin, end), _ = _extent(self.coast)
-        share = _smooth((along - begin + 2.0 * self.coast.rim) / (_COMES_IN * self.coast.rim))
+        share = smoothstep((along - begin + 2.0 * self.coast.rim) / (_COMES_IN * self.coast.rim))
         if (self.depth[-1] > 0.0).any():
-            share *= 1.0 - _smooth((along - end + self.coast.rim) / (self.coast.rim - self.step))
+            share *= 1.0 - smoothstep((along - end + self.coast.rim) / (self.coast.rim - self.step))
         return share
 
     @property
     def bed_share(self) -> Array:
         """(rows,) 0 over the flat rim, 1 over the bed, and smooth over what sinks from it."""
         begin = _extent(self.coast)[0][0]
-        return _smooth((self._along(self.rows) - begin + self.coast.rim) / self.coast.rim)
+        return smoothstep((self._along(self.rows) - begin + self.coast.rim) / self.coast.rim)
 
     @cached_property
     def late_on_rim(self) -> Array:
         """(rim_rows,) 0 where the coast comes in, and from there to 1 at the last row of the flat rim."""
         along = self._along(self.rim_rows)
         since = along - (_extent(self.coast)[0][0] - (2.0 - _COMES_IN) * self.coast.rim)
-        return _smooth(since / (along[-1] - along[0] - _COMES_IN * self.coast.rim))
+        return smoothstep(since / (along[-1] - along[0] - _COMES_IN * self.coast.rim))
 
     def between(self, x: Array, y: Array) -> Between:
         """Where places in m lie among the samples: beyond the first and last rows on these."""
@@ -189,12 +189,7 @@ def _joined(bed: Array, edges: list[Array], across: RealArray, low: float, high:
     """The bed whose ends meet: towards each, and in what is left of the width, the mean of both."""
     half = 0.5 * (edges[1] - edges[0])
     reach = _ENDS * (high - low)
-    at_low = 1.0 - _smooth((across - low) / reach)
-    at_high = 1.0 - _smooth((high - across) / reach)
+    at_low = 1.0 - smoothstep((across - low) / reach)
+    at_high = 1.0 - smoothstep((high - across) / reach)
     joined: Array = bed + half * (at_low - at_high)
     return joined
-
-
-def _smooth(part: RealArray) -> Array:
-    share = np.asarray(np.clip(part, 0.0, 1.0), np.float64)
-    return share * share * (3.0 - 2.0 * share)

@@ -31,13 +31,13 @@ def bow_spray(
         much from as high above calm water as the keel is below
     velocity : of the water there, (places, 3) m/s
 
-    None where there is no bow.
+    None where there is no bow, or the hull stands still.
     """
     breaking, side = hull.bow(x, y, time)
-    if not np.any(breaking > 0.0):
-        return None
     _, course = hull.track.place(time)
     speed = float(np.hypot(*course))
+    if not (speed > 0.0 and np.any(breaking > 0.0)):
+        return None
     ahead = np.array((*course, 0.0)) / speed
     to_port = np.array((-ahead[1], ahead[0], 0.0))
     meeting = np.hypot(np.maximum(speed - velocity @ ahead, 0.0), np.maximum(velocity[:, 2], 0.0))

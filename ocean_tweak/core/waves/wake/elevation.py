@@ -67,7 +67,7 @@ def wake_elevation(
     surface_tension: float = 0.0,
     decay: float = 0.01,
 ) -> Array:
-    """Elevation in m of the waves of an object, (N, N) [y, x] over the square [-area/2, area/2)².
+    """Elevation in m of the waves of an object, (N, N) float64 [y, x] over the square [-area/2, area/2)².
 
     times, positions : (T,) s and (T, 2) m of its path; before the first sample it has moved at its first
         velocity, and after the last at its last velocity
@@ -102,7 +102,7 @@ def wake_elevation(
     check_range("time", time, -_LATEST, _LATEST, "s")
     past = Past.until(basin, _fitting(Footprint.of(footprint, spacing), area), track, time)
     shape = np.fft.irfft2(past.elevation(), basin.shape) * basin.scale
-    return np.fft.fftshift(shape)
+    return np.fft.fftshift(shape).astype(np.float64)  # NumPy 2 transforms in single precision
 
 
 def _fitting(footprint: Footprint, area: float) -> Footprint:

@@ -74,7 +74,7 @@ class WakeWaves:
     @property
     def nbytes(self) -> int:
         """Bytes of the cached pasts."""
-        return total_bytes(self._pasts.values())
+        return total_bytes(tuple(self._pasts.values()))  # another thread may be adding one
 
     def at(
         self, x: Array, y: Array, time: float, keys: Iterable[Key], choppiness: float
