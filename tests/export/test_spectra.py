@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import codecs
 import gzip
 import math
 from pathlib import Path
@@ -119,6 +120,24 @@ def test_a_spectrum_of_frequencies_with_a_direction_and_a_spread(tmp_path: Path)
     state = only(written(tmp_path, swan_text([rows], directions=None))).summary(0)
     assert math.degrees(state.mean_direction) == pytest.approx(45.0, abs=1e-6)
     assert math.degrees(state.directional_spread) == pytest.approx(20.0, abs=0.01)
+
+
+def test_a_direction_that_is_missing_is_no_angle(tmp_path: Path) -> None:
+    """-999 beside energy, at the peak too: as for a buoy it is that of the nearest frequency, and told."""
+    energy = np.exp(-((np.log(F / 0.1) / 0.3) ** 2))
+    rows = np.stack([energy, np.full(len(F), 225.0), np.full(len(F), 20.0)], axis=1)
+    rows[np.argmax(energy), 1] = rows[0, 1] = -999.0
+    rows[3, 2] = -9.0  # a spread
+    record = only(written(tmp_path, swan_text([rows], directions=None)))
+    state = record.summary(0)
+    assert math.degrees(state.mean_direction) == pytest.approx(45.0, abs=1e-6)
+    assert math.degrees(state.directional_spread) == pytest.approx(20.0, abs=0.01)
+    assert record.notes == ("3 frequencies with energy had no direction: they have that of the nearest",)
+    rows[:, 1] = -999.0
+    nowhere = only(written(tmp_path, swan_text([rows], directions=None)))
+    assert nowhere.notes == ("1 spectra had no direction at all: their waves go everywhere",)
+    assert nowhere.moments is not None
+    assert not nowhere.moments.any()
 
 
 def test_a_sector_has_no_waves_elsewhere(tmp_path: Path) -> None:
@@ -258,6 +277,22 @@ def test_a_spectrum_that_is_cut_off_uneven_or_empty(tmp_path: Path) -> None:
     packed.write_bytes(gzip.compress(b"x" * 1000)[:20])
     with pytest.raises(ParameterError, match="cannot be unpacked"):
         read_spectra([packed])
+
+
+@pytest.mark.parametrize(
+    ("encoding", "end"), [("utf-8-sig", "\n"), ("utf-16", "\r\n"), ("utf-16-be", "\n"), ("ascii", "\r")]
+)
+def test_files_that_an_editor_saved_anew(tmp_path: Path, encoding: str, end: str) -> None:
+    """With a mark of their encoding, in two bytes a letter, and with the line ends of other systems."""
+    content = swan_text([bump(NAUTICAL, 70.0, True)], directions=NAUTICAL)
+    plain = only(written(tmp_path, content))
+    path = tmp_path / "edited.spec"
+    mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
+    path.write_bytes(mark + content.replace("\n", end).encode(encoding))
+    np.testing.assert_array_equal(only(path).energy, plain.energy)
+    path.write_bytes(mark + f"SWAN 1{end}LOCATIONS{end}1{end}0 0{end}AFREQ{end}1{end}".encode(encoding))
+    with pytest.raises(ParameterError, match=r"edited.spec, line 6'"):
+        read_spectra([path])
 
 
 def test_sizes_are_known_before_anything_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

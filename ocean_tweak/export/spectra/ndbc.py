@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .records import MOST_FREQUENCIES, MOST_NUMBERS, Record, ordered, towards
+from .records import MOST_FREQUENCIES, MOST_NUMBERS, Record, filled_moments, ordered, towards
 from .text import Lines, refuse_file
 
 Array = NDArray[np.float64]
@@ -253,28 +253,10 @@ def _directions(
     notes = []
     if len(in_all) < len(times):
         notes.append(f"{len(times) - len(in_all)} spectra without directions are left out")
-    moments, filled = _moments([tables[kind] for kind in "dijk"], in_all, tables["w"])
-    if filled:
-        notes.append(f"{filled} frequencies with energy had no direction: they have that of the nearest")
-    return in_all, moments, notes
-
-
-def _moments(tables: Sequence[Table], times: Sequence[datetime.datetime], energy: Table) -> tuple[Array, int]:
-    """(times, frequencies, 4) a₁, b₁, a₂, b₂, and how many with energy had to be filled in."""
-    a1, a2, r1, r2 = (np.array([table.rows[time] for time in times]) for table in tables)
-    first, second = r1 * np.exp(1j * towards(a1)), r2 * np.exp(2j * towards(a2))
-    filled = 0
-    for index, time in enumerate(times):
-        known = np.isfinite(first[index]) & np.isfinite(second[index])
-        unknown = np.nonzero(~known)[0]
-        filled += int(np.count_nonzero(energy.rows[time][unknown] > 0.0))
-        if not known.any():
-            first[index] = second[index] = 0.0
-            continue
-        nearest = np.nonzero(known)[0]
-        source = nearest[np.argmin(np.abs(unknown[:, np.newaxis] - nearest), axis=1)]
-        first[index, unknown], second[index, unknown] = first[index, source], second[index, source]
-    return np.stack([first.real, first.imag, second.real, second.imag], axis=-1), filled
+    a1, a2, r1, r2 = (np.array([tables[kind].rows[time] for time in in_all]) for kind in "dijk")
+    energy = np.array([tables["w"].rows[time] for time in in_all])
+    moments, more = filled_moments(r1 * np.exp(1j * towards(a1)), r2 * np.exp(2j * towards(a2)), energy)
+    return in_all, moments, [*notes, *more]
 
 
 def _wind_at(times: Sequence[datetime.datetime], winds: _Times | None) -> NDArray[np.complex128] | None:

@@ -150,6 +150,34 @@ def towards(degrees_from: Array) -> Array:
     return np.radians(270.0 - degrees_from)
 
 
+def filled_moments(
+    first: NDArray[np.complex128], second: NDArray[np.complex128], energy: Array
+) -> tuple[Array, list[str]]:
+    """Moments with those of the nearest frequencies where they are missing, and what to tell of it.
+
+    first, second, energy : (times, frequencies) a₁ + ib₁ and a₂ + ib₂, NaN where they are missing; m²/Hz
+
+    Returns (times, frequencies, 4) a₁, b₁, a₂, b₂.
+    """
+    first, second = first.copy(), second.copy()
+    known = np.isfinite(first) & np.isfinite(second)
+    nowhere = ~known.any(axis=1)
+    first[nowhere] = second[nowhere] = 0.0  # of all directions
+    for index in np.nonzero(~nowhere)[0]:
+        nearest, unknown = np.nonzero(known[index])[0], np.nonzero(~known[index])[0]
+        source = nearest[np.argmin(np.abs(unknown[:, np.newaxis] - nearest), axis=1)]
+        first[index, unknown], second[index, unknown] = first[index, source], second[index, source]
+    notes = []
+    filled = int(np.count_nonzero((energy > 0.0) & ~known & ~nowhere[:, np.newaxis]))
+    if filled:
+        notes.append(f"{filled} frequencies with energy had no direction: they have that of the nearest")
+    if nowhere.any():
+        notes.append(
+            f"{np.count_nonzero(nowhere)} spectra had no direction at all: their waves go everywhere"
+        )
+    return np.stack([first.real, first.imag, second.real, second.imag], axis=-1), notes
+
+
 def ordered(record: Record) -> Record:
     """The same spectra in the order of their times; of two at the same time the first."""
     if any(time is None for time in record.times):

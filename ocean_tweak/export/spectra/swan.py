@@ -17,10 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.data.printable import printable
-from .records import MOST_DIRECTIONS, MOST_FREQUENCIES, MOST_NUMBERS, Record, ordered, towards
+from .records import (
+    MOST_DIRECTIONS,
+    MOST_FREQUENCIES,
+    MOST_NUMBERS,
+    Record,
+    filled_moments,
+    ordered,
+    towards,
+)
 from .text import Lines, refuse_file
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 FIRST_WORD = "SWAN"
 
@@ -224,7 +233,8 @@ def _time(lines: Lines, line: str, time_format: str) -> datetime.datetime:
 
 
 def _spectrum(lines: Lines, head: _Head, line: str | None) -> Array | None:
-    """Of one place at one time: (frequencies, directions or 3); None where there is none."""
+    """Of one place at one time: (frequencies, directions or 3), NaN for a missing direction or spread; None
+    where there is none."""
     assert head.f is not None
     text = _needed(lines, "a spectrum") if line is None else line
     word = text.split()[0].upper()
@@ -245,17 +255,17 @@ def _spectrum(lines: Lines, head: _Head, line: str | None) -> Array | None:
             f"{printable(word, 30)} is none of LOCATION, ZERO and NODATA, with which a spectrum begins"
         )
     values = np.array(_numbers(lines, len(head.f) * columns)).reshape(len(head.f), columns)
-    missing = head.quantities[0][2]
-    gone = (
-        (values == missing) if head.theta is not None else (values[:, :1] == missing) & np.ones((1, 3), bool)
-    )
+    energies = 1 if head.theta is None else columns
+    for column in range(energies, columns):
+        values[values[:, column] == head.quantities[column][2], column] = np.nan
+    energy = values[:, :energies]
     with np.errstate(over="ignore"):
-        result = np.where(gone, 0.0, values * factor)
-    if bool(np.any(result[:, : 1 if head.theta is None else None] < 0.0)):
+        energy[:] = np.where(energy == head.quantities[0][2], 0.0, energy * factor)
+    if bool(np.any(energy < 0.0)):
         lines.refuse("ends a spectrum with energy below 0, which none has")
-    if not bool(np.all(result < 1e12)):
+    if not bool(np.all(energy < 1e12)):
         lines.refuse("ends a spectrum with more energy than any sea has: the factor may be wrong")
-    return np.asarray(result)
+    return values
 
 
 def _numbers(lines: Lines, count: int) -> list[float]:
@@ -286,7 +296,9 @@ def _record(
     unit = head.quantities[0][1].lower()
     scale = 1.0 / _WEIGHT if unit.startswith("j") else 1.0
     if head.theta is None:
-        energy, moments = scale * values[..., 0], _moments(values, head.is_nautical)
+        energy = scale * values[..., 0]
+        moments, more = filled_moments(*_moments(values, head.is_nautical), energy)
+        notes += more
         record = Record(place, own_times, head.f[order], energy, moments=moments)
     else:
         per = math.radians(1.0) if "rad" not in unit else 1.0
@@ -322,12 +334,12 @@ def _around(values: Array, theta: Array) -> tuple[Array, float]:
     return whole, first
 
 
-def _moments(values: Array, is_nautical: bool) -> Array:
-    """Moments of cos²ˢ(θ/2) with a mean direction and a spread: r₁ = s/(s+1), r₂ = s(s-1)/((s+1)(s+2))."""
+def _moments(values: Array, is_nautical: bool) -> tuple[ComplexArray, ComplexArray]:
+    """a₁ + ib₁ and a₂ + ib₂ of cos²ˢ(θ/2) with a mean direction and a spread: r₁ = s/(s+1), r₂ =
+    s(s-1)/((s+1)(s+2)); NaN where those are missing."""
     mean, spread = values[..., 1], np.radians(np.clip(values[..., 2], 0.0, 81.0))
     theta = towards(mean) if is_nautical else np.radians(mean)
     r1 = np.clip(1.0 - 0.5 * spread**2, 0.0, 0.999)
     s = r1 / (1.0 - r1)
     r2 = s * (s - 1.0) / ((s + 1.0) * (s + 2.0))
-    first, second = r1 * np.exp(1j * theta), r2 * np.exp(2j * theta)
-    return np.stack([first.real, first.imag, second.real, second.imag], axis=-1)
+    return r1 * np.exp(1j * theta), r2 * np.exp(2j * theta)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import codecs
 import gzip
 import math
 import zlib
@@ -17,6 +18,9 @@ from ..files import open_file
 #: bytes of a file's text, unpacked: a year of a buoy's spectra has a tenth of it
 LARGEST_TEXT = 64_000_000
 
+#: marks at the start of a text, which editors put there, and the encodings that they stand for
+_MARKS = {codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
+
 #: letters of a line
 _LONGEST_LINE = 200_000
 
@@ -27,7 +31,7 @@ class Lines:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.number = 0
-        self._rest = iter(_text(path).split("\n"))
+        self._rest = iter(_text(path).replace("\r\n", "\n").replace("\r", "\n").split("\n"))
 
     def __iter__(self) -> Iterator[str]:
         while (line := self.next_line()) is not None:
@@ -41,7 +45,7 @@ class Lines:
         self.number += 1
         if len(line) > _LONGEST_LINE:
             self.refuse("is longer than a line of any such file: it may be of another kind")
-        return line.rstrip("\r")
+        return line
 
     def needed(self, what: str) -> str:
         """The next line that is not empty. Raises ParameterError where the file ends before it."""
@@ -98,4 +102,7 @@ def _text(path: Path) -> str:
         refuse_file(path, f"cannot be read: {error}")
     if len(content) > LARGEST_TEXT:
         refuse_file(path, f"is larger than {LARGEST_TEXT / 1e6:g} MB: cut out the times that are wanted")
+    for mark, encoding in _MARKS.items():
+        if content.startswith(mark):
+            return content[len(mark) :].decode(encoding, "replace")
     return content.decode("latin-1")
