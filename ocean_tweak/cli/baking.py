@@ -22,7 +22,7 @@ from ..core.data.printable import LONGEST, printable, readable_bytes
 from ..core.numerics.machine import usable_cores
 from ..core.sea.bake import BakedFrame
 from ..core.sea.bake import bake as make_frames
-from ..core.sea.memory import check_memory
+from ..core.sea.memory import check_memory, remedy_for
 from ..export import logs
 from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory
 from ..export.cache.folders import (
@@ -225,6 +225,7 @@ def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:
     check_memory(
         workers * need,
         f"Baking {job.resolution}² samples with {workers} worker{'s' if workers > 1 else ''}",
+        remedy_for(job.shot.parameters, need),
     )
     _LOG.info("processes: %d, each with about %s of memory", workers, readable_bytes(need))
     return workers

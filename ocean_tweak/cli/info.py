@@ -18,7 +18,7 @@ from ..core.numerics.memo import MEMO
 from ..core.parameters.patch import NO_LONGEST
 from ..core.parameters.patch_seas import open_sea
 from ..core.sea.coast_outlook import coast_outlook
-from ..core.sea.memory import beyond_budget, check_memory, coast_need
+from ..core.sea.memory import beyond_budget, check_coast_memory, check_memory
 from ..core.sea.spray import expected_count, why_none
 from ..core.spray.columns import BYTES_IN_FILE
 from ..core.statistics import sea_scales
@@ -91,11 +91,7 @@ def _foretell(name: str, parameters: OceanParameters) -> None:
     need, layers = statistics_memory(parameters), len(parameters.active(WaveLayer))
     what = f"{name}: {parameters.resolution}² samples and {layers} layer{'s' if layers != 1 else ''}"
     check_memory(need, what)
-    coast = coast_need(parameters)
-    check_memory(
-        coast.state + coast.building, f"{name}: what the bed makes of the waves",
-        "set a larger coast.step or coast.shortest_wavelength",
-    )  # fmt: skip
+    check_coast_memory(parameters, f"{name}: what the bed makes of the waves")
     if parameters.resolution**2 * max(1, layers) < _LARGE:
         return
     seconds = seconds_of_statistics(parameters)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ocean_tweak.cli import main
+from ocean_tweak.core import Area, Coast, Ocean, OceanParameters, Raster, Water
 from ocean_tweak.core.sea import coast_waves, memory
 from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.sea_files import read_sea
@@ -70,14 +71,22 @@ def test_spray_has_no_tile_and_nothing_is_begun(
 
 
 def test_a_coast_that_no_memory_holds_is_refused_before_it_is_begun(
-    coast: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    coast: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """By `info`, by `bake`, and by the waves themselves; each names what would make it smaller."""
     monkeypatch.setattr(memory, "usable_memory", lambda: 4 * 2**30)
     monkeypatch.setattr(coast_waves, "pictures", lambda *_: pytest.fail("it was begun"))
-    assert main(["info", *coast, "--set", "coast.step=0.1"]) == 1
-    assert re.search(
-        r"of the waves needs \d+\.\d GB of memory.*: set a larger coast\.step or", capsys.readouterr().err
-    )
+    told = r"needs \d+\.\d GB of memory.*: set a larger coast\.step or"
+    sea = [*coast, "--set", "coast.step=0.1"]
+    assert main(["info", *sea]) == 1
+    assert re.search(f"of the waves {told}", capsys.readouterr().err)
+    assert main(["bake", *sea, "--area", "200", "32", "--frames", "1", "--out", str(tmp_path / "out")]) == 1
+    assert re.search(rf"Baking 32² samples with 1 worker {told}", capsys.readouterr().err)
+    bed = Raster(np.load(tmp_path / "bed.npy")[..., np.newaxis])
+    own = Coast(depth=bed, spacing=4.0, rim=80.0, shortest_wavelength=40.0, step=0.1)
+    waves = Ocean(OceanParameters(resolution=32, domain_size=200.0, water=Water(depth=20.0), coast=own))
+    with pytest.raises(MemoryError, match=f"of the waves {told}"):
+        waves.surface(0.0, on=Area(200.0, 32))
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import PARTS
 from ..parameters.shot import Moment, Shot
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
-from .memory import check_memory, memory_need
+from .memory import check_memory, memory_need, remedy_for
 from .ocean import Ocean
 from .regions import TILE, Area, Tile
 
@@ -179,4 +179,4 @@ def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile 
         raise ValueError(f"outputs = {others}: do not add up over patches; bake {', '.join(sorted(ADDING))}")
     need = memory_need(parameters, sink.outputs, on=on).peak(workers)
     samples = on.resolution if isinstance(on, Area) else parameters.resolution
-    check_memory(need, f"Baking {samples}² samples with {workers} workers")
+    check_memory(need, f"Baking {samples}² samples with {workers} workers", remedy_for(parameters, need))

@@ -34,6 +34,7 @@ from ..waves.contribution import OwnFoam
 from .coast_field import OverBed
 from .coast_pictures import Incoming, Pictures, incoming, pictures
 from .coast_swash import Swash
+from .memory import check_coast_memory
 from .part_waves import PartWaves, components, real_type
 from .placed_waves import as_field
 from .sampling import Grid, Key, closed, turned
@@ -81,7 +82,12 @@ class CoastWaves:
         """What becomes of them; made once, whatever acts after the waves are drawn."""
         # what a picture is made of
         key = (self._waves.drawn_from, self.ground, self._waves.precision)
-        return MEMO.get(_PICTURES, key, lambda: pictures(self._sea, self.incoming, self.ground))
+
+        def make() -> Pictures:
+            check_coast_memory(self._sea)
+            return pictures(self._sea, self.incoming, self.ground)
+
+        return MEMO.get(_PICTURES, key, make)
 
     def shares(self, x: Array, y: Array) -> Weights:
         """Of the open sea, at places in m."""

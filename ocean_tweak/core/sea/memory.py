@@ -36,6 +36,10 @@ _LOOKING_BACK = 96
 #: bytes a sample over a bed: components there and derivatives, and what they are made of
 _OVER_BED = 160
 
+#: what lowers the memory of a sea, and that of a coast
+_FEWER_SAMPLES = "lower the resolution or the number of workers"
+_COARSER_COAST = "set a larger coast.step or coast.shortest_wavelength"
+
 #: bytes of the tables from which a state is computed, at any resolution
 TABLES = 48 * 2**20
 
@@ -158,7 +162,19 @@ def _columns(group: Iterable[str], gradient: bool) -> int:
     return len({term(*need, gradient=gradient).column for name in group for need in CHANNELS[name].needs})
 
 
-def check_memory(need: int, what: str, remedy: str = "lower the resolution or the number of workers") -> None:
+def remedy_for(parameters: OceanParameters, need: int) -> str:
+    """What lowers a sea's need of so many bytes: a coarser coast, if most of it is that of a coast."""
+    coast = coast_need(parameters)
+    return _COARSER_COAST if 2 * (coast.state + coast.building) > need else _FEWER_SAMPLES
+
+
+def check_coast_memory(parameters: OceanParameters, what: str = "What the bed makes of the waves") -> None:
+    """Raise MemoryError, with a remedy, if the machine has too little memory for the sea's coast."""
+    coast = coast_need(parameters)
+    check_memory(coast.state + coast.building, what, _COARSER_COAST)
+
+
+def check_memory(need: int, what: str, remedy: str = _FEWER_SAMPLES) -> None:
     """Raise MemoryError, with a remedy, if the machine or container has less memory than needed."""
     available = usable_memory()
     if available is not None and need > available:

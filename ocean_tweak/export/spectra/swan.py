@@ -342,4 +342,5 @@ def _moments(values: Array, is_nautical: bool) -> tuple[ComplexArray, ComplexArr
     r1 = np.clip(1.0 - 0.5 * spread**2, 0.0, 0.999)
     s = r1 / (1.0 - r1)
     r2 = s * (s - 1.0) / ((s + 1.0) * (s + 2.0))
-    return r1 * np.exp(1j * theta), r2 * np.exp(2j * theta)
+    turn = np.exp(1j * theta)
+    return np.asarray(r1 * turn, np.complex128), np.asarray(r2 * turn**2, np.complex128)
