@@ -40,10 +40,12 @@ def read_bed(
 
     scale : Blender units in a metre
 
-    Raises OceanObjectError for a mesh without faces, or that lies edgewise.
+    Raises OceanObjectError for a mesh without faces, that lies edgewise, or was deleted.
     """
     if mesh is None or mesh.type != "MESH":
         raise OceanObjectError("Choose a mesh as Sea Bed: the ground under the water, and the land behind it")
+    if not mesh.users_collection:  # as Blender leaves what is still read
+        raise OceanObjectError(f"{mesh.name} was deleted: choose another mesh as Sea Bed")
     tree, low, high = _tree(ocean, mesh, scene)
     longest = max(high.x - low.x, high.y - low.y)
     if not min(high.x - low.x, high.y - low.y) > 0.0:

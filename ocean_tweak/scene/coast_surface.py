@@ -20,12 +20,15 @@ from ..nodes.versioned import is_of_kind, node_group
 from . import vertex_attributes, water_material, wet_bed
 from .modifiers import is_of_library, set_changed
 from .plan import Plan, camera_surface_of
-from .settings import OceanObjectError, link_beside
+from .settings import OceanObjectError, all_oceans, link_beside
 
 Array = NDArray[np.float64]
 
 _COAST = "ocean_tweak_coast"
 _NAME = "Ocean Tweak Coast"
+#: of an ocean that another mesh shows: its own Render and Display As
+_SHOWN_AS = "ocean_tweak_shown_as"
+_USUALLY = {"hide_render": False, "display_type": "TEXTURED"}
 #: what the material reads of the waves
 _CHANNELS = ("displacement", "velocity", "cusp")
 #: m offshore that the mesh goes on, and how much longer each step is there than the one before
@@ -58,13 +61,24 @@ def remove(ocean: bpy.types.Object) -> None:
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
         make_room(ocean)
+        dry_other_beds()
+
+
+def dry_other_beds() -> None:
+    """Let no mesh be wet that is no bed of a coast any more."""
+    wet_bed.keep_only(ocean for ocean in all_oceans() if coast_of(ocean) is not None)
 
 
 def make_room(ocean: bpy.types.Object) -> None:
-    """Draw an ocean's own mesh as a box, and in no render, while a coast or a camera surface shows it."""
-    is_shown = coast_of(ocean) is not None or camera_surface_of(ocean) is not None
-    ocean.hide_render = is_shown
-    ocean.display_type = "BOUNDS" if is_shown else "TEXTURED"
+    """Draw an ocean's own mesh as a box, and in no render, while a coast or a camera surface shows it; as it
+    was before where none does any more."""
+    if coast_of(ocean) is not None or camera_surface_of(ocean) is not None:
+        if _SHOWN_AS not in ocean:
+            ocean[_SHOWN_AS] = {name: getattr(ocean, name) for name in _USUALLY}
+        ocean.hide_render, ocean.display_type = True, "BOUNDS"
+    else:
+        for name, value in (_USUALLY | dict(ocean.pop(_SHOWN_AS, {}))).items():
+            setattr(ocean, name, value)
 
 
 def refresh(ocean: bpy.types.Object, plan: Plan) -> None:

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..scene import coast_bed
+from ..scene import coast_bed, coast_surface
 from ..scene.refresh import EXPECTED_ERRORS
 from ..scene.settings import settings_of
 from ..scene.units import metres_per_unit
@@ -31,6 +31,7 @@ class OCEAN_OT_make_coast(OfActiveOcean, bpy.types.Operator):
         except EXPECTED_ERRORS as error:
             return refuse(self, error)
         coast_properties.take_bed(group, bed, metres)
+        coast_surface.dry_other_beds()
         if settings_of(ocean).error:
             self.report({"WARNING"}, settings_of(ocean).error)
         return {"FINISHED"}

@@ -167,6 +167,47 @@ def test_it_goes_when_it_is_switched_off(ocean, coast_of):
     assert not ocean.hide_render
 
 
+def test_the_ocean_is_shown_as_before_when_it_goes(ocean, coast_of):
+    coast, ocean.display_type = ocean.ocean_tweak.coast, "WIRE"
+    coast.bed = slope()
+    for was_hidden in (True, False):
+        ocean.hide_render = was_hidden
+        bpy.ops.ocean.make_coast()
+        bpy.context.scene.frame_set(5)
+        assert (ocean.hide_render, ocean.display_type) == (True, "BOUNDS")
+        coast.use = False
+        assert (ocean.hide_render, ocean.display_type) == (was_hidden, "WIRE")
+
+
+@pytest.mark.parametrize("how", ["use", "muted", "bed"])
+def test_a_bed_dries_when_it_is_one_no_more(ocean, coast_of, how):
+    coast, bed, own = ocean.ocean_tweak.coast, slope(), slope("Own")
+    own.data.attributes.new("wet", "FLOAT", "POINT")
+    coast.bed = bed
+    bpy.ops.ocean.make_coast()
+    assert "wet" in bed.data.attributes
+    if how == "bed":
+        coast.bed = own
+        bpy.ops.ocean.make_coast()
+    else:
+        setattr(coast, how, not getattr(coast, how))
+    assert "wet" not in bed.data.attributes
+    coast.use = False
+    assert "wet" in own.data.attributes  # it was there before
+
+
+def test_a_deleted_bed_is_not_read(ocean, coast_of, window):
+    bed = ocean.ocean_tweak.coast.bed = slope()
+    bpy.ops.ocean.make_coast()
+    for item in bpy.context.scene.objects:
+        item.select_set(item == bed)
+    with window.override():
+        bpy.ops.object.delete()
+    assert ocean.ocean_tweak.coast.bed is not None
+    with pytest.raises(RuntimeError, match="Bed was deleted: choose another mesh"):
+        bpy.ops.ocean.make_coast()
+
+
 def test_settings_keep_a_coast_that_a_file_has(ocean, core, calm):
     bed = np.repeat(np.linspace(12.0, -1.0, 51)[np.newaxis], 51, axis=0)
     coast = core.Coast(depth=core.Raster(bed, "bed"), spacing=4.0, rim=80.0, shortest_wavelength=40.0)
