@@ -60,9 +60,9 @@ build:      ## the extension's zip, into build/
 	@$(PYTHON) -m tools.setup python-5.2 blender
 	@$(VENV) -m tools.build
 
-release:    ## what is published: one zip for all platforms, one for each, and notes, into build/release/; checks them
+release:    ## what is published: one zip for all platforms, one for each, and notes, into build/release/; checks them [WEBSITE=https://…]
 	@$(PYTHON) -m tools.setup python-5.2 blender
-	@$(VENV) -m tools.release
+	@$(VENV) -m tools.release $(if $(WEBSITE),--website '$(WEBSITE)')
 
 docs:       ## write the documentation that is made from the code, and build the site into build/site/
 	@$(PYTHON) -m tools.setup python-5.2

@@ -2,15 +2,19 @@
 """Builds what is published, into build/release/, and checks what reviewers check: `make release`.
 
 One zip for all platforms, one for each, and notes with sizes and hashes. Nothing is published from here.
+`make release WEBSITE=https://…` writes the page of support into the zips' manifests: forks have their own.
 """
 
 from __future__ import annotations
 
+import argparse
 import ast
 import hashlib
+import json
 import re
 import shutil
 import sys
+import tomllib
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
@@ -31,15 +35,24 @@ NO_NETWORK = {
 #: never run by Blender: `python -m ocean_tweak`, outside it
 _OUTSIDE_BLENDER = {"__main__.py"}
 
+NO_WEBSITE = "without a website in the manifest, which extensions.blender.org asks for: `make release WEBSITE=https://…`"
+
 #: letters of a tagline and of a permission's reason (extensions.blender.org)
 _MOST_LETTERS = 64
 
 
 def main() -> int:
     """Build and check; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m tools.release")
+    parser.add_argument("--website", default="", help="address of the page of support, for the manifest")
+    website = parser.parse_args().website
+    faults = [
+        *manifest_faults(wheels.manifest()),
+        *website_faults(website),
+        *code_faults(ROOT / "ocean_tweak"),
+    ]
     try:
-        faults = [*manifest_faults(wheels.manifest()), *code_faults(ROOT / "ocean_tweak")]
-        zips = _build(real_blender.find())
+        zips = _build(real_blender.find(), website)
         for path in zips:
             faults += zip_faults(path)
         notes = FOLDER / "notes.md"
@@ -50,11 +63,12 @@ def main() -> int:
     for fault in faults:
         print(f"release failed: {fault}", file=sys.stderr)
     if not faults:
-        print(f"release: {len(zips)} zips and {notes.relative_to(ROOT)}")
+        told = f"website {website}" if website else NO_WEBSITE
+        print(f"release: {len(zips)} zips and {notes.relative_to(ROOT)}; {told}")
     return 1 if faults else 0
 
 
-def _build(blender: real_blender.RealBlender) -> list[Path]:
+def _build(blender: real_blender.RealBlender, website: str) -> list[Path]:
     """The zip for all platforms, then one for each."""
     whole = build.build(blender)
     shutil.rmtree(FOLDER, ignore_errors=True)
@@ -62,6 +76,8 @@ def _build(blender: real_blender.RealBlender) -> list[Path]:
     shutil.copy2(whole, FOLDER)
     build.extension(blender, "build", "--split-platforms", "--output-dir", str(FOLDER))
     for path in FOLDER.glob("*.zip"):
+        if website:
+            put_website(path, website)
         build.extension(blender, "validate", str(path))
     zips = sorted(FOLDER.glob("*.zip"), key=lambda path: (path.name != whole.name, path.name))
     expected = 1 + len(wheels.manifest()["platforms"])
@@ -82,6 +98,30 @@ def manifest_faults(manifest: dict) -> Iterator[str]:
         yield "blender_manifest.toml: permissions.network: this extension works offline"
     if not re.fullmatch(r"\d+\.\d+\.\d+", manifest["version"]):
         yield f"blender_manifest.toml: version = {manifest['version']!r}: must be three numbers"
+
+
+def website_faults(website: str) -> Iterator[str]:
+    """What is wrong with the address of a website; nothing where there is none."""
+    if website and not re.fullmatch(r"https://[^\s/.]+\.\S+", website):
+        yield f"WEBSITE = {website!r}: must be an address that begins with https://"
+
+
+def put_website(path: Path, website: str) -> None:
+    """Write a website into the manifest of a zip, whose other files stay as they are.
+
+    Raises ToolError for a manifest that has one.
+    """
+    new = path.with_suffix(".new")
+    with zipfile.ZipFile(path) as source, zipfile.ZipFile(new, "w") as target:
+        for info in source.infolist():
+            content = source.read(info)
+            if info.filename == "blender_manifest.toml":
+                text = content.decode("utf-8")
+                if "website" in tomllib.loads(text):
+                    raise ToolError(f"{path.name} has a website in its manifest already: leave WEBSITE away")
+                content = f"website = {json.dumps(website)}\n{text}".encode()
+            target.writestr(info, content)
+    new.replace(path)
 
 
 def code_faults(package: Path) -> Iterator[str]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `make release` refuses to publish."""
 
+import tomllib
 import zipfile
 
 import pytest
@@ -63,6 +64,46 @@ def test_what_is_allowed_in_one_file_is_not_in_another(tmp_path):
 def test_manifests_that_are_sent_back(change, told):
     (fault,) = release.manifest_faults({**wheels.manifest(), **change})
     assert told in fault
+
+
+def test_a_website_is_written_into_the_zips_manifest_and_nothing_else_changes(tmp_path):
+    path, told = tmp_path / "a.zip", 'SPDX = "GPL"\n\n[permissions]\nfiles = "Bake"\n'
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("blender_manifest.toml", told)
+        file.writestr("wheels/a.whl", b"0" * 1000)
+    release.put_website(path, "https://example.org/sea?page=1")
+    with zipfile.ZipFile(path) as file:
+        assert file.namelist() == ["blender_manifest.toml", "wheels/a.whl"]
+        assert file.read("wheels/a.whl") == b"0" * 1000
+        assert file.getinfo("wheels/a.whl").compress_type == zipfile.ZIP_DEFLATED
+        manifest = tomllib.loads(file.read("blender_manifest.toml").decode())
+    assert manifest == {"website": "https://example.org/sea?page=1", **tomllib.loads(told)}
+    with pytest.raises(ToolError, match="already"):
+        release.put_website(path, "https://example.org")
+
+
+@pytest.mark.parametrize(
+    "website", ["http://example.org", "example.org", "https://", "https://a b.org", "www"]
+)
+def test_what_is_no_address_is_refused(website):
+    (fault,) = release.website_faults(website)
+    assert website in fault
+
+
+def test_no_website_is_no_fault_but_said(monkeypatch, capsys, tmp_path):
+    assert list(release.website_faults("")) == []
+    (tmp_path / "CHANGELOG.md").write_text(f"## [{wheels.manifest()['version']}]\n\nAll.\n")
+    monkeypatch.setattr(release, "ROOT", tmp_path)
+    monkeypatch.setattr(release, "FOLDER", tmp_path)
+    monkeypatch.setattr(release, "_build", lambda blender, website: [])
+    monkeypatch.setattr(release.real_blender, "find", lambda: None)
+    monkeypatch.setattr(release, "code_faults", lambda package: [])
+    monkeypatch.setattr("sys.argv", ["release"])
+    assert release.main() == 0
+    assert "make release WEBSITE=https://" in capsys.readouterr().out
+    monkeypatch.setattr("sys.argv", ["release", "--website", "https://example.org"])
+    assert release.main() == 0
+    assert capsys.readouterr().out.endswith("website https://example.org\n")
 
 
 def test_zips_hold_nothing_else(tmp_path):
