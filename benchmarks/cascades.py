@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ocean_tweak.core import Ocean, OceanParameters
-from ocean_tweak.core.parameters.patch import NO_LONGEST, Patch
+from ocean_tweak.core.parameters.patch import Patch
+from ocean_tweak.core.waves.contribution import NO_LONGEST
 
 from .field_sets import SIX, TIME, arrays, surface_maker
 from .measure import interleaved

@@ -15,7 +15,6 @@ from ..core import Ocean, OceanParameters, Spray
 from ..core.data.printable import readable_bytes
 from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
-from ..core.parameters.patch import NO_LONGEST
 from ..core.parameters.patch_seas import open_sea
 from ..core.sea.coast_outlook import coast_outlook
 from ..core.sea.memory import beyond_budget, check_coast_memory, check_memory
@@ -24,7 +23,7 @@ from ..core.spray.columns import BYTES_IN_FILE
 from ..core.statistics import sea_scales
 from ..core.statistics.sea_spectrum import SeaSpectrum
 from ..core.statistics.sea_statistics import SeaState, Statistics, spectrum_state
-from ..core.waves.contribution import Contribution, Outlook
+from ..core.waves.contribution import NO_LONGEST, Contribution, Outlook
 from ..core.waves.kinds import KINDS
 from ..core.waves.spectral import WaveLayer
 from ..export.cache.estimate import seconds_of_statistics, statistics_memory

@@ -23,6 +23,9 @@ class _Open:
         return "OPEN"
 
 
+#: largest of Blender's whole numbers
+LARGEST_INTEGER = 2**31 - 1
+
 #: placeholder for a field that was not given, until its value can be derived from other fields
 OPEN: Any = _Open()
 
@@ -79,6 +82,16 @@ def angle(description: str, *, changes: bool = False, left_out: bool = False) ->
     return number(0.0, -1e6, 1e6, "rad", description, why, changes=changes, left_out=left_out)
 
 
+def place(default: float, description: str) -> Any:
+    """A dataclass field that holds a coordinate in m."""
+    return number(default, -1e6, 1e6, "m", description, "far beyond any patch")
+
+
+def moment(default: float, description: str) -> Any:
+    """A dataclass field that holds an ocean time in s."""
+    return number(default, -1e6, 1e6, "s", description, "more than a week either way")
+
+
 def changing_fields(kind: type) -> tuple[str, ...]:
     """The fields of a parameter class that can be animated."""
     return tuple(field.name for field in dataclasses.fields(kind) if field.metadata.get("changes"))
@@ -91,12 +104,14 @@ def integer(
     description: str,
     why: str = "",
     *,
+    even_from: int = 0,
     left_out: bool = False,
     may_be_told: bool = False,
     off: Off | None = None,
 ) -> Any:
     """A whole-number dataclass field with its range.
 
+    even_from : if given, only even numbers from this on, and 0 where the range has it
     left_out : where it is 0, JSON has no such key
     may_be_told, off : as of a `number`
     """
@@ -105,7 +120,7 @@ def integer(
         metadata={
             "kind": int, "minimum": minimum, "maximum": maximum,
             "unit": "", "description": description, "why": why, "left_out": left_out,
-            "default": default, "off": off,
+            "default": default, "off": off, "even_from": even_from,
         },
     )  # fmt: skip
 
@@ -212,6 +227,10 @@ def _checked_integer(name: str, value: object, meta: Any) -> int:
     result = int(value)  # type: ignore[call-overload]
     if not meta["minimum"] <= result <= meta["maximum"]:
         raise ParameterError(name, value, f"must be {allowed}")
+    least = meta["even_from"]
+    if least and (result % 2 or 0 < result < least):
+        none = "" if meta["minimum"] else "0 or "
+        raise ParameterError(name, value, f"must be {none}an even number from {least} to {meta['maximum']}")
     return int(result)
 
 

@@ -9,7 +9,18 @@ import numpy as np
 
 from ..data.errors import ParameterError
 from ..data.raster import Raster
-from ..data.validation import Off, Validated, angle, choice, integer, number, raster, switch
+from ..data.validation import (
+    LARGEST_INTEGER,
+    Off,
+    Validated,
+    angle,
+    choice,
+    integer,
+    number,
+    place,
+    raster,
+    switch,
+)
 
 MASK_SOURCES = ("IMAGE", "DISTANCE", "NOISE")
 #: fields that change for a mask whose object moves
@@ -35,12 +46,8 @@ class Mask(Validated):
         "DISTANCE", MASK_SOURCES, "What gives the weight: an image, a distance, or a noise that moves"
     )
     image: Raster | None = raster("Weights from 0 to 1, stretched over the domain", channels=1)
-    x: float = number(
-        0.0, -1e6, 1e6, "m", "Distance: x of the place from which it is measured", "far outside any domain"
-    )
-    y: float = number(
-        0.0, -1e6, 1e6, "m", "Distance: y of the place from which it is measured", "far outside any domain"
-    )
+    x: float = place(0.0, "Distance: x of the place from which it is measured")
+    y: float = place(0.0, "Distance: y of the place from which it is measured")
     lines: Raster | None = raster(
         "Distance: straight lines from which it is measured instead of a place: x and y of one end, x and y "
         "of the other, m", channels=4, left_out=True,
@@ -76,7 +83,7 @@ class Mask(Validated):
         off=Off(0.0, 30.0, "keeps its shape while it moves"),
     )  # fmt: skip
     noise_seed: int = integer(
-        0, 0, 2**31 - 1, "Noise: random seed", "Blender's whole numbers",
+        0, 0, LARGEST_INTEGER, "Noise: random seed", "Blender's whole numbers",
         left_out=True,
     )  # fmt: skip
 

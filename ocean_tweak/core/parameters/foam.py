@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..data.errors import ParameterError
-from ..data.validation import Off, Validated, choice, integer, number
+from ..data.validation import Off, Validated, choice, number
+from .patch import grid_samples
 
 #: laws for the whitecap coverage
 FOAM_LAWS = ("CALLAGHAN_2008", "MONAHAN_1980")
@@ -40,12 +40,8 @@ class Foam(Validated):
         0.02, 0.0, 0.2, "", "Speed of the foam along the wind, as a fraction of the wind speed",
         "the surface drifts with 2 to 3 % of the wind",
     )  # fmt: skip
-    resolution: int = integer(
-        0, 0, 8192, "Samples along each side at which foam is made, an even number",
-        "as the resolution of the sea", off=Off(0, 512, "uses the sea's own"),
-    )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.resolution % 2 or 0 < self.resolution < 16:
-            raise ParameterError("resolution", self.resolution, "must be 0 or an even number from 16 to 8192")
+    resolution: int = grid_samples(
+        0,
+        "Samples along each side at which foam is made, an even number",
+        off=Off(0, 512, "uses the sea's own"),
+    )

@@ -12,7 +12,6 @@ import dataclasses
 import json
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import count
 from typing import Any, TypeVar, overload
 
 from ..data import formats
@@ -20,6 +19,7 @@ from ..data.errors import ParameterError
 from ..data.plain_data import from_plain, parse_json, to_plain
 from ..data.raster import check_numbers, numbers_in
 from ..data.validation import (
+    LARGEST_INTEGER,
     OPEN,
     Validated,
     choice,
@@ -38,14 +38,14 @@ from ..waves.coast.parameters import Coast, repeats_after
 from ..waves.contribution import Contribution, Gives
 from ..waves.hero.parameters import HeroWave
 from ..waves.image.parameters import ImageLayer
-from ..waves.kinds import KINDS
+from ..waves.kinds import KINDS, identified
 from ..waves.spectral import WaveLayer
 from ..waves.wake.parameters import PathSample, WakeLayer
 from ..waves.wind_field.parameters import WindFieldLayer, WindKey
 from .current import Current
 from .foam import Foam
 from .former_json import modern
-from .patch import MOST_PATCHES, Patch, check_merged_resolution, check_patches, resampled
+from .patch import MOST_PATCHES, Patch, check_patches, domain_side, grid_samples, resampled
 from .spray import Spray
 from .timing import Timing, check_loop
 
@@ -98,21 +98,17 @@ class OceanParameters(Validated):
     ocean_tweak.core.data.errors.ParameterError: domain_size = 0.0: must be from 0.1 to 100000 m
     """
 
-    resolution: int = integer(
-        512, 16, 8192, "Samples along each side of the domain, an even number",
+    resolution: int = grid_samples(
+        512, "Samples along each side of the domain, an even number",
         "fewer than 16 hold no sea, more than 8192 need too much memory", may_be_told=True,
     )  # fmt: skip
-    domain_size: float = number(
-        400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
-        "beyond 100 km, neighbouring wave vectors cannot be told apart", may_be_told=True,
-    )  # fmt: skip
-    seed: int = integer(
-        0,
-        0,
-        2**31 - 1,
-        "Random seed: another number gives another sea with the same statistics",
-        "Blender's whole numbers",
+    domain_size: float = domain_side(
+        "beyond 100 km, neighbouring wave vectors cannot be told apart", may_be_told=True
     )
+    seed: int = integer(
+        0, 0, LARGEST_INTEGER, "Random seed: another number gives another sea with the same statistics",
+        "Blender's whole numbers",
+    )  # fmt: skip
     choppiness: float = number(
         1.0, 0.0, 4.0, "", "Horizontal displacement, which sharpens crests; 1 is linear wave theory",
         "far beyond 1 the surface folds", useful=(0.0, 1.5), changes=True,
@@ -137,11 +133,11 @@ class OceanParameters(Validated):
     water: Water = nested(Water)
     layers: tuple[Contribution, ...] = nested(Contribution, many=True, kinds=KINDS)
     patches: tuple[Patch, ...] = nested(Patch, many=True, empty=True, most=MOST_PATCHES)
-    merged_resolution: int = integer(
-        0, 0, 8192, "Samples along each side of one grid that holds the sum of the patches; 0 keeps them "
-        "separate",
-        "as the resolution of a sea", left_out=True,
-    )  # fmt: skip
+    merged_resolution: int = grid_samples(
+        0,
+        "Samples along each side of one grid that holds the sum of the patches; 0 keeps them separate",
+        left_out=True,
+    )
     mask: Mask | None = nested(Mask, optional=True)
     coast: Coast | None = nested(Coast, optional=True)
     current: Current | None = nested(Current, optional=True)
@@ -152,11 +148,11 @@ class OceanParameters(Validated):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_merged_resolution(self.merged_resolution, self.patches)
+        if self.merged_resolution and not self.patches:
+            reason = "must be 0 in a sea without patches, which is on one grid"
+            raise ParameterError("merged_resolution", self.merged_resolution, reason)
         self._settle_tile()
-        if self.resolution % 2:
-            raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
-        object.__setattr__(self, "layers", _identified(self.layers))
+        object.__setattr__(self, "layers", identified(self.layers))
         check_loop(self.loop_duration, self.timing)
         self._check_layers()
         on_the_first = [
@@ -390,19 +386,3 @@ class OceanParameters(Validated):
         12.5
         """
         return cls.from_dict(parse_json(text))
-
-
-def _identified(layers: tuple[Contribution, ...]) -> tuple[Contribution, ...]:
-    """Layers with ids that are unique within each kind; layers without an id get the first free ones."""
-    taken: dict[str, set[int]] = {kind.kind: set() for kind in KINDS}
-    for index, layer in enumerate(layers):
-        if layer.id >= 0 and layer.id in taken[layer.kind]:
-            raise ParameterError(f"layers.{index}.id", layer.id, "is already the id of another layer")
-        taken[layer.kind].add(layer.id)
-    result = list(layers)
-    for index, layer in enumerate(layers):
-        if layer.id < 0 and layer.has("id"):
-            ids = taken[layer.kind]
-            result[index] = layer.changed(id=next(number for number in count() if number not in ids))
-            ids.add(result[index].id)
-    return tuple(result)

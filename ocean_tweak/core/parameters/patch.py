@@ -6,16 +6,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 from ..data.errors import ParameterError
-from ..data.validation import Off, Validated, angle, integer, nested, number
+from ..data.validation import Validated, angle, integer, nested, number
 from ..masks.parameters import Mask
+from ..waves.contribution import check_band, longest_wavelength, shortest_wavelength
 
 #: largest number of patches of a sea
 MOST_PATCHES = 4
-
-#: ends of an unlimited band, m
-NO_SHORTEST, NO_LONGEST = 0.0, 1e6
 
 #: least number of samples along a patch's shortest wave, and of its longest waves along a side
 LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
@@ -23,6 +22,19 @@ LEAST_SAMPLES, LEAST_CELLS = 4.0, 6.0
 #: largest fraction of the variance in patches that repeat within the wanted area: the sea's autocorrelation
 # at one domain's distance
 REPEATING_SHARE = 0.1
+
+
+def domain_side(why: str, **how: Any) -> Any:
+    """Marks a field: the side of a domain."""
+    return number(
+        400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam", why, **how
+    )
+
+
+def grid_samples(default: int, description: str, why: str = "as the resolution of a sea", **how: Any) -> Any:
+    """Marks a field: samples along each side of a grid, an even number, or 0 where that is the default."""
+    least, most = 16, 8192
+    return integer(default, least if default else 0, most, description, why, even_from=least, **how)
 
 
 @dataclass(frozen=True)
@@ -35,35 +47,22 @@ class Patch(Validated):
     0.1953125
     """
 
-    domain_size: float = number(
-        400.0, 0.1, 100e3, "m", "Side of the square patch, which repeats without a seam",
-        "as the domain of a sea of one patch",
-    )  # fmt: skip
+    domain_size: float = domain_side("as the domain of a sea of one patch")
     rotation: float = angle(
         "Rotation of the patch's sides, counter-clockwise from +x; its waves keep their directions"
     )
-    shortest_wavelength: float = number(
-        NO_SHORTEST, 0.0, 1e6, "m", "Shortest wavelength of the patch; the next patch holds shorter ones",
-        "any domain", off=Off(NO_SHORTEST, 1.0, "keeps all short waves"),
-    )  # fmt: skip
-    longest_wavelength: float = number(
-        NO_LONGEST, 1e-3, 1e6, "m", "Longest wavelength of the patch; the patch before holds longer ones",
-        "any domain", off=Off(NO_LONGEST, 100.0, "keeps all long waves"),
-    )  # fmt: skip
-    resolution: int = integer(
-        512, 16, 8192, "Samples along each side of the patch, an even number", "as the resolution of a sea"
+    shortest_wavelength: float = shortest_wavelength(
+        "Shortest wavelength of the patch; the next patch holds shorter ones"
     )
+    longest_wavelength: float = longest_wavelength(
+        "Longest wavelength of the patch; the patch before holds longer ones"
+    )
+    resolution: int = grid_samples(512, "Samples along each side of the patch, an even number")
     mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.resolution % 2:
-            raise ParameterError("resolution", self.resolution, "must be an even number from 16 to 8192")
-        if self.shortest_wavelength >= self.longest_wavelength:
-            raise ParameterError(
-                "shortest_wavelength", self.shortest_wavelength,
-                f"must be below longest_wavelength = {self.longest_wavelength:g} m",
-            )  # fmt: skip
+        check_band(self.shortest_wavelength, self.longest_wavelength)
 
     @property
     def band(self) -> tuple[float, float]:
@@ -103,17 +102,6 @@ def check_bands(patches: Sequence[Patch]) -> None:
             f"patches.{index} ends at {end:g} m and patches.{index + 1} begins at {begin:g} m: {fault}. "
             f"Give patches.{index}.shortest_wavelength and patches.{index + 1}.longest_wavelength one value",
         )  # fmt: skip
-
-
-def check_merged_resolution(merged_resolution: int, patches: Sequence[Patch]) -> None:
-    """Raise ParameterError if `merged_resolution` does not fit the patches."""
-    if merged_resolution % 2 or 0 < merged_resolution < 16:
-        raise ParameterError(
-            "merged_resolution", merged_resolution, "must be 0 or an even number from 16 to 8192"
-        )
-    if merged_resolution and not patches:
-        what = "must be 0 in a sea without patches, which is on one grid"
-        raise ParameterError("merged_resolution", merged_resolution, what)
 
 
 def check_patches(patches: Sequence[Patch], trough_damping: float, on_the_first: Sequence[str]) -> None:

@@ -9,7 +9,8 @@ from dataclasses import replace
 
 from ..data.errors import ParameterError
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, NO_SHORTEST, REPEATING_SHARE, Patch
+from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, REPEATING_SHARE, Patch
+from ..waves.contribution import NO_SHORTEST
 from .patch_plan import RESOLUTIONS, SPARE, odd_side, rotation_of, rounded, wavelength_with_share_below
 
 #: longest waves along a side of a new patch, if its resolution allows

@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, NO_LONGEST, REPEATING_SHARE, Patch
+from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, MOST_PATCHES, REPEATING_SHARE, Patch
 from ..spectral import dispersion
 from ..statistics.sea_spectrum import SeaSpectrum
+from ..waves.contribution import NO_LONGEST
 from .memory import memory_need
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, NO_LONGEST, REPEATING_SHARE
+from ..parameters.patch import LEAST_CELLS, LEAST_SAMPLES, REPEATING_SHARE
 from ..parameters.patch_seas import patch_parameters
 from ..spectral.sea_state import SeaState, together
 from ..statistics.sea_spectrum import SeaSpectrum
@@ -27,6 +27,7 @@ from ..statistics.sea_statistics import (
     loop_warnings,
     steepness_warnings,
 )
+from ..waves.contribution import NO_LONGEST
 
 
 def statistics_of_patches(parameters: OceanParameters, of_patches: Sequence[Statistics]) -> Statistics:

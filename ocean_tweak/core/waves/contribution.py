@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..data.validation import Off, Validated, angle, integer, number, switch
+from ..data.errors import ParameterError
+from ..data.validation import LARGEST_INTEGER, Off, Validated, angle, integer, number, switch
 
 if TYPE_CHECKING:
     from ..masks.parameters import Mask
@@ -35,7 +36,9 @@ ComplexArray = NDArray[np.complexfloating]
 #: a component of the displacement, 0…2, and the variable of its derivative: "", "x", "y" or "t"
 Key = tuple[int, str]
 
-_LARGEST = 2**31 - 1
+#: ends of an unlimited band of wavelengths, m
+NO_SHORTEST, NO_LONGEST = 0.0, 1e6
+
 _WHOLE = "Blender's whole numbers"
 
 
@@ -304,6 +307,36 @@ def direction(
     return angle(description, changes=changes)
 
 
+def wind_speed(description: str, changes: bool = False) -> Any:
+    """Marks a field: the speed of the wind that raises the layer's waves."""
+    why = "from calm to beyond the strongest hurricane"
+    return number(12.0, 0.0, 100.0, "m/s", description, why, useful=(0.0, 50.0), changes=changes)
+
+
+def wave_height(default: float, description: str) -> Any:
+    """Marks a field: a height of waves."""
+    return number(default, 0.0, 100.0, "m", description, "three times the largest ever measured")
+
+
+def shortest_wavelength(description: str) -> Any:
+    """Marks a field: the short end of a band of wavelengths."""
+    off = Off(NO_SHORTEST, 1.0, "keeps all short waves")
+    return number(NO_SHORTEST, 0.0, 1e6, "m", description, "any domain", off=off)
+
+
+def longest_wavelength(description: str) -> Any:
+    """Marks a field: the long end of a band of wavelengths."""
+    off = Off(NO_LONGEST, 100.0, "keeps all long waves")
+    return number(NO_LONGEST, 1e-3, 1e6, "m", description, "any domain", off=off)
+
+
+def check_band(shortest: float, longest: float) -> None:
+    """Raise ParameterError for a band, in m, that holds no wavelength."""
+    if shortest >= longest:
+        reason = f"must be below longest_wavelength = {longest:g} m"
+        raise ParameterError("shortest_wavelength", shortest, reason)
+
+
 def amplitude_scale(description: str = "Multiplies the wave height", changes: bool = False) -> Any:
     """Marks a field: what the height of the layer's waves is multiplied by."""
     why = "an artist's scale"
@@ -318,10 +351,10 @@ def muted() -> Any:
 def identity() -> Any:
     """Marks a field: the id of the layer among those of its kind."""
     description = "Identity of the layer, from which its seed follows; -1 is the first free one"
-    return integer(-1, -1, _LARGEST, description, _WHOLE)
+    return integer(-1, -1, LARGEST_INTEGER, description, _WHOLE)
 
 
 def own_seed(what: str = "Seed of this layer alone") -> Any:
     """Marks a field: the seed of the layer's random numbers."""
     derived = Off(-1, 0, "follows from the ocean's seed and the layer's id")
-    return integer(-1, -1, _LARGEST, what, _WHOLE, off=derived)
+    return integer(-1, -1, LARGEST_INTEGER, what, _WHOLE, off=derived)

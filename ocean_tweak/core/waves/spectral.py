@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from ..data.errors import ParameterError
-from ..data.validation import Off, choice, nested, number, switch
+from ..data.validation import LARGEST_INTEGER, Off, choice, nested, number, switch
 from ..masks.parameters import Mask
 from ..numerics import random
 from ..spectral import constants, dispersion
@@ -26,10 +26,15 @@ from .contribution import (
     Names,
     Wind,
     amplitude_scale,
+    check_band,
     direction,
     identity,
+    longest_wavelength,
     muted,
     own_seed,
+    shortest_wavelength,
+    wave_height,
+    wind_speed,
 )
 
 if TYPE_CHECKING:
@@ -41,8 +46,6 @@ SPREADINGS = ("DONELAN_BANNER", "HASSELMANN", "MITSUYASU", "COSINE_SQUARED", "CO
 FETCH_LIMITED = ("TMA", "JONSWAP")
 DEFINITIONS = ("WIND", "SEA_STATE", "MEASURED")
 DEPTH_FACTORS = ("KITAIGORODSKII", "THOMPSON_VINCENT")
-
-_LARGEST_SEED = 2**31 - 1
 
 #: largest allowed direction, rad
 _MOST_TURNED = 1e6
@@ -72,10 +75,9 @@ class WaveLayer(Contribution):
     names = Names(0, "", "wave layer", "Waves", "A wave system: a wind and its fetch, or a swell", "MOD_WAVE")
 
     spectrum: str = choice("TMA", SPECTRA, "How the energy is shared among wavelengths")
-    wind_speed: float = number(
-        12.0, 0.0, 100.0, "m/s", "Mean wind speed. Sets wave height and length; 0 is a calm, without waves",
-        "from calm to beyond the strongest hurricane", useful=(0.0, 50.0), changes=True,
-    )  # fmt: skip
+    wind_speed: float = wind_speed(
+        "Mean wind speed. Sets wave height and length; 0 is a calm, without waves", changes=True
+    )
     wind_direction: float = direction(changes=True)
     fetch: float = number(
         150e3, 0.0, 20e6, "m", "Distance of open water over which the wind has blown; 0 raises no waves",
@@ -126,13 +128,8 @@ class WaveLayer(Contribution):
         "What sets the layer's energy: wind and fetch, wave height and period, or a "
         "spectrum that was measured, turned by the layer's direction",
     )
-    significant_wave_height: float = number(
-        2.0,
-        0.0,
-        100.0,
-        "m",
-        "Significant wave height Hs of a layer defined by its sea state",
-        "three times the largest ever measured",
+    significant_wave_height: float = wave_height(
+        2.0, "Significant wave height Hs of a layer defined by its sea state"
     )
     peak_period: float = number(
         10.0,
@@ -152,14 +149,12 @@ class WaveLayer(Contribution):
     )
     second_spreading: str = choice("FLAT", SPREADINGS, "Second spreading, mixed into the first")
     spreading_mix: float = number(0.0, 0.0, 1.0, "", "Share of the second spreading", "a share")
-    shortest_wavelength: float = number(
-        0.0, 0.0, 1e6, "m", "Shortest wavelength of the band: shorter waves are left out", "any domain",
-        off=Off(0.0, 1.0, "keeps all short waves"),
-    )  # fmt: skip
-    longest_wavelength: float = number(
-        1e6, 1e-3, 1e6, "m", "Longest wavelength of the band: longer waves are left out", "any domain",
-        off=Off(1e6, 100.0, "keeps all long waves"),
-    )  # fmt: skip
+    shortest_wavelength: float = shortest_wavelength(
+        "Shortest wavelength of the band: shorter waves are left out"
+    )
+    longest_wavelength: float = longest_wavelength(
+        "Longest wavelength of the band: longer waves are left out"
+    )
     band_softness: float = number(
         0.0,
         0.0,
@@ -185,11 +180,7 @@ class WaveLayer(Contribution):
         if self.definition == "MEASURED" and self.measured is None:
             reason = "needs a spectrum in measured: read one from a file with the command `spectrum`"
             raise ParameterError("definition", self.definition, reason)
-        if self.shortest_wavelength >= self.longest_wavelength:
-            raise ParameterError(
-                "shortest_wavelength", self.shortest_wavelength,
-                f"must be below longest_wavelength = {self.longest_wavelength:g} m",
-            )  # fmt: skip
+        check_band(self.shortest_wavelength, self.longest_wavelength)
 
     @property
     def is_calm(self) -> bool:
@@ -215,7 +206,7 @@ class WaveLayer(Contribution):
             far = abs(turned) > _MOST_TURNED
             changes["wind_direction"] = math.remainder(turned, math.tau) if far else turned
         if patch:
-            changes["seed"] = random.combine(self.random_seed(sea), patch) & _LARGEST_SEED
+            changes["seed"] = random.combine(self.random_seed(sea), patch) & LARGEST_INTEGER
         return self.changed(**changes) if changes else self
 
     def directional_spectrum(self, sea: OceanParameters) -> DirectionalSpectrum | None:

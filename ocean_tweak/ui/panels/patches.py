@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ...core.parameters.patch import NO_LONGEST
+from ...core.waves.contribution import NO_LONGEST
 from ...scene.settings import OceanSettings
 from ...scene.units import metres_per_unit
 from .. import patch_operators

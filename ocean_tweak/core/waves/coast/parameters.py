@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ...data.errors import ParameterError
 from ...data.plain_data import to_plain
 from ...data.raster import Raster
-from ...data.validation import Off, Validated, choice, number, raster, switch
+from ...data.validation import Off, Validated, choice, number, place, raster, switch
 
 if TYPE_CHECKING:
     from ...parameters.ocean_parameters import OceanParameters
@@ -40,8 +40,8 @@ class Coast(Validated):
     spacing: float = number(
         2.0, 0.01, 1e4, "m", "Distance between two samples of the depth", "from a tank to a continent's shelf"
     )
-    x: float = number(0.0, -1e6, 1e6, "m", "Place of the first sample of the depth", "far outside any domain")
-    y: float = number(0.0, -1e6, 1e6, "m", "Place of the first sample of the depth", "far outside any domain")
+    x: float = place(0.0, "Place of the first sample of the depth")
+    y: float = place(0.0, "Place of the first sample of the depth")
     shore: str = choice(
         SHORES[0], SHORES, "Side of the bed with the shore, towards which the waves run. Short waves, "
             "and waves that run away from it, do not follow the bed, but are limited by the depth",

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from ...data.errors import ParameterError
-from ...data.validation import angle, number, switch
-from ..contribution import Contribution, Gives, Names
+from ...data.validation import angle, moment, number, place
+from ..contribution import Contribution, Gives, Names, muted, wave_height
 from .group import add_hero_wave, check_hero_wave, needed_samples
 from .outlook import HeroWaveOutlooks, hero_wave_outlooks
 
@@ -50,24 +50,17 @@ class HeroWave(Contribution):
     former_list = "hero_waves"
     constant = "a free wave keeps its properties; place a second one, or animate ocean_time"
 
-    x: float = number(
-        200.0, -1e6, 1e6, "m", "Place of the focus along x; the patch repeats, and the wave with it",
-        "far beyond any patch",
-    )  # fmt: skip
-    y: float = number(200.0, -1e6, 1e6, "m", "Place of the focus along y", "far beyond any patch")
-    time: float = number(
-        0.0, -1e6, 1e6, "s", "Ocean time at which the group is at its focus",
-        "more than a week either way",
-    )  # fmt: skip
+    x: float = place(200.0, "Place of the focus along x; the patch repeats, and the wave with it")
+    y: float = place(200.0, "Place of the focus along y")
+    time: float = moment(0.0, "Ocean time at which the group is at its focus")
     direction: float = angle("Direction towards which the wave runs, counter-clockwise from +x")
     wavelength: float = number(
         60.0, 1e-3, 1e5, "m", "Distance from crest to crest; sets the speed, with depth and gravity",
         "from ripples to the largest patch",
     )  # fmt: skip
-    crest_height: float = number(
-        3.0, 0.0, 100.0, "m", "Height of the crest above calm water at the focus; elsewhere it is lower",
-        "three times the largest ever measured",
-    )  # fmt: skip
+    crest_height: float = wave_height(
+        3.0, "Height of the crest above calm water at the focus; elsewhere it is lower"
+    )
     group_length: float = number(
         2.0, 1.0, 1000.0, "wavelengths",
         "Length of the group along its direction, between the places where its waves are half as high; "
@@ -80,7 +73,7 @@ class HeroWave(Contribution):
         "from ripples to the largest patch",
     )  # fmt: skip
     phase: float = angle("Phase of the wave at the focus: 0 for a crest, π for a trough")
-    muted: bool = switch(False, "Leave the wave out; nothing else changes")
+    muted: bool = muted()
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -24,6 +24,8 @@ from ..contribution import (
     identity,
     muted,
     own_seed,
+    wave_height,
+    wind_speed,
 )
 from .animation import angular_frequency
 from .source import side
@@ -86,16 +88,12 @@ class ImageLayer(Contribution):
         "Modified Pierson-Moskowitz: waves with the height of the wind, or the paper's filter "
         "with significant_wave_height",
     )  # fmt: skip
-    wind_speed: float = number(
-        12.0, 0.0, 100.0, "m/s", "Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter",
-        "from calm to beyond the strongest hurricane", useful=(0.0, 50.0),
-    )  # fmt: skip
+    wind_speed: float = wind_speed("Mean wind at 10 m that shapes the modified Pierson-Moskowitz filter")
     wind_direction: float = direction()
-    significant_wave_height: float = number(
-        1.0, 0.0, 100.0, "m", "Significant wave height Hs for every filter but the physical one: four "
-        "standard deviations",
-        "three times the largest ever measured",
-    )  # fmt: skip
+    significant_wave_height: float = wave_height(
+        1.0,
+        "Significant wave height Hs for every filter but the physical one: four standard deviations",
+    )
     amplitude_scale: float = amplitude_scale("Multiplies the layer's wave height")
     fractal_dimension: float = number(
         2.1, 2.0, 4.0, "", "Dimension D of the filters 1/f^β with β = 8 - 2D: 2 is smooth, 3 rough, 4 no "
@@ -126,7 +124,7 @@ class ImageLayer(Contribution):
     noise_resolution: int = integer(
         1024, 16, 2048, "Samples along each side of the white noise, an even number; another number is "
         "another sea",
-        "from the coarsest sea to the largest image that is not made smaller",
+        "from the coarsest sea to the largest image that is not made smaller", even_from=16,
     )  # fmt: skip
     muted: bool = muted()
     id: int = identity()
@@ -137,10 +135,6 @@ class ImageLayer(Contribution):
         if isinstance(self.image, Raster):
             object.__setattr__(self, "image", _grey(self.image))
         super().__post_init__()
-        if self.noise_resolution % 2:
-            raise ParameterError(
-                "noise_resolution", self.noise_resolution, "must be an even number from 16 to 2048"
-            )
 
     @property
     def is_physical(self) -> bool:

@@ -15,7 +15,18 @@ from numpy.typing import NDArray
 
 from ...data.errors import ParameterError
 from ...data.raster import Raster
-from ...data.validation import Validated, angle, choice, integer, nested, number, raster, switch
+from ...data.validation import (
+    Validated,
+    angle,
+    choice,
+    integer,
+    moment,
+    nested,
+    number,
+    place,
+    raster,
+    switch,
+)
 from ...masks.parameters import Mask
 from ...numerics.memo import MEMO, remembered
 from ..contribution import (
@@ -74,13 +85,13 @@ class PathSample(Validated):
     16.0
     """
 
-    time: float = number(
-        0.0, -1e6, 1e6, "s", "Ocean time at which the object is here; it moves straight to the next "
-            "sample, and keeps its velocity before the first and after the last",
-        "more than a week either way",
-    )  # fmt: skip
-    x: float = number(0.0, -1e6, 1e6, "m", "Position of its origin along x", "far beyond any patch")
-    y: float = number(0.0, -1e6, 1e6, "m", "Position of its origin along y", "far beyond any patch")
+    time: float = moment(
+        0.0,
+        "Ocean time at which the object is here; it moves straight to the next sample, and keeps its "
+        "velocity before the first and after the last",
+    )
+    x: float = place(0.0, "Position of its origin along x")
+    y: float = place(0.0, "Position of its origin along y")
     heading: float = angle("Direction of its bow, counter-clockwise from +x, if the samples set it")
     immersion: float = number(
         1.0, 0.0, 100.0, "", "Multiplies the draught: 0 is out of the water; falling in, bobbing and "
@@ -152,24 +163,16 @@ class WakeLayer(Contribution):
     area_resolution: int = integer(
         512, 16, 4096, "Samples along each side of that square, an even number; waves shorter than two "
             "samples are left out",
-        "more need too much memory",
+        "more need too much memory", even_from=16,
     )  # fmt: skip
     area_follows: bool = switch(True, "Let the square move with the object; otherwise it stays in place")
-    area_x: float = number(
-        0.0, -1e6, 1e6, "m", "Centre of the square along x, if it stays in place", "far beyond any patch"
-    )
-    area_y: float = number(
-        0.0, -1e6, 1e6, "m", "Centre of the square along y, if it stays in place", "far beyond any patch"
-    )
+    area_x: float = place(0.0, "Centre of the square along x, if it stays in place")
+    area_y: float = place(0.0, "Centre of the square along y, if it stays in place")
     muted: bool = muted()
     mask: Mask | None = nested(Mask, optional=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.area_resolution % 2:
-            raise ParameterError(
-                "area_resolution", self.area_resolution, "must be an even number from 16 to 4096"
-            )
         for index in range(1, len(self.path)):
             time, before = self.path[index].time, self.path[index - 1].time
             if time <= before:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...data.errors import ParameterError
 from ...data.raster import Raster
-from ...data.validation import Validated, choice, integer, nested, number, raster, switch
+from ...data.validation import Validated, choice, integer, moment, nested, number, raster, switch
 from ...masks.parameters import Mask
 from ..contribution import (
     Contribution,
@@ -23,6 +23,7 @@ from ..contribution import (
     identity,
     muted,
     own_seed,
+    wind_speed,
 )
 from .bounds import bytes_of, check_bounds
 from .outlook import WindWaveOutlook, wind_wave_outlook
@@ -49,10 +50,7 @@ class WindKey(Validated):
     30.0
     """
 
-    time: float = number(
-        0.0, -1e6, 1e6, "s", "Ocean time at which the wind is this; linear between two, held outside",
-        "more than a week either way",
-    )  # fmt: skip
+    time: float = moment(0.0, "Ocean time at which the wind is this; linear between two, held outside")
     vectors: Raster | None = raster(
         "Wind in m/s along x and y, towards which it blows: sample (i, j) of R rows and C columns is at "
         "y = i·size/R, x = j·size/C; bilinear between them, and around the edges",
@@ -84,18 +82,13 @@ class WindFieldLayer(Contribution):
     former_list = "wind_fields"
     constant = "a wave keeps the wind it was born with; give the wind keys at several times instead"
 
-    wind_speed: float = number(
-        12.0, 0.0, 100.0, "m/s", "Wind speed, the same everywhere, where there are no keys",
-        "from calm to beyond the strongest hurricane", useful=(0.0, 50.0),
-    )  # fmt: skip
+    wind_speed: float = wind_speed("Wind speed, the same everywhere, where there are no keys")
     wind_direction: float = direction("Direction towards which it blows, counter-clockwise from +x")
     keys: tuple[WindKey, ...] = nested(WindKey, many=True, empty=True, most=MOST_KEYS)
     wind_scale: float = number(1.0, 0.0, 100.0, "", "Multiplies the wind", "an artist's scale")
-    start_time: float = number(
-        -120.0, -1e6, 1e6, "s", "Ocean time at which the wind begins to raise waves; before it there are "
-        "none",
-        "more than a week either way",
-    )  # fmt: skip
+    start_time: float = moment(
+        -120.0, "Ocean time at which the wind begins to raise waves; before it there are none"
+    )
     minimum_wind_speed: float = number(
         2.0, 0.1, 100.0, "m/s", "Wind below which no wave is born", "waves of a millimetre, to none at all"
     )
