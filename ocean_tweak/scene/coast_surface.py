@@ -13,19 +13,15 @@ from numpy.typing import NDArray
 from ..core import Ocean, OceanParameters, Places
 from ..core.numerics.memo import MEMO, total_bytes
 from ..core.synthesis.channels import CHANNELS
-from ..nodes.coast import COAST
-from ..nodes.modifier_inputs import set_inputs
+from ..nodes.held import COAST
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
-from ..nodes.versioned import is_of_kind, node_group
-from . import vertex_attributes, water_material, wet_bed
-from .modifiers import is_of_library, set_changed
+from . import held_sea, vertex_attributes, water_material, wet_bed
 from .plan import Plan, camera_surface_of
 from .settings import OceanObjectError, all_oceans, link_beside
 
 Array = NDArray[np.float64]
 
 _COAST = "ocean_tweak_coast"
-_NAME = "Ocean Tweak Coast"
 #: of an ocean that another mesh shows: its own Render and Display As
 _SHOWN_AS = "ocean_tweak_shown_as"
 _USUALLY = {"hide_render": False, "display_type": "TEXTURED"}
@@ -96,8 +92,8 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
     present = coast_of(ocean)
     if ocean.library is not None:  # Blender discards changes to it
         name = ocean.name if present is None else present.name
-        for modifier in () if present is None else _own_modifiers(present):
-            set_inputs(modifier, {"Live": False})  # not saved: the ocean's panel says what it would
+        if present is not None:
+            held_sea.say_nothing(present, COAST)  # the ocean's panel does
         raise OceanObjectError(f"{name} is linked and its coast stands still: make a library override")
     item = present or _new(ocean, plan.over_bed)
     if item.data.is_editmode:
@@ -115,7 +111,7 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
     _move(item.data, sea, grid, plan)
-    set_inputs(_modifier(item), {"Live": True, "Held Frame": math.floor(plan.frame)})
+    held_sea.tell(item, COAST, math.floor(plan.frame))
     wet_bed.refresh(ocean, sea, plan)
 
 
@@ -194,25 +190,6 @@ def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: _Grid, plan: Plan) -> None:
     places = (places + moved).astype(np.float32)
     mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     mesh.update_tag()
-
-
-def _own_modifiers(item: bpy.types.Object) -> list[bpy.types.Modifier]:
-    return [each for each in item.modifiers if each.type == "NODES" and is_of_kind(each.node_group, COAST)]
-
-
-def _modifier(item: bpy.types.Object) -> bpy.types.Modifier:
-    """The one that says that the coast stands still, made where there is none. The group of one that an
-    override has from its library is linked and cannot know that the extension runs: another replaces it."""
-    found = _own_modifiers(item)
-    for modifier in found:
-        if is_of_library(modifier):
-            set_changed(modifier, show_viewport=False, show_render=False)
-    own = [modifier for modifier in found if not is_of_library(modifier)]
-    if own:
-        return own[0]
-    modifier = item.modifiers.new(_NAME, "NODES")
-    modifier.node_group = node_group(COAST)
-    return modifier
 
 
 def _new(ocean: bpy.types.Object, parameters: OceanParameters) -> bpy.types.Object:

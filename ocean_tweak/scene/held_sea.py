@@ -10,8 +10,10 @@ from __future__ import annotations
 import bpy
 
 from ..core.numerics.rounding import rounded
+from ..nodes.modifier_inputs import set_inputs
+from ..nodes.versioned import GroupKind, is_of_kind, node_group
 from . import vertex_attributes
-from .modifiers import set_changed
+from .modifiers import is_of_library, set_changed
 from .vertex_attributes import Fields
 
 #: what of a surface a sea that stands still is drawn with: its normals are the mesh's, and it has no velocity
@@ -49,3 +51,35 @@ def keep_out(item: bpy.types.Object, is_out: bool) -> None:
     for each in (item, item.data):
         if each.library is None and each.override_library is None:
             set_changed(each, is_runtime_data=is_out)
+
+
+def tell(item: bpy.types.Object, kind: GroupKind, frame: int) -> None:
+    """Let an object whose mesh was written for a frame say so where the extension is missing.
+
+    kind : of `nodes.held`
+    """
+    set_inputs(_modifier(item, kind), {"Live": True, "Held Frame": frame})
+
+
+def say_nothing(item: bpy.types.Object, kind: GroupKind) -> None:
+    """Let a linked object say nothing: its group cannot know that the extension runs. This is not saved."""
+    for modifier in _own_modifiers(item, kind):
+        set_inputs(modifier, {"Live": False})
+
+
+def _own_modifiers(item: bpy.types.Object, kind: GroupKind) -> list[bpy.types.Modifier]:
+    return [each for each in item.modifiers if each.type == "NODES" and is_of_kind(each.node_group, kind)]
+
+
+def _modifier(item: bpy.types.Object, kind: GroupKind) -> bpy.types.Modifier:
+    """Made where there is none. In an override that of the library is replaced, as its group is linked."""
+    found = _own_modifiers(item, kind)
+    for modifier in found:
+        if is_of_library(modifier):
+            set_changed(modifier, show_viewport=False, show_render=False)
+    own = [modifier for modifier in found if not is_of_library(modifier)]
+    if own:
+        return own[0]
+    modifier = item.modifiers.new(kind.name, "NODES")
+    modifier.node_group = node_group(kind)
+    return modifier

@@ -11,6 +11,7 @@ repeat are on a further mesh, over a square around the camera, and foam is on ri
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
@@ -32,6 +33,7 @@ from ..core.synthesis.channels import ADDING, CHANNELS, Channel
 from ..export.frame_files import POINTS
 from ..nodes.camera_sum import AREA_INPUT, PATCH_INPUTS
 from ..nodes.camera_surface import FOAM_INPUT
+from ..nodes.held import AREA
 from ..nodes.modifier_inputs import get_input, set_inputs
 from ..nodes.names import DISPLACEMENT, WEIGHT
 from . import evaluation, foam_rings, held_sea, patch_averages, patch_points, vertex_attributes
@@ -282,6 +284,7 @@ def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | N
         cells = area.resolution - 1
         grid = Grid(area.size * cells / area.resolution * plan.scale, cells, cells)
         _write(item.data, grid, placed_fields(plan.placed.whole, area, plan.time), plan, area.corner)
+        held_sea.tell(item, AREA, math.floor(plan.frame))
     return item
 
 

@@ -260,3 +260,35 @@ def test_the_farm_s_render_of_a_live_sea_ends_with_3(horizon, extension, tmp_pat
     (line,) = (line for line in said.stderr.splitlines() if line.startswith("render_baked: "))
     assert "no Ocean Tweak extension" in line
     assert f"moves {ocean.name} of " in line
+
+
+def test_a_wake_over_a_bake_stands_and_says_so(core, extension, horizon, saved, tmp_path):
+    """The tile goes on by its files, and the wake does not blur."""
+    ocean, surface = horizon
+    bpy.ops.ocean.bake()
+    path = (core.PathSample(0.0, 60.0, 50.0), core.PathSample(10.0, 120.0, 50.0))
+    wake = core.WakeLayer(path=path, length=12.0, beam=4.0, area_size=64.0, area_resolution=64)
+    shown = ocean.ocean_tweak.to_parameters(saved)
+    shown = shown.replace(layers=(*shown.layers, wake), patches=shown.patches)
+    ocean.ocean_tweak.from_parameters(shown, saved)
+    saved.frame_set(2)
+    (area,) = (child for child in ocean.children if child.name.endswith("Area"))
+    held = numbers(area.data, "position", 3)
+    saved.frame_set(3)
+    assert np.abs(numbers(area.data, "position", 3) - held).max() > 1e-3
+    assert not warnings_of(area)
+    saved.frame_set(2)
+    bpy.ops.wm.save_mainfile()
+    (tmp_path / "project").rename(tmp_path / "moved")
+    blend = tmp_path / "moved" / "shot.blend"
+    seen, said = look(blend, [surface.name], [1, 3], tmp_path)
+    assert "Ocean Tweak: live oceans stand still" in said
+    assert np.abs(seen[f"{surface.name} render 3"] - seen[f"{surface.name} render 1"]).max() > 0.05
+    folder = tmp_path / "Ocean-12345678" / "v001-01234567"
+    folder.mkdir(parents=True)
+    (folder / "bake.json").write_text('{"shot": {"domain_size": 150.0, "timing": {}}}')
+    arguments = ["--cache", str(tmp_path), "--bake", "Ocean-12345678/01234567", "--frames", "1"]
+    script = extension("export.farm.render_baked").__file__
+    said = run_script(script, "--pictures", str(tmp_path / "out"), *arguments, blend=blend)
+    assert said.returncode == 3, said.stdout + said.stderr
+    assert f"moves {area.name} of " in said.stderr
