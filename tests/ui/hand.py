@@ -121,8 +121,13 @@ class Hand:
         deadline = time.monotonic() + DEADLINE
         while time.monotonic() < deadline:
             place = self._search(target, across, seen)
-            if place is None:
+            if place is None and not any(target in name for name in seen if name):
                 break
+            if place is None:
+                # it was there: a panel that was being drawn hid it for a moment
+                self.to_viewport()
+                self.still()
+                continue
             # pictures and statistics may come late, and move all that is below them
             self.still()
             for aside in (2, -2, 4, -4):
@@ -132,6 +137,8 @@ class Hand:
                 if self._is_at(*place, target, seen):
                     self._hints[target] = place
                     return place
+            # away and back: a tooltip, or a redraw that was missed, lies over the button
+            self.to_viewport()
         raise NotFound(f"no button {target!r} in the sidebar; there are {sorted(filter(None, seen))}")
 
     def _search(self, target, across, seen):
