@@ -241,7 +241,8 @@ def bed(change=None):
 @pytest.mark.parametrize(
     ("depth", "words"),
     [
-        (bed(lambda h: h.__setitem__((3, 3), np.nan)), "fill the hole"),
+        (bed(lambda h: h.__setitem__((3, 3), np.nan)), "depth: 1 of 64 are no numbers: fill the holes"),
+        (np.ma.masked_greater(bed(lambda h: h.__setitem__((3, slice(2)), 9.0)), 8.0), "2 of 64 are no numb"),
         (
             bed(lambda h: h.__setitem__((slice(None), slice(None)), -2.0)),
             "all is dry: depths are positive down",
@@ -265,7 +266,8 @@ def test_a_cliff_in_the_bed_is_marched_over():
 def test_waves_that_do_not_run_ashore_and_other_wrong_numbers_are_refused():
     for arguments, words in (
         (([1.0], [2.0]), "does not run"),
-        (([0.0], [0.0]), "above 0"),
+        (([0.0], [0.0]), r"omega = 0\.0: must be a number from 1e-06"),
+        (([np.nan], [0.0]), "omega = nan"),
         (([1.0], [np.nan]), "finite"),
         (([1.0, 2.0], [0.0]), "one length"),
         (([], []), "no waves"),
@@ -283,3 +285,16 @@ def test_waves_that_do_not_run_ashore_and_other_wrong_numbers_are_refused():
         propagate(bed(), 1.0, [1.0], [0.0], breaking=[1e300])
     with pytest.raises(ValueError, match=r"spacing = 1e\+300"):
         propagate(bed(), 1e300, [1.0], [0.0])
+
+
+def test_lists_whole_numbers_and_every_other_sample_are_what_they_hold():
+    h = plane_beach(40, 16, 2.0, deep=10.0, slope=0.5, shallowest=2.0)
+    expected = propagate(h, 2.0, [1.0, 2.0], [0.0, 0.1], breaking=[0.5, 1.0])
+    assert (h == h.astype(int)).all()
+    lists = propagate(h.astype(int).tolist(), 2, [1, 2], [0, 0.1], breaking=[0.5, 1])
+    wide = np.asfortranarray(np.repeat(np.repeat(h, 2, axis=0), 2, axis=1))[::2, ::2]
+    apart = propagate(
+        wide, 2.0, np.array([1.0, 9.0, 2.0])[::2], np.array([0.0, 9.0, 0.1])[::2], breaking=(0.5, 1.0)
+    )
+    assert lists.tobytes() == apart.tobytes() == expected.tobytes()
+    assert expected.shape == (2, 40, 16)

@@ -102,3 +102,10 @@ def test_as_many_numbers_as_are_allowed() -> None:
     check_numbers(MOST_NUMBERS)
     with pytest.raises(ParameterError, match="must hold at most"):
         check_numbers(MOST_NUMBERS + 1)
+
+
+def test_what_is_masked_is_a_hole_and_not_what_lies_under_the_mask() -> None:
+    depths = np.ma.masked_equal(np.array([[3, 2], [-9999, 1]]), -9999)
+    with pytest.raises(ParameterError, match=r"raster = nan: .* row 1, column 0"):
+        Raster(depths)
+    assert Raster(np.ma.masked_less(depths.filled(4), 0)) == Raster([[3.0, 2.0], [4.0, 1.0]])

@@ -20,7 +20,7 @@ KELVIN = 19.47
 def bump(deviation: float, elongation: float = 1.0, samples: int = 17) -> dict[str, object]:
     """A Gaussian of 1 m draught, `elongation` times longer than wide."""
     spacing = 0.5 * deviation
-    y, x = np.mgrid[: samples * 1.0, : samples * elongation] * spacing
+    y, x = np.mgrid[: samples * elongation, : samples * elongation] * spacing
     bell = np.exp(-0.5 * ((y - y.mean()) ** 2 + ((x - x.mean()) / elongation) ** 2) / deviation**2)
     return {"footprint": bell, "spacing": spacing}
 
@@ -212,7 +212,11 @@ BAD = {
     "times: must be one row": {"times": [[0.0, 1.0, 2.0]]},
     "footprint: must be rows": {"footprint": [1.0, 2.0]},
     "footprint: must be finite": {"footprint": [[np.nan]]},
-    "footprint: is 64 by 4 m in an area of 32 m": {"footprint": np.ones((4, 64)), "spacing": 1.0},
+    "footprint: is 64 m wide in an area of 32 m": {"footprint": np.ones((64, 64)), "spacing": 1.0},
+    r"footprint: must be square, not of shape \(4, 9\): fill it up with zeros": {
+        "footprint": np.ones((4, 9))
+    },
+    "depth = nan": {"depth": np.nan},
     "spacing = 0.0": {"spacing": 0.0},
     "area = -1.0": {"area": -1.0},
     "resolution = 33": {"resolution": 33},
@@ -253,3 +257,21 @@ def test_what_never_moves_presses_the_water_down_and_makes_no_waves(times: list[
     x = along(128.0, 64)
     expected = -np.exp(-0.5 * (x**2 + x[:, np.newaxis] ** 2) / 16.0)
     np.testing.assert_allclose(h - h.mean(), expected - expected.mean(), atol=2e-3)
+
+
+def test_lists_whole_numbers_and_every_other_sample_are_what_they_hold() -> None:
+    times, places, footprint = np.arange(4.0), np.arange(8.0).reshape(4, 2), np.ones((3, 3))
+    given = {"area": 64.0, "resolution": 32, "spacing": 2.0, "footprint": footprint, "depth": 5.0}
+    expected = wake_elevation(times, places, 3.0, **given)
+    of_lists = {
+        "area": 64,
+        "resolution": 32,
+        "spacing": 2,
+        "footprint": footprint.astype(int).tolist(),
+        "depth": 5,
+    }
+    lists = wake_elevation([0, 1, 2, 3], places.astype(int).tolist(), 3, **of_lists)
+    wide = np.asfortranarray(np.repeat(np.repeat(places, 2, axis=0), 2, axis=1))[::2, ::2]
+    apart = wake_elevation(np.repeat(times, 2)[::2], wide, 3.0, **given)
+    assert lists.tobytes() == apart.tobytes() == expected.tobytes()
+    assert np.abs(expected).max() > 0.1

@@ -196,11 +196,18 @@ def _is_shape(shape: Any) -> bool:
     )
 
 
+def with_holes(values: ArrayLike) -> ArrayLike:
+    """The same values, with NaN where an array is masked: NumPy would show what is under the mask."""
+    if not isinstance(values, np.ma.MaskedArray):
+        return values
+    return np.where(np.ma.getmaskarray(values), np.nan, values.data)
+
+
 def _checked_values(values: ArrayLike, name: str) -> NDArray[np.float32]:
     what = f"raster {shown(name)}" if name else "raster"
     try:
         with np.errstate(over="ignore"):
-            array = np.array(values, dtype=np.float32, order="C")
+            array = np.array(with_holes(values), dtype=np.float32, order="C")
     except OverflowError:  # an integer beyond the range of floats
         raise ParameterError(what, values, "must hold numbers that are finite in 32 bits") from None
     except (TypeError, ValueError):

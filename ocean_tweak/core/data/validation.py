@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
-from .raster import Raster
+from .raster import Raster, with_holes
 
 
 class _Open:
@@ -198,7 +198,7 @@ def real_array(name: str, values: ArrayLike) -> NDArray[np.float64]:
     try:
         if np.iscomplexobj(values):
             raise TypeError
-        return np.asarray(values, np.float64)
+        return np.asarray(with_holes(values), np.float64)
     except (TypeError, ValueError):
         reason = "must hold real numbers, as many in each row"
         raise ParameterError(name, type(values).__name__, reason) from None

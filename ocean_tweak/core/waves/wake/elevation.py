@@ -79,7 +79,7 @@ def wake_elevation(
     surface_tension : N/m, for the density of fresh water
     decay : γ, rate at which waves fade, 1/s
 
-    Raises ParameterError with the name of an argument out of range.
+    Raises ValueError with the name of an argument that is out of range or of another shape.
 
     Examples
     --------
@@ -100,18 +100,23 @@ def wake_elevation(
         )  # fmt: skip
     basin = Basin(area, resolution, depth, gravity, surface_tension, decay)
     check_range("time", time, -_LATEST, _LATEST, "s")
-    past = Past.until(basin, _fitting(Footprint.of(footprint, spacing), area), track, time)
+    past = Past.until(basin, _square(Footprint.of(footprint, spacing), area), track, time)
     shape = np.fft.irfft2(past.elevation(), basin.shape) * basin.scale
     return np.fft.fftshift(shape).astype(np.float64)  # NumPy 2 transforms in single precision
 
 
-def _fitting(footprint: Footprint, area: float) -> Footprint:
-    """Raise ValueError if an area is smaller than the object."""
-    wide, long = (footprint.spacing * samples for samples in footprint.draught.shape)
-    if max(wide, long) > area:
+def _square(footprint: Footprint, area: float) -> Footprint:
+    """Raise ValueError for a footprint that is not square, or larger than the area."""
+    rows, columns = footprint.draught.shape
+    if rows != columns:
         raise ValueError(
-            f"footprint: is {long:g} by {wide:g} m in an area of {area:g} m: make the area larger, or the "
-            "spacing smaller"
+            f"footprint: must be square, not of shape {(rows, columns)}: fill it up with zeros around it"
+        )
+    side = footprint.spacing * rows
+    if side > area:
+        raise ValueError(
+            f"footprint: is {side:g} m wide in an area of {area:g} m: make the area larger, or the spacing "
+            "smaller"
         )
     return footprint
 
