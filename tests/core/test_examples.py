@@ -44,6 +44,8 @@ DOCUMENTED = documented()
 def test_the_page_holds_what_the_core_offers() -> None:
     core = importlib.import_module("ocean_tweak.core")
     assert {f"ocean_tweak.core.{name}" for name in core.__all__} - set(DOCUMENTED) == set()
+    names = [name for name, _ in ENTRIES]
+    assert sorted(set(names)) == sorted(names)
 
 
 @pytest.mark.parametrize("name", DOCUMENTED)

@@ -20,6 +20,11 @@ def phillips(k: ArrayLike, theta: ArrayLike, U: float, g: float = constants.GRAV
 
     Chen (2014), eq. 4 with A = α/(πβ) = 3.48·10⁻³. Corrected: with this constant, waves against the wind
     (cos θ < 0) must be left out.
+
+    Examples
+    --------
+    >>> float(round(phillips(0.05, 0.0, 20.0), 1))
+    438.3
     """
     k = np.asarray(k, np.float64)
     A = constants.PM_ALPHA / (np.pi * constants.PM_BETA)
@@ -27,7 +32,13 @@ def phillips(k: ArrayLike, theta: ArrayLike, U: float, g: float = constants.GRAV
 
 
 def pierson_moskowitz(k: ArrayLike, theta: ArrayLike, U: float, g: float = constants.GRAVITY) -> Array:
-    """Pierson-Moskowitz spectrum with U at 19.5 m and cos²(θ/2). Chen (2014), eq. 32."""
+    """Pierson-Moskowitz spectrum with U at 19.5 m and cos²(θ/2). Chen (2014), eq. 32.
+
+    Examples
+    --------
+    >>> float(round(pierson_moskowitz(0.05, 0.0, 20.0), 1))
+    172.6
+    """
     k = np.asarray(k, np.float64)
     A = constants.PM_ALPHA / (2.0 * np.pi)
     return A / k**4 * np.exp(-constants.PM_BETA * g**2 / (U**4 * k**2)) * np.cos(0.5 * np.asarray(theta)) ** 2
@@ -44,6 +55,11 @@ def jonswap(
     """JONSWAP spectrum with U at 10 m and cos²(θ/2). Chen (2014), eq. 33.
 
     The peak frequency has the exponent -1/3, as in Hasselmann et al. (1973), where Chen prints -0.33.
+
+    Examples
+    --------
+    >>> float(round(jonswap(0.05, 0.0, 20.0, 200e3), 1))
+    238.8
     """
     k = np.asarray(k, np.float64)
     omega, omega_p = np.sqrt(g * k), spectra.jonswap_peak(U, F, g)
@@ -60,6 +76,11 @@ def tessendorf_constant(domain_size: float) -> float:
 
     His Fourier coefficients omit the area of the spectral cell; a constant without it is correct for one
     domain size only. Chen (2014), eq. 25.
+
+    Examples
+    --------
+    >>> round(tessendorf_constant(400.0) * 1e7, 2)
+    4.3
     """
     A = constants.PM_ALPHA / (np.pi * constants.PM_BETA)
     return float(0.5 * (2.0 * np.pi / domain_size) ** 2 * A)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Beaufort, Douglas and WMO scales, in both directions."""
+"""The Beaufort scale of winds, and the WMO's of sea states."""
 
 from __future__ import annotations
 
 import bisect
-from typing import NamedTuple
 
 #: WMO-No. 306, code table 1100: mean wind speeds in m/s at which Beaufort numbers 1…12 begin
 BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
@@ -31,25 +30,10 @@ SEA_STATE_NAMES = (
     "Phenomenal",
 )
 
-#: Douglas sea scale: the same ten degrees by height, two of them with different names
-DOUGLAS_NAMES = ("No wave", "Calm (rippled)", *SEA_STATE_NAMES[2:])
-
-
-class Span(NamedTuple):
-    """Range of one degree of a scale: from `low` up to `high`, which is infinite for the last degree."""
-
-    low: float
-    high: float
-
 
 def beaufort_number(wind_speed: float) -> int:
     """Beaufort number 0…12 of a mean wind in m/s at 10 m. Raises ValueError for a negative or NaN wind."""
     return bisect.bisect_right(BEAUFORT_FROM, _not_negative("wind_speed", wind_speed))
-
-
-def beaufort_wind(number: int) -> Span:
-    """Wind speeds in m/s of a Beaufort number. Raises ValueError outside 0…12."""
-    return _span("Beaufort number", number, BEAUFORT_FROM)
 
 
 def sea_state(significant_wave_height: float) -> int:
@@ -58,30 +42,7 @@ def sea_state(significant_wave_height: float) -> int:
     return 0 if height == 0.0 else max(1, bisect.bisect_left(SEA_STATE_FROM, height))
 
 
-def sea_state_heights(code: int) -> Span:
-    """Significant wave heights in m of a WMO sea state code, upper end included."""
-    return _span("sea state", code, SEA_STATE_FROM)
-
-
-def douglas_degree(significant_wave_height: float) -> int:
-    """Degree 0…9 of the Douglas sea scale, which uses the WMO's heights."""
-    return sea_state(significant_wave_height)
-
-
-def douglas_heights(degree: int) -> Span:
-    """Significant wave heights in m of a degree of the Douglas sea scale."""
-    return _span("Douglas degree", degree, SEA_STATE_FROM)
-
-
 def _not_negative(name: str, value: float) -> float:
     if not value >= 0.0:
         raise ValueError(f"{name} = {value!r}: must be 0 or more")
     return float(value)
-
-
-def _span(name: str, degree: int, begins: tuple[float, ...]) -> Span:
-    if degree not in range(len(begins) + 1):
-        raise ValueError(f"{name} = {degree!r}: must be a whole number from 0 to {len(begins)}")
-    low = begins[degree - 1] if degree > 0 else 0.0
-    high = begins[degree] if degree < len(begins) else float("inf")
-    return Span(low, high)
