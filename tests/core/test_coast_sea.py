@@ -25,6 +25,7 @@ from ocean_tweak.core import (
     Water,
     WaveLayer,
 )
+from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.parameters.patch_seas import open_sea
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.sea.coast_outlook import coast_outlook
@@ -280,3 +281,14 @@ def test_a_wake_over_a_bed_ends_at_the_shore() -> None:
         assert np.abs(whole[land]).max() > 0.02
         assert np.abs(made[land]).max() < 1e-5
         assert np.abs(over_bed.strain[land]).max() < 1e-5
+
+
+def test_a_sea_in_single_precision_has_its_bytes_whatever_was_asked_in_double() -> None:
+    parameters, area = sea(), Area(150.0, 40, (-50.0, 3.0))
+    MEMO.drop()
+    alone = Ocean(parameters).surface(2.0, ALL, area)
+    MEMO.drop()
+    Ocean(parameters, "double").surface(2.0, ALL, area)
+    after = Ocean(parameters).surface(2.0, ALL, area)
+    for name in ALL:
+        assert_array_equal(after[name], alone[name])

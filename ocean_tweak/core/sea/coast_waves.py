@@ -116,7 +116,8 @@ class CoastWaves:
             part = self._waves.part
             return Grid(components(self._open, time, keys, True), part.parameters.domain_size, part.rotation)
 
-        return MEMO.get(_FIELDS, (self._waves.parameters, self.ground, time, keys, "open"), make)
+        key = (self._waves.parameters, self.ground, self._waves.precision, time, keys, "open")
+        return MEMO.get(_FIELDS, key, make)
 
     @cached_property
     def _open(self) -> Synthesis:
