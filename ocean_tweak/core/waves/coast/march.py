@@ -17,7 +17,7 @@ third order.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...data.validation import check_range, real_array
 from ...numerics.threads import run_blocks
 from ...spectral import constants
+from .wide_angle import Band, series, squares, turned
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating]
@@ -37,7 +38,6 @@ SHALLOWEST, MOST_TURN = 0.05, 1.2
 _LARGEST_CHANGE, _SMALLEST_COSINE = 0.35, 0.33
 #: |ky|/k̄ from which on waves along the shore fade, and how quickly
 _FADE_FROM, _FADE_OVER = 0.95, 0.03
-_ORDER = 3
 #: m, over which the direction of waves at a place is averaged, and a share of the width
 _DIRECTION_OVER, _MOST_OF_WIDTH = 60.0, 0.125
 #: of row 0, how many times as deep it may be in one place as in another
@@ -49,7 +49,7 @@ _SLOWEST, _QUICKEST, _HIGHEST = 1e-6, 1e6, 1e6
 #: m, deeper than any wave feels
 _DEEPEST = 1e9
 #: waves that are marched together
-_TOGETHER = 16
+_TOGETHER = 24
 
 
 def propagate(
@@ -195,13 +195,15 @@ def _amplitudes(breaking: ArrayLike, count: int) -> Array:
 def wave_numbers(omega: Array, depth: Array, gravity: float) -> Array:
     """k in rad/m of ω² = g k tanh kh, of arrays that broadcast, to 1e-12.
 
-    By Newton's method from Eckart's (1952) start: that alone oscillates where depth changes slowly.
+    By Halley's method from Eckart's (1952) start: that alone oscillates where depth changes slowly.
     """
     x = omega * omega * depth / gravity
     kh = x / np.sqrt(np.tanh(x))
-    for _ in range(4):
+    for _ in range(2):
         t = np.tanh(kh)
-        kh -= (kh * t - x) / (t + kh * (1.0 - t * t))
+        flat = 1.0 - t * t
+        miss, slope = kh * t - x, t + kh * flat
+        kh -= miss * slope / (slope * slope - miss * flat * (1.0 - kh * t))
     return kh / depth
 
 
@@ -217,7 +219,7 @@ class _March:
     def __init__(
         self, bed: Bed, omega: Array, incident: ComplexArray, rest: Array, amplitudes: Array | None
     ) -> None:
-        self._bed, self._omega, self._rest, self._amplitudes = bed, omega, rest, amplitudes
+        self._bed, self._omega, self._amplitudes = bed, omega, amplitudes
         rows, columns = bed.depth.shape
         along = 2.0 * np.pi * np.fft.fftfreq(columns, bed.spacing)
         self._ky = along + rest[:, np.newaxis]
@@ -225,13 +227,19 @@ class _March:
         half = min(_DIRECTION_OVER, _MOST_OF_WIDTH * columns * bed.spacing)
         self._smooth = np.exp(-0.5 * (along[: columns // 2 + 1] * half) ** 2)
         self.pictures = np.zeros((len(omega), rows, columns), np.complex64)
-        self._k = self._at(0)
+        self._parts = [slice(i, min(i + _TOGETHER, len(omega))) for i in range(0, len(omega), _TOGETHER)]
+        self._k = np.empty((len(omega), columns))
         self._flux = incident.astype(np.complex128)
-        for part in self._parts():
+        #: what is left of all waves at each place of the last row, which they have not lost yet
+        self._left = np.ones(columns)
+        #: of each part, energy and flux of its waves at the last row
+        self._sums = np.zeros((len(self._parts), 2, columns))
+        for number, part in enumerate(self._parts):
+            self._k[part] = self._at(part, 0)
             mean, speed = self._mean(part, 0)
             waves = np.fft.fft(self._flux[part]) * np.sqrt(_cosines(self._ky[part] ** 2, mean))
             self._flux[part] = np.fft.ifft(waves) * np.sqrt(speed)
-            self._draw(part, 0)
+            self._draw(number, 0)
         if amplitudes is not None:
             energy = amplitudes**2 * np.mean(np.abs(incident) ** 2, axis=1)
             #: Hz, of all waves by their energy
@@ -241,59 +249,66 @@ class _March:
         """March to the last row."""
         rows = len(self._bed.depth)
         for row in range(1, rows):
-            before, self._k = self._k, self._at(row)
-            run_blocks(partial(self._step, row=row, before=before), self._parts(), workers)
+            run_blocks(partial(self._step, row=row), range(len(self._parts)), workers)
             if self._amplitudes is not None:
-                self._lose(row)
+                self._left = self._remaining(row)
             tell((row + 1) / rows)
+        self.pictures[:, -1] *= self._left.astype(np.float32)
 
-    def _parts(self) -> Iterator[slice]:
-        return (slice(i, min(i + _TOGETHER, len(self._omega))) for i in range(0, len(self._omega), _TOGETHER))
-
-    def _at(self, row: int) -> Array:
-        omega = self._omega[:, np.newaxis]
-        k = wave_numbers(omega, self._bed.depth[row], self._bed.gravity)
+    def _at(self, part: slice, row: int) -> Array:
+        k = wave_numbers(self._omega[part, np.newaxis], self._bed.depth[row], self._bed.gravity)
         return np.minimum(k, MOST_TURN / self._bed.spacing)
 
-    def _step(self, part: slice, row: int, before: Array) -> None:
-        dx = self._bed.spacing
-        k = 0.5 * (before[part] + self._k[part])
+    def _step(self, number: int, row: int) -> None:
+        part, dx = self._parts[number], self._bed.spacing
+        if self._amplitudes is not None:
+            self.pictures[part, row - 1] *= self._left.astype(np.float32)
+        before, after = self._k[part], self._at(part, row)
+        k = 0.5 * (before + after)
+        self._k[part] = after
         mean = k.mean(axis=1, keepdims=True)
         change = k - mean
-        ky = self._ky[part]
+        # no wave that is left lies beyond
+        band = Band(self._ky[part], float(np.max(mean)) * (_FADE_FROM + 7.0 * _FADE_OVER))
+        ky = band.ky
         q = np.sqrt(np.maximum(mean * mean - ky * ky, 0.0))
         share = np.abs(ky) / mean
-        keep = np.where(share < _FADE_FROM, 1.0, np.exp(-(((share - _FADE_FROM) / _FADE_OVER) ** 2)))
+        keep = np.exp(-((np.maximum(share - _FADE_FROM, 0.0) / _FADE_OVER) ** 2))
         steep = np.maximum(q, _SMALLEST_COSINE * mean)
         first = (mean / steep - 1.0) * keep
         second = -0.5 * ky * ky / steep**3 * keep
-        screen, turn = np.exp(0.5j * dx * change), np.exp(0.5j * dx * q) * keep
-        waves = np.fft.fft(self._flux[part] * screen) * turn
+        screen, turn = turned(0.5 * dx * change), turned(0.5 * dx * q) * keep
+        waves = band.of(np.fft.fft(self._flux[part] * (screen * self._left))) * turn
         d = np.clip(change, -_LARGEST_CHANGE * mean, _LARGEST_CHANGE * mean)
         if np.abs(d).max() * dx > 1e-12:
-            waves = _series(waves, d, first, second, dx)
-        self._flux[part] = np.fft.ifft(waves * turn) * screen * self._bed.water[row]
-        self._draw(part, row)
+            waves = series(waves, band, d, first, second, dx)
+        self._flux[part] = np.fft.ifft(band.whole(waves * turn)) * (screen * self._bed.water[row])
+        self._draw(number, row)
 
-    def _draw(self, part: slice, row: int) -> None:
+    def _draw(self, number: int, row: int) -> None:
         """A from F: of each wave along y as over the row's mean depth, and at each place what that leaves.
 
         The latter asks for the direction there: of all waves around by their energy, so that those that cross
         count each with their own, which a mean direction would not do.
         """
-        k, field = self._k[part], np.fft.fft(self._flux[part])
+        part = self._parts[number]
+        k, flux = self._k[part], self._flux[part]
         mean, speed = self._mean(part, row)
         ky = self._ky[part]
-        waves = field * (1.0 / np.sqrt(_cosines(ky * ky, mean)))
+        waves = np.fft.fft(flux)
+        waves *= 1.0 / np.sqrt(_cosines(ky * ky, mean))
         amplitude, slope = np.fft.ifft(waves), np.fft.ifft(1j * ky * waves)
-        columns = field.shape[1]
+        columns = k.shape[1]
         along, energy = (
-            np.fft.irfft(np.fft.rfft(each.real**2 + each.imag**2) * self._smooth, columns)
-            for each in (slope, amplitude)
+            np.fft.irfft(np.fft.rfft(squares(each)) * self._smooth, columns) for each in (slope, amplitude)
         )
         along /= np.maximum(energy, 1e-9 * energy.max(axis=1, keepdims=True) + 1e-300)
-        amplitude *= np.sqrt(_cosines(along, mean) / (_cosines(along, k) * speed))
-        self.pictures[part, row] = amplitude * self._turn_back[part] * self._bed.water[row]
+        amplitude *= np.sqrt(_cosines(along, mean) / (_cosines(along, k) * speed)) * self._bed.water[row]
+        if self._amplitudes is not None:
+            share = self._amplitudes[part] ** 2
+            self._sums[number] = share @ squares(amplitude), share @ squares(flux)
+        amplitude *= self._turn_back[part]
+        self.pictures[part, row] = amplitude
 
     def _mean(self, part: slice, row: int) -> tuple[Array, Array]:
         """k̄ of a row, and the speed of groups at each place."""
@@ -301,38 +316,21 @@ class _March:
         speed = group_speeds(self._omega[part, np.newaxis], k, self._bed.depth[row])
         return k.mean(axis=1, keepdims=True), speed
 
-    def _lose(self, row: int) -> None:
-        """What breaking takes on the way to a row, of all waves alike, taken implicitly or it would be stiff.
+    def _remaining(self, row: int) -> Array:
+        """(columns,) what breaking on the way to a row leaves of all waves alike, taken implicitly or it
+        would be stiff.
 
         Thornton and Guza (1983, eq. 20) for the energy ρ g H²/8, H being the root mean square height, with
         the flux's speed Cg cos θ of all waves together: dA/dx = -A a/2, in which a grows as H⁵.
         """
-        assert self._amplitudes is not None
-        share = self._amplitudes**2
-        energy = share @ (np.abs(self.pictures[:, row]).astype(np.float64) ** 2)
-        flux = share @ np.abs(self._flux) ** 2
+        energy, flux = self._sums.sum(axis=0)
         depth, height = self._bed.depth[row], np.sqrt(4.0 * energy)
         speed = flux / np.maximum(energy, 1e-300)
         loss = 1.5 * math.sqrt(math.pi) * _INTENSITY**3 * self._frequency * height**5
         loss /= BREAKER_INDEX**4 * depth**5 * np.maximum(speed, 1e-6)
-        factor = (1.0 + 2.5 * loss * self._bed.spacing) ** -0.2
-        self._flux *= factor
-        self.pictures[:, row] *= factor.astype(np.float32)
+        return (1.0 + 2.5 * loss * self._bed.spacing) ** -0.2
 
 
 def _cosines(ky2: Array, k: Array) -> Array:
     """qx/k of waves with so much ky², floored."""
     return np.sqrt(np.maximum(1.0 - ky2 / (k * k), _SMALLEST_COSINE**2))
-
-
-def _series(waves: ComplexArray, d: Array, first: Array, second: Array, dx: float) -> ComplexArray:
-    """exp(i Δx D) of waves along y, D being the symmetric products of δk with first and δk² with second."""
-    total, term = waves, waves
-    d2 = d * d
-    for n in range(1, _ORDER + 1):
-        here = np.fft.ifft(term)
-        out = np.fft.fft(d * np.fft.ifft(first * term) + d2 * np.fft.ifft(second * term))
-        out += first * np.fft.fft(d * here) + second * np.fft.fft(d2 * here)
-        term = out * (0.5j * dx / n)
-        total = total + term
-    return total
