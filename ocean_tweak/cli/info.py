@@ -18,6 +18,7 @@ from ..core.numerics.memo import MEMO
 from ..core.parameters.patch_seas import open_sea
 from ..core.sea.coast_outlook import coast_outlook
 from ..core.sea.memory import beyond_budget, check_coast_memory, check_memory
+from ..core.sea.placed_waves import has_tile, makes_foam
 from ..core.sea.spray import expected_count, why_none
 from ..core.spray.columns import BYTES_IN_FILE
 from ..core.statistics import sea_scales
@@ -202,8 +203,10 @@ def _spray(parameters: OceanParameters, spray: Spray) -> str:
         return why
     count = expected_count(parameters, spray)
     size = readable_bytes(round(count) * BYTES_IN_FILE)
-    where = "around the camera" if parameters.is_cascade else "on the tile"
-    return f"spray of about {float(f'{count:.2g}'):,.0f} particles {where}, {size} a frame with bake --spray"
+    where = "on the tile" if has_tile(parameters) else "around the camera"
+    bows = ", besides what hulls throw up" if makes_foam(parameters) else ""
+    amount = f"{float(f'{count:.2g}'):,.0f} particles {where}"
+    return f"spray of about {amount}, {size} a frame with bake --spray{bows}"
 
 
 def _patch_rows(statistics: Statistics) -> list[str]:

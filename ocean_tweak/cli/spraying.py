@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from ..core.data.frames import Frame
 from ..core.sea.bake import BakedFrame
+from ..core.sea.placed_waves import has_tile, is_seen_around
 from ..core.sea.spray import ShotSpray, check_spray
 from ..export.cache.locks import claimed
 from ..export.spray import SpraySequence, WantedSpray
@@ -29,19 +30,20 @@ def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
             raise UsageError("--spray-place: is where --spray is made, and that is missing")
         return None
     parameters = sea.shot.parameters
-    if arguments.spray_place is not None and not parameters.patches:
+    is_around = is_seen_around(parameters)
+    if arguments.spray_place is not None and not is_around:
         raise UsageError(
-            "--spray-place: is for a sea of patches; this one has spray on its own tile: leave it out"
+            "--spray-place: is for a sea of patches or with wakes; this one has it on its tile: leave it out"
         )
     place = sea.place if arguments.spray_place is None else tuple(arguments.spray_place)
-    if parameters.is_cascade and place is None:
+    if is_around and place is None and not has_tile(parameters):
         raise UsageError(
-            "--spray: the sum of patches does not repeat: say where it is seen, --spray-place 0 0"
+            "--spray: neither the sum of patches nor a wake repeats: say where it is seen, --spray-place 0 0"
         )
     spray = parameters.spray
     assert spray is not None  # set by the command's changes
     check_spray(parameters, spray)
-    return WantedSpray(spray, place if parameters.patches else None)
+    return WantedSpray(spray, place if is_around else None)
 
 
 def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequence[Frame]) -> int:

@@ -71,9 +71,11 @@ def _build(tree: bpy.types.NodeTree) -> None:
     info = build.add("GeometryNodeObjectInfo", {"Object": build.given(PATCH_INPUTS[0])})
     is_one = build.compare("LESS_EQUAL", alone(build, "LENGTH", output(info, "Scale")), 0.0, "FLOAT")
     own = _of_mesh(build, facts, is_one)
-    has_foam = build.logic("NIMPLY", build.given("Has Foam"), is_one)
     around = dict(zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, build.given("Foam")), strict=True))
-    foam = {name: build.switch("FLOAT", has_foam, own[name], value) for name, value in around.items()}
+    foam = {
+        name: build.switch("FLOAT", build.given("Has Foam"), own[name], value)
+        for name, value in around.items()
+    }
     sums = {
         socket: build.switch("VECTOR", is_one, (0.0, 0.0, 0.0), own[name]) for name, socket in SOCKETS.items()
     }
@@ -149,4 +151,4 @@ def _weights(build: Builder, own: bpy.types.Node) -> dict[str, Socket]:
     return {"Weights": output(facts, "Geometry"), **lie}
 
 
-CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 1, _build)
+CAMERA_SUM = GroupKind("Ocean Tweak Camera Sum", 2, _build)

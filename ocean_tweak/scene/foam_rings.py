@@ -28,7 +28,7 @@ from ..core.numerics.memo import MEMO
 from ..core.sea.foam_fan import Fan, FoamFan, View
 from ..core.sea.foam_levels import FINEST, FoamLevels
 from ..core.sea.foam_rings import FoamRings, Place, Rings, samples_for
-from ..core.sea.placed_waves import repeating, with_own_foam
+from ..core.sea.placed_waves import is_seen_around, makes_foam, repeating, with_own_foam
 from ..nodes.camera_foam import RING_FOAM
 from ..nodes.modifier_inputs import get_input
 from .camera_view import view_of
@@ -200,7 +200,8 @@ def around(
     """
     sea, time = (plan.parameters, plan.time) if points is None else points.moment[:2]
     sea, whole = repeating(sea), plan.whole
-    if not sea.patches or "foam" not in plan.channels or foam_outlook(sea).coverage == 0.0:
+    has_foam = "foam" in plan.channels and (foam_outlook(sea).coverage > 0.0 or makes_foam(whole))
+    if not (has_foam and is_seen_around(whole)):
         return None
     place = Place(*camera_place(surface, scene, plan.scale))
     budgets = (

@@ -31,7 +31,7 @@ from ..core.numerics.memo import MEMO
 from ..core.parameters.patch_seas import open_sea
 from ..core.parameters.spray import Spray
 from ..core.sea.foam_levels import FoamLevels
-from ..core.sea.placed_waves import repeating
+from ..core.sea.placed_waves import is_seen_around, repeating
 from ..core.sea.spray import CameraSpray, TileSpray, squares, why_none
 from ..core.spray.columns import COLUMNS, columns
 from ..core.spray.particles import Particles
@@ -160,7 +160,7 @@ def wanted(
         return None
     shown = dataclasses.replace(spray, amount=spray.amount * share, size=min(spray.size / share**0.5, 1.0))
     surface = camera_surface_of(ocean)
-    is_around = surface is not None and bool(plan.parameters.patches)
+    is_around = surface is not None and is_seen_around(plan.whole)
     # a tile has no waves that do not repeat
     sea = open_sea(plan.whole) if is_around else repeating(plan.parameters)
     goes_on = surface is not None or any(water_material.is_far(child) for child in ocean.children)
@@ -248,7 +248,7 @@ def is_ours(item: bpy.types.Object) -> bool:
 
 def spray_arguments(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
     """What the command `bake` is told of an ocean's spray."""
-    parameters = settings_of(ocean).to_parameters(scene)
+    parameters = repeating(settings_of(ocean).to_parameters(scene))
     if parameters.spray is None or why_none(parameters) is not None:
         return []
     place = bake_place(ocean, scene)
@@ -264,7 +264,10 @@ def spray_numbers(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
 
 
 def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> Place | None:
-    """Where the camera is now around which an ocean of patches is shown, m; None for another ocean."""
+    """Where the camera is now around which an ocean of patches is shown, m; None for another ocean.
+
+    A bake is without what does not repeat: one of a single patch has its spray on its tile.
+    """
     surface = camera_surface_of(ocean)
     if surface is None or not len(settings_of(ocean).patches):
         return None

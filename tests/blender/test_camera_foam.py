@@ -304,3 +304,38 @@ def test_a_hull_leaves_its_foam_around_the_camera(shown, core, camera, empty_sce
     assert np.median(found[band, 2] - astern[band] / 6.0) == pytest.approx(0.0, abs=0.2)
     away = (aside > 8.0) & (np.hypot(*(rest - (x, y)).T) < 20.0)
     assert np.median(np.abs(found[away, 0])) <= np.median(before[:, 0]) + 0.05
+
+
+@pytest.mark.parametrize("wind", [12.0, 2.0])
+def test_a_hull_leaves_its_foam_on_an_ocean_of_one_patch(
+    extension, core, ocean_object, camera, empty_scene, wind
+):
+    """Over that of the waves, if they break at all: around the camera, and only while there is a hull."""
+    waves = core.WaveLayer(wind_speed=wind, fetch=5e3)
+    sea = core.OceanParameters(resolution=64, domain_size=40.0, layers=(waves,))
+    ocean = ocean_object.add(empty_scene, sea)
+    item = extension("scene.camera_surface").add_camera_surface(ocean, empty_scene, budget=60_000)
+    settings = {"Finest Spacing": 0.25, "To Horizon": False, "Reach": 200.0, "Curvature": False}
+    extension("nodes.modifier_inputs").set_inputs(item.modifiers[0], settings | {"Foam Pile": 0.0})
+    get = extension("nodes.modifier_inputs").get_input
+    empty_scene.frame_set(8)
+    assert get(item.modifiers[0], "Foam") is None
+    x, y = eye_of(ocean, camera)
+    start, now = sea.timing.time(0), float(sea.timing.time(9))
+    path = (core.PathSample(float(start), x - 6.0 * now, y + 4.0), core.PathSample(now, x, y + 4.0))
+    wake = core.WakeLayer(path=path, length=4.0, beam=2.0, draught=0.1, area_size=64.0, area_resolution=64)
+    known = ocean.ocean_tweak.to_parameters(empty_scene)
+    ocean.ocean_tweak.from_parameters(known.replace(layers=(*known.layers, wake)), empty_scene)
+    empty_scene.frame_set(9)
+    _, rest, found = foam_of(item)
+    astern, aside = x - rest[:, 0] - 2.0, np.abs(rest[:, 1] - y - 4.0)
+    band = (astern > 2.0) & (astern < 10.0) & (aside < 0.4)
+    assert np.count_nonzero(band) > 20
+    assert found[band, 0].min() > 0.6
+    assert np.median(found[band, 2] - astern[band] / 6.0) == pytest.approx(0.0, abs=0.2)
+    away = (aside > 8.0) & (np.hypot(*(rest - (x, y)).T) < 30.0)
+    levels = extension("core.sea.foam_levels").FoamLevels(known)
+    mean = float(levels.beyond.foam)
+    assert np.mean(found[away, 0]) == pytest.approx(mean, abs=max(0.6 * mean, 1e-3))
+    ocean.ocean_tweak.layers[1].wake.muted = True
+    assert get(item.modifiers[0], "Foam") is None

@@ -156,6 +156,30 @@ def test_bows_around_the_camera_have_it(around, core, empty_scene):
     np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
 
 
+def test_a_bow_on_an_ocean_of_one_patch_has_it_in_any_wind(extension, core, empty_scene):
+    """Around the camera, and not on the tile, which knows no ship; until the ship is muted."""
+    waves = WaveLayer(wind_speed=6.0, fetch=5e3)
+    sea = OceanParameters(resolution=64, domain_size=60.0, seed=2, layers=(waves,), spray=Spray(life=0.5))
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+    camera.location = (100.0, 50.0, 4.0)
+    bpy.context.view_layer.update()
+    ocean = extension("scene.ocean_object").add(empty_scene, sea)
+    extension("scene.camera_surface").add_camera_surface(ocean, empty_scene)
+    assert spray_of(ocean) is None
+    shown = ocean.ocean_tweak.to_parameters(empty_scene)
+    ocean.ocean_tweak.from_parameters(shown.replace(layers=(*shown.layers, ship_of(core))), empty_scene)
+    empty_scene.frame_set(3)
+    with_ship = sea.replace(layers=(waves, ship_of(ocean_tweak.core)))
+    expected = CameraSpray(FoamLevels(with_ship)).at(2 / 24.0, sea.spray, (100.0, 50.0))
+    assert len(expected.age) > 100
+    np.testing.assert_allclose(points(spray_of(ocean))["position"], expected.position, atol=1e-3)
+    ocean.ocean_tweak.layers[1].wake.muted = True
+    empty_scene.frame_set(4)
+    assert spray_of(ocean) is None
+
+
 def test_the_storm_has_it_by_itself(extension, empty_scene, monkeypatch):
     moods, spray = extension("scene.moods"), extension("core").Spray
     original, few = moods.MOODS["STORM"], spray(amount=0.1, life=0.5)

@@ -8,11 +8,22 @@ import math
 import numpy as np
 import pytest
 
-from ocean_tweak.core import Current, Mask, OceanParameters, PathSample, Spray, WakeLayer, WaveLayer
+from ocean_tweak.core import (
+    Current,
+    Mask,
+    Ocean,
+    OceanParameters,
+    PathSample,
+    Places,
+    Spray,
+    WakeLayer,
+    WaveLayer,
+)
 from ocean_tweak.core.sea.foam_levels import FoamLevels
+from ocean_tweak.core.sea.foam_rings import FoamRings, Place
 from ocean_tweak.core.sea.patch_plan import Wish, planned
-from ocean_tweak.core.sea.placed_waves import own_spray
-from ocean_tweak.core.sea.spray import CameraSpray
+from ocean_tweak.core.sea.placed_waves import has_tile, is_seen_around, own_spray
+from ocean_tweak.core.sea.spray import CameraSpray, check_spray, why_none
 from ocean_tweak.core.spray.particles import Particles
 
 SPEED = 9.0
@@ -122,3 +133,46 @@ def test_bows_are_part_of_the_sea_s_spray() -> None:
     high = found.position[:, 2][(np.abs(found.position[:, 0] - 12.0) < 12.0)]
     assert 2.0 < np.quantile(high, 0.98) < 12.0
     assert math.isfinite(float(found.velocity.sum()))
+
+
+def test_in_calm_water_a_fast_ship_throws_what_its_speed_says() -> None:
+    """No wind tears anything off: 183 particles a second and m², as of crests at 17 m/s, times the strength.
+
+    On a single patch: one that has no tile, because of the ship.
+    """
+    sea = OceanParameters(resolution=64, domain_size=100.0, layers=(WaveLayer(wind_speed=0.0), SHIP))
+    assert why_none(sea.replace(layers=sea.layers[:1])) is not None
+    assert why_none(sea) is None
+    spray, counts = Spray(life=0.125), []
+    for seed in range(8):  # gusts come by chance
+        found = CameraSpray(FoamLevels(sea.replace(seed=seed))).at(TIME, spray, (10.0, 0.0))
+        assert len(found.age) == at_bow(found)
+        counts.append(len(found.age))
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(5.0, 25.0, 0.25), np.arange(-12.0, 12.0, 0.25)))
+    fields = Ocean(sea).surface(TIME, {"displacement", "velocity"}, on=Places(x, y))
+    own = own_spray(sea, x, y, TIME, fields.displacement[:, 2], fields.velocity)
+    born = 0.0625 * own.strength.sum() * 100.0 * (17.0 / 15.0) ** 4.85 * spray.life
+    assert np.mean(counts) == pytest.approx(born, rel=0.2)
+    breeze = sea.replace(layers=(WaveLayer(wind_speed=5.0, fetch=2e3), SHIP), seed=seed)
+    in_breeze = CameraSpray(FoamLevels(breeze)).at(TIME, spray, (10.0, 0.0))
+    assert at_bow(in_breeze) == pytest.approx(counts[-1], rel=0.05)
+
+
+def test_what_has_no_tile_is_asked_where_it_is_seen_and_what_has_one_is_not() -> None:
+    sea = OceanParameters(resolution=64, layers=(WaveLayer(wind_speed=15.0),))
+    assert (has_tile(sea), is_seen_around(sea)) == (True, False)
+    with_ship = sea.replace(layers=(*sea.layers, SHIP))
+    assert (has_tile(with_ship), is_seen_around(with_ship)) == (False, True)
+    check_spray(with_ship, Spray())
+    muted = sea.replace(layers=(*sea.layers, SHIP.changed(muted=True)))
+    assert (has_tile(muted), is_seen_around(muted)) == (True, False)
+
+
+def test_foam_of_hulls_is_seen_as_far_off_whatever_the_waves() -> None:
+    """Without a ship, rings end where the waves are shorter than their cells."""
+    short = OceanParameters(resolution=64, domain_size=20.0, layers=(WaveLayer(wind_speed=4.0, fetch=500.0),))
+    assert len(FoamLevels(short).seas) < 4
+    for levels in (FoamLevels(short, far=True), FoamLevels(short.replace(layers=(*short.layers, SHIP)))):
+        assert len(levels.seas) == 6
+        rings = FoamRings(levels, 32).at(TIME, Place(0.0, 0.0))
+        assert all(np.isfinite(np.stack(foam)).all() for foam in rings.foam)

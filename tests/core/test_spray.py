@@ -343,10 +343,11 @@ def test_as_many_are_in_the_air_as_the_mean_life_says(life: float) -> None:
     n, step, spray, wind = 2000, 0.125, Spray(life=life), Wind(25.0, 0.0)
     key, gust = (random.hash_cells(np.arange(n), np.arange(n), 3, stream) for stream in (1, 2))
     rest, ones = np.zeros((n, 3), np.float32), np.ones(n, np.float32)
-    crests = Crests(key, gust, 0.1 * ones, ones, rest, np.zeros((n, 2, 3), np.float32), rest)
+    rate = 0.1 * drops.torn_rate(wind.speed)
+    crests = Crests(key, gust, rate * ones, ones, rest, np.zeros((n, 2, 3), np.float32), rest)
     after = np.arange(0.0, max(life, 2.0) + 2.0 * step, step)
     left = [len(in_the_air(crests, spray, wind, step, float(since)).age) for since in after]
-    torn = float(expected(crests, spray, wind, step).sum())
+    torn = float(expected(crests, spray, step).sum())
     assert mean_life(spray) == pytest.approx(sum(left) * step / torn, rel=0.15)
 
 
@@ -368,9 +369,9 @@ def test_mist_that_is_far_away_is_of_more_and_smaller_puffs_and_covers_as_much()
     n, spray, wind = 200_000, Spray(), Wind(25.0, 0.0)
     key, gust = (random.hash_cells(np.arange(n), np.arange(n), 3, stream) for stream in (1, 2))
     rest, ones = np.zeros((n, 3), np.float32), np.ones(n, np.float32)
-    covered = {}
+    covered, rate = {}, 0.12 * drops.torn_rate(wind.speed)
     for together in (1.0, 64.0):
-        crests = Crests(key, gust, 0.12 * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), rest)
+        crests = Crests(key, gust, rate * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), rest)
         made = in_the_air(crests, spray, wind, 0.125, 0.25)
         for kind in (drops.SPUME, drops.DROPLET, drops.MIST):
             own = made.kind == kind

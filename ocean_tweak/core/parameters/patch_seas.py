@@ -52,6 +52,17 @@ def _of_patch(parameters: OceanParameters, index: int, patch: Patch) -> OceanPar
     return parameters.replace(patches=(replace(patch, rotation=0.0),), layers=layers, current=current)
 
 
+def in_patches(parameters: OceanParameters) -> OceanParameters:
+    """A sea without patches as one of a single patch, with the same waves; any other as it is.
+
+    Patches know no trough damping: its troughs are then as deep as without.
+    """
+    if parameters.patches:
+        return parameters
+    only = Patch(parameters.domain_size, resolution=parameters.resolution)
+    return parameters.replace(patches=(only,), trough_damping=0.0)
+
+
 @dataclass(frozen=True)
 class Part:
     """A part of a sea's waves with its own grid and weight. The sea is the sum of its parts.

@@ -21,8 +21,9 @@ import numpy as np
 from ..foam.model import Whitecaps
 from ..foam.threshold import foam_outlook
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import waves_above
+from ..parameters.patch_seas import in_patches, waves_above
 from .ocean import Ocean
+from .placed_waves import makes_foam
 
 #: size of the finest level's cells, m
 FINEST = 0.25
@@ -37,16 +38,21 @@ _WHOLE = 1.15
 #: a level that resolves less than this fraction of the strain variance is not used
 _LEAST_SHARE = 0.15
 _MOST_LEVELS = 10
+#: levels of a sea with hulls, whose foam is seen where the waves are too short for any: some 800 m
+_FAR_LEVELS = 6
 
 
 class FoamLevels:
-    """The foam levels of a sea of patches. Creating it is cheap.
+    """The foam levels of a sea of patches; one without is a single patch. Creating it is cheap.
 
-    `parameters` describe the sea, `seas` the levels, as far as they resolve enough of the strains.
+    far : reach as far as foam of hulls is seen, whatever the waves are; so it is where the sea has hulls
+
+    `parameters` describe that sea, `seas` the levels, as far as they resolve enough of the strains.
     """
 
-    def __init__(self, parameters: OceanParameters) -> None:
-        self.parameters = parameters
+    def __init__(self, parameters: OceanParameters, far: bool = False) -> None:
+        self.parameters = in_patches(parameters)
+        self._least = _FAR_LEVELS if far or makes_foam(parameters) else 1
 
     @cached_property
     def seas(self) -> tuple[Ocean, ...]:
@@ -55,7 +61,7 @@ class FoamLevels:
         least = _LEAST_SHARE * found[0].divergence_variance
         while len(found) < _MOST_LEVELS:
             sea = self._sea(len(found))
-            if sea.divergence_variance <= least:
+            if len(found) >= self._least and sea.divergence_variance <= least:
                 break
             found.append(sea)
         return tuple(found)
@@ -74,7 +80,8 @@ class FoamLevels:
 
         seen : size in m of the smallest visible cell; waves too short for it are ignored
         """
-        share = np.float32(min(1.0, self.seas[level].divergence_variance / self._variance(seen)))
+        own_variance, whole = self.seas[level].divergence_variance, self._variance(seen)
+        share = np.float32(min(1.0, own_variance / whole) if whole > 0.0 else 1.0)
         mean, rest = self.beyond, np.float32(1.0) - share
         foam, breaking, age = own
         return Whitecaps(

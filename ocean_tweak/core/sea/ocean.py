@@ -26,7 +26,7 @@ from ..waves.contribution import MemoryNeed
 from .coast_waves import CoastWaves
 from .memory import check_memory, memory_need
 from .part_waves import PRECISIONS, PartWaves, real_type, strain_covariances
-from .placed_waves import PlacedWaves, check_repeats, placed_waves, with_own_foam
+from .placed_waves import PlacedWaves, check_repeats, has_tile, placed_waves, with_own_foam
 from .placed_waves import strain_covariances as placed_strain_covariances
 from .query import SurfacePoints, find_points, refine_points
 from .regions import TILE, Area, Places, Tile
@@ -396,7 +396,7 @@ class Ocean:
 
     @property
     def _has_tile(self) -> bool:
-        return not (self.parameters.is_cascade or self._placed or self.parameters.has_coast)
+        return has_tile(self.parameters)
 
     @property
     def _spacing(self) -> float:

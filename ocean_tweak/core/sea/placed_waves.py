@@ -133,6 +133,21 @@ def placed_waves(sea: OceanParameters) -> tuple[PlacedWaves, ...]:
     return tuple(PlacedWaves(layer, sea) for layer in sea.active() if Gives.FIELDS in layer.gives)
 
 
+def has_tile(sea: OceanParameters) -> bool:
+    """Whether all waves of a sea repeat with its domain."""
+    return not (sea.is_cascade or sea.has_coast or placed_waves(sea))
+
+
+def is_seen_around(sea: OceanParameters) -> bool:
+    """Whether foam and spray of a sea are made around a camera: of patches, or of what does not repeat."""
+    return bool(sea.patches or placed_waves(sea))
+
+
+def makes_foam(sea: OceanParameters) -> bool:
+    """Whether layers make foam of their own, and throw up spray, where no wave breaks."""
+    return any(layer.makes_foam for layer in sea.active())
+
+
 def repeating(sea: OceanParameters) -> OceanParameters:
     """The sea without these layers, and the open sea of one with a coast; the same one where it has none."""
     return without_placed(open_sea(sea))

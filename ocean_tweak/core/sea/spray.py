@@ -29,9 +29,10 @@ from ..parameters.shot import Shot
 from ..parameters.spray import Spray
 from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
+from ..waves.contribution import Wind
 from .foam_levels import FoamLevels
 from .ocean import Ocean
-from .placed_waves import check_repeats, own_spray, throws
+from .placed_waves import check_repeats, has_tile, is_seen_around, makes_foam, own_spray, throws
 from .regions import TILE, Places
 from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 
@@ -42,6 +43,8 @@ RealArray = NDArray[np.floating]
 _PART, _MOST_CUTS = 1.0, 4
 #: strength at which a breaking crest is torn completely, and the torn area relative to the mean strength
 _ALL_TEARS, _TEARS = 0.25, 1.7
+#: particles per second and m² where what a hull throws up has a strength of 1
+_OF_A_CREST = torn_rate(17.0)
 #: extent of a gust in m and in moments
 _GUST, _GUST_MOMENTS = 2.0, 2
 
@@ -57,6 +60,8 @@ class SprayError(ParameterError):
 
 def why_none(parameters: OceanParameters) -> str | None:
     """Why a sea has no spray; None if it has."""
+    if makes_foam(parameters):  # a bow throws up water in any wind
+        return None
     wind = foam_wind(parameters)
     if wind is None:
         return (
@@ -75,11 +80,12 @@ def why_none(parameters: OceanParameters) -> str | None:
 def check_spray(parameters: OceanParameters, spray: Spray) -> None:
     """Raise SprayError, before computing any, if a sea's spray needs too much memory.
 
-    Raises ParameterError for a sea without spray, and for one that has neither patches nor a tile.
+    Raises ParameterError for a sea without spray, and for one that has neither a tile nor is seen around a
+    camera.
     """
     if (why := why_none(parameters)) is not None:
         raise ParameterError("spray", "", why)
-    if not parameters.is_cascade:
+    if not is_seen_around(parameters):
         try:
             check_repeats(parameters)
         except ParameterError as error:
@@ -89,14 +95,18 @@ def check_spray(parameters: OceanParameters, spray: Spray) -> None:
 
 
 def expected_count(parameters: OceanParameters, spray: Spray) -> float:
-    """Expected number of particles at any time, on the tile or around a place; 0 for a sea without spray."""
-    wind = foam_wind(parameters)
-    if wind is None or why_none(parameters) is not None:
+    """Expected number of particles at any time that wind tears off, on the tile or around a place."""
+    rate = torn_rate(_wind(parameters).speed)
+    if rate == 0.0 or why_none(parameters) is not None:
         return 0.0
-    around = parameters.is_cascade
-    area = area_of_squares(FoamLevels(parameters)) if around else parameters.domain_size**2
+    area = parameters.domain_size**2 if has_tile(parameters) else area_of_squares(FoamLevels(parameters))
     tears = _TEARS * Ocean(parameters).mean_breaking
-    return area * tears * torn_rate(wind.speed) * spray.amount * mean_life(spray)
+    return area * tears * rate * spray.amount * mean_life(spray)
+
+
+def _wind(parameters: OceanParameters) -> Wind:
+    """That which tears crests and carries spray; none where no layer has any."""
+    return foam_wind(parameters) or Wind(0.0, 0.0)
 
 
 class TileSpray:
@@ -125,12 +135,14 @@ class TileSpray:
         foam = self._foam
         n, side, model = foam.parameters.resolution, foam.parameters.domain_size, foam.foam_model
         fields = foam.surface(model.reduced(index * model.step), {*_OF_WATER, "min_eigenvalue"}, TILE)
+        rate = torn_rate(_wind(foam.parameters).speed)
         strength = breaking_of(model, np.subtract(1.0, fields.min_eigenvalue))
         row, column = np.nonzero(strength)
         water = _Water(*(fields[name][row, column].astype(np.float64) for name in _Water._fields))
         cells = _Cells(column, row, side / n, 0)
         rest = np.stack((column, row), axis=-1).astype(np.float64) * (side / n)
-        crests = _crests(model, foam.parameters, index, cells, rest, water, _torn(strength[row, column]))
+        births = rate * _torn(strength[row, column])
+        crests = _crests(model, foam.parameters, index, cells, rest, water, births)
         return [_Looked(cells, crests)]
 
 
@@ -163,10 +175,12 @@ class CameraSpray:
         x, y = np.concatenate(rest).T
         fields = finest.surface(time, _OF_WATER, Places(x, y))
         water = _Water(*(fields[name].astype(np.float64) for name in _Water._fields))
-        torn = np.concatenate([_torn(strength) for _, strength in found])
+        rate = torn_rate(_wind(finest.parameters).speed)
+        births = rate * np.concatenate([_torn(strength) for _, strength in found])
         own = own_spray(finest.parameters, x, y, time, water.displacement[:, 2], water.velocity)
-        more = own.strength > torn
-        torn = np.where(more, own.strength, torn).astype(np.float32)
+        thrown = _OF_A_CREST * own.strength
+        more = thrown > births
+        births = np.where(more, thrown, births)
         water = water._replace(velocity=np.where(more[:, np.newaxis], own.velocity, water.velocity))
         ends = np.cumsum([len(each) for each in rest])
         made = []
@@ -174,7 +188,7 @@ class CameraSpray:
             part = slice(end - len(at), end)
             of_part = _Water._make(each[part] for each in water)
             sea = self._levels.seas[square.level]
-            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, torn[part])
+            crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, births[part])
             made.append(_Looked(cells, crests))
         return made
 
@@ -263,15 +277,15 @@ class _Remembered:
 
         look : function that returns the crests of a moment in some squares
         """
-        wind = foam_wind(self._parameters)
-        if wind is None or why_none(self._parameters) is not None:
+        if why_none(self._parameters) is not None:
             return joined([])
+        wind = _wind(self._parameters)
         now, step = Fraction(time), model.step
         first = math.floor((now - Fraction(longest_life(spray))) / step - Fraction(1, 2))
         moments = range(first, math.floor(now / step + Fraction(1, 2)) + 1)
         with self._busy:
             crests = self._looked_at(moments, around, look)
-        torn = sum(float(expected(each, spray, wind, float(step)).sum()) for _, each in crests)
+        torn = sum(float(expected(each, spray, float(step)).sum()) for _, each in crests)
         _check_memory(torn / len(moments) / float(step) * mean_life(spray), spray)
         parts = (
             in_the_air(each, spray, wind, float(step), float(now - index * step)) for index, each in crests
@@ -319,11 +333,13 @@ class _Water(NamedTuple):
 
 
 def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArray]:
-    """The cell parts of a square in which crests break, with strengths, or layers throw up spray."""
+    """The cell parts of a square in which crests are torn, with strengths, or layers throw up spray."""
     size = square.size
     column, row = square.cells()
     x, y = ((number.astype(np.float64) + 0.5) * size for number in (column, row))
-    strength = breaking_of(sea.foam_model, sea.compression_at(x, y, time))
+    strength: RealArray = np.zeros(x.shape, np.float32)
+    if torn_rate(_wind(sea.parameters).speed) > 0.0:
+        strength = breaking_of(sea.foam_model, sea.compression_at(x, y, time))
     broken = np.flatnonzero((strength > 0.0) | throws(sea.parameters, x, y, time))
     cells, of_cell = _in_parts(_Cells(column[broken], row[broken], size, square.level))
     return cells, strength[broken][of_cell]
@@ -346,11 +362,11 @@ def _crests(
     cells: _Cells,
     rest: Array,
     water: _Water,
-    torn: RealArray,
+    births: RealArray,
 ) -> Crests:
     """Crests in cells around rest positions x and y in m, with the motion of the water there.
 
-    torn : share of each cell's area that is torn; more than 1 where a hull throws up more than wind tears off
+    births : particles per second and m², at an amount of 1
     """
     moments = 0 if model.loop_duration is None else round(model.loop_duration / model.step)
     moment = index % moments if moments else index
@@ -370,7 +386,7 @@ def _crests(
     return Crests(
         random.hash_cells(cells.column, cells.row, parameters.seed, moment, cells.level),
         gust,
-        (area * torn).astype(np.float32),
+        (area * births).astype(np.float32),
         np.full(len(rest), STANDS_FOR[cells.level], np.float32),
         place.astype(np.float32),
         along,

@@ -57,7 +57,7 @@ class Crests(NamedTuple):
     """Breaking crests at a moment; (cells,) arrays of cells with a crest.
 
     key, gust : hashes of the cell, and of the gust at its place
-    area : horizontal area that is torn, m²
+    births : particles per second at an amount of 1
     stands_for : number of drops that one of the cell's represents, by which it is larger
     place : (cells, 3) centre, m
     along : (cells, 2, 3) half extents along columns and along rows, m
@@ -66,7 +66,7 @@ class Crests(NamedTuple):
 
     key: NDArray[np.uint64]
     gust: NDArray[np.uint64]
-    area: RealArray
+    births: RealArray
     stands_for: RealArray
     place: RealArray
     along: RealArray
@@ -107,10 +107,10 @@ def mean_life(spray: Spray) -> float:
     return (1.0 - mist) * min(spray.life, _DROPS_STAY) + mist * _MIST_STAYS * spray.life
 
 
-def expected(crests: Crests, spray: Spray, wind: Wind, step: float) -> RealArray:
+def expected(crests: Crests, spray: Spray, step: float) -> RealArray:
     """(cells,) expected particles emitted by cells in a moment of `step` seconds, averaged over gusts."""
     drop, puff = _of_drops_and_mist(crests)
-    return crests.area * (drop + puff) * np.float32(drops.torn_rate(wind.speed) * spray.amount * step)
+    return crests.births * (drop + puff) * np.float32(spray.amount * step)
 
 
 def _of_drops_and_mist(crests: Crests) -> tuple[RealArray, RealArray]:
@@ -125,7 +125,7 @@ def in_the_air(crests: Crests, spray: Spray, wind: Wind, step: float, since: flo
     step : duration of the moment, s; particles start at any time in it
     since : time from its middle to now, s
     """
-    count = _counts(crests, spray, wind, step)
+    count = _counts(crests, spray, step)
     cell = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(cell)) - np.repeat(np.cumsum(count) - count, count)
     key = random.members(crests.key[cell], number)
@@ -155,9 +155,9 @@ def joined(parts: list[Particles]) -> Particles:
     return Particles._make(np.concatenate(each) for each in zip(*parts, strict=True))
 
 
-def _counts(crests: Crests, spray: Spray, wind: Wind, step: float) -> NDArray[np.int64]:
+def _counts(crests: Crests, spray: Spray, step: float) -> NDArray[np.int64]:
     """(cells,) numbers of particles, exponentially distributed over gusts."""
-    torn = expected(crests, spray, wind, step) * -np.log(random.uniform(crests.gust, _GUST))
+    torn = expected(crests, spray, step) * -np.log(random.uniform(crests.gust, _GUST))
     return np.asarray(np.floor(torn + random.uniform(crests.key, _COUNT)).astype(np.int64))
 
 

@@ -137,7 +137,7 @@ class OwnFoam(NamedTuple):
 class OwnSpray(NamedTuple):
     """Water that a layer throws up beside that of breaking waves.
 
-    strength : (places,) 1 where it is as much as wind tears off a crest that breaks
+    strength : (places,) 1 where it is as much as a wind of 17 m/s tears off a crest that breaks
     velocity : (places, 3) of this water, m/s
     """
 
@@ -238,6 +238,11 @@ class Contribution(Validated):
     ) -> Mapping[Key, RealArray]:
         """Components of the displacement at rest positions in m, of one flat shape, choppiness applied."""
         return {}
+
+    @property
+    def makes_foam(self) -> bool:
+        """Whether it has any `own_foam` or `own_spray`."""
+        return False
 
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """Foam beside that of breaking waves, at rest positions in m, of one flat shape; None without any."""

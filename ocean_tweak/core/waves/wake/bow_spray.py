@@ -16,7 +16,7 @@ from .foam import HullFoam
 
 Array = NDArray[np.float64]
 
-#: relative speed in m/s at which a bow throws up as much as wind tears off a crest that breaks
+#: relative speed in m/s at which a bow throws up as much as a wind of 17 m/s tears off a crest that breaks
 _AS_A_CREST = 2.5
 #: velocity at which water is thrown, forwards, aside and up, in relative speeds
 _AHEAD, _ASIDE, _UP = 0.35, 0.45, 1.0

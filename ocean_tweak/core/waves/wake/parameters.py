@@ -250,15 +250,20 @@ class WakeLayer(Contribution):
         MEMO.put(_WAKES, key, waves)  # which may have grown
         return found
 
+    @property
+    def makes_foam(self) -> bool:
+        """Whether it stirs the water white."""
+        return self.foam > 0.0
+
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """The band astern, and what the bow throws aside."""
-        return self._hull_foam(sea).at(x, y, float(time)) if self.foam > 0.0 else None
+        return self._hull_foam(sea).at(x, y, float(time)) if self.makes_foam else None
 
     def own_spray(
         self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
     ) -> OwnSpray | None:
         """What the bow throws up."""
-        if not self.foam > 0.0:
+        if not self.makes_foam:
             return None
         return bow_spray(self._hull_foam(sea), self.draught, x, y, float(time), height, velocity)
 
