@@ -79,7 +79,16 @@ def test_the_faster_hull_and_water_meet_the_more_is_thrown() -> None:
 def test_a_bow_in_a_trough_throws_nothing() -> None:
     calm = thrown()[1].sum()
     assert thrown(height=-SHIP.draught)[1].sum() == 0.0
-    assert thrown(height=SHIP.draught)[1].sum() == pytest.approx(2.0 * calm, rel=1e-6)
+    for deep in (1.0, 3.0):  # at most twice as much
+        assert thrown(height=deep * SHIP.draught)[1].sum() == pytest.approx(2.0 * calm, rel=1e-6)
+
+
+def test_at_two_and_a_half_metres_a_second_it_is_as_much_as_of_a_breaking_crest() -> None:
+    place, strength, _ = thrown(water=(SPEED - 2.5, 0.0, 0.0))
+    own = SHIP.own_foam(around(), *place.T, TIME)
+    assert own is not None
+    np.testing.assert_allclose(strength, own.breaking, atol=1e-6)
+    assert strength.max() > 0.5
 
 
 def test_a_slow_hull_one_without_foam_and_one_under_a_mask_throw_nothing() -> None:

@@ -58,9 +58,10 @@ def test_waves_are_peaked_and_pitched_forward_as_they_were_measured(
         assert rate.max() > -1.5 * rate.min()
 
 
-def test_in_deep_water_waves_are_sinusoids() -> None:
-    wave, _ = one_wave(1.0, 200.0)
-    assert_allclose(wave, 0.5 * np.cos(TURNS), atol=1e-6)
+@pytest.mark.parametrize("depth", [80.0, 200.0])  # half a wavelength is 78 m
+def test_in_deep_water_waves_are_sinusoids(depth: float) -> None:
+    wave, _ = one_wave(10.0, depth)
+    assert_allclose(wave, 5.0 * np.cos(TURNS), atol=1e-6)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.4, 0.8])
@@ -139,6 +140,15 @@ def test_in_the_surf_lines_are_white_and_most_of_the_water_between_them_is_not()
         assert each.breaking.max() > 0.9
         # what is as old as half of it lives is lace
         assert each.foam[each.age >= 4.0].max() < 0.3
+
+
+def test_waves_are_white_in_front() -> None:
+    """Where the water falls away towards the shore."""
+    over_bed = Ocean(sea()).coast.over_bed  # type: ignore[union-attr]
+    for time in (20.0, 23.0, 31.0):
+        white = over_bed.foam(time).breaking
+        slope = over_bed.components(time, [(2, "x")])[2, "x"]
+        assert np.sum(white * slope) / np.sum(white) < -0.02
 
 
 def test_breakers_run_ashore() -> None:

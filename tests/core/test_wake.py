@@ -275,3 +275,16 @@ def test_lists_whole_numbers_and_every_other_sample_are_what_they_hold() -> None
     apart = wake_elevation(np.repeat(times, 2)[::2], wide, 3.0, **given)
     assert lists.tobytes() == apart.tobytes() == expected.tobytes()
     assert np.abs(expected).max() > 0.1
+
+
+def test_steps_shorter_than_a_frame_add_up_to_the_whole_way() -> None:
+    """A wave that keeps pace with the object: what a step adds is a difference of almost equal numbers."""
+    area, waves = 128.0, 4
+    pace = np.sqrt(G * area / (2.0 * np.pi * waves))
+    times = np.concatenate(([-1.0], np.arange(0.0, 2.001, 1.0 / 240.0)))  # it rests, and sets off
+    places = np.stack((pace * np.maximum(times, 0.0), np.zeros(len(times))), -1)
+    given = {"area": area, "resolution": 64, "decay": 1e-6, **bump(3.0)}
+    whole = wake_elevation([-1.0, 0.0, 2.0], places[[0, 1, -1]], 2.0, **given)
+    turning = np.resize([0.0, 0.0, 1e-3, 1e-3], len(times))  # what is round, so that no step goes straight on
+    steps = wake_elevation(times, places, 2.0, headings=turning, **given)
+    np.testing.assert_allclose(steps, whole, atol=1e-3 * np.abs(whole).max())

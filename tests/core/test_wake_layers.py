@@ -13,7 +13,6 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.core import (
     Area,
-    Foam,
     Mask,
     Ocean,
     OceanParameters,
@@ -25,11 +24,14 @@ from ocean_tweak.core import (
     Water,
     WaveLayer,
 )
-from ocean_tweak.core.foam.model import FAINTEST
 from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.parameters.fingerprint import shot_fingerprint
 from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.waves.wake.elevation import Basin
+from ocean_tweak.core.waves.wake.fields import WakeWaves, Where
+from ocean_tweak.core.waves.wake.footprint import hull_footprint
 from ocean_tweak.core.waves.wake.outlook import KELVIN_ANGLE, transverse_wavelength, wake_angle
+from ocean_tweak.core.waves.wake.track import Track
 from ocean_tweak.export.exr import read_image
 
 CALM = WaveLayer(muted=True)
@@ -123,6 +125,34 @@ def test_waves_move_towards_their_crests() -> None:
     assert np.any(flat[..., 2] != 0.0)
 
 
+def test_in_shallow_water_the_horizontal_motion_is_as_wide_as_the_water_that_it_carries() -> None:
+    """Alike at all depths where waves are long: what flows together raises the surface, η = -h ∇·D."""
+    shoal = {"water": Water(depth=1.5), "orbital_motion": "FINITE_DEPTH"}
+    layer = BOAT.changed(path=(PathSample(0.0), PathSample(1.0, 7.0)), length=40.0, beam=20.0, draught=0.3)
+    area = over(160.0, 80, -20.0)
+    found = fields(layer, 0.0, area, "displacement", "strain", **shoal)
+    height, spread = found.displacement[..., 2], found.strain[..., 0] + found.strain[..., 1]
+    there = np.hypot(*area.rest_positions()) < 60.0  # where the area does not fade
+    share = np.sum(spread[there] * height[there]) / np.sum(height[there] ** 2)
+    assert share == pytest.approx(-1.0 / 1.5, rel=0.05)
+    deep = fields(layer, 0.0, area, "strain", **{**shoal, "orbital_motion": "DEEP"}).strain
+    assert np.std(deep[there]) < 0.5 * np.std(found.strain[there])
+
+
+def test_the_past_of_a_long_path_takes_bounded_memory() -> None:
+    track = Track.of(np.arange(700.0), np.cumsum(np.random.default_rng(2).random((700, 2)), axis=0))
+    made = [
+        WakeWaves(Basin(64.0, 16), track, hull_footprint(6.0, 3.0, 1.0), Where(0.0, 0.0, True), math.inf)
+        for _ in range(2)
+    ]
+    x, y = (np.array([place]) for place in track.place(690.5)[0])
+    for time in np.arange(100.5, 700.0, 118.0):
+        made[0].at(x, y, time, [(2, "")], 1.0)
+    assert made[0].nbytes <= 8 * 2 * 16 * 9 * 8  # of eight pasts, two complex64 a wave vector
+    alone, kept = (waves.at(x, y, 690.5, [(2, "")], 1.0)[2, ""] for waves in made[::-1])
+    assert alone.tobytes() == kept.tobytes()
+
+
 def test_outside_its_area_there_is_nothing_and_at_its_end_no_step() -> None:
     resting = BOAT.changed(area_follows=False, area_x=40.0, area_y=10.0)
     area = over(400.0, 400, 40.0, 10.0)
@@ -213,6 +243,25 @@ def test_a_press_makes_rings() -> None:
     assert spread[1] > 1.5 * spread[0]
 
 
+def test_only_capillary_dispersion_knows_of_surface_tension() -> None:
+    area, path = over(1.5, 24), (PathSample(0.0), PathSample(1.0, 0.4))
+    ripples = BOAT.changed(path=path, length=0.2, beam=0.1, draught=0.01, area_size=2.0)
+    heavy = {"water": Water(surface_tension=1.0)}
+    without, with_it = (
+        [fields(ripples, 0.0, area, dispersion=law, **water).displacement for water in ({}, heavy)]
+        for law in ("FINITE_DEPTH", "CAPILLARY")
+    )
+    np.testing.assert_array_equal(*without)
+    assert np.abs(with_it[0] - with_it[1]).max() > 0.2 * np.abs(with_it[0]).max()
+
+
+def test_a_path_points_ahead_before_it_begins_and_is_half_as_deep_between_up_and_down() -> None:
+    """What waits points to where it will go; of a stretch counts its middle."""
+    track = Track.of([0.0, 1.0, 2.0], [[0.0, 0.0], [0.0, 0.0], [0.0, 5.0]], immersions=[0.0, 1.0, 0.5])
+    assert [piece.heading for piece in (track.first, *track.pieces)] == [0.5 * math.pi] * 3
+    assert [piece.immersion for piece in track.pieces] == [0.5, 0.75]
+
+
 def test_headings_may_be_told() -> None:
     """A boat that goes sideways has another wake; one that points along its path, the same."""
     east, north = (
@@ -236,6 +285,14 @@ def test_a_hull_of_an_image_is_where_its_image_is() -> None:
     z = fields(still, 0.0, area, choppiness=0.0).displacement[..., 2]
     assert np.average(x, weights=np.maximum(-z - 0.1, 0.0)) == pytest.approx(3.0, abs=0.25)
     assert -1.0 < z.min() < -0.6
+
+
+def test_a_hull_that_is_shallow_in_part_is_there_all_the_same() -> None:
+    shape = np.hstack((np.full((4, 8), 0.3), np.ones((4, 8))))
+    stern, bow = (
+        half.sum() for half in np.array_split(hull_footprint(40.0, 8.0, 2.0, shape).draught, 2, axis=1)
+    )
+    assert stern / bow == pytest.approx(0.3, abs=0.05)
 
 
 BAD = {
@@ -325,79 +382,3 @@ def test_images_and_layers_of_an_area_hold_it(tmp_path, capsys) -> None:
     np.testing.assert_allclose(image, expected, atol=2e-5)
     assert main(["bake", "--params", str(path), "--frames=80", "--out", str(tmp_path), "--workers=1"]) == 2
     assert "do not repeat with the domain" in capsys.readouterr().err
-
-
-def ferry(**changes: object) -> WakeLayer:
-    """30 m by 10 m, straight on at 6 m/s, in the middle at 0 s; its foam halves in 10 s."""
-    path = (PathSample(0.0), PathSample(1.0, 6.0))
-    values = {"path": path, "length": 30.0, "beam": 10.0, "draught": 2.0, "foam_half_life": 10.0}
-    return WakeLayer(**(values | changes))
-
-
-def foam_at(layer: WakeLayer, x: object, y: object, time: float = 0.0) -> object:
-    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-    return layer.own_foam(sea(layer), x.ravel(), y.ravel(), time)
-
-
-def test_astern_foam_is_as_wide_as_the_beam_and_fades_by_its_half_life() -> None:
-    """Each place has the age since the stern passed it; its 15 m are 2.5 s."""
-    ages = np.array([1.0, 11.0, 21.0, 31.0])
-    found = foam_at(ferry(), -15.0 - 6.0 * ages, 0.0)
-    np.testing.assert_allclose(found.age, ages, rtol=1e-5)
-    np.testing.assert_allclose(found.foam[1:] / found.foam[:-1], 0.5, rtol=1e-5)
-    assert found.foam[0] == pytest.approx(2.0**-0.1, rel=0.02)
-    assert np.all(found.breaking == 0.0)
-    across = np.linspace(-20.0, 20.0, 401)
-    for age, growth in ((0.05, 1.0), (25.0, (1.0 + 15.0) ** 0.2)):  # by the fifth root of the distance
-        there = foam_at(ferry(), -15.0 - 6.0 * age, across).foam
-        edge = np.abs(across[there > 0.02 * there[200]]).max() if age > 1.0 else 5.0
-        half = np.abs(across[there > 0.5 * there[200]]).max()  # of edges that are soft
-        assert half == pytest.approx(0.83 * 5.0 * growth, rel=0.05)
-        assert edge == pytest.approx(5.0 * growth, rel=0.05)
-    assert np.all(foam_at(ferry(), [40.0, -800.0, -50.0], [0.0, 0.0, 40.0]).foam == 0.0)
-
-
-def test_a_bow_throws_foam_to_both_sides_and_breaks_there() -> None:
-    x, y = np.meshgrid(np.linspace(-14.0, 20.0, 69), np.linspace(-12.0, 12.0, 97))
-    found = foam_at(ferry(), x, y)
-    foam, breaking = (field.reshape(x.shape) for field in (found.foam, found.breaking))
-    np.testing.assert_allclose(foam, foam[::-1], atol=1e-6)
-    assert x[breaking > 0.2].min() > 6.0  # in the first quarter of the hull
-    assert breaking.max() > 0.5
-    beside = foam[:, np.argmin(np.abs(x[0] + 5.0))]
-    assert np.abs(y[beside.argmax(), 0]) > 5.0  # beside the hull, and nothing under it
-    assert beside[len(beside) // 2] < 1e-6
-
-
-def test_foam_follows_the_path_and_slow_hulls_make_none() -> None:
-    layer = BOAT.changed(foam_half_life=20.0)
-    for time in np.arange(2.0, 14.0, 1.0):
-        (x, y), _ = layer.track.place(time)
-        assert foam_at(layer, x, y, 17.0).foam[0] > 0.3
-        assert foam_at(layer, x + 15.0, y - 15.0, 17.0).foam[0] == 0.0
-    slow = ferry(path=(PathSample(0.0), PathSample(1.0, 0.5)))
-    assert np.all(foam_at(slow, np.linspace(-50.0, 20.0, 71), 0.0).foam == 0.0)
-    assert np.all(foam_at(ferry(path=(PathSample(0.0),)), np.linspace(-50.0, 20.0, 71), 0.0).foam == 0.0)
-    assert foam_at(ferry(foam=0.0), 0.0, 0.0) is None
-    half = foam_at(ferry(foam=0.5), -30.0, 0.0).foam
-    np.testing.assert_allclose(half, 0.5 * foam_at(ferry(), -30.0, 0.0).foam)
-
-
-def test_a_sea_has_the_foam_of_hulls_over_that_of_its_waves() -> None:
-    """In a calm too, and under masks; where both are, of that which is more."""
-    names = ("foam", "breaking", "foam_age")
-    area = over(120.0, 60, -40.0)
-    calm = fields(ferry(), 0.0, area, *names)
-    x, y = (places.ravel() for places in area.rest_positions())
-    own = foam_at(ferry(), x, y)
-    shown = np.where(own.foam >= FAINTEST, own.foam, 0.0)
-    np.testing.assert_allclose(calm.foam.ravel(), shown, atol=1e-6)
-    assert calm.foam_age[calm.foam > 0.0].max() > 5.0
-    wind = WaveLayer(wind_speed=15.0)
-    windy, waves = (
-        Ocean(sea(layers=layers, foam=Foam(half_life=0.0))).surface(0.0, names, on=area)
-        for layers in ((wind, ferry(amplitude_scale=0.0)), (wind, ferry(amplitude_scale=0.0, foam=0.0)))
-    )
-    np.testing.assert_allclose(windy.foam, np.maximum(waves.foam, calm.foam), atol=1e-5)
-    everywhere = Mask(x=0.0, y=0.0, inner_radius=0.0, outer_radius=1e-3, inverted=True)
-    assert fields(ferry(mask=everywhere), 0.0, over(60.0, 30, -45.0), "foam").foam.max() == 0.0

@@ -40,8 +40,6 @@ class Differences:
         """Samples that are too near to land, and what the steps onwards and back from them count."""
         reach = range(-len(_WEIGHTS), len(_WEIGHTS) + 1)
         far = np.all([_shifted(wide, by, axis) for by in reach], axis=0)
-        if axis == 0:  # beyond the last rows nothing is known
-            far[: len(_WEIGHTS)] = far[-len(_WEIGHTS) :] = False
         near = np.flatnonzero(~far)
         here, onwards, back = (_shifted(wide, by, axis).reshape(-1)[near] for by in (0, 1, -1))
         counts = (here & onwards).astype(np.float32), (here & back).astype(np.float32)
@@ -50,10 +48,11 @@ class Differences:
 
 
 def _padded(field: NDArray, axis: int) -> NDArray:  # type: ignore[type-arg]
-    """The field with as many samples before and behind as differences reach."""
+    """The field with as many samples before and behind as differences reach; beyond the last rows there is
+    nothing, and no water."""
     width = [(0, 0), (0, 0)]
     width[axis] = (len(_WEIGHTS), len(_WEIGHTS))
-    return np.pad(field, width, mode="wrap" if axis else "edge")
+    return np.pad(field, width, mode="wrap" if axis else "constant")
 
 
 def _shifted(wide: NDArray, by: int, axis: int) -> NDArray:  # type: ignore[type-arg]
