@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..core.data.frames import Frame, format_frames
 from ..export.cache.folders import bakes_in, find_folder
-from ..export.cache.job import CacheError, Job, safe_name, uid_of
+from ..export.cache.job import CacheError, Job, maps_for, safe_name, uid_of
 from ..export.cache.records import recorded_frames
 from ..export.places import CACHE_VARIABLE, environment_cache
 from .outcome import UsageError
@@ -32,8 +32,8 @@ def _job(arguments: argparse.Namespace, name: str, sea: FileSea) -> Job:
         sea.shot.check(frames)
     name = safe_name(arguments.name or name)
     uid = arguments.uid or sea.uid or uid_of(name)
-    # not needed if --set reduced it to one patch
-    needed = sea.maps if sea.shot.parameters.patches and arguments.area is None else ()
+    # not needed if --set reduced it to one patch, or took its coast away
+    needed = () if arguments.area is not None else set(sea.maps).intersection(maps_for(sea.shot.parameters))
     maps = (*arguments.maps, *needed)
     return Job(name, uid, sea.shot, maps, arguments.compression, frames, arguments.area)
 

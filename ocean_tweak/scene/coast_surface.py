@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 import math
-import zlib
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Ocean, OceanParameters, Places
-from ..core.numerics.memo import MEMO, total_bytes
+from ..core import Ocean, OceanParameters
+from ..core.numerics.memo import MEMO
+from ..core.sea.over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed
 from ..core.synthesis.channels import CHANNELS
+from ..core.waves.coast.mesh import CoastMesh
 from ..nodes.held import COAST
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
 from . import held_sea, vertex_attributes, water_material, wet_bed
@@ -25,17 +26,6 @@ _COAST = "ocean_tweak_coast"
 #: of an ocean that another mesh shows: its own Render and Display As
 _SHOWN_AS = "ocean_tweak_shown_as"
 _USUALLY = {"hide_render": False, "display_type": "TEXTURED"}
-#: what the material reads of the waves
-_CHANNELS = ("displacement", "velocity", "cusp")
-#: m offshore that the mesh goes on, and how much longer each step is there than the one before
-_OFFSHORE, _GROWS = 2500.0, 1.06
-#: m of land behind the farthest waterline that it covers
-_BEHIND = 10.0
-
-#: m of water that is drawn where there is none
-_FILM = 0.02
-
-_MESHES = "meshes of coasts"
 
 
 def coast_of(ocean: bpy.types.Object) -> bpy.types.Object | None:
@@ -105,8 +95,8 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
         item.data.materials.clear()
         item.data.materials.append(material)
     sea = MEMO.get("seas over beds", plan.over_bed, lambda: Ocean(plan.over_bed))
-    grid = MEMO.get(_MESHES, (sea.coast.ground, plan.scale), lambda: _Grid(sea))
-    fits = len(item.data.vertices) == grid.x.size and TEXTURE_COORDINATES in item.data.uv_layers
+    grid = mesh_over_bed(sea)
+    fits = len(item.data.vertices) == grid.vertices and TEXTURE_COORDINATES in item.data.uv_layers
     if not fits or item.get(_COAST) != grid.tag:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
@@ -115,50 +105,10 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
     wet_bed.refresh(ocean, sea, plan)
 
 
-class _Grid:
-    """Places over a bed and before it, in lines across the march."""
-
-    def __init__(self, sea: Ocean) -> None:
-        assert sea.coast is not None
-        ground = sea.coast.ground
-        wet = np.flatnonzero((ground.depth > 0.0).any(axis=1))
-        last = min(wet[-1] + 1 + math.ceil(_BEHIND / ground.step), ground.rows - 1)
-        along = ground.step * np.arange(last + 1, dtype=np.float64)
-        steps = ground.step * _GROWS ** np.arange(1, 400)
-        before = -np.cumsum(steps)
-        along = np.concatenate((before[before > -_OFFSHORE][::-1], along))
-        across = ground.step * np.arange(ground.columns + 1, dtype=np.float64)
-        self.rows, self.columns = len(along), len(across)
-        along, across = np.meshgrid(along + ground.first[0], across + ground.first[1], indexing="ij")
-        c, s = math.cos(ground.turn), math.sin(ground.turn)
-        self.x, self.y = (c * along - s * across).ravel(), (s * along + c * across).ravel()
-        depth = ground.between(self.x, self.y).read(ground.depth)
-        # what is drawn on land is a film of water
-        self.depth = np.maximum(depth, _FILM).astype(np.float32)
-        places = np.stack((self.x, self.y), axis=-1) / sea.parameters.domain_size
-        # as on the ocean's own mesh
-        self.texture_coordinates = (places + 0.5 / sea.parameters.resolution).astype(np.float32)
-        self.tag = (
-            f"{self.rows} {self.columns} {ground.step!r} {ground.first!r} {ground.turn!r} "
-            f"{zlib.crc32(self.depth)}"
-        )
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of the places."""
-        return total_bytes((self.x, self.y, self.depth, self.texture_coordinates))
-
-    def corners(self) -> NDArray[np.int32]:
-        """(quads, 4) vertices of each quad, counter-clockwise from above."""
-        number = np.arange(self.rows * self.columns, dtype=np.int32).reshape(self.rows, self.columns)
-        quads = (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
-        return np.stack(quads, axis=-1).reshape(-1, 4)
-
-
-def _fill(mesh: bpy.types.Mesh, grid: _Grid) -> None:
+def _fill(mesh: bpy.types.Mesh, grid: CoastMesh) -> None:
     corners = grid.corners()
     mesh.clear_geometry()
-    mesh.vertices.add(grid.x.size)
+    mesh.vertices.add(grid.vertices)
     mesh.loops.add(corners.size)
     mesh.polygons.add(len(corners))
     mesh.loops.foreach_set("vertex_index", corners.reshape(-1))
@@ -170,26 +120,25 @@ def _fill(mesh: bpy.types.Mesh, grid: _Grid) -> None:
     mesh.attributes.new(COAST_DEPTH, "FLOAT", "POINT").data.foreach_set("value", grid.depth)
 
 
-def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: _Grid, plan: Plan) -> None:
+def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: CoastMesh, plan: Plan) -> None:
     """Put the sea of the plan's moment on the vertices."""
-    assert sea.coast is not None
-    wanted = [name for name in _CHANNELS if name == "displacement" or name in plan.channels]
-    surface = sea.surface(plan.time, wanted, Places(grid.x, grid.y))
-    fields = {name: surface[name] for name in wanted}
-    scale = np.float32(plan.scale)
-    moved = fields["displacement"] * scale
+    wanted = plan.channels & set(OVER_BED_CHANNELS) | {"displacement"}
+    x, y = grid.x[: grid.vertices], grid.y[: grid.vertices]
+    fields = over_bed(sea, x, y, plan.time, wanted)
     if "velocity" in fields:
         fields["velocity"] = fields["velocity"] * np.float32(plan.scale * plan.rate)
-    if "foam" in plan.channels:
-        foam, breaking, age = sea.coast.foam(grid.x, grid.y, plan.time)
-        fields |= {"foam": foam, "breaking": breaking, "foam_age": age}
-    fields["displacement"] = moved
+    fields["displacement"] = fields["displacement"] * np.float32(plan.scale)
     for name, field in fields.items():
         vertex_attributes.put(mesh, CHANNELS[name], field)
-    places = np.stack((grid.x * plan.scale, grid.y * plan.scale, np.zeros(grid.x.size)), axis=-1)
-    places = (places + moved).astype(np.float32)
+    places = (_at_rest(grid, plan) + fields["displacement"]).astype(np.float32)
     mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
     mesh.update_tag()
+
+
+def _at_rest(grid: CoastMesh, plan: Plan) -> Array:
+    """(vertices, 3) places of the vertices on still water, Blender units."""
+    x, y = grid.x[: grid.vertices], grid.y[: grid.vertices]
+    return np.stack((x * plan.scale, y * plan.scale, np.zeros(grid.vertices)), axis=-1)
 
 
 def _new(ocean: bpy.types.Object, parameters: OceanParameters) -> bpy.types.Object:

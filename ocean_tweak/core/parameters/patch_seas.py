@@ -19,6 +19,8 @@ _FEWEST, _MOST = 16, 8192
 
 #: additional outputs: the summable fields of each part of the sea, besides those of the sum
 PARTS = "parts"
+#: and what is over the bed of a sea with a coast, besides the tile of the open sea
+OVER_BED = "coast"
 
 
 def rotations(parameters: OceanParameters) -> tuple[float, ...]:

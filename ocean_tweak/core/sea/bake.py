@@ -11,14 +11,17 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from ..data.frames import Frame
 from ..numerics.memo import MEMO
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import PARTS
+from ..parameters.patch_seas import OVER_BED, PARTS, open_sea
 from ..parameters.shot import Moment, Shot
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .memory import check_memory, memory_need, remedy_for
 from .ocean import Ocean
+from .over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed
 from .regions import TILE, Area, Tile
 
 
@@ -27,10 +30,12 @@ class FrameSink(Protocol):
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The fields that a frame must have; with PARTS, also the summable fields of each part."""
+        """The fields that a frame must have; with PARTS, also the summable fields of each part, and with
+        OVER_BED those over the bed, where the tile is that of the open sea."""
 
     def write(self, frame: Frame, fields: SurfaceFields, *others: SurfaceFields) -> tuple[Path, ...]:
-        """Store a frame's fields: those of the first patch, of the others and of the parts. Returns where."""
+        """Store a frame's fields: those of the first patch, of the others, of the parts and over the bed.
+        Returns where."""
 
 
 class BakedFrame(NamedTuple):
@@ -48,19 +53,36 @@ class ShotSeas:
     """Computes the surfaces of a shot's frames on one thread; fastest for consecutive frames.
 
     on : where to compute them: on the tile of each patch, or in an area for their sum
+    with_bed : whether OVER_BED may be requested; the tile is then that of the open sea
     """
 
-    def __init__(self, shot: Shot, on: Tile | Area = TILE) -> None:
+    def __init__(self, shot: Shot, on: Tile | Area = TILE, with_bed: bool = False) -> None:
         self.shot = shot
         self.on = on
+        self._with_bed = with_bed
         self._sea: Ocean | None = None
+        self._whole: Ocean | None = None
 
     def sea(self, frame: Frame) -> Ocean:
         """The sea of a frame; the previous one is reused if the parameters are the same."""
         parameters = self.shot.at(frame).parameters
+        if self._with_bed:
+            parameters = open_sea(parameters)
         if self._sea is None or self._sea.parameters != parameters:
             self._sea = Ocean(parameters, workers=1)
         return self._sea
+
+    def over_bed(self, frame: Frame) -> SurfaceFields:
+        """OVER_BED_CHANNELS of a frame at the places of the coast's mesh."""
+        moment = self.shot.at(frame)
+        if self._whole is None or self._whole.parameters != moment.parameters:
+            self._whole = Ocean(moment.parameters, workers=1)
+        places = mesh_over_bed(self._whole)
+        fields = over_bed(self._whole, places.x, places.y, moment.time)
+        for name in OVER_BED_CHANNELS if moment.rate != 1.0 else ():
+            if name in CHANNELS and CHANNELS[name].is_rate:
+                fields[name] = fields[name] * np.float32(moment.rate)
+        return SurfaceFields(float(moment.time), fields)
 
     def seas(self, frame: Frame) -> tuple[Ocean, ...]:
         """The seas whose fields make up a frame: each patch, or their sum in an area."""
@@ -73,14 +95,16 @@ class ShotSeas:
             sea.prepare()
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
-        """Fields of each of its seas in a frame, and ADDING of each part if PARTS is requested.
+        """Fields of each of its seas in a frame, ADDING of each part if PARTS is requested, and what is over
+        the bed if OVER_BED is.
 
         Velocity is per second of the shot.
         """
-        made = self._made(frame, self.seas(frame), frozenset(outputs) - {PARTS}, self.on)
-        if PARTS not in outputs:
-            return made
-        return (*made, *self._made(frame, self.sea(frame).parts, ADDING, TILE))
+        outputs = frozenset(outputs)
+        made = self._made(frame, self.seas(frame), outputs - {PARTS, OVER_BED}, self.on)
+        if PARTS in outputs:
+            made += self._made(frame, self.sea(frame).parts, ADDING, TILE)
+        return (*made, self.over_bed(frame)) if OVER_BED in outputs else made
 
     def _made(
         self, frame: Frame, seas: tuple[Ocean, ...], outputs: frozenset[str], on: Tile | Area
@@ -123,14 +147,15 @@ def bake(
     that separate patches do not have.
     """
     _check(shot.parameters, sink, workers, on)
-    with_memory = ShotSeas(shot, on)
+    with_bed = OVER_BED in sink.outputs
+    with_memory = ShotSeas(shot, on, with_bed)
     wanted = sink.outputs & OF_MEMORY if on == TILE else frozenset()
     own = threading.local()
 
     def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
         started += time.perf_counter()
         if not hasattr(own, "surfaces"):
-            own.surfaces = ShotSeas(shot, on)
+            own.surfaces = ShotSeas(shot, on, with_bed)
         fields, *others = own.surfaces.frames(frame, sink.outputs - wanted)
         if foam is not None:
             fields = fields.including(foam)
@@ -174,8 +199,8 @@ def _check(parameters: OceanParameters, sink: FrameSink, workers: int, on: Tile 
         raise ValueError(
             "masks: they lie over the sea, not over its patches, which repeat: merge the patches"
         )
-    if is_cascade and not sink.outputs <= {*ADDING, PARTS}:
-        others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS}))
+    if is_cascade and not sink.outputs <= {*ADDING, PARTS, OVER_BED}:
+        others = ", ".join(sorted(sink.outputs - {*ADDING, PARTS, OVER_BED}))
         raise ValueError(f"outputs = {others}: do not add up over patches; bake {', '.join(sorted(ADDING))}")
     need = memory_need(parameters, sink.outputs, on=on).peak(workers)
     samples = on.resolution if isinstance(on, Area) else parameters.resolution

@@ -11,10 +11,11 @@ from ..data.printable import readable_bytes
 from ..numerics.machine import usable_memory
 from ..numerics.memo import MEMO, VARIABLE
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.patch_seas import PARTS, merged_bands, parts
+from ..parameters.patch_seas import OVER_BED, PARTS, merged_bands, open_sea, parts
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, memory_groups
 from ..synthesis.transforms import term
 from ..waves.coast.ground import Ground
+from ..waves.coast.mesh import places_over
 from ..waves.contribution import Gives, MemoryNeed
 from ..waves.kinds import KINDS
 from .coast_pictures import most_frequencies
@@ -35,6 +36,8 @@ _LOOKING_BACK = 96
 
 #: bytes a sample over a bed: components there and derivatives, and what they are made of
 _OVER_BED = 160
+#: and a place of the mesh over it, read and written
+_A_PLACE = 600
 
 #: what lowers the memory of a sea, and that of a coast
 _FEWER_SAMPLES = "lower the resolution or the number of workers"
@@ -53,6 +56,8 @@ def memory_need(
     """Memory that a sea needs for the requested outputs; a sea of several patches holds all of them at
     once."""
     outputs = frozenset(outputs)
+    if OVER_BED in outputs:
+        return _need_over_bed(parameters, outputs - {OVER_BED}, precision)
     if PARTS in outputs:
         return _need_with_parts(parameters, outputs - {PARTS}, precision)
     if isinstance(on, Area):
@@ -89,6 +94,15 @@ def _need_with_parts(parameters: OceanParameters, outputs: frozenset[str], preci
     )
 
 
+def _need_over_bed(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
+    """Memory of the open sea's tile, of the coast and of the mesh over its bed."""
+    tile, coast = memory_need(open_sea(parameters), outputs, precision), coast_need(parameters)
+    mesh = _A_PLACE * places_over(ground_of(parameters))
+    return MemoryNeed(
+        tile.state + coast.state, max(tile.building, coast.building), tile.surface + coast.surface + mesh
+    )
+
+
 def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precision: str) -> MemoryNeed:
     """Memory of all parts, plus the summed components on the merged grid."""
     separate = merged_bands(parameters) if parameters.merged_resolution else parameters
@@ -113,16 +127,22 @@ def _need_of_parts(parameters: OceanParameters, outputs: frozenset[str], precisi
     return MemoryNeed(state, max(need.building for need in needs), surface)
 
 
-def coast_need(parameters: OceanParameters) -> MemoryNeed:
-    """That of what becomes of waves over a bed; nothing without one."""
-    if parameters.coast is None or not parameters.has_coast:
-        return MemoryNeed(0, 0, 0)
+def ground_of(parameters: OceanParameters) -> Ground:
+    """The bed of a sea with a coast, as waves meet it. Raises ParameterError."""
+    assert parameters.coast is not None
     first = parameters.patches[0] if parameters.patches else None
     size, resolution = parameters.domain_size, parameters.resolution
-    ground = Ground.of(
+    return Ground.of(
         parameters.coast, first.domain_size if first else size, first.resolution if first else resolution,
         first.rotation if first else 0.0, parameters.water.depth,
     )  # fmt: skip
+
+
+def coast_need(parameters: OceanParameters) -> MemoryNeed:
+    """That of what becomes of waves over a bed; nothing without one."""
+    if not parameters.has_coast:
+        return MemoryNeed(0, 0, 0)
+    ground = ground_of(parameters)
     samples, count = ground.rows * ground.columns, most_frequencies(parameters)
     return MemoryNeed(16 * count * samples, 24 * count * samples, _OVER_BED * samples)
 

@@ -236,7 +236,7 @@ def check_repeats(sea: OceanParameters) -> None:
         raise ParameterError(
             "coast", "given",
             "the waves over its bed do not repeat with the domain, as a tile's do: ask for an Area or Places "
-            "(--area on the command line), or set coast.muted",
+            "(--area or --maps disp,coast on the command line), or set coast.muted",
         )  # fmt: skip
     for index, layer in enumerate(sea.layers):
         if Gives.FIELDS in layer.gives and not layer.muted:

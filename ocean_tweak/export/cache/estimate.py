@@ -23,11 +23,13 @@ from ...core.data.printable import readable_bytes
 from ...core.foam.model import LATTICE_RATE
 from ...core.foam.threshold import foam_outlook
 from ...core.numerics.machine import usable_cores, usable_memory
-from ...core.parameters.patch_seas import PARTS, parts
+from ...core.parameters.patch_seas import OVER_BED, PARTS, open_sea, parts
 from ...core.parameters.shot import OCEAN_TIME, Shot
 from ...core.sea.bake import ShotSeas
-from ...core.sea.memory import TABLES
+from ...core.sea.memory import TABLES, ground_of
+from ...core.sea.over_bed import mesh_over_bed, over_bed
 from ...core.synthesis.channels import OF_MEMORY, SurfaceFields, is_put_together
+from ...core.waves.coast.ground import LEAST_RIM
 from .job import CacheError, Job
 
 #: the trial frame's samples along each side: few enough to take a moment. Images of more are smoother and
@@ -41,6 +43,8 @@ _TIMED_PATCHES = 1024
 _SHORT_FOAM = 0.4
 #: how much longer a sample takes each time that the side is doubled beyond the trial's: caches are small
 _LARGER_IS_SLOWER = 1.05
+#: steps of a coast between those of its trial
+_COARSER = 4.0
 #: s until one of several processes begins
 _START = 0.4
 #: bytes in which disks give room; a frame's record takes two of them with its name and its folder's
@@ -118,6 +122,7 @@ def process_memory(job: Job) -> int:
     if job.area is not None:
         return _memory_of_area(job)
     need = Ocean(parameters).memory(job.outputs - OF_MEMORY)
+    parameters = open_sea(parameters)
     sides = [patch.resolution for patch in parameters.patches if parameters.is_cascade]
     samples = max([*sides, parameters.resolution]) ** 2
     writing = _writing(job) * samples
@@ -147,9 +152,11 @@ def _frame_bytes(folder: Path, job: Job, frame: Frame) -> int:
     """Of a frame's files on the disk."""
     trial = _at(job, _TRIAL)
     scale = (job.resolution / trial.resolution) ** 2
-    fields = ShotSeas(trial.shot, trial.on).frames(frame, trial.outputs - {PARTS})
+    fields = _seas(trial).frames(frame, trial.outputs - {PARTS, OVER_BED})
     images = sum(_room(len(data) * scale) for data in _images(folder, trial, frame, fields))
-    return images + sum(_room(points.bytes) for points in job.points(folder, frame))
+    coast = job.coast(folder, frame)
+    others = [*job.points(folder, frame), *(() if coast is None else (coast,))]
+    return images + sum(_room(each.bytes) for each in others)
 
 
 class _Costs(NamedTuple):
@@ -167,6 +174,9 @@ class _Costs(NamedTuple):
 
 def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> float:
     costs, parameters = _costs(folder, job, frames[0]), job.shot.parameters
+    if OVER_BED in job.outputs:
+        pictures, over = _coast_costs(job, frames[0])
+        costs = costs._replace(sea=costs.sea + pictures, frame=costs.frame + over)
     most = foam_outlook(parameters).memory if job.outputs & OF_MEMORY else 0
     moments_a_frame = LATTICE_RATE / float(parameters.timing.fps)
     changes = _changes(job.shot)
@@ -198,6 +208,22 @@ def _costs(folder: Path, job: Job, frame: Frame) -> _Costs:
     )
 
 
+def _coast_costs(job: Job, frame: Frame) -> tuple[float, float]:
+    """Seconds to make the pictures of a coast, and for a frame over its bed, from a coarser one."""
+    moment = job.shot.at(frame)
+    sea = moment.parameters
+    assert sea.coast is not None
+    whole = ground_of(sea)
+    step = min(_COARSER * whole.step, sea.coast.rim / LEAST_RIM)
+    coarse = sea.replace(coast=replace(sea.coast, step=max(step, whole.step)), seed=_new_seed())
+    few, of = ground_of(coarse), Ocean(coarse, workers=1)
+    places, share = mesh_over_bed(of), whole.rows * whole.columns / (few.rows * few.columns)
+    pictures = cpu_seconds(lambda: of.coast and of.coast.pictures)
+    first = cpu_seconds(lambda: over_bed(of, places.x, places.y, moment.time))
+    later = cpu_seconds(lambda: over_bed(of, places.x, places.y, moment.time + 1))
+    return share * (pictures + max(0.0, first - later)), share * later
+
+
 def seconds_of_statistics(parameters: OceanParameters) -> float:
     """What the statistics of a sea take, from trials of others like it."""
 
@@ -227,7 +253,7 @@ def by_trials(resolution: int, larger: int, timed: Callable[[int], Sequence[floa
 
 
 def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
-    surfaces, parameters = ShotSeas(job.shot, job.on), job.shot.at(frame).parameters
+    surfaces, parameters = _seas(job), job.shot.at(frame).parameters
     with_foam, moment = job.outputs & OF_MEMORY, 0.0
 
     def sea() -> None:
@@ -239,7 +265,7 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
             surfaces.frames(frame, {PARTS})
 
     def made() -> None:
-        fields = surfaces.frames(frame, job.outputs - OF_MEMORY)
+        fields = surfaces.frames(frame, job.outputs - OF_MEMORY - {OVER_BED})
         if with_foam:
             foam = SurfaceFields(fields[0].time, dict.fromkeys(with_foam, fields[0].cusp))
             fields = (fields[0].including(foam), *fields[1:])
@@ -249,7 +275,7 @@ def _timed(folder: Path, job: Job, frame: Frame) -> _Costs:
     if with_foam:
         looks = foam_outlook(parameters).memory + 1
         # in an area the second would find what the first looked at
-        seas = (surfaces, *(() if job.area is not None else (ShotSeas(job.shot),)))
+        seas = (surfaces, *(() if job.area is not None else (_seas(job),)))
         moment = min(cpu_seconds(partial(of.frames, frame, with_foam)) for of in seas) / looks
     if not parameters.patches:
         made()
@@ -277,6 +303,10 @@ def _images(folder: Path, job: Job, frame: Frame, fields: Sequence[SurfaceFields
     for sequence, of_patch in zip(job.sequences(folder, frame), fields, strict=False):
         for name in job.images:
             yield sequence.encoded(frame, of_patch, name)
+
+
+def _seas(job: Job) -> ShotSeas:
+    return ShotSeas(job.shot, job.on, OVER_BED in job.outputs)
 
 
 def _changes(shot: Shot) -> bool:

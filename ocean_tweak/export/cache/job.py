@@ -21,13 +21,16 @@ from ...core.data.printable import shown
 from ...core.foam.threshold import has_windrows
 from ...core.parameters.fingerprint import fingerprint, frame_fingerprint, hashed
 from ...core.parameters.ocean_parameters import OceanParameters
-from ...core.parameters.patch_seas import PARTS, parts
+from ...core.parameters.patch_seas import OVER_BED, PARTS, open_sea, parts
 from ...core.parameters.shot import Shot
+from ...core.sea.memory import ground_of
 from ...core.sea.placed_waves import check_repeats
 from ...core.sea.regions import TILE, Area, Tile, told_area
 from ...core.synthesis.channels import ADDING, MAPS, MOVING_MAP, OF_MEMORY, SurfaceFields, channels_of
+from ...core.waves.coast.mesh import coast_mesh
+from ..coast_points import CoastSequence
 from ..exr import COMPACT, COMPRESSION_ERROR, ExrSequence, halved_maps
-from ..frame_files import BAKED, POINTS
+from ..frame_files import BAKED, COAST, POINTS, frame_file
 from ..points import PointSequence
 
 _SEAL = "sha256"
@@ -158,9 +161,9 @@ class Job:
 
     @property
     def outputs(self) -> frozenset[str]:
-        """The outputs needed for its maps; PARTS for points."""
-        own = frozenset({PARTS}) if POINTS in self.maps else frozenset()
-        return own | channels_of(self.images)
+        """The outputs needed for its maps; PARTS for points, OVER_BED for a coast."""
+        own = {marker for name, marker in ((POINTS, PARTS), (COAST, OVER_BED)) if name in self.maps}
+        return frozenset(own) | channels_of(self.images)
 
     @property
     def images(self) -> tuple[str, ...]:
@@ -186,6 +189,13 @@ class Job:
         of_sea = parts(self.shot.at(frame).parameters)
         return tuple(PointSequence(folder, self.name, number, part) for number, part in enumerate(of_sea, 1))
 
+    def coast(self, folder: Path, frame: Frame) -> CoastSequence | None:
+        """The writer for what is over a frame's bed; None if that is not baked."""
+        if COAST not in self.maps:
+            return None
+        sea = self.shot.at(frame).parameters
+        return CoastSequence(folder, self.name, coast_mesh(ground_of(sea), sea.domain_size, sea.resolution))
+
     def sequence(self, folder: Path, frame: Frame) -> ExrSequence:
         """The image writer for a frame of one patch or of an area. Raises CacheError for several patches."""
         sequence, *others = self.sequences(folder, frame)
@@ -198,7 +208,8 @@ class Job:
         sequences = self.sequences(folder, frame)
         images = [(name, sequence.path(frame, name).name) for sequence in sequences for name in self.images]
         points = [path.name for sequence in self.points(folder, frame) for path in sequence.paths(frame)]
-        return [*images, *((POINTS, name) for name in points)]
+        coast = [] if COAST not in self.maps else [(COAST, frame_file(self.name, COAST, frame))]
+        return [*images, *((POINTS, name) for name in points), *coast]
 
     def write(self, folder: Path, frame: Frame, fields: Sequence[SurfaceFields]) -> Iterator[Path]:
         """Write a frame's files in the order of `files`. Yields each path once it is complete.
@@ -209,8 +220,12 @@ class Job:
         for sequence, own in zip(sequences, fields, strict=False):
             for name in self.images:
                 yield sequence.write_map(frame, own, name)
-        for points, own in zip(self.points(folder, frame), fields[len(sequences) :], strict=True):
+        coast = self.coast(folder, frame)
+        of_parts = fields[len(sequences) : None if coast is None else -1]
+        for points, own in zip(self.points(folder, frame), of_parts, strict=True):
             yield from points.write(frame, own)
+        if coast is not None:
+            yield coast.write(frame, fields[-1])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as in `bake.json`."""
@@ -273,15 +288,20 @@ def maps_for(parameters: OceanParameters, area: Area | None = None) -> tuple[str
     if area is not None:
         return tuple(MAPS)
     images = tuple(name for name in MAPS if not parameters.is_cascade or ADDING.issuperset(MAPS[name]))
-    return (*images, POINTS) if parameters.patches else images
+    points = (POINTS,) if parameters.patches else ()
+    return (*images, *points, *((COAST,) if parameters.has_coast else ()))
 
 
 def _check_maps(maps: tuple[str, ...], parameters: OceanParameters, area: Area | None) -> None:
     if area is not None:
         if POINTS in maps:
             raise ParameterError("maps", POINTS, "belong to patches, which repeat: an area has none")
+        if COAST in maps:
+            raise ParameterError("maps", COAST, "is the mesh over the bed: an area shows the bed by itself")
         return
-    check_repeats(parameters)
+    if COAST in maps and not parameters.has_coast:
+        raise ParameterError("maps", COAST, "needs a sea with a coast, and this one has none")
+    check_repeats(open_sea(parameters) if COAST in maps else parameters)
     if parameters.is_cascade and parameters.is_masked:
         raise ParameterError(
             "merged_resolution", parameters.merged_resolution,

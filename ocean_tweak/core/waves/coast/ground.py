@@ -28,7 +28,7 @@ _BEFORE = 5
 #: share of the flat rim in which the coast comes in; in the rest all waves of a frequency become one
 _COMES_IN = 0.75
 #: samples that the rim holds at least
-_LEAST_RIM = 12
+LEAST_RIM = 12
 #: samples of the march, at the most
 _MOST = 4096
 
@@ -65,8 +65,8 @@ class Ground:
         rows = math.ceil((along[1] - first[0]) / step) + 1
         patches = math.ceil((across[1] - first[1]) / domain_size - 1e-6)
         columns = patches * round(domain_size / step)
-        if coast.rim < _LEAST_RIM * step:
-            reason = f"must be at least {_LEAST_RIM * step:g} m, {_LEAST_RIM} samples of the waves"
+        if coast.rim < LEAST_RIM * step:
+            reason = f"must be at least {LEAST_RIM * step:g} m, {LEAST_RIM} samples of the waves"
             raise ParameterError("coast.rim", coast.rim, reason)
         for name, count in (("rows", rows), ("columns", columns)):
             if count > _MOST:
