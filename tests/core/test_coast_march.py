@@ -254,6 +254,17 @@ def test_breaking_waves_are_never_much_higher_than_the_surf_zone_allows():
     assert_allclose(np.abs(a[:, 20]), np.abs(calm[:, 20]), rtol=2e-3)
 
 
+@pytest.mark.parametrize("spacing", [1.0, 4.0])
+def test_over_a_shelf_waves_break_as_thornton_and_guza_have_it(spacing):
+    """d(H² Cg/8)/dx = -3√π/16 B³ f H⁷/(γ⁴ h⁵), their eq. 20 and 24, has over one depth a closed solution."""
+    h, a, omega, gamma = 3.0, 0.8, 0.8, 0.42
+    k = float(wave_number(omega, np.array(h)))
+    found = np.abs(propagate(np.full((41, 4), h), spacing, [omega], [0.0], breaking=[a])[0, :, 0])
+    rate = 3.75 * np.sqrt(np.pi) * (omega / (2.0 * np.pi)) / (gamma**4 * h**5 * group_speed(omega, k, h))
+    expected = (1.0 + rate * (2.0 * a) ** 5 * spacing * np.arange(41)) ** -0.2
+    assert_allclose(found, expected, rtol=1e-5)
+
+
 def test_what_breaks_does_not_depend_on_how_finely_it_is_marched():
     def last(spacing):
         n = int(240 / spacing)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -31,6 +32,7 @@ from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.sea.coast_outlook import coast_outlook
 from ocean_tweak.core.waves.coast.beds import BEDS, SPACING, grid
 from ocean_tweak.core.waves.coast.breakers import broken_share
+from ocean_tweak.core.waves.coast.parameters import repeats_after
 
 SIDE, SAMPLES, DEEP = 200.0, 64, 20.0
 STEP = SIDE / SAMPLES
@@ -59,6 +61,28 @@ def sea(bed: np.ndarray = BEACH, patches: tuple[Patch, ...] = (), **of_coast: ob
 
 def height(parameters: OceanParameters) -> float:
     return Ocean(open_sea(parameters)).statistics().resolved.significant_wave_height
+
+
+def test_behind_water_there_is_the_open_sea_again() -> None:
+    """Where a bed ends in water, past an islet, as before it: with the open sea's bytes."""
+    x, y = np.meshgrid(np.linspace(-100.0, 100.0, 101), np.linspace(-100.0, 100.0, 101))
+    parameters = sea(np.minimum(15.0, 0.3 * (np.hypot(x, y) - 20.0)))
+    behind = Places(*np.meshgrid(210.0 + STEP * np.arange(10), STEP * np.arange(20)))
+    over_bed, open_one = (
+        Ocean(each).surface(7.3, ALL, behind) for each in (parameters, open_sea(parameters))
+    )
+    for name in ALL:
+        assert_array_equal(over_bed[name] + 0.0, open_one[name] + 0.0)
+
+
+def test_the_two_ends_of_a_bed_meet() -> None:
+    """Its depth, 12 m at one end of the shore and 6 m at the other, has no step where the sea repeats."""
+    bed = np.linspace(12.0, 6.0, 101)[:, np.newaxis] * np.ones(101)
+    ground = Ocean(sea(bed)).coast.ground  # type: ignore[union-attr]
+    last = ground.depth[-1]
+    assert last[len(last) // 2] == pytest.approx(9.0, abs=0.2)
+    assert np.abs(last - np.roll(last, 1)).max() < 0.6
+    assert np.ptp(last) > 4.0
 
 
 @pytest.mark.parametrize("patches", [(), (Patch(SIDE, resolution=SAMPLES, rotation=0.4),)])
@@ -236,6 +260,27 @@ def test_beds_to_begin_with_let_waves_in_and_hold_land(name: str) -> None:
     parameters = sea(-heights, spacing=SPACING, rim=120.0, step=8.0)
     parameters = replace(parameters, domain_size=512.0)
     assert np.isfinite(Ocean(parameters).surface(3.0, on=Places(300.0, [20.0, 256.0])).displacement).all()
+
+
+def test_in_the_lee_of_a_wall_short_waves_are_lower_too() -> None:
+    bed = BEACH.copy()
+    bed[25:76, 50:53] = -1.0  # y from 50 to 150 m, at x = 100 m
+    coast = Ocean(sea(bed)).coast
+    assert coast is not None
+    ground, hs = coast.ground, coast.significant_height
+    assert coast.share_of_energy < 0.75
+    x, y = ground.first[0] + STEP * np.arange(ground.rows), ground.first[1] + STEP * np.arange(ground.columns)
+    lee, open_side = (
+        hs[np.ix_((x > 110.0) & (x < 130.0), near)].mean() for near in (np.abs(y - 100.0) < 15.0, y < 20.0)
+    )
+    assert lee < 0.45 * open_side
+
+
+def test_waves_repeat_as_soon_as_looks_random_and_a_loop_lets_them() -> None:
+    """After 512 s, or the largest whole part of a loop that is no longer."""
+    expected = ((None, 512), (8, 8), (512, 512), (600, 300), (1540, 385))
+    for loop, after in expected:
+        assert repeats_after(None if loop is None else Fraction(loop)) == after
 
 
 def test_json_both_ways() -> None:

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from ocean_tweak.core import Ocean, WaveLayer
 from ocean_tweak.core.sea.coast_waves import CoastWaves
 from ocean_tweak.core.waves.coast.runup import highest_run_up, run_up
-from tests.core.test_coast_sea import sea
+from tests.core.test_coast_sea import BEACH, sea
 
 #: of the test's bed
 SLOPE, SHORE = 0.065, 12.0 / 0.065
@@ -31,6 +31,20 @@ def test_run_up_is_that_of_stockdon_and_others() -> None:
     setup, swash = run_up(4.0, 9.81 * 11.0**2 / (2.0 * math.pi), np.array([0.1]))
     assert setup[0] == pytest.approx(0.96, abs=0.01)
     assert highest_run_up(setup, swash)[0] == pytest.approx(2.54, abs=0.01)
+
+
+def test_beyond_slopes_that_were_measured_the_next_counts() -> None:
+    """From 0.01 to 0.16 (Stockdon and others 2006, table 1)."""
+    setup, swash = run_up(2.0, 100.0, np.array([0.0, 0.01, 0.16, 0.9]))
+    assert_array_equal((setup[0], swash[0], setup[3], swash[3]), (setup[1], swash[1], setup[2], swash[2]))
+    assert setup[1] < setup[2]
+
+
+def test_in_the_lee_of_a_wall_waves_run_up_less() -> None:
+    bed = BEACH.copy()
+    bed[25:76, 70:73] = -1.0  # y from 50 to 150 m, at x = 140 m
+    plain, walled = (Ocean(sea(each)).coast.swash.highest for each in (BEACH, bed))  # type: ignore[union-attr]
+    assert walled.min() < 0.65 * plain.min()
 
 
 def test_waves_run_up_as_high_as_was_measured_and_seldom_so_high(coast: CoastWaves) -> None:

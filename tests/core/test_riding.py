@@ -163,6 +163,8 @@ def test_natural_periods_of_known_ships():
     assert 7.5 < large.heave == large.pitch < 9.5
     share = 0.373 + 0.023 * 25.4 / 9.5 - 0.043 * 1.75
     assert large.roll == pytest.approx(2.0 * share * 25.4 / math.sqrt(2.54))
+    largest = riding.natural_periods(800.0, 80.0, 25.0)  # beyond what the code was made for
+    assert largest.roll == pytest.approx(2.0 * 0.25 * 80.0 / math.sqrt(8.0))
     boat = riding.natural_periods(15.0, 4.7, 1.5)
     assert 3.0 < boat.heave < 4.0
     assert 5.0 < boat.roll < 6.5
