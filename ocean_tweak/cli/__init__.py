@@ -15,6 +15,7 @@ from ..export.cache.job import CacheError
 from ..export.cache.locks import Held
 from ..export.exr import ExrError
 from ..export.python_process import module_command
+from ..export.shelf import use_environment, use_folder
 from ..export.usd.library import UsdError
 from .arguments import make_parser
 from .outcome import FAILED, WRONG_ARGUMENTS, UsageError, message_of, remedy_of
@@ -41,7 +42,10 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
         return int(end.code or 0)
     if arguments.verbose or scene_oceans is None:  # otherwise set by the preferences in Blender
         logs.to_console(logs.LEVELS[min(arguments.verbose, len(logs.LEVELS) - 1)])
+    is_alone = scene_oceans is None  # in Blender the extension says where it keeps what takes long
     try:
+        if is_alone:
+            use_environment()
         return int(arguments.run(arguments, scene_oceans))
     except (*_EXPECTED, KeyboardInterrupt) as error:
         message = f"{message_of(error)}{remedy_of(error)}"
@@ -51,6 +55,8 @@ def main(argv: list[str] | None = None, scene_oceans: SceneOceans | None = None)
         _LOG.error("%s", message)
         return WRONG_ARGUMENTS if isinstance(error, (ParameterError, UsageError)) else FAILED
     finally:
+        if is_alone:
+            use_folder(None)
         logs.end_file()
         _flush()
 

@@ -20,7 +20,9 @@ from .. import __version__
 from ..core.data.frames import Frame, format_frames
 from ..core.data.printable import LONGEST, printable, readable_bytes
 from ..core.numerics.machine import usable_cores
-from ..core.sea.bake import BakedFrame
+from ..core.numerics.memo import MEMO
+from ..core.parameters.patch_seas import OVER_BED
+from ..core.sea.bake import BakedFrame, ShotSeas
 from ..core.sea.bake import bake as make_frames
 from ..core.sea.memory import check_memory, remedy_for
 from ..export import logs
@@ -39,6 +41,7 @@ from ..export.cache.locks import Held, claimed, let_go
 from ..export.cache.records import CacheSink, Finding, give_up_writing, remove_leftovers, unfinished
 from ..export.exr import ExrError
 from ..export.files import writable_folder
+from ..export.shelf import use_cache
 from ..export.spray import SpraySequence, WantedSpray, baked_spray
 from .checking import known_frames, wanted_frames
 from .outcome import DONE, FAILED, UsageError, message_of, remedy_of, shell_word
@@ -190,6 +193,7 @@ def _make_frames(
     stopped: Callable[[], bool],
 ) -> None:
     remove_leftovers(folder, job, frames)
+    use_cache(folder.parents[1])
     try:
         with closing(_frames(folder, job, frames, workers, stopped, progress.tell)) as making:
             for baked in making:
@@ -207,6 +211,7 @@ def _frames(
     tell: Callable[[Frame, str], None],
 ) -> Generator[BakedFrame, None, None]:
     if workers > 1:
+        _prepare(job, frames[0], tell)
         yield from make_in_processes(folder, job, frames, workers, stopped, tell)
         return
     sink = CacheSink(folder, job, tell)
@@ -216,6 +221,13 @@ def _frames(
             if baked is None:
                 return
             yield baked
+
+
+def _prepare(job: Job, frame: Frame, tell: Callable[[Frame, str], None]) -> None:
+    """Compute a coast's waves once, and keep them where all processes find them."""
+    if job.shot.parameters.has_coast:
+        ShotSeas(job.shot, job.on, OVER_BED in job.outputs).prepare(frame, tell)
+        MEMO.drop()
 
 
 def _worker_count(wanted: int | None, job: Job, frames: Sequence[Frame]) -> int:

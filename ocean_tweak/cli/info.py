@@ -16,7 +16,7 @@ from ..core.data.printable import readable_bytes
 from ..core.foam.threshold import foam_outlook
 from ..core.numerics.memo import MEMO
 from ..core.parameters.patch_seas import open_sea
-from ..core.sea.coast_outlook import coast_outlook
+from ..core.sea.coast_outlook import CoastOutlook, coast_cost, coast_outlook
 from ..core.sea.memory import beyond_budget, check_coast_memory, check_memory
 from ..core.sea.placed_waves import has_tile, makes_foam
 from ..core.sea.spray import expected_count, why_none
@@ -30,7 +30,7 @@ from ..core.waves.spectral import WaveLayer
 from ..export.cache.estimate import seconds_of_statistics, statistics_memory
 from ..export.sea_files import write_sea
 from .outcome import DONE, UsageError
-from .progress import duration
+from .progress import Sharing, duration
 from .seas import FileSea
 
 _LOG = logging.getLogger(__name__)
@@ -47,6 +47,7 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
     parameters = {name: sea.first_parameters() for name, sea in seas.items()}
     for name, of_sea in parameters.items():
         _foretell(name, of_sea)
+    coasts = {name: _over_bed(name, Ocean(of_sea)) for name, of_sea in parameters.items()}
     results = {name: Ocean(open_sea(of_sea.separate)).statistics() for name, of_sea in parameters.items()}
     if arguments.save is not None:
         _save(arguments.save, seas)
@@ -65,14 +66,14 @@ def run(arguments: argparse.Namespace, seas: Mapping[str, FileSea]) -> int:
                     kind.former_list or kind.kind.lower(): found.to_plain()
                     for kind, found in _outlooks(parameters[name])
                 },
-                **_coast(parameters[name]),
+                **({} if (coast := coasts[name]) is None else {"coast": coast.to_plain()}),
             }
             for name, statistics in results.items()
         }
         print(json.dumps(report, indent=2))
         return DONE
     for name, statistics in results.items():
-        print("\n".join(_report(name, parameters[name], statistics)))
+        print("\n".join(_report(name, parameters[name], statistics, coasts[name])))
     print(_kept())
     return DONE
 
@@ -131,12 +132,18 @@ def _outlooks(parameters: OceanParameters) -> list[tuple[type[Contribution], Out
     return [(kind, outlook) for kind, outlook in found if outlook is not None]
 
 
-def _coast(parameters: OceanParameters) -> dict[str, object]:
-    told = coast_outlook(Ocean(parameters))
-    return {} if told is None else {"coast": told.to_plain()}
+def _over_bed(name: str, sea: Ocean) -> CoastOutlook | None:
+    """Summary of a sea's coast, after what it takes was printed, with its progress; None without a coast."""
+    cost = coast_cost(sea)
+    if cost is None:
+        return None
+    _LOG.warning("%s: waves over the coast's bed: %s", name, cost.text())
+    return coast_outlook(sea, Sharing(f"{name}: waves over the coast's bed"))
 
 
-def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> list[str]:
+def _report(
+    name: str, parameters: OceanParameters, statistics: Statistics, coast: CoastOutlook | None
+) -> list[str]:
     share = f"{100.0 * statistics.resolved_share:.1f} % of the energy"
     state = sea_scales.sea_state(statistics.significant_wave_height)
     need = Ocean(parameters).memory()
@@ -173,9 +180,8 @@ def _report(name: str, parameters: OceanParameters, statistics: Statistics) -> l
         duration = float(parameters.repeats_after or 0)
         what = "loop" if parameters.loop_duration is not None else "coast: the sea repeats, as a loop"
         lines.append(f"  {what} of {duration:g} s: changes the speed of waves by at most {change:.2g} %")
-    of_coast = coast_outlook(Ocean(parameters))
-    lines += [f"  {line}" for line in of_coast.lines()] if of_coast is not None else []
-    warnings = [*statistics.warnings, *(of_coast.warnings if of_coast is not None else ())]
+    lines += [f"  {line}" for line in coast.lines()] if coast is not None else []
+    warnings = [*statistics.warnings, *(coast.warnings if coast is not None else ())]
     for _, outlook in _outlooks(parameters):
         lines += [f"  {line}" for line in outlook.lines()]
         warnings += outlook.warnings

@@ -44,6 +44,33 @@ class Seldom:
             self._tell(frame, doing)
 
 
+class Sharing:
+    """Shows which share of a long piece of work is done: on a terminal by a bar, else by a line from time to
+    time.
+
+    doing : what it is, such as "beach: waves over the bed"
+    """
+
+    def __init__(self, doing: str) -> None:
+        self._doing, self._stream = doing, sys.stderr
+        self._last, self._shown = time.monotonic(), -1
+
+    def __call__(self, done: float) -> None:
+        """Show the share, 0…1."""
+        percent, now = round(100.0 * done), time.monotonic()
+        if self._stream.isatty():
+            if percent != self._shown:
+                filled = _BAR * percent // 100
+                bar = "#" * filled + "." * (_BAR - filled)
+                end = "\n" if percent == 100 else ""
+                self._stream.write(f"\r{self._doing}: [{bar}] {percent:>3} %{end}")
+                self._stream.flush()
+        elif now - self._last >= _SILENCE:
+            self._last = now
+            print(f"{self._doing}: {percent} %", file=self._stream, flush=True)
+        self._shown = percent
+
+
 class Progress:
     """Prints the progress of a command.
 

@@ -39,6 +39,7 @@ from ..export.cache.job import CacheError, Job
 from ..export.cache.records import CacheSink, give_up_writing
 from ..export.exr import ExrError
 from ..export.python_process import environment, module_command
+from ..export.shelf import use_environment
 from .outcome import DONE, FAILED, message_of
 from .progress import Seldom
 from .stopping import WORKERS_PATIENCE, end_now
@@ -231,6 +232,7 @@ def main(argv: Sequence[str]) -> int:
         threading.Thread(target=_watch, args=(ended,), daemon=True).start()
         threading.Thread(target=_give_up, args=(ended, Path(argv[0])), daemon=True).start()
         logs.to_console(order["log"])
+        use_environment()
         folder = Path(argv[0])
         job = read_job(folder, parse_frames(order["asked"]) if order["asked"] else ())
         _make(folder, job, parse_frames(order["frames"]), ended)

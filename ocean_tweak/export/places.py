@@ -8,6 +8,8 @@ import re
 from pathlib import Path
 
 CACHE_VARIABLE = "OCEAN_TWEAK_CACHE"
+#: the folder for what takes long to compute
+SHELF_VARIABLE = "OCEAN_TWEAK_COASTS"
 
 _OF_WINDOWS = re.compile(r"[A-Za-z]:([\\/]|$)|\\\\")
 

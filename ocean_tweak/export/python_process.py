@@ -10,6 +10,10 @@ import os
 import sys
 from pathlib import Path
 
+from ..core.numerics.memo import MEMO
+from .places import SHELF_VARIABLE
+from .shelf import ArrayFiles
+
 PACKAGE = "ocean_tweak"
 _HOME = Path(__file__).resolve().parents[2]
 #: -I excludes the current folder and the environment; the import path is passed explicitly instead
@@ -29,9 +33,11 @@ def module_command(name: str) -> list[str]:
 def environment() -> dict[str, str]:
     """The environment for that command.
 
-    Each process is one of several workers, so it uses one thread.
+    Each process is one of several workers, so it uses one thread, and what takes long it finds where this one
+    keeps it.
     """
-    return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    kept = {SHELF_VARIABLE: str(MEMO.shelf.folder)} if isinstance(MEMO.shelf, ArrayFiles) else {}
+    return {**os.environ, **kept, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def _is_current_folder(entry: str) -> bool:

@@ -12,7 +12,10 @@ from ..core import ParameterError
 from ..core.data.printable import readable_bytes
 from ..core.numerics.memo import MEMO, UNITS, VARIABLE
 from ..export import logs
-from ..scene.preferences import preferences
+from ..export.shelf import use_environment
+from ..scene.preferences import preferences, user_folder
+
+_LOG = logging.getLogger(__name__)
 
 _LEVELS = (
     ("ERROR", "Errors", "What failed"),
@@ -28,6 +31,10 @@ def apply() -> None:
     logs.to_console(logging.WARNING if chosen is None else getattr(logging, chosen.log_level))
     is_automatic = chosen is None or chosen.memory_is_automatic or VARIABLE in os.environ
     MEMO.budget = None if is_automatic else chosen.memory * UNITS["mb"]
+    try:
+        use_environment(user_folder("coasts"))
+    except (OSError, ParameterError) as error:
+        _LOG.warning("waves over coasts are not kept on disk: %s", error)
 
 
 class OCEAN_AP_preferences(bpy.types.AddonPreferences):

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocean_tweak.cli import main
+from ocean_tweak.cli import main, progress
 from ocean_tweak.core import Area, Coast, Ocean, OceanParameters, Raster, Water
+from ocean_tweak.core.numerics.memo import MEMO
 from ocean_tweak.core.sea import coast_waves, memory
 from ocean_tweak.export.exr import read_image
 from ocean_tweak.export.sea_files import read_sea
@@ -42,6 +43,48 @@ def test_info_tells_heights_offshore_at_breaking_and_at_the_shore(
     assert saved is not None
     assert saved.depth is not None
     assert saved.depth.shape == (51, 51, 1)
+
+
+def test_info_tells_first_what_it_takes_and_finds_it_again(
+    coast: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("OCEAN_TWEAK_CACHE", str(tmp_path / "cache"))
+    MEMO.drop()
+    assert main(["info", *coast]) == 0
+    told = capsys.readouterr()
+    before = (
+        r"over the coast's bed: \d+ frequencies on .*: [\d.]+ kB, about \d+ s; they hold \d+ % of the energy"
+    )
+    assert re.search(before, told.err)
+    (path,) = (tmp_path / "cache" / "coasts").iterdir()
+    MEMO.drop()
+    with monkeypatch.context() as patched:
+        patched.setattr(coast_waves, "pictures", lambda *_: pytest.fail("they were made again"))
+        assert main(["info", *coast]) == 0
+    assert re.sub(r"made in.*?s;", "", capsys.readouterr().out) == re.sub(r"made in.*?s;", "", told.out)
+    path.write_bytes(path.read_bytes()[:-1])
+    MEMO.drop()
+    assert main(["info", *coast]) == 0
+    assert "the waves are computed again" in capsys.readouterr().err
+    assert MEMO.shelf is None
+
+
+def test_a_bake_s_processes_share_the_waves_over_the_bed(
+    coast: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("OCEAN_TWEAK_CACHE", raising=False)
+    own = ["bake", *coast, "--area", "240", "48", "-20", "0", "--out", str(tmp_path / "out")]
+    monkeypatch.setattr(progress, "_SILENCE", 0.0)
+    MEMO.drop()
+    assert main([*own, "--frames", "1-4", "--workers", "2"]) == 0
+    assert "waves over the coast's bed: 100 %" in capsys.readouterr().out
+    (path,) = (tmp_path / "out" / "coasts").iterdir()
+    written = path.stat().st_mtime_ns
+    assert len(list((tmp_path / "out").glob("*/*/*_disp.*.exr"))) == 4
+    MEMO.drop()
+    assert main([*own, "--frames", "5", "--workers", "1"]) == 0
+    assert path.stat().st_mtime_ns > written  # it was used
+    assert list((tmp_path / "out" / "coasts").iterdir()) == [path]  # and nothing of trials is kept
 
 
 def test_an_area_is_baked_and_a_tile_refused_in_words(

@@ -18,7 +18,9 @@ import weakref
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, Protocol, TypeVar, cast
+
+from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
 from .machine import usable_memory
@@ -43,6 +45,16 @@ _Value = TypeVar("_Value")
 _Name = tuple[str, Hashable]
 
 
+class Shelf(Protocol):
+    """Where arrays that take long to compute are kept beyond this process."""
+
+    def find(self, name: str, /) -> tuple[NDArray[Any], ...] | None:
+        """The arrays of a name, or None. What is there and cannot be used is reported, not raised."""
+
+    def keep(self, name: str, arrays: tuple[NDArray[Any], ...], /) -> None:
+        """Keep arrays under a name, if there is room; that there is none is reported, not raised."""
+
+
 class Memo:
     """Values by kind and key: the most recently used ones that fit the budget, and always the latest of each
     kind, as that is in use.
@@ -51,10 +63,12 @@ class Memo:
 
     budget : bytes, all kinds together; None for OCEAN_TWEAK_MEMORY or, if that is not set, a quarter of the
         memory of the machine or container
+    shelf : for arrays that take long to compute; None where there is none
     """
 
     def __init__(self, budget: int | None = None) -> None:
         self._budget = budget
+        self.shelf: Shelf | None = None
         self._parts: dict[str, int] = {}
         self._lock = threading.Lock()
         self._clock = itertools.count()

@@ -72,13 +72,18 @@ class ShotSeas:
             self._sea = Ocean(parameters, workers=1)
         return self._sea
 
+    def whole(self, frame: Frame) -> Ocean:
+        """The sea of a frame with its coast, of which the tile is not."""
+        parameters = self.shot.at(frame).parameters
+        if self._whole is None or self._whole.parameters != parameters:
+            self._whole = Ocean(parameters, workers=1)
+        return self._whole
+
     def over_bed(self, frame: Frame) -> SurfaceFields:
         """OVER_BED_CHANNELS of a frame at the places of the coast's mesh."""
-        moment = self.shot.at(frame)
-        if self._whole is None or self._whole.parameters != moment.parameters:
-            self._whole = Ocean(moment.parameters, workers=1)
-        places = mesh_over_bed(self._whole)
-        fields = over_bed(self._whole, places.x, places.y, moment.time)
+        moment, whole = self.shot.at(frame), self.whole(frame)
+        places = mesh_over_bed(whole)
+        fields = over_bed(whole, places.x, places.y, moment.time)
         for name in OVER_BED_CHANNELS if moment.rate != 1.0 else ():
             if name in CHANNELS and CHANNELS[name].is_rate:
                 fields[name] = fields[name] * np.float32(moment.rate)
@@ -89,10 +94,13 @@ class ShotSeas:
         sea = self.sea(frame)
         return (sea,) if isinstance(self.on, Area) else sea.patches
 
-    def prepare(self, frame: Frame) -> None:
-        """Compute the wave coefficients of a frame, which its surfaces share."""
-        for sea in self.seas(frame):
-            sea.prepare()
+    def prepare(self, frame: Frame, tell: Callable[[Frame, str], None]) -> None:
+        """Compute the waves of a frame, which its surfaces share.
+
+        tell : called repeatedly with the progress of those over a coast
+        """
+        for sea in (*self.seas(frame), *((self.whole(frame),) if self._with_bed else ())):
+            sea.prepare(lambda done: tell(frame, f"waves over the coast's bed: {100.0 * done:.0f} %"))
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
         """Fields of each of its seas in a frame, ADDING of each part if PARTS is requested, and what is over
@@ -169,7 +177,7 @@ def bake(
             for frame in frames:
                 begun = time.perf_counter()
                 if not under_way:  # computed once, before the workers need it
-                    with_memory.prepare(frame)
+                    with_memory.prepare(frame, tell)
                 foam = _foam(with_memory, frame, wanted, tell) if wanted else None
                 # do not count the wait for a worker
                 under_way.append(pool.submit(make, frame, begun - time.perf_counter(), foam))

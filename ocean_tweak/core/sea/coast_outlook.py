@@ -4,16 +4,47 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..data.printable import readable_bytes
+from ..numerics.machine import usable_cores
 from .coast_waves import CoastWaves
 from .ocean import Ocean
 
 #: share of broken waves from which on they begin to break
 _BEGINS = 0.1
+#: s of one core for a sample of a frequency: measured with 600 of them on 512²
+_SECONDS = 3.5e-7
+
+
+class CoastCost(NamedTuple):
+    """What waves over a bed will take.
+
+    frequencies, rows, columns : of the pictures
+    step : between their samples, m
+    bytes : that they take
+    share : of the energy of all waves, that of those which follow the bed
+    seconds : about as many on this machine, unless they were kept
+    """
+
+    frequencies: int
+    rows: int
+    columns: int
+    step: float
+    bytes: int
+    share: float
+    seconds: float
+
+    def text(self) -> str:
+        """A sentence without its end."""
+        return (
+            f"{self.frequencies} frequencies on {self.rows} x {self.columns} samples, {self.step:.3g} m "
+            f"apart: {readable_bytes(self.bytes)}, about {max(1.0, self.seconds):.0f} s; they hold "
+            f"{100.0 * self.share:.0f} % of the energy"
+        )
 
 
 class CoastOutlook(NamedTuple):
@@ -74,13 +105,30 @@ class CoastOutlook(NamedTuple):
         return {**numbers, "warnings": list(self.warnings)}
 
 
-def coast_outlook(sea: Ocean) -> CoastOutlook | None:
-    """Summary of a sea's coast, for which its pictures are computed; None without a coast."""
+def coast_cost(sea: Ocean) -> CoastCost | None:
+    """What the waves over a sea's bed will take, before they are computed; None without a coast."""
+    coast = sea.coast
+    if coast is None:
+        return None
+    rows, columns = coast.ground.depth.shape
+    frequencies, wet = len(np.unique(coast.incoming.number)), int((coast.ground.depth > 0.0).sum())
+    samples = frequencies * rows * columns
+    return CoastCost(
+        frequencies, rows, columns, coast.ground.step, 16 * frequencies * wet, coast.share_of_energy,
+        _SECONDS * samples / usable_cores(),
+    )  # fmt: skip
+
+
+def coast_outlook(sea: Ocean, tell: Callable[[float], None] = lambda done: None) -> CoastOutlook | None:
+    """Summary of a sea's coast, for which its pictures are computed; None without a coast.
+
+    tell : is told again and again which share of them is
+    """
     coast = sea.coast
     if coast is None:
         return None
     begun = time.perf_counter()
-    made = coast.pictures
+    made = coast.make(tell)
     seconds = time.perf_counter() - begun
     rows, columns = coast.ground.depth.shape
     return CoastOutlook(

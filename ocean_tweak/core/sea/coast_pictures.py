@@ -7,6 +7,7 @@ the waves of its frequency, each with its own wave vector; from there this sum i
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..numerics.memo import total_bytes
-from ..numerics.threads import default_workers
+from ..numerics.threads import default_workers, run_blocks
 from ..parameters.ocean_parameters import OceanParameters
 from ..spectral import dispersion
 from ..synthesis.coefficients import InitialState
@@ -27,6 +28,9 @@ from ..waves.coast.ground import Ground
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complexfloating]
+
+#: part of what pictures are kept under: another, whenever the same waves over the same bed become others
+_EDITION = 1
 
 #: energy of a wave over that of the highest, below which it is as good as none
 _FAINTEST = 1e-12
@@ -127,6 +131,19 @@ class Pictures:
         return (factor.astype(np.complex64) @ self.potential).real
 
 
+def fingerprint(sea: OceanParameters, waves: Incoming, ground: Ground) -> str:
+    """Name of all that pictures follow from, for keeping them on disk."""
+    numbers = (
+        _EDITION, sea.repeats_after, sea.water.depth, sea.water.gravity, sea.orbital_motion, ground.step,
+        ground.first, ground.rim_rows, ground.coast.breaking,
+    )  # fmt: skip
+    of = hashlib.sha256(repr(numbers).encode())
+    for array in (ground.depth, ground.late_on_rim, *waves[1:]):
+        of.update(repr((array.shape, array.dtype.str)).encode())
+        of.update(np.ascontiguousarray(array))
+    return of.hexdigest()
+
+
 def pictures(
     sea: OceanParameters,
     waves: Incoming,
@@ -150,14 +167,17 @@ def pictures(
     late = ground.late_on_rim[:, np.newaxis]
     elevation, potential = (np.empty((len(numbers), int(wet.sum())), np.complex64) for _ in range(2))
     depth = np.concatenate((np.broadcast_to(bed.depth[0], (rim, ground.columns)), bed.depth[1:]))
-    for index, frequency in enumerate(omega):
+
+    def finish(index: int) -> None:
         whole = np.concatenate((over_rim[index], marched[index, 1:]))
-        k = march.wave_numbers(frequency, depth, sea.water.gravity)
+        k = march.wave_numbers(omega[index], depth, sea.water.gravity)
         k = np.minimum(k, march.MOST_TURN / ground.step)
         wide = whole * _wider(k, depth if np.isfinite(deep) else np.inf)
         wide[:rim] += (1.0 - late) * (own[index] - wide[:rim])
         for target, field in ((elevation, whole), (potential, wide)):
             target[index] = field[wet]
+
+    run_blocks(finish, range(len(numbers)), workers)
     return Pictures(numbers, elevation, potential)
 
 

@@ -13,7 +13,7 @@ does not repeat. Where W is 0, nothing is added and the first factor is 1.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
@@ -32,7 +32,7 @@ from ..waves.coast.breakers import broken_share
 from ..waves.coast.ground import Ground
 from ..waves.contribution import OwnFoam
 from .coast_field import OverBed
-from .coast_pictures import Incoming, Pictures, incoming, pictures
+from .coast_pictures import Incoming, Pictures, fingerprint, incoming, pictures
 from .coast_swash import Swash
 from .memory import check_coast_memory
 from .part_waves import PartWaves, components, real_type
@@ -67,6 +67,7 @@ class CoastWaves:
     def __init__(self, sea: OceanParameters, parts: Sequence[PartWaves]) -> None:
         assert sea.coast is not None
         self._sea, self._parts, self._waves = sea, parts, parts[0]
+        self._pictures: Pictures | None = None
         waves, first = self._waves, self._waves.parameters
         self.ground = Ground.of(
             sea.coast, first.domain_size, first.resolution, waves.part.rotation, sea.water.depth
@@ -77,17 +78,41 @@ class CoastWaves:
         """The long waves that run ashore."""
         return incoming(self._sea, self._waves.initial_state, self.ground)
 
-    @cached_property
+    @property
     def pictures(self) -> Pictures:
         """What becomes of them; made once, whatever acts after the waves are drawn."""
-        # what a picture is made of
-        key = (self._waves.drawn_from, self.ground, self._waves.precision)
+        return self.make()
 
-        def make() -> Pictures:
-            check_coast_memory(self._sea)
-            return pictures(self._sea, self.incoming, self.ground)
+    @property
+    def is_made(self) -> bool:
+        """Whether the pictures are at hand, so that fields are quickly made."""
+        return self._pictures is not None or MEMO.find(_PICTURES, self._made_of) is not None
 
-        return MEMO.get(_PICTURES, key, make)
+    def make(self, tell: Callable[[float], None] = lambda done: None) -> Pictures:
+        """The pictures, where they are not at hand from the shelf or computed.
+
+        tell : is told again and again which share is computed; what it raises ends that
+
+        Raises MemoryError if the machine has too little memory.
+        """
+        if self._pictures is None:
+            self._pictures = MEMO.get(_PICTURES, self._made_of, lambda: self._found_or_made(tell))
+        return self._pictures
+
+    @property
+    def _made_of(self) -> tuple[OceanParameters, Ground, str]:
+        return self._waves.drawn_from, self.ground, self._waves.precision
+
+    def _found_or_made(self, tell: Callable[[float], None]) -> Pictures:
+        check_coast_memory(self._sea)
+        shelf, name = MEMO.shelf, fingerprint(self._sea, self.incoming, self.ground)
+        found = None if shelf is None else shelf.find(name)
+        if found is not None:
+            return Pictures(*found)
+        made = pictures(self._sea, self.incoming, self.ground, tell)
+        if shelf is not None:
+            shelf.keep(name, (made.numbers, made.elevation, made.potential))
+        return made
 
     def shares(self, x: Array, y: Array) -> Weights:
         """Of the open sea, at places in m."""

@@ -7,7 +7,7 @@ part without rotation or mask is computed directly; all others are summed on the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from functools import cached_property
 
@@ -117,8 +117,10 @@ class Ocean:
         """
         return memory_need(self.parameters, outputs, self.precision, on)
 
-    def prepare(self) -> None:
+    def prepare(self, tell: Callable[[float], None] = lambda done: None) -> None:
         """Compute the waves that all surfaces share; otherwise the first surface does so.
+
+        tell : is told again and again which share is done of what takes long: a coast's waves
 
         Examples
         --------
@@ -128,6 +130,8 @@ class Ocean:
         """
         for waves in self._parts:
             waves.initial_state  # noqa: B018
+        if self.coast is not None:
+            self.coast.make(tell)
 
     @property
     def initial_state(self) -> InitialState:

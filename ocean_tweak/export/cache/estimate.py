@@ -30,6 +30,7 @@ from ...core.sea.memory import TABLES, ground_of
 from ...core.sea.over_bed import mesh_over_bed, over_bed
 from ...core.synthesis.channels import OF_MEMORY, SurfaceFields, is_put_together
 from ...core.waves.coast.ground import LEAST_RIM
+from ..shelf import nothing_kept
 from .job import CacheError, Job
 
 #: the trial frame's samples along each side: few enough to take a moment. Images of more are smoother and
@@ -174,9 +175,10 @@ class _Costs(NamedTuple):
 
 def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> float:
     costs, parameters = _costs(folder, job, frames[0]), job.shot.parameters
-    if OVER_BED in job.outputs:
+    pictures = 0.0
+    if parameters.has_coast and (job.area is not None or OVER_BED in job.outputs):
         pictures, over = _coast_costs(job, frames[0])
-        costs = costs._replace(sea=costs.sea + pictures, frame=costs.frame + over)
+        costs = costs._replace(frame=costs.frame + over)
     most = foam_outlook(parameters).memory if job.outputs & OF_MEMORY else 0
     moments_a_frame = LATTICE_RATE / float(parameters.timing.fps)
     changes = _changes(job.shot)
@@ -194,7 +196,7 @@ def _seconds(folder: Path, job: Job, frames: Sequence[Frame], workers: int) -> f
     # foam is made beside the frame before
     path = seas + first + costs.frame + (alone - 1) * max(later, costs.frame)
     work = seas + first + (alone - 1) * later + alone * costs.frame
-    begin = _START if workers > 1 else 0.0
+    begin = (_START if workers > 1 else 0.0) + pictures / usable_cores()  # made once, for all processes
     return begin + max(path, workers * work / usable_cores())
 
 
@@ -218,7 +220,8 @@ def _coast_costs(job: Job, frame: Frame) -> tuple[float, float]:
     coarse = sea.replace(coast=replace(sea.coast, step=max(step, whole.step)), seed=_new_seed())
     few, of = ground_of(coarse), Ocean(coarse, workers=1)
     places, share = mesh_over_bed(of), whole.rows * whole.columns / (few.rows * few.columns)
-    pictures = cpu_seconds(lambda: of.coast and of.coast.pictures)
+    with nothing_kept():
+        pictures = cpu_seconds(of.prepare)
     first = cpu_seconds(lambda: over_bed(of, places.x, places.y, moment.time))
     later = cpu_seconds(lambda: over_bed(of, places.x, places.y, moment.time + 1))
     return share * (pictures + max(0.0, first - later)), share * later
@@ -329,6 +332,8 @@ def _at(job: Job, most: int, is_timed: bool = False) -> Job:
         of_foam = max(16, 2 * round(foam.resolution * samples / parameters.resolution / 2))
         foam = replace(foam, resolution=of_foam)
     few: OceanParameters = parameters.at_resolution(samples).replace(foam=foam)
+    if area is not None:  # what waves over a bed take is tried on their own
+        few = open_sea(few)
     if is_timed:
         few = few.replace(foam=replace(foam, half_life=min(foam.half_life, _SHORT_FOAM)))
         if samples < parameters.resolution:  # else the bake itself goes on with these waves
