@@ -83,11 +83,6 @@ class CoastWaves:
         """What becomes of them; made once, whatever acts after the waves are drawn."""
         return self.make()
 
-    @property
-    def is_made(self) -> bool:
-        """Whether the pictures are at hand, so that fields are quickly made."""
-        return self._pictures is not None or MEMO.find(_PICTURES, self._made_of) is not None
-
     def make(self, tell: Callable[[float], None] = lambda done: None) -> Pictures:
         """The pictures, where they are not at hand from the shelf or computed.
 
