@@ -90,6 +90,24 @@ def test_the_edge_is_where_the_hull_is():
     assert edge_error(flared, lambda z: 4.0 + z, [-0.5, 0.03, 0.37, 1.4]) < 0.1
 
 
+def test_ahead_of_a_sharp_bow_there_is_water():
+    """Where the bow itself is nearest to both of its sides, of which one lies as if it were inside."""
+    outline = np.array([(-4.0, -6.0), (4.0, 0.0), (-4.0, 6.0)])
+    rings = [
+        np.column_stack((size * outline, np.full(3, z))) for size, z in ((0.0, -1.0), (1.0, -1.0), (1.0, 2.0))
+    ]
+    plan = hull_plan(*lofted(rings))
+    _, rows, columns = plan.distance.shape
+    x, y = np.meshgrid(
+        plan.low[0] + plan.texel * (np.arange(columns) + 0.5),
+        plan.low[1] + plan.texel * (np.arange(rows) + 0.5),
+    )
+    # beyond or within each of the three sides by a texel
+    beyond = np.maximum(0.8 * np.abs(y) + 0.6 * (x - 4.0), -4.0 - x)
+    assert np.all(plan.distance[LEVELS // 2][beyond > plan.texel] > 0.0)
+    assert np.all(plan.distance[LEVELS // 2][beyond < -plan.texel] < 0.0)
+
+
 def test_an_open_boat_is_dry_up_to_its_rim_and_above():
     boat = hull_plan(*lathed([(0.0, -1.0), (3.0, -1.0), (4.0, 1.0)]))
     assert is_inside(boat, 0.0, 0.0, 0.0)

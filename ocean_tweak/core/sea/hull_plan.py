@@ -212,8 +212,7 @@ def _distances(pieces: _Pieces, inside: Mask, wall: Mask, grid: _Grid) -> Array:
     outwards = (aside * np.where(sides[0], 1.0, -1.0)[:, np.newaxis])[kept]
     level, middle, half = pieces.level[kept], middle[kept], 0.5 * along[kept]
     row, column = grid.texel_of(middle)
-    far = np.float64(BAND)
-    out, within = np.full(grid.shape, far), np.full(grid.shape, far)
+    out, within = np.full(grid.shape, float(BAND)), np.full(grid.shape, float(BAND))
     square = np.sum(half**2, axis=1)
     for down in range(-BAND, BAND + 1):
         for right in range(-BAND, BAND + 1):
@@ -226,8 +225,8 @@ def _distances(pieces: _Pieces, inside: Mask, wall: Mask, grid: _Grid) -> Array:
             is_out = np.sum(off * outwards, axis=1) > 0.0
             for field, those in ((out, known & is_out), (within, known & ~is_out)):
                 np.minimum.at(field, (level[those], i[those], j[those]), distance[those])
-    # beyond a corner two pieces at the same distance may disagree in sign: there the mask decides
-    nearer = np.where(np.abs(out - within) < 1e-6, wet | wall, out < within)
-    signed: Array = np.where(nearer, out, -within)
-    beyond = np.minimum(out, within) >= far
-    return np.where(beyond, np.where(inside & ~wall, -far, far), signed)
+    # beyond a sharp corner pieces disagree in sign: away from outlines the mask decides, on them the nearer
+    # piece, and of two as near the one whose outside it is
+    is_outside = np.where(wall, out < within + 1e-6, wet)
+    signed: Array = np.where(is_outside, 1.0, -1.0) * np.minimum(out, within)
+    return signed
