@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Geometry nodes that average an ocean's surface over larger and larger cells.
 
-A surface is a mesh in the layout of `nodes.surface`: vertices in x-fastest order, with the first ones of each
-row and column repeated at the end. It and its averages become points, one level after another, of which only
-the attributes matter.
+A surface is a mesh in the layout of `nodes.rest_grid`: vertices in x-fastest order, with the first ones of
+each row and column repeated at the end. It and its averages become points, one level after another, of which
+only the attributes matter.
 
 Each level averages 2 × 2 samples of the level before: sample j of nₖ lies at (j + ½)/nₖ of the period,
 between two samples of that level. Odd counts are halved and rounded up, with interpolation between samples.
@@ -30,7 +30,7 @@ from .names import (
     STRAIN,
     VELOCITY,
 )
-from .surface import CELL
+from .rest_grid import CELL
 from .versioned import GroupKind, node_group
 
 #: what is averaged
@@ -97,20 +97,28 @@ def patch_averages(
     counts : numbers of columns and rows
     """
     made = build.group(node_group(AVERAGES), {"Geometry": patch_carried(build, patch), **counts, **fade})
-    table = named_attribute(build, AVERAGES_TABLE, "FLOAT_VECTOR")
-    has_own = sample_index(build, patch, output(table, "Exists"), 0, "BOOLEAN")
-    _, _, less = coordinates(build, sample_index(build, patch, output(table, "Attribute"), 0, "FLOAT_VECTOR"))
-    count = whole_number(build, build.math("MULTIPLY", less, -1.0), "ROUND")
-    index = output(build.add("GeometryNodeInputIndex"), "Index")
-    told_there = sample_index(build, patch, output(table, "Attribute"), index, "FLOAT_VECTOR")
-    x, y, first = coordinates(build, told_there)
-    place = combined(build, x, y, build.math("MAXIMUM", first, 0.0))
-    levels = output(build.add("GeometryNodePoints", {"Count": count, "Position": place}), "Points")
-    own = {"Geometry": patch, "Levels": levels}
+    has_own, own_levels, _, _ = own_averages(build, patch)
+    own = {"Geometry": patch, "Levels": own_levels}
     geometry, levels = (
         build.switch("GEOMETRY", has_own, output(made, name), own[name]) for name in ("Geometry", "Levels")
     )
     return geometry, levels
+
+
+def own_averages(build: Builder, points: Socket) -> tuple[Socket, Socket, Socket, Socket]:
+    """Whether averages come after some points; the points that give the start of each level; and how many
+    columns and rows there are of them themselves."""
+    table = named_attribute(build, AVERAGES_TABLE, "FLOAT_VECTOR")
+    has_own = sample_index(build, points, output(table, "Exists"), 0, "BOOLEAN")
+    of_first = sample_index(build, points, output(table, "Attribute"), 0, "FLOAT_VECTOR")
+    columns, rows, less = coordinates(build, of_first)
+    count = whole_number(build, build.math("MULTIPLY", less, -1.0), "ROUND")
+    index = output(build.add("GeometryNodeInputIndex"), "Index")
+    told_there = sample_index(build, points, output(table, "Attribute"), index, "FLOAT_VECTOR")
+    x, y, first = coordinates(build, told_there)
+    place = combined(build, x, y, build.math("MAXIMUM", first, 0.0))
+    levels = output(build.add("GeometryNodePoints", {"Count": count, "Position": place}), "Points")
+    return has_own, levels, columns, rows
 
 
 def cells(build: Builder, columns: Socket, rows: Socket) -> Socket:

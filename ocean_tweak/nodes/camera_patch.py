@@ -18,8 +18,8 @@ from .averages import CARRIED, cells, patch_averages
 from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, coordinates, sample_index
 from .names import DISPLACEMENT, OTHERS, SLOPES, VELOCITY
+from .rest_grid import CELL, GRID_FACTS
 from .sample import OCEAN_INPUT, Spaces
-from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
 
 _INPUTS = (
@@ -69,7 +69,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     over = build.switch("FLOAT", _is_over(build, place, lies), 0.0, 1.0)
     bounded = {name: build.scaled(value, over) for name, value in whole.items()}
     whole = {name: build.switch("VECTOR", is_bounded, whole[name], bounded[name]) for name in CARRIED}
-    weighted = _weighted(build, whole, weight)
+    weighted = weighted_by(build, whole, weight)
     count = build.add("GeometryNodeAttributeDomainSize", {"Geometry": output(facts, "Geometry")})
     is_there = build.compare("GREATER_THAN", output(count, "Point Count"), 0)
     sums = {}
@@ -127,8 +127,8 @@ def _turned(
     }
 
 
-def _weighted(build: Builder, whole: Values, weight: Socket) -> Values:
-    """Sampled values multiplied by a varying weight."""
+def weighted_by(build: Builder, whole: Values, weight: Socket) -> Values:
+    """Values in the ocean's axes multiplied by a varying weight: its value, and its changes along x and y."""
 
     def product(a: Socket, b: Socket) -> Socket:
         return build.math("MULTIPLY", a, b)

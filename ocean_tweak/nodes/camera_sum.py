@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Geometry nodes for the values on a grid around the camera: the sum of an ocean's patches, or its mesh.
 
-Foam is taken from the points around the camera if there are any, otherwise from the ocean's mesh.
+Foam is taken from the points around the camera if there are any, otherwise from the ocean's mesh. Over a bed
+the sum is weighted and added to, `over_bed`; what does not repeat, such as wakes, is on top.
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ from ..core.parameters.patch import MOST_PATCHES
 from .averaged import AVERAGED, SOCKETS
 from .averages import AVERAGES, ocean_carried
 from .building import Builder, Plug, Socket, output
-from .camera_patch import CAMERA_PATCH
+from .camera_patch import CAMERA_PATCH, Values, weighted_by
 from .fields import alone, combined, coordinates, named_attribute
 from .names import BREAKING, CUSP, DISPLACEMENT, FOAM, FOAM_AGE, OTHERS, SLOPES, VELOCITY, WEIGHT
+from .over_bed import DEPTH, FOAM_OVER_BED, IS_THERE, OVER_BED, SHARE
+from .rest_grid import CELL, GRID_FACTS
 from .sample import OCEAN_INPUT
-from .surface import CELL, GRID_FACTS
 from .versioned import GroupKind, node_group
 
 #: meshes of the sea's patches, if it has several; with masks, a patch may have several too
@@ -44,6 +46,8 @@ OF_SUM = (
 )
 #: attributes, and values in the ocean's axes → sockets
 SUMMED = {**SOCKETS, FOAM: "Foam", BREAKING: "Breaking", FOAM_AGE: "Foam Age", CUSP: "Cusp"}
+#: output with the depth of still water, and whether there is a bed
+DEPTH_OVER_BED, HAS_BED = "Depth", "Has Bed"
 
 _INPUTS = (
     OCEAN_INPUT,
@@ -60,6 +64,8 @@ _OUTPUTS = (
         for name, socket in SUMMED.items()
         if name not in SOCKETS
     ),
+    Plug(DEPTH_OVER_BED, "NodeSocketFloat", None, "Of still water over a bed, m"),
+    Plug(HAS_BED, "NodeSocketBool", None, "Whether there is a bed"),
 )
 
 
@@ -81,15 +87,57 @@ def _build(tree: bpy.types.NodeTree) -> None:
     }
     whole = {**_weights(build, facts), "Corner": output(facts, "Corner")}
     whole |= {name: build.given(name) for name in ("Ocean", "Size", "Fade")}
-    for number, name in enumerate((*PATCH_INPUTS, AREA_INPUT), start=1):
-        of_patch = {"Weight": WEIGHT.format(number)} if name != AREA_INPUT else {"Repeats": False}
-        inputs = {**whole, **of_patch, **sums, "Patch": build.given(name)}
+    for number, name in enumerate(PATCH_INPUTS, start=1):
+        inputs = {**whole, "Weight": WEIGHT.format(number), **sums, "Patch": build.given(name)}
         patch = build.group(node_group(CAMERA_PATCH), inputs)
         sums = {socket: output(patch, socket) for socket in sums}
-    values = {name: sums[socket] for name, socket in SOCKETS.items()}
-    cusp = build.switch("FLOAT", is_one, _cusp(build, values[OTHERS]), own[CUSP])
+    bed = _bed(build, mesh, output(facts, "Corner"))
+    values = _over_bed(build, bed, {name: sums[socket] for name, socket in SOCKETS.items()})
+    foam = _foam_over_bed(build, bed, foam)
+    sums = {socket: values[name] for name, socket in SOCKETS.items()}
+    inputs = {**whole, "Repeats": False, **sums, "Patch": build.given(AREA_INPUT)}
+    area = build.group(node_group(CAMERA_PATCH), inputs)
+    values = {name: output(area, socket) for name, socket in SOCKETS.items()}
+    # of a mesh's own motion there is no strain to add the bed's to
+    strained = _cusp(build, values[OTHERS])
+    left, _, _ = coordinates(build, output(bed, SHARE))
+    over_bed = build.math("MAXIMUM", build.math("MULTIPLY", own[CUSP], left), strained)
+    of_mesh = build.switch("FLOAT", output(bed, IS_THERE), own[CUSP], over_bed)
+    cusp = build.switch("FLOAT", is_one, strained, of_mesh)
     shown = {**values, **foam, CUSP: cusp}
-    build.finish_with({socket: shown[name] for name, socket in SUMMED.items()})
+    told = {DEPTH_OVER_BED: output(bed, DEPTH), HAS_BED: output(bed, IS_THERE)}
+    build.finish_with({**{socket: shown[name] for name, socket in SUMMED.items()}, **told})
+
+
+def _bed(build: Builder, ocean: Socket, corner: Socket) -> bpy.types.Node:
+    """What a bed adds to the open sea at the grid's vertices."""
+    position = output(build.add("GeometryNodeInputPosition"), "Position")
+    inputs = {"Geometry": ocean, "Place": build.vector("ADD", position, corner)}
+    inputs |= {name: build.given(name) for name in ("Size", "Fade")}
+    return build.group(node_group(OVER_BED), inputs)
+
+
+def _over_bed(build: Builder, bed: bpy.types.Node, open_sea: Values) -> Values:
+    """Values that add up, over a bed."""
+    weighted = weighted_by(build, open_sea, output(bed, SHARE))
+    result = {}
+    for name, socket in SOCKETS.items():
+        whole = build.vector("ADD", weighted[name], output(bed, socket))
+        result[name] = build.switch("VECTOR", output(bed, IS_THERE), open_sea[name], whole)
+    return result
+
+
+def _foam_over_bed(build: Builder, bed: bpy.types.Node, foam: dict[str, Socket]) -> dict[str, Socket]:
+    """Foam, breaking and age with those over a bed: the age of that of which there is more."""
+    share, _, _ = coordinates(build, output(bed, SHARE))
+    of_bed = dict(
+        zip((FOAM, BREAKING, FOAM_AGE), coordinates(build, output(bed, FOAM_OVER_BED)), strict=True)
+    )
+    left = {name: build.math("MULTIPLY", foam[name], share) for name in (FOAM, BREAKING)}
+    more = build.compare("GREATER_THAN", of_bed[FOAM], left[FOAM], "FLOAT")
+    whole = {name: build.math("MAXIMUM", left[name], of_bed[name]) for name in left}
+    whole[FOAM_AGE] = build.switch("FLOAT", more, foam[FOAM_AGE], of_bed[FOAM_AGE])
+    return {name: build.switch("FLOAT", output(bed, IS_THERE), foam[name], whole[name]) for name in foam}
 
 
 def _of_mesh(build: Builder, facts: bpy.types.Node, is_moving: Socket) -> dict[str, Socket]:

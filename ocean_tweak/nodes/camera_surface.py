@@ -16,13 +16,14 @@ import bpy
 from .building import Builder, Plug, Socket, output
 from .camera_foam import CAMERA_FAN, CAMERA_FOAM, RING_FACTS
 from .camera_grid import CAMERA_GRID
-from .camera_sum import CAMERA_SUM, OF_SUM, SUMMED
+from .camera_sum import CAMERA_SUM, DEPTH_OVER_BED, HAS_BED, OF_SUM, SUMMED
 from .fields import alone, coordinates, named_attribute, sample_index, whole_number
 from .foam_pile import FOAM_PILE
 from .frame_warnings import joined_text
 from .globe import EARTH_RADIUS, curved_normal, reach_of
 from .names import (
     BREAKING,
+    COAST_DEPTH,
     CUSP,
     DISPLACEMENT,
     FOAM,
@@ -34,8 +35,8 @@ from .names import (
     TEXTURE_COORDINATES,
     VELOCITY,
 )
+from .rest_grid import GRID_FACTS
 from .sample import OCEAN_INPUT, Spaces
-from .surface import GRID_FACTS
 from .versioned import GroupKind, node_group
 
 #: lattice cells per shortest remaining wave
@@ -212,7 +213,8 @@ def _summed(build: Builder, sea: _Sea, size: Socket, foam: Socket) -> dict[str, 
     inputs |= {"Fade": build.given("Fade"), "Size": size, "Foam": foam}
     inputs["Has Foam"] = output(sea.of_foam, "Is There")
     made = build.group(node_group(CAMERA_SUM), inputs)
-    return {name: output(made, socket) for name, socket in SUMMED.items()}
+    values = {name: output(made, socket) for name, socket in SUMMED.items()}
+    return {**values, COAST_DEPTH: output(made, DEPTH_OVER_BED), HAS_BED: output(made, HAS_BED)}
 
 
 def _of_rings(build: Builder, sea: _Sea, size: Socket) -> Socket:
@@ -258,6 +260,7 @@ def _finished(
         name: ("FLOAT_VECTOR", value)
         for name, value in (("Normal", normal), ("Place", spaces.point_of_asker(place)), ("Rest", position))
     }
+    moved[COAST_DEPTH] = "FLOAT", values[COAST_DEPTH]
     # all at once, so that shared inputs are computed once
     for name, (data_type, value) in {**shown, **moved}.items():
         node.capture_items.new(data_type.removeprefix("FLOAT_"), name)
@@ -267,6 +270,8 @@ def _finished(
         is_vector = data_type == "FLOAT_VECTOR"
         own = spaces.direction_of_asker(node.outputs[name]) if is_vector else node.outputs[name]
         grid = build.store(grid, name, own, data_type)
+    deep = build.store(grid, COAST_DEPTH, node.outputs[COAST_DEPTH], "FLOAT")
+    grid = build.switch("GEOMETRY", values[HAS_BED], grid, deep)
     inputs = {"Custom Normal": node.outputs["Normal"]}
     grid = build.change("GeometryNodeSetMeshNormal", grid, inputs, mode="FREE", domain="POINT")
     piled = _piled(build, grid, node)
@@ -323,4 +328,4 @@ def _warnings(build: Builder, sea: _Sea, reach: Socket, reached: Socket) -> Sock
     return build.logic("OR", build.logic("OR", *shown[:2]), shown[2])
 
 
-CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 12, _build)
+CAMERA_SURFACE = GroupKind("Ocean Camera Surface", 13, _build)

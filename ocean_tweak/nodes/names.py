@@ -35,6 +35,10 @@ SLOPES, OTHERS = "ocean_tweak_slopes", "ocean_tweak_others"
 #: point attributes of an ocean's mesh by which patches 1, 2, … are multiplied; 1 where there is none
 WEIGHT = "ocean_tweak_weight_{}"
 
+#: point attributes of an ocean's geometry over a bed: share of the open sea, and how it changes along x and
+#: y per Blender unit; foam, breaking and age of waves that the bed breaks
+OPEN_SHARE, BED_FOAM = "ocean_tweak_open_share", "ocean_tweak_bed_foam"
+
 #: point attribute of what touches the water: 1 at the surface, 0 at the top of the wet band, linear
 WET = "wet"
 

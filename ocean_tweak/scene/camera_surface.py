@@ -45,15 +45,11 @@ def add_camera_surface(
     camera : None for the scene's active camera
     budget : largest number of vertices
 
-    Raises OceanObjectError if the object is not an ocean, or has a coast.
+    Raises OceanObjectError if the object is not an ocean.
     """
     if not is_ocean(ocean):
         raise OceanObjectError(f"{ocean.name} is not an ocean: choose one to show around the camera")
     parameters = settings_of(ocean).to_parameters(scene)
-    if parameters.has_coast:
-        raise OceanObjectError(
-            f"{ocean.name} has a coast, over which a camera surface would lie: switch Coast off"
-        )
     metres = float(metres_per_unit(scene))
     name = f"{ocean.name} Camera Surface"
     surface = bpy.data.objects.new(name, bpy.data.meshes.new(name))

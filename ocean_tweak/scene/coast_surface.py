@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
-from ..core.numerics.memo import MEMO
 from ..core.sea.over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed
 from ..core.synthesis.channels import CHANNELS
 from ..core.waves.coast.mesh import CoastMesh
 from ..nodes.held import COAST
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
-from . import held_sea, vertex_attributes, water_material, wet_bed
-from .plan import Plan, camera_surface_of
+from . import bed_points, held_sea, vertex_attributes, water_material, wet_bed
+from .plan import Plan, camera_surface_of, sea_over_bed
 from .settings import OceanObjectError, all_oceans, link_beside
 
 Array = NDArray[np.float64]
@@ -38,8 +37,20 @@ def is_ours(item: bpy.types.Object) -> bool:
     return _COAST in item
 
 
+def has_bed(ocean: bpy.types.Object) -> bool:
+    """Whether an ocean shows a coast, by a mesh over its bed or around a camera."""
+    return bed_points.points_of(ocean) is not None
+
+
 def remove(ocean: bpy.types.Object) -> None:
-    """Show an ocean by its own mesh again, if it had one over its bed."""
+    """Let an ocean be the open sea again, shown by its own mesh, if it had a coast."""
+    _remove_mesh(ocean)
+    if has_bed(ocean):
+        bed_points.remove(ocean)
+        dry_other_beds()
+
+
+def _remove_mesh(ocean: bpy.types.Object) -> None:
     item = coast_of(ocean)
     if item is not None:
         mesh = item.data
@@ -47,12 +58,11 @@ def remove(ocean: bpy.types.Object) -> None:
         if not mesh.users:
             bpy.data.meshes.remove(mesh)
         make_room(ocean)
-        dry_other_beds()
 
 
 def dry_other_beds() -> None:
     """Let no mesh be wet that is no bed of a coast any more."""
-    wet_bed.keep_only(ocean for ocean in all_oceans() if coast_of(ocean) is not None)
+    wet_bed.keep_only(ocean for ocean in all_oceans() if has_bed(ocean))
 
 
 def make_room(ocean: bpy.types.Object) -> None:
@@ -68,24 +78,34 @@ def make_room(ocean: bpy.types.Object) -> None:
 
 
 def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
-    """Make, move or remove the mesh over the bed.
+    """Make, move or remove what shows the sea over the bed: points in the ocean's geometry, and a mesh where
+    no surface around a camera shows these.
 
     Raises ParameterError for a bed that waves cannot reach, OceanObjectError for a mesh that is linked or
-    edited, or beside a camera surface.
+    edited.
     """
     if plan.over_bed is None:
         remove(ocean)
         return
-    surface = camera_surface_of(ocean)
-    if surface is not None:
-        raise OceanObjectError(f"{surface.name} would lie over the coast: remove the camera surface")
     present = coast_of(ocean)
     if ocean.library is not None:  # Blender discards changes to it
         name = ocean.name if present is None else present.name
         if present is not None:
             held_sea.say_nothing(present, COAST)  # the ocean's panel does
         raise OceanObjectError(f"{name} is linked and its coast stands still: make a library override")
-    item = present or _new(ocean, plan.over_bed)
+    sea = sea_over_bed(plan)
+    bed_points.refresh(ocean, sea, plan)
+    if camera_surface_of(ocean) is not None:
+        _remove_mesh(ocean)
+        held_sea.tell(bed_points.points_of(ocean), COAST, math.floor(plan.frame))
+    else:
+        _show(present or _new(ocean, plan.over_bed), ocean, sea, plan)
+    wet_bed.refresh(ocean, sea, plan)
+
+
+def _show(item: bpy.types.Object, ocean: bpy.types.Object, sea: Ocean, plan: Plan) -> None:
+    """Let a mesh show the sea over its bed."""
+    assert sea.coast is not None
     if item.data.is_editmode:
         raise OceanObjectError(f"{item.name} is in Edit Mode: leave Edit Mode to let its waves move")
     if item.data.users > 1:  # of a duplicate, or of what an override is of
@@ -94,7 +114,6 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
     if material is not None and list(item.data.materials) != [material]:
         item.data.materials.clear()
         item.data.materials.append(material)
-    sea = MEMO.get("seas over beds", plan.over_bed, lambda: Ocean(plan.over_bed))
     grid = mesh_over_bed(sea)
     fits = len(item.data.vertices) == grid.vertices and TEXTURE_COORDINATES in item.data.uv_layers
     if not fits or item.get(_COAST) != grid.tag:
@@ -102,7 +121,6 @@ def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
         item[_COAST] = grid.tag
     _move(item.data, sea, grid, plan)
     held_sea.tell(item, COAST, math.floor(plan.frame))
-    wet_bed.refresh(ocean, sea, plan)
 
 
 def _fill(mesh: bpy.types.Mesh, grid: CoastMesh) -> None:

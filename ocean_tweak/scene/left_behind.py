@@ -11,11 +11,21 @@ import bpy
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.horizon import HORIZON
 from ..nodes.versioned import is_of_kind
-from . import coast_surface, contact, float_carrier, floating, hull_cut, mask_place, patch_objects, spray
+from . import (
+    bed_points,
+    coast_surface,
+    contact,
+    float_carrier,
+    floating,
+    hull_cut,
+    mask_place,
+    patch_objects,
+    spray,
+)
 from .settings import was_ocean
 
-#: what a child is that reads its ocean no more than the ocean reads it
-_READ_BY_NO_OCEAN = (spray.is_ours, coast_surface.is_ours, mask_place.is_unread)
+#: what a child is that does not read its ocean
+_READS_NO_OCEAN = (spray.is_ours, coast_surface.is_ours, bed_points.is_ours, mask_place.is_unread)
 
 
 def clear() -> bool:
@@ -27,7 +37,7 @@ def clear() -> bool:
     deleted = {item for item in bpy.data.objects if was_ocean(item) and not item.users_collection}
     # an ocean is not referenced because of these: it is freed, and its child loses its parent
     parted = [each for each in bpy.data.objects if each.parent is None and each.library is None]
-    own = [each for each in parted if any(is_own(each) for is_own in _READ_BY_NO_OCEAN)]
+    own = [each for each in parted if any(is_own(each) for is_own in _READS_NO_OCEAN)]
     alone = [item for item in own if item.users_collection]
     for item in alone:
         _take_away(item)
@@ -62,5 +72,7 @@ def is_made_for_oceans(item: bpy.types.Object) -> bool:
     a patch or its spray."""
     kinds = (HORIZON, CAMERA_SURFACE)
     groups = [modifier.node_group for modifier in item.modifiers if modifier.type == "NODES"]
-    is_part = patch_objects.is_ours(item) or spray.is_ours(item) or coast_surface.is_ours(item)
-    return is_part or any(is_of_kind(group, kind) for group in groups for kind in kinds)
+    parts = (patch_objects, spray, coast_surface, bed_points)
+    return any(part.is_ours(item) for part in parts) or any(
+        is_of_kind(group, kind) for group in groups for kind in kinds
+    )

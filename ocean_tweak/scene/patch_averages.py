@@ -23,10 +23,23 @@ RealArray = NDArray[np.float32]
 
 
 def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], lost: float) -> None:
-    """Write a patch and its averages to points.
+    """Write a patch and its averages to points, at their places now.
 
     grid : of the patch, in Blender units
     fields : ADDING, (N+1, N+1, …) each, in Blender units
+    lost : mean square slope of the waves too short for these samples
+    """
+    places = grid.positions() + fields["displacement"].reshape(-1, 3)
+    write_points(mesh, places.reshape(fields["displacement"].shape), fields, lost)
+
+
+def write_points(
+    mesh: bpy.types.Mesh, places: RealArray, fields: Mapping[str, RealArray], lost: float = 0.0
+) -> None:
+    """Write samples and their averages to points.
+
+    places : (rows+1, columns+1, 3) of the samples, Blender units
+    fields : ADDING, (rows+1, columns+1, …) each, in Blender units
     lost : mean square slope of the waves too short for these samples
     """
     whole = {
@@ -35,8 +48,8 @@ def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], los
         SLOPES: _slopes(fields["slope"], lost),
         OTHERS: fields["strain"],
     }
-    table = _table(grid)
-    if len(mesh.vertices) != len(table) or AVERAGES_TABLE not in mesh.attributes:
+    table = _table(*places.shape[:2])
+    if len(mesh.vertices) != len(table) or not np.array_equal(_first_of(mesh), table[0]):
         mesh.clear_geometry()
         mesh.vertices.add(len(table))
         for name in (AVERAGES_TABLE, *whole):
@@ -45,11 +58,24 @@ def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], los
     for name, closed in whole.items():
         more = (wrapped(level) for level in averages(closed[:-1, :-1]))
         _put(mesh, name, np.concatenate([level.reshape(-1, 3) for level in chain([closed], more)]))
-    places = np.zeros_like(table)
-    places[: grid.vertices] = grid.positions()
-    places[: grid.vertices] += fields["displacement"].reshape(-1, 3)
-    _put(mesh, "position", places)
+    put_samples(mesh, "position", places)
     mesh.update_tag()
+
+
+def put_samples(mesh: bpy.types.Mesh, name: str, values: RealArray) -> None:
+    """Write an attribute of the samples only: (rows+1, columns+1, 3), or without the 3 for a number each."""
+    components = values.shape[2] if values.ndim == 3 else 1
+    whole = np.zeros((len(mesh.vertices), components), np.float32)
+    whole[: values.size // components] = values.reshape(-1, components)
+    if name not in mesh.attributes:
+        mesh.attributes.new(name, "FLOAT_VECTOR" if components == 3 else "FLOAT", "POINT")
+    mesh.attributes[name].data.foreach_set("vector" if components == 3 else "value", whole.reshape(-1))
+
+
+def _first_of(mesh: bpy.types.Mesh) -> RealArray | None:
+    """The first line of the table of its levels."""
+    attribute = mesh.attributes.get(AVERAGES_TABLE)
+    return None if attribute is None else np.array(attribute.data[0].vector, np.float32)
 
 
 def _slopes(slope: RealArray, lost: float) -> RealArray:
@@ -62,14 +88,14 @@ def _slopes(slope: RealArray, lost: float) -> RealArray:
     return result
 
 
-def _table(grid: Grid) -> RealArray:
+def _table(rows: int, columns: int) -> RealArray:
     """(points, 3): numbers of points of each level along x and y, and the index of its first one."""
-    sides = [grid.samples + 1]
-    while sides[-1] > 2:
-        sides.append(sides[-1] // 2 + 1)
-    *first, count = accumulate((side**2 for side in sides), initial=0)
+    sides = [(columns, rows)]
+    while max(sides[-1]) > 2:
+        sides.append((sides[-1][0] // 2 + 1, sides[-1][1] // 2 + 1))
+    *first, count = accumulate((x * y for x, y in sides), initial=0)
     table = np.zeros((count, 3), np.float32)
-    table[: len(sides)] = [(side, side, number) for side, number in zip(sides, first, strict=True)]
+    table[: len(sides)] = [(*side, number) for side, number in zip(sides, first, strict=True)]
     table[0, 2] = -len(sides)
     return table
 

@@ -40,7 +40,7 @@ from . import evaluation, foam_rings, held_sea, patch_averages, patch_points, ve
 from .grid_mesh import Grid
 from .ownership import remove_with_meshes
 from .patch_points import Points
-from .plan import COARSE, Plan, camera_surface_of, in_window, surface_modifier
+from .plan import COARSE, Plan, camera_surface_of, in_units, in_window, sea_over_bed, surface_modifier
 from .settings import OceanObjectError, is_ocean, link_beside, settings_of
 from .vertex_attributes import RealArray
 
@@ -283,7 +283,10 @@ def _refreshed_area(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object | N
         area = plan.placed.area
         cells = area.resolution - 1
         grid = Grid(area.size * cells / area.resolution * plan.scale, cells, cells)
-        _write(item.data, grid, placed_fields(plan.placed.whole, area, plan.time), plan, area.corner)
+        coast = None if plan.over_bed is None else sea_over_bed(plan).coast
+        afloat = None if coast is None else coast.afloat
+        fields = placed_fields(plan.placed.whole, area, plan.time, afloat)
+        _write(item.data, grid, fields, plan, area.corner)
         held_sea.tell(item, AREA, math.floor(plan.frame))
     return item
 
@@ -374,5 +377,5 @@ def _write(
 
 def _in_units(channel: Channel, field: RealArray, plan: Plan) -> RealArray:
     """A field in Blender units, per second of the scene."""
-    factor = (plan.scale if channel.scales else 1.0) * (plan.rate if channel.is_rate else 1.0)
+    factor = in_units(channel, plan)
     return field if factor == 1.0 else field * np.float32(factor)

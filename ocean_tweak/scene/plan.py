@@ -12,10 +12,12 @@ from typing import NamedTuple
 import bpy
 from mathutils import Matrix
 
-from ..core import Area, OceanParameters
+from ..core import Area, Ocean, OceanParameters
 from ..core.numerics.machine import usable_memory
+from ..core.numerics.memo import MEMO
 from ..core.parameters.patch_seas import open_sea
 from ..core.sea.placed_waves import repeating
+from ..core.synthesis.channels import Channel
 from ..nodes.camera_surface import CAMERA_SURFACE
 from ..nodes.modifier_inputs import get_input
 from ..nodes.versioned import is_of_kind
@@ -78,8 +80,7 @@ class Plan:
     time : the ocean's, s
     rate : seconds of it per second of the scene
     placed : waves omitted from the parameters; None for none
-    over_bed : the sea with its coast, which has a mesh of its own, and without which the parameters are; None
-        for the open sea
+    over_bed : the sea with its coast, without which the parameters are; None for the open sea
     """
 
     parameters: OceanParameters
@@ -126,6 +127,18 @@ class Plan:
         return _sea_in_viewport(
             self.parameters, min(COARSE, samples) if coarse else samples, self.has_own_render
         )
+
+
+def sea_over_bed(plan: Plan) -> Ocean:
+    """The sea of a plan that has a coast, with what is made once of it."""
+    assert plan.over_bed is not None
+    parameters = plan.over_bed
+    return MEMO.get("seas over beds", parameters, lambda: Ocean(parameters))
+
+
+def in_units(channel: Channel, plan: Plan) -> float:
+    """By what a channel's values are multiplied to be in Blender units, per second of the scene."""
+    return (plan.scale if channel.scales else 1.0) * (plan.rate if channel.is_rate else 1.0)
 
 
 def new_viewport_sea(parameters: OceanParameters, viewport_resolution: int) -> OceanParameters:

@@ -165,7 +165,7 @@ def forget_all() -> None:
 def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     """The ocean and objects that read it, as far as they need the extension; none if everything is baked."""
     surface = camera_surface_of(ocean)
-    coast = coast_surface.coast_of(ocean)
+    coast = (coast_surface.coast_of(ocean) or surface) if coast_surface.has_bed(ocean) else None
     over_bed = () if coast is None else (Need(coast.name, *_OVER_BED),)
     if settings_of(ocean).source == "LIVE":
         # a bake would not have the coast either

@@ -96,7 +96,7 @@ def of_a_frame(item: bpy.types.Object) -> Wanted:
     wanted = Wanted.FILES
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
-    if patch_objects.are_live(item) or spray.is_live(item) or coast_surface.coast_of(item) is not None:
+    if patch_objects.are_live(item) or spray.is_live(item) or coast_surface.has_bed(item):
         wanted |= AROUND_CAMERA
     return wanted
 

@@ -8,6 +8,8 @@ from bpy.props import IntProperty
 from ..core import ParameterError
 from ..scene.camera_surface import add_camera_surface, remove_camera_surface
 from ..scene.portability import neighbours_of
+from ..scene.refinement import show
+from ..scene.refresh import AROUND_CAMERA
 from ..scene.settings import OceanObjectError
 from .active_ocean import OfActiveOcean, refuse, shown_ocean
 
@@ -71,7 +73,9 @@ class OCEAN_OT_remove_camera_surface(OfActiveOcean, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it."""
-        remove_camera_surface(shown_ocean(context))
+        ocean = shown_ocean(context)
+        remove_camera_surface(ocean)
+        show(ocean, context.scene, AROUND_CAMERA)  # a coast has a mesh again
         return {"FINISHED"}
 
 

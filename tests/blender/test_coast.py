@@ -282,19 +282,6 @@ def test_an_edited_coast_is_told(ocean, coast, window):
     assert ocean.ocean_tweak.error == ""
 
 
-def test_a_coast_and_a_camera_surface_exclude_each_other(ocean, coast):
-    with pytest.raises(RuntimeError, match="switch Coast off"):
-        bpy.ops.ocean.add_camera_surface()
-    ocean.ocean_tweak.coast.use = False
-    bpy.ops.ocean.add_camera_surface()
-    ocean.ocean_tweak.coast.use = True
-    assert "remove the camera surface" in ocean.ocean_tweak.error
-    bpy.ops.ocean.remove_camera_surface()
-    bpy.context.scene.frame_set(2)
-    assert ocean.ocean_tweak.error == ""
-    assert ocean.hide_render
-
-
 def test_over_a_bake_the_coast_goes_on_live_and_says_so(ocean, coast, calm, bake, extension):
     scene = bpy.context.scene
     assert [need.name for need in extension("scene.portability").needs_of(ocean)] == ["Ocean Coast"]

@@ -111,19 +111,20 @@ def _cells(place: Array, size: float, resolution: int) -> tuple[NDArray[np.intp]
 
 
 def wrapped(field: RealArray, dtype: type | None = None) -> RealArray:
-    """(N+1, N+1, …) copy of a periodic (N, N, …) field, with the first row and column repeated at the end.
+    """(rows+1, columns+1, …) copy of a periodic (rows, columns, …) field, with the first row and column
+    repeated at the end.
 
     dtype : of the result, by default that of the field
     """
-    n = len(field)
-    result = np.empty((n + 1, n + 1, *field.shape[2:]), dtype or field.dtype)
-    result[:n, :n] = field
+    rows, columns = field.shape[:2]
+    result = np.empty((rows + 1, columns + 1, *field.shape[2:]), dtype or field.dtype)
+    result[:rows, :columns] = field
     close(result)
     return result
 
 
 def close(field: RealArray) -> None:
-    """Copy the first row and column of an (N+1, N+1, …) field to its last ones."""
+    """Copy the first row and column of a (rows+1, columns+1, …) field to its last ones."""
     field[-1, :-1] = field[0, :-1]
     field[:, -1] = field[:, 0]
 

@@ -36,8 +36,8 @@ from .coast_pictures import Incoming, Pictures, fingerprint, incoming, pictures
 from .coast_swash import Swash
 from .memory import check_coast_memory
 from .part_waves import PartWaves, components, real_type
-from .placed_waves import as_field
-from .sampling import Grid, Key, closed, turned
+from .placed_waves import ADDED, adding_fields, as_field
+from .sampling import Grid, Key, Summed, closed, turned
 from .surfaces import Field
 
 Array = NDArray[np.float64]
@@ -124,6 +124,11 @@ class CoastWaves:
         here = weighted(over_bed.read(x, y), self._weights.read(1, x, y))
         instead_of = weighted(open_sea.read(x, y), self._weights.read(2, x, y))
         return {key: here[key] - instead_of[key] for key in wanted}
+
+    def on_samples(self, time: float | Fraction) -> dict[str, RealArray]:
+        """ADDING of what is added, on the bed's samples: (rows, columns, …) float32 each."""
+        x, y = self.ground.places
+        return adding_fields(Summed([self.at(x.ravel(), y.ravel(), time, ADDED)]), x.shape)
 
     def field(self, time: float | Fraction) -> Field:
         """Their own surface at a time."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
@@ -25,6 +26,9 @@ from .surfaces import Field, Values
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
+
+#: components of the displacement that ADDING need
+ADDED = frozenset[Key]().union(*(CHANNELS[name].needs for name in ADDING))
 
 #: width of the border in which waves shown in an area fade to 0, relative to its size
 _RIM = 0.1
@@ -161,21 +165,34 @@ def without_placed(sea: OceanParameters) -> OceanParameters:
     return sea.replace(layers=tuple(layers))
 
 
-def placed_fields(sea: OceanParameters, area: Area, time: float | Fraction) -> SurfaceFields:
+def placed_fields(
+    sea: OceanParameters,
+    area: Area,
+    time: float | Fraction,
+    afloat: Callable[[Array, Array], Weights] | None = None,
+) -> SurfaceFields:
     """ADDING of these layers only, in an area, (n, n, …) float32, fading to 0 at its outermost samples.
+
+    afloat : what is left of them at places in m, if they may run aground
 
     There must be such layers.
     """
     x, y = (places.ravel() for places in area.rest_positions())
-    needs = frozenset().union(*(CHANNELS[name].needs for name in ADDING))
-    under = _rim(area)
-    sums = Summed(weighted(waves.at(x, y, time, unweighted(needs)), under) for waves in placed_waves(sea))
+    under = _rim(area) if afloat is None else _rim(area).times(afloat(x, y))
+    sums = Summed(weighted(waves.at(x, y, time, unweighted(ADDED)), under) for waves in placed_waves(sea))
+    shape = area.resolution, area.resolution
+    return SurfaceFields(float(time), adding_fields(sums, shape))
+
+
+def adding_fields(sums: Summed, shape: tuple[int, ...]) -> dict[str, RealArray]:
+    """ADDING of sums at flat places, as float32 fields of a shape."""
     fields: dict[str, RealArray] = {}
     for name in ADDING:
-        made: RealArray = np.empty((x.size, CHANNELS[name].components), np.float32)
+        components = CHANNELS[name].components
+        made: RealArray = np.empty((math.prod(shape), components), np.float32)
         CHANNELS[name].write(sums, made)
-        fields[name] = made.reshape(CHANNELS[name].shape(area.resolution))
-    return SurfaceFields(float(time), fields)
+        fields[name] = made.reshape(*shape, components)
+    return fields
 
 
 def _rim(area: Area) -> Weights:

@@ -134,6 +134,14 @@ class Ground:
         since = along - (_extent(self.coast)[0][0] - (2.0 - _COMES_IN) * self.coast.rim)
         return smoothstep(since / (along[-1] - along[0] - _COMES_IN * self.coast.rim))
 
+    @property
+    def places(self) -> tuple[Array, Array]:
+        """x and y of each sample, (rows, columns) m."""
+        across = self.first[1] + self.step * np.arange(self.columns, dtype=np.float64)
+        along, across = np.meshgrid(self._along(self.rows), across, indexing="ij")
+        c, s = math.cos(self.turn), math.sin(self.turn)
+        return c * along - s * across, s * along + c * across
+
     def between(self, x: Array, y: Array) -> Between:
         """Where places in m lie among the samples: beyond the first and last rows on these."""
         return between(*self._samples(x, y), self.depth.shape)
