@@ -13,7 +13,7 @@ import pytest
 from ocean_tweak.core import Area, Foam, Mask, Ocean, OceanParameters, Patch, Raster, WaveLayer
 from ocean_tweak.core.foam import laying
 from ocean_tweak.core.foam.looks import Compressed
-from ocean_tweak.core.foam.model import Births, FoamHistory, FoamModel, births
+from ocean_tweak.core.foam.model import Births, FoamHistory, FoamModel, Whitecaps, births
 from ocean_tweak.core.foam.threshold import (
     foam_outlook,
     foam_wind,
@@ -51,6 +51,27 @@ def test_any_frame_has_the_bytes_of_the_sequence(changes: dict) -> None:
     chunk = Ocean(parameters)
     assert [whitecaps(chunk, frame) for frame in frames[20:]] == in_order[20:]
     assert len(set(in_order)) == len(frames)
+
+
+@pytest.mark.parametrize("settled", [True, False])
+def test_of_births_of_which_as_much_remains_the_later_one_counts(settled: bool) -> None:
+    """Full foam of a half-life ago, and half of it now: it is as much, and looks new."""
+    model = FoamModel(threshold=1.0, half_life=1.0, drift=(0.0, 0.0), spacing=1.0)
+    births, place = Births(model, (1,), 0), np.array([0])
+    for index, compression in ((0, 1.25), (8, 1.125)):  # rises from 0 to 1 over a quarter of the threshold
+        births.add(Compressed(place, np.array([compression], np.float32)), index)
+        if settled:
+            births.settle()
+    births.settle()
+    left, age = births.left(Fraction(1))
+    assert (left[0], age[0]) == (0.5, 0.0)
+
+
+def test_over_foam_the_more_has_its_own_age() -> None:
+    of_waves = Whitecaps(*(np.float32(each) for each in ([0.5, 0.5], [0.0, 0.0], [3.0, 3.0])))
+    both = of_waves.over(*(np.float32(each) for each in ([0.7, 0.2], [0.0, 0.0], [1.0, 1.0])))
+    assert both.foam.tolist() == pytest.approx([0.7, 0.5])
+    assert both.foam_age.tolist() == [1.0, 3.0]
 
 
 def test_a_loop_of_foam_ends_where_it_began() -> None:

@@ -169,6 +169,18 @@ def test_between_two_hulls_in_a_ring_and_beneath_a_capsized_boat_there_is_water(
     assert not is_inside(capsized, 0.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.5 * np.pi])
+def test_in_a_dock_that_is_open_at_one_end_there_is_water(turn):
+    """Though it has a floor below, and sides all around but there: to +x, and turned, to +y."""
+    floor = box((-5.0, -3.0, -1.0), (5.0, 3.0, -0.8))
+    sides = [box((-5.0, low, -1.0), (5.0, low + 0.4, 1.0)) for low in (-3.0, 2.6)]
+    vertices, triangles = together(floor, *sides, box((-5.0, -3.0, -1.0), (-4.6, 3.0, 1.0)))
+    c, s = np.cos(turn), np.sin(turn)
+    plan = hull_plan(vertices @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]), triangles)
+    assert not is_inside(plan, 0.0, 0.0, 0.2)
+    assert is_inside(plan, -2.8 * s, 2.8 * c, 0.2)  # within a side
+
+
 def test_a_fin_without_thickness_cuts_nothing():
     ship = box((-5.0, -2.0, -1.0), (5.0, 2.0, 1.0))
     fin = np.array([(-7.0, 0.0, -1.0), (-5.0, 0.0, -1.0), (-5.0, 0.0, 0.5)]), np.array([(0, 1, 2)])

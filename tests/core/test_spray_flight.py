@@ -9,7 +9,7 @@ from ocean_tweak.core import Spray
 from ocean_tweak.core.numerics import random
 from ocean_tweak.core.spray import drops
 from ocean_tweak.core.spray.flight import Flight
-from ocean_tweak.core.spray.particles import Crests, Particles, in_the_air
+from ocean_tweak.core.spray.particles import Crests, Particles, friction_velocity, in_the_air
 from ocean_tweak.core.waves.contribution import Wind
 
 STEP = 0.125
@@ -50,3 +50,15 @@ def test_mist_flies_no_faster_than_the_wind_ten_metres_up() -> None:
     assert mist.sum() > 100
     speed = np.hypot(*found.velocity[mist, :2].T)
     assert 39.0 < speed.max() <= 40.0 + 1e-3
+
+
+def test_puffs_of_mist_spread_by_the_turbulence_of_the_wind() -> None:
+    """By 0.3 friction velocities, from the size that they are born with."""
+    young, old = (thrown(wind=25.0, since=since, births=300.0) for since in (0.25, 1.0))
+    rates = []
+    for found in (young, old):
+        mist = found.kind == drops.MIST
+        assert mist.sum() > 20
+        grown = found.radius[mist] - 240.0 * Spray().size
+        rates.append(grown / found.age[mist])
+    np.testing.assert_allclose(np.concatenate(rates), 0.3 * friction_velocity(25.0), rtol=1e-3)

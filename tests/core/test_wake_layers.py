@@ -353,6 +353,15 @@ def test_what_is_expected_of_a_wake() -> None:
     assert "no transverse waves" in shallow.line()
 
 
+@pytest.mark.parametrize(("length", "speed"), [(2.0, 1.0), (15.0, 5.0), (60.0, 8.0), (200.0, 14.0)])
+def test_an_area_to_begin_with_holds_the_waves_of_its_object(length: float, speed: float) -> None:
+    path = (PathSample(), PathSample(1.0, speed))
+    ship = WakeLayer(path=path, length=length, beam=0.2 * length, draught=0.06 * length)
+    assert WakeLayer.outlook(sea(ship.in_an_area(speed, 9.81))).warnings == ()
+    scaled = ship.changed(amplitude_scale=4.0).in_an_area(speed, 9.81)
+    assert "folds beside it" in WakeLayer.outlook(sea(scaled)).warnings[0]
+
+
 def test_transverse_waves_of_a_depth_go_as_fast_as_the_object() -> None:
     water = Water(depth=8.0, surface_tension=0.0)
     length = transverse_wavelength(6.0, sea(water=water))
