@@ -18,6 +18,9 @@ from .building import Panel, Plug, Socket
 from .shading import Shading
 from .versioned import GroupKind
 
+#: inputs of a cut: whether its hull is hidden in renders and in windows, and which of the two is shown
+HIDDEN, HIDDEN_IN_WINDOW, IN_WINDOW = "Hidden", "Hidden In Window", "In Window"
+
 #: what a distance of 0 is in the image, whose values are 0 to 1
 EDGE = 0.5
 
@@ -43,6 +46,9 @@ _CUT_INPUTS = (
     ("Upper Last", "NodeSocketFloat", 1.0, "The fourth one"),
     ("Share", "NodeSocketVector", (0.0, 0.0, 0.0), "Of the farther one of two neighbours along each axis"),
     ("Is Above", "NodeSocketFloat", 0.0, "Whether it is above the keel"),
+    (HIDDEN, "NodeSocketFloat", 0.0, "Whether renders do not show the hull"),
+    (HIDDEN_IN_WINDOW, "NodeSocketFloat", 0.0, "Whether windows do not show it"),
+    (IN_WINDOW, "NodeSocketFloat", 0.0, "Whether a window is shown, and no render"),
 )
 
 
@@ -91,9 +97,11 @@ def _build_cut(tree: bpy.types.NodeTree) -> None:
         at_levels.append(shade.mix(up, near, far))
     is_within = shade.math("LESS_THAN", shade.mix(above, *at_levels), EDGE)
     clear: Socket = shade.node("ShaderNodeBsdfTransparent").outputs[0]
-    inside = shade.math("MULTIPLY", is_within, given["Is Above"])
+    is_hidden = shade.mix(given[IN_WINDOW], given[HIDDEN], given[HIDDEN_IN_WINDOW])
+    is_shown = shade.math("SUBTRACT", 1.0, is_hidden)
+    inside = shade.math("MULTIPLY", shade.math("MULTIPLY", is_within, given["Is Above"]), is_shown)
     shade.finish({"Shader": shade.mix_shaders(inside, given["Shader"], clear)})
 
 
 HULL_PLACE = GroupKind("Ocean Tweak Hull Place", 1, _build_place, "ShaderNodeTree")
-HULL_CUT = GroupKind("Ocean Tweak Hull Cut", 1, _build_cut, "ShaderNodeTree")
+HULL_CUT = GroupKind("Ocean Tweak Hull Cut", 2, _build_cut, "ShaderNodeTree")

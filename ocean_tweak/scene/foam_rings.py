@@ -64,9 +64,9 @@ class _Maker:
     """The foam of a sea: its fan, its rings, those of a window, and around which place these lie: it drifts
     along."""
 
-    def __init__(self, parameters: OceanParameters) -> None:
-        self._parameters = parameters
-        self._levels = FoamLevels(parameters)
+    def __init__(self, parameters: OceanParameters, far: bool) -> None:
+        self._key = parameters, far
+        self._levels = FoamLevels(parameters, far)
         self._whole = FoamRings(self._levels)
         self._few: FoamRings | None = None
         self._fan: FoamFan | None = None
@@ -85,14 +85,14 @@ class _Maker:
             if self._fan is None or self._fan.places != places:
                 self._fan = FoamFan(self._levels, places)
             made = self._fan.at(time, view)
-        MEMO.put(_RINGS, self._parameters, self)  # it has grown
+        MEMO.put(_RINGS, self._key, self)  # it has grown
         return made
 
     def at(self, time: Fraction, place: Place) -> Rings:
         """Rings around a place, with their history."""
         with self._busy:
             made = self._whole.at(time, place)
-        MEMO.put(_RINGS, self._parameters, self)  # it has grown
+        MEMO.put(_RINGS, self._key, self)  # it has grown
         return made
 
     def follow(self, wanted: _Shown, told: Callable[[float], None]) -> None:
@@ -112,7 +112,7 @@ class _Maker:
             alone = FoamRings(self._levels, wanted.samples)
             return alone.at(wanted.time, wanted.place, history=False), False
         made, last = led
-        MEMO.put(_RINGS, self._parameters, self)  # it has grown
+        MEMO.put(_RINGS, self._key, self)  # it has grown
         return made, math.dist(last.place, wanted.place) <= _FOLLOWS * last.samples * FINEST
 
     def _led_to(self, wanted: _Shown) -> tuple[Rings, _Shown] | None:
@@ -160,9 +160,9 @@ class Around:
 
         patient : otherwise it is shown without its history where that would take long
         """
-        if not patient and MEMO.find(_RINGS, self.sea) is None:
+        if not patient and MEMO.find(_RINGS, self._key) is None:
             return False  # what rings there are takes longer to find than the foam on them
-        maker = _maker(self.sea)
+        maker = self._maker
         if patient and self.view is not None:
             _fill_fan(mesh, maker.before(self.time, self.view, self.vertices), self)
             return True
@@ -178,13 +178,22 @@ class Around:
 
         told : hears the share that is made, 0…1
         """
-        _maker(self.sea).follow(self._in_window, told)
+        self._maker.follow(self._in_window, told)
 
     def values(self, foam: Whitecaps, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float32]:
         """(places, 3) foam, breaking and age at places in m: the waves', and that of hulls."""
         of_waves = Whitecaps(*(np.ravel(field) for field in foam))
         found = with_own_foam(self.whole, of_waves, np.ravel(x), np.ravel(y), self.time)
         return np.stack(found, axis=-1).astype(np.float32, copy=False)
+
+    @property
+    def _key(self) -> tuple[OceanParameters, bool]:
+        """What the foam of the waves follows from: the sea, and whether that of hulls is seen farther off."""
+        return self.sea, makes_foam(self.whole)
+
+    @property
+    def _maker(self) -> _Maker:
+        return MEMO.get(_RINGS, self._key, lambda: _Maker(*self._key))
 
     @property
     def _in_window(self) -> _Shown:
@@ -209,10 +218,6 @@ def around(
     )
     frame = float(plan.frame / time_stretch(scene))
     return Around(sea, whole, time, place, view_of(surface, scene, plan.scale), *budgets, frame, plan.scale)
-
-
-def _maker(sea: OceanParameters) -> _Maker:
-    return MEMO.get(_RINGS, sea, lambda: _Maker(sea))
 
 
 def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:

@@ -176,6 +176,7 @@ def refresh_for_wakes(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | N
 def follow_by_hand(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Let floating objects go where they were moved to, and look after those that came and went."""
     if depsgraph is None or depsgraph.id_type_updated("OBJECT"):
+        hull_cut.follow()
         float_carrier.follow()
         float_current.follow_by_hand(scene, depsgraph)
         float_riding.follow_by_hand(scene, depsgraph)
@@ -207,8 +208,9 @@ def look_after_save(_path: object = None, _unused: object = None) -> None:
 
 @persistent
 def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
-    """Print all messages of a shot again."""
+    """Print all messages of a shot again, and cut out the hulls that are rendered."""
     failures.render_begins()
+    hull_cut.show_in_window(False)
     scene_sky.look_for_panoramas()
     for item in oceans_in(scene):
         show(item, scene, Wanted.BAKE)
@@ -221,7 +223,8 @@ def begin_render(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
 
 @persistent
 def end_render(_scene: bpy.types.Scene, _depsgraph: object = None) -> None:
-    """A background render that failed ends here."""
+    """Windows cut out the hulls that they show. A background render that failed ends here."""
+    hull_cut.show_in_window(True)
     failures.render_ends()
 
 
@@ -274,6 +277,7 @@ def refresh_after_load(_path: object = None, _unused: object = None) -> None:
     spray.remove_left()
     float_carrier.take_over()
     solid_foam.mend()
+    hull_cut.refresh()  # those of another version do not follow what is hidden
     scene_sky.look_for_panoramas()
     for scene in bpy.data.scenes:
         wake_makers.follow(scene, frozenset(), None)
@@ -314,7 +318,9 @@ def mend_after_import(imported: bpy.types.BlendImportContext) -> None:
 
 @persistent
 def hold_before_save(_path: object = None, _unused: object = None) -> None:
-    """Let live oceans stand still as they are, rather than lie flat, where the extension is missing."""
+    """Let live oceans stand still as they are, rather than lie flat, where the extension is missing; there
+    hulls are cut out as in a render."""
+    hull_cut.show_in_window(False)
     for item, scene in shown_oceans().items():
         show(item, scene, Wanted.HELD)
 
@@ -322,6 +328,7 @@ def hold_before_save(_path: object = None, _unused: object = None) -> None:
 @persistent
 def let_go_after_save(_path: object = None, _unused: object = None) -> None:
     """The file is written: show the whole surface again."""
+    hull_cut.show_in_window(True)
     held_sea.take_back()
 
 
@@ -363,14 +370,15 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("frame_change_post", refresh_around_camera),
     ("frame_change_post", refresh_for_render),
     ("depsgraph_update_post", end_without_modifier),
-    ("depsgraph_update_post", clear_after_deletion),
-    ("depsgraph_update_post", look_around),
     ("depsgraph_update_post", follow_by_hand),
     ("depsgraph_update_post", follow_materials),
     ("depsgraph_update_post", refresh_for_render),
     ("depsgraph_update_post", refresh_for_images),
     ("depsgraph_update_post", refresh_for_masks),
     ("depsgraph_update_post", refresh_for_wakes),
+    # last: a change of drivers makes Blender build the evaluation anew, and its updates are gone
+    ("depsgraph_update_post", look_around),
+    ("depsgraph_update_post", clear_after_deletion),
     ("render_init", begin_render),
     ("render_complete", end_render),
     ("render_cancel", end_render),

@@ -2,7 +2,9 @@
 """Hulls that are cut out of the water: their plans, and what the water's materials know of them.
 
 As with collars, a hull says so by itself, in custom properties that its copies have too, and `refresh` brings
-the materials into step.
+the materials into step. What is hidden is not cut out: a driver follows what renders show of the hull's
+meshes, keyed or not, without the extension too, and `follow` what windows show, which drivers do not see.
+Shaders do not know which of the two is shown, so a switch tells them.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ import bpy
 import numpy as np
 
 from ..core.sea.hull_plan import BAND, LEVELS, HullPlan, hull_plan
-from ..nodes.hull_cut import EDGE, HULL_CUT, HULL_PLACE
+from ..nodes.hull_cut import EDGE, HIDDEN, HIDDEN_IN_WINDOW, HULL_CUT, HULL_PLACE, IN_WINDOW
 from ..nodes.versioned import is_of_kind, node_group
 from . import solid_foam
 from .contact import is_shown, materials_of
@@ -27,6 +29,9 @@ _OCEAN, _PLAN, _PLACE = "ocean_tweak_cut", "ocean_tweak_cut_plan", "ocean_tweak_
 
 #: inputs of a cut that are read from the plan
 _LOOK_UPS = ("Lower", "Upper")
+
+# what refers to a hull that is cut out: (material, node) by name
+_known: list[tuple[str, str]] = []
 
 
 def cut_out(item: bpy.types.Object, ocean: bpy.types.Object, hull: Hull | None) -> None:
@@ -93,20 +98,61 @@ def refresh() -> None:
         item: ocean for item in bpy.data.objects if is_shown(item) and (ocean := ocean_of(item)) is not None
     }
     shown = {ocean: set(materials_of(ocean)) for ocean in set(known.values()) if is_ocean(ocean)}
-    for material in bpy.data.materials:
-        if material.library is not None or material.node_tree is None or solid_foam.is_copy(material):
+    for material in _own_materials():
+        if solid_foam.is_copy(material):
             continue
         wanted = [item for item, ocean in known.items() if material in shown.get(ocean, ())]
         outputs = sum(1 for surface in _surfaces(material.node_tree) if surface.links)
         if _cut_from(material.node_tree) != [(item, item[_PLAN]) for item in wanted] * outputs:
             _chain(material.node_tree, wanted)
+    _known[:] = [
+        (material.name, cut.name) for material in _own_materials() for cut in _cuts(material.node_tree)
+    ]
+    follow()
+
+
+def follow() -> None:
+    """Let windows cut out the hulls that they show, and no others."""
+    for material_name, name in _known:
+        material = bpy.data.materials.get(material_name)
+        cut = None if material is None else material.node_tree.nodes.get(name)
+        if cut is None or HIDDEN_IN_WINDOW not in cut.inputs:
+            continue
+        hull = _source(_source(_source(cut, "Lower"), "Vector"), "Vector")
+        item = getattr(hull, "object", None)
+        hidden = item is not None and not any(map(_is_in_view, _meshes_of(item)))
+        if cut.inputs[HIDDEN_IN_WINDOW].default_value != float(hidden):
+            cut.inputs[HIDDEN_IN_WINDOW].default_value = float(hidden)
+
+
+def _is_in_view(part: bpy.types.Object) -> bool:
+    return part.visible_get() if part.name in bpy.context.view_layer.objects else not part.hide_viewport
+
+
+def _meshes_of(item: bpy.types.Object) -> list[bpy.types.Object]:
+    """Those that a hull consists of, hidden or not."""
+    return [part for part in (item, *item.children_recursive) if part.type == "MESH"]
+
+
+def _own_materials() -> Iterator[bpy.types.Material]:
+    for material in bpy.data.materials:
+        if material.library is None and material.node_tree is not None:
+            yield material
+
+
+def show_in_window(is_window: bool) -> None:
+    """Cut out the hulls that windows show, or those that renders show."""
+    for material in _own_materials():
+        for cut in _cuts(material.node_tree):
+            if IN_WINDOW in cut.inputs:
+                cut.inputs[IN_WINDOW].default_value = float(is_window)
 
 
 @contextmanager
 def set_aside() -> Iterator[None]:
     """While this is open no material has hulls, which would take their objects along into a library."""
-    for material in bpy.data.materials:
-        if material.library is None and material.node_tree is not None and _cut_from(material.node_tree):
+    for material in _own_materials():
+        if _cut_from(material.node_tree):
             _chain(material.node_tree, [])
     try:
         yield
@@ -117,12 +163,25 @@ def set_aside() -> Iterator[None]:
 def _cut_from(tree: bpy.types.NodeTree) -> list[tuple[bpy.types.Object | None, bpy.types.Image | None]]:
     """The objects that are cut out, and the images of their plans, in the order of the chain."""
     found = []
-    for cut in (node for node in tree.nodes if _is_group(node, HULL_CUT)):
+    for cut in _cuts(tree):
+        if not _is_driven(tree, cut):
+            found.append((None, None))
+            continue
         lower, upper = (_source(cut, name) for name in _LOOK_UPS)
         own = _source(_source(lower, "Vector"), "Vector")
         images = {getattr(each, "image", None) for each in (lower, upper)}
         found.append((getattr(own, "object", None), images.pop() if len(images) == 1 else None))
     return found
+
+
+def _cuts(tree: bpy.types.NodeTree) -> list[bpy.types.Node]:
+    return [node for node in tree.nodes if _is_group(node, HULL_CUT)]
+
+
+def _is_driven(tree: bpy.types.NodeTree, cut: bpy.types.Node) -> bool:
+    """Whether a cut follows what renders show of its hull, as those of another version do not."""
+    known = {driver.data_path for driver in tree.animation_data.drivers} if tree.animation_data else set()
+    return f"{cut.inputs[HIDDEN].path_from_id()}.default_value" in known
 
 
 def _source(node: bpy.types.Node | None, name: str) -> bpy.types.Node | None:
@@ -142,7 +201,7 @@ def _is_group(node: bpy.types.Node, kind: object) -> bool:
 def _chain(tree: bpy.types.NodeTree, items: list[bpy.types.Object]) -> None:
     """Make these hulls all that is cut out of a material, one after another before its outputs."""
     water = {surface: _before(surface) for surface in _surfaces(tree)}
-    for cut in [node for node in tree.nodes if _is_group(node, HULL_CUT)]:
+    for cut in _cuts(tree):
         _clear(tree, cut)
     for surface, shader in water.items():
         if shader is None:
@@ -161,6 +220,8 @@ def _before(surface: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
 
 def _clear(tree: bpy.types.NodeTree, cut: bpy.types.Node) -> None:
     """Remove a cut and what it alone reads, whatever is left of that."""
+    if HIDDEN in cut.inputs:
+        cut.inputs[HIDDEN].driver_remove("default_value")
     place = _source(cut, "Share")
     nodes = [cut, place, _source(place, "Vector"), *(_source(cut, name) for name in _LOOK_UPS)]
     for each in nodes:
@@ -199,6 +260,13 @@ def _new_cut(
     for name in ("Share", "Is Above"):
         tree.links.new(place.outputs[name], cut.inputs[name])
     tree.links.new(shader, cut.inputs["Shader"])
+    cut.inputs[IN_WINDOW].default_value = 1.0
+    # 1 while no mesh of it is rendered
+    driver = cut.inputs[HIDDEN].driver_add("default_value").driver
+    driver.type = "MIN"
+    for part in _meshes_of(item):
+        variable = driver.variables.new()
+        variable.targets[0].id, variable.targets[0].data_path = part, "hide_render"
     return cut.outputs["Shader"]
 
 

@@ -232,7 +232,7 @@ def test_a_scaled_tilted_hull_with_a_deck(water, new_boat, select, seen_from_abo
     bpy.context.view_layer.update()
     place = hulls(water)
     assert place == [boat]
-    boat.hide_render = True
+    boat.visible_camera = False
     pixels, x, y = seen_from_above(boat)
     flat = boat.matrix_world.translation
     u = (x - flat.x) * math.cos(0.4) + (y - flat.y) * math.sin(0.4)
@@ -310,3 +310,88 @@ def test_broken_links_are_mended(extension, water, new_boat, select):
     extension("scene.hull_cut").refresh()
     assert hulls(water).count(boat) >= 1
     assert len([node for node in tree.nodes if node.type == "TEX_IMAGE"]) == 2
+
+
+def test_a_hull_that_is_not_rendered_leaves_the_water_whole(
+    water, new_boat, select, seen_from_above, empty_scene, capfd
+):
+    """Keyed too; where only windows hide it, renders go on to cut it out."""
+    boat = new_boat()
+    select(boat)
+    assert cut(boat) == {"FINISHED"}
+    hidden, shown = [], []
+    boat.hide_viewport = True
+    for hides, found in ((True, hidden), (False, shown)):
+        boat.hide_render = hides
+        pixels, x, y = seen_from_above(boat)
+        found.append(shares(boat, pixels, x, y, 0.5)[0])
+    boat.hide_viewport = False
+    for frame, hides in ((1, False), (5, True)):
+        boat.hide_render = hides
+        boat.keyframe_insert("hide_render", frame=frame)
+    for frame, found in ((1, shown), (5, hidden)):
+        empty_scene.frame_set(frame)
+        pixels, x, y = seen_from_above(boat)
+        found.append(shares(boat, pixels, x, y, 0.5)[0])
+    assert hidden == [1.0, 1.0]
+    assert shown == [0.0, 0.0]
+    assert "Dependency cycle" not in capfd.readouterr().err
+
+
+def test_a_window_and_a_saved_file_follow_the_visibility_of_their_own(
+    extension, water, new_boat, select, empty_scene, tmp_path
+):
+    boat = new_boat()
+    select(boat)
+    cut(boat)
+
+    def told(name):
+        tree = water.evaluated_get(bpy.context.evaluated_depsgraph_get()).material_slots[0].material.node_tree
+        (group,) = [node for node in tree.nodes if name in node.inputs]
+        return group.inputs[name].default_value
+
+    for in_render, in_window in ((False, True), (True, False), (True, True)):
+        boat.hide_render, boat.hide_viewport = in_render, in_window
+        bpy.context.view_layer.update()
+        assert (told("Hidden"), told("Hidden In Window")) == (float(in_render), float(in_window))
+    assert told("In Window") == 1.0
+    file = str(tmp_path / "boat.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    assert told("In Window") == 1.0
+    with extension("scene.handlers").asleep():
+        bpy.ops.wm.open_mainfile(filepath=file)
+        tree = bpy.data.materials["Sea"].node_tree
+        (group,) = [node for node in tree.nodes if "In Window" in node.inputs]
+        assert group.inputs["In Window"].default_value == 0.0
+
+
+def test_a_hull_of_parts_is_cut_out_while_any_is_shown(water, new_boat, select, empty_scene):
+    boat, tender = new_boat(), new_boat("Tender")
+    tender.parent = boat
+    select(boat)
+    cut(boat)
+    tree = water.data.materials[0].node_tree
+    told = []
+    for hides in ((True, False), (False, True), (True, True)):
+        boat.hide_render, tender.hide_render = hides
+        bpy.context.view_layer.update()
+        evaluated = water.evaluated_get(bpy.context.evaluated_depsgraph_get()).material_slots[0].material
+        (group,) = [node for node in evaluated.node_tree.nodes if "Hidden" in node.inputs]
+        told.append(group.inputs["Hidden"].default_value)
+    assert told == [0.0, 0.0, 1.0]
+    assert len(tree.animation_data.drivers) == 1
+    bpy.ops.object.ocean_tweak_cut_out(use_cut=False)
+    assert not tree.animation_data or not tree.animation_data.drivers
+
+
+def test_a_hull_of_a_former_file_follows_its_visibility(water, new_boat, select, empty_scene, tmp_path):
+    """Its cut has no driver."""
+    boat = new_boat()
+    select(boat)
+    cut()
+    water.data.materials[0].node_tree.animation_data_clear()
+    file = str(tmp_path / "former.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    bpy.ops.wm.open_mainfile(filepath=file)
+    (driver,) = bpy.data.materials["Sea"].node_tree.animation_data.drivers
+    assert driver.driver.variables[0].targets[0].id == bpy.data.objects["Boat"]
