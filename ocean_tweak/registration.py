@@ -12,13 +12,13 @@ import bpy
 from . import cli
 from .export import logs
 from .scene import asset_library, handlers
+from .scene.baked_spray import bake_place
 from .scene.cache_place import cache_folder, own_uid
 from .scene.command_process import CommandProcess
 from .scene.patch_objects import shot_maps
 from .scene.portability import needs_of
 from .scene.settings import OceanObjectError, all_oceans, shown_oceans
 from .scene.shots import scene_frames, shot_of
-from .scene.spray import bake_place
 from .scene.view_layers import is_in_view_layer
 from .ui import (
     adding,

@@ -26,7 +26,7 @@ from ..core.sea.bake import BakedFrame, ShotSeas
 from ..core.sea.bake import bake as make_frames
 from ..core.sea.memory import check_memory, remedy_for
 from ..export import logs
-from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory
+from ..export.cache.estimate import Estimate, estimate, fitting_workers, process_memory, with_spray
 from ..export.cache.folders import (
     JOB_FILE,
     log_file,
@@ -124,19 +124,27 @@ def _make_all(
     spray: SpraySequence | None,
 ) -> int:
     """Bake incomplete frames and their spray. Returns the exit code."""
-    if spray is None or arguments.estimate:
-        return _make(arguments, folder, job, frames)
-    refuse_links(folder)
-    spray.ask()  # first, so that a bake that is stopped early continues with it
-    code = _make(arguments, folder, job, frames)
-    if code != DONE:
+    if spray is not None and not arguments.estimate:
+        refuse_links(folder)
+        spray.ask()  # first, so that a bake that is stopped early continues with it
+    code = _make(arguments, folder, job, frames, spray)
+    if code != DONE or spray is None or arguments.estimate:
         return code
     with _telling_how_to_go_on(folder):
         return bake_spray(arguments, spray, frames)
 
 
-def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequence[Frame]) -> int:
-    """Bake incomplete frames. Returns the exit code."""
+def _make(
+    arguments: argparse.Namespace,
+    folder: Path,
+    job: Job,
+    frames: Sequence[Frame],
+    spray: SpraySequence | None,
+) -> int:
+    """Bake incomplete frames. Returns the exit code.
+
+    spray : that is baked afterwards, for which there must be room too
+    """
     if arguments.log:
         logs.to_file(log_file(folder))
         _LOG.info(
@@ -155,6 +163,8 @@ def _make(arguments: argparse.Namespace, folder: Path, job: Job, frames: Sequenc
         todo = tuple(finding.frame for finding in left)
         workers = _worker_count(arguments.workers, job, todo)
         needed = estimate(folder, job, todo, workers)
+        if spray is not None:
+            needed = with_spray(needed, spray, spray.missing(frames))
         _announce(progress, folder, job, frames, left, needed)
         needed.check(folder)
         if arguments.estimate:
@@ -275,7 +285,7 @@ def _announce(
         + (
             f"; about {readable_bytes(needed.bytes)} and {duration(needed.seconds)}, "
             f"{readable_bytes(needed.free)} are free"
-            if left
+            if needed.bytes
             else ""
         ),
         folder=str(folder), frames=len(frames), left=len(left), bytes=needed.bytes,

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from ..core.data.frames import Frame
 from ..core.sea.bake import BakedFrame
 from ..core.sea.placed_waves import has_tile, is_seen_around
-from ..core.sea.spray import ShotSpray, check_spray
+from ..core.sea.shot_spray import ShotSpray
+from ..core.sea.spray import check_spray
 from ..export.cache.locks import claimed
 from ..export.spray import SpraySequence, WantedSpray
 from .outcome import DONE, FAILED, UsageError
@@ -55,7 +56,7 @@ def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequ
             files.directory, tuple(frames), arguments.wait, arguments.take_over, stop.is_set, progress.remark
         ) as hold,
     ):
-        todo = [frame for frame in frames if not files.is_whole(frame)]
+        todo = files.missing(frames)
         progress.say(f"{len(todo)} of {len(frames)} frames of spray to make", left=len(todo), phase="spray")
         progress.begin(len(todo))
         maker = ShotSpray(files.shot, files.spray, files.place)

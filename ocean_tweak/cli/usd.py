@@ -14,7 +14,7 @@ from ..core.data.frames import Frame, format_frames
 from ..core.data.plain_data import to_plain
 from ..core.data.printable import readable_bytes
 from ..core.sea.regions import Area
-from ..core.sea.spray import ShotSpray
+from ..core.sea.shot_spray import ShotSpray
 from ..export.cache.folders import read_job
 from ..export.cache.records import recorded_frames
 from ..export.spray import baked_spray

@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import json
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -84,10 +85,14 @@ class SpraySequence:
         if not path.is_file() or path.read_bytes() != text.encode():
             write_text(path, text)
 
-    def is_whole(self, frame: Frame) -> bool:
+    def _is_whole(self, frame: Frame) -> bool:
         """Whether a frame's file exists and has the same parameters."""
         told = told_by_ply(self.path(frame), (COLUMNS,))
         return told is not None and self._is_of_this(frame, told)
+
+    def missing(self, frames: Iterable[Frame]) -> list[Frame]:
+        """The frames whose files do not exist or have other parameters."""
+        return [frame for frame in frames if not self._is_whole(frame)]
 
     def problem(self, frame: Frame) -> str:
         """Read a frame's file; returns its problem, or ""."""

@@ -12,7 +12,7 @@ import bpy
 from ..core.spray.drops import DROPLET, MIST
 from .building import Panel, Plug
 from .shading import VISIBILITY, Shading
-from .spray import KIND, LEFT
+from .spray import DENSITY, KIND
 from .versioned import GroupKind
 
 #: of the light that comes off a particle, what has come through it
@@ -27,7 +27,7 @@ _PANELS = (
             ("Color", "NodeSocketColor", (0.92, 0.93, 0.94, 1.0), "Of spume and mist"),
             ("Drops", "NodeSocketFloat", 0.9, "Opacity of single drops in their middle"),
             ("Spume", "NodeSocketFloat", 0.45, "Opacity of a piece of a sheet of spume in its middle"),
-            ("Mist", "NodeSocketFloat", 0.06, "Opacity of mist in its middle, when it is new"),
+            ("Mist", "NodeSocketFloat", 0.06, "Opacity of new mist in its middle"),
             ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
         ),
     ),
@@ -43,8 +43,7 @@ def _build(tree: bpy.types.NodeTree) -> None:
     kind = shade.value(KIND)
     is_mist, is_drop = (shade.math("COMPARE", kind, float(each), 0.5) for each in (MIST, DROPLET))
     soft = shade.math("POWER", facing, _RIM)
-    left = shade.math("MAXIMUM", shade.value(LEFT), 0.0)
-    mist = shade.math("MULTIPLY", given["Mist"], shade.math("MULTIPLY", left, soft))
+    mist = shade.math("MULTIPLY", given["Mist"], shade.math("MULTIPLY", shade.value(DENSITY), soft))
     sheet = shade.math("MULTIPLY", given["Spume"], soft)
     spume = shade.mix(is_drop, sheet, shade.math("MULTIPLY", given["Drops"], facing))
     path = shade.math(
@@ -61,4 +60,4 @@ def _build(tree: bpy.types.NodeTree) -> None:
     shade.finish({"Surface": shade.mix_shaders(opacity, clear, shade.mix_shaders(_THROUGH, off, through))})
 
 
-SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 3, _build, "ShaderNodeTree")
+SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 4, _build, "ShaderNodeTree")

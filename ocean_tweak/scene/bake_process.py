@@ -15,12 +15,12 @@ import bpy
 
 from ..core.data.frames import Frame, format_frames
 from ..core.parameters.shot import Shot
+from .baked_spray import spray_arguments
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
 from .patch_objects import shot_maps
 from .preferences import preferences
 from .settings import maps_of, scene_of, settings_of, wanted_channels
-from .spray import spray_arguments
 
 
 class BakeProcess(CommandProcess):

@@ -13,12 +13,14 @@ from typing import NamedTuple
 import bpy
 
 from ..export.cache import clean
-from ..export.cache.estimate import Estimate, estimate, fitting_workers
+from ..export.cache.estimate import Estimate, estimate, fitting_workers, with_spray
 from ..export.cache.folders import bakes_in
 from ..export.cache.job import Job
 from ..export.cache.locks import claimed
 from ..export.cache.records import recorded_frames
 from ..export.files import is_link
+from ..export.spray import SpraySequence
+from .baked_spray import spray_to_bake
 from .cache_place import bake_name, cache_folder, own_uid
 from .image_sequence import folder_of
 from .settings import OceanObjectError, all_oceans, maps_of, settings_of, wanted_channels
@@ -77,6 +79,9 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     while not place.is_dir() and place != place.parent:
         place = place.parent
     to_come = estimate(place, job, frames, fitting_workers(job, len(frames)))
+    spray = spray_to_bake(item, scene)
+    if spray is not None and (spray.place is not None or not shot.parameters.is_cascade):
+        to_come = with_spray(to_come, SpraySequence(place, job.name, shot, spray.spray, spray.place), frames)
     look(item)
     _listings[item.session_uid] = _listings[item.session_uid]._replace(to_come=to_come)
 

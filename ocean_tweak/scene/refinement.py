@@ -18,7 +18,7 @@ from typing import Any
 import bpy
 
 from ..core import OceanParameters
-from . import bake_state, evaluation, foam_rings, patch_objects, patch_points, spray
+from . import bake_state, evaluation, foam_rings, live_spray, patch_objects, patch_points
 from .modifiers import set_changed
 from .plan import camera_surface_of, plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, is_live, refresh, tell
@@ -60,7 +60,7 @@ def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], ob
         around = foam_rings.around(surface, plan, points, scene)
         told = partial(_outstanding.shares.__setitem__, item.session_uid)
         jobs += [partial(around.make, told)] if around is not None else []
-    asked = spray.wanted(item, plan, scene)
+    asked = live_spray.wanted(item, plan, scene)
     if asked is not None:
         jobs.append(asked.make)
     return lambda: [job() for job in jobs]

@@ -18,12 +18,12 @@ from ..export.usd.attributes import ATTRIBUTES
 from ..export.usd.isolated import read_package
 from ..export.usd.options import OPTIONS, command_arguments
 from . import ocean_object, stored_paths
+from .baked_spray import spray_arguments, spray_numbers
 from .cache_place import bake_name, shown_bake
 from .command_process import CommandProcess, Running
 from .preferences import user_folder
 from .settings import VIEWPORT_RESOLUTION, OceanObjectError, scene_of, settings_of
 from .shots import animate, check_keys
-from .spray import spray_arguments, spray_numbers
 from .units import frame_rate, set_frame_rate, set_time_stretch, shortest_decimal, time_stretch
 
 _FOLDER = "usd"

@@ -11,41 +11,18 @@ import numpy as np
 import pytest
 
 import ocean_tweak.core
-from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
+from ocean_tweak.core import OceanParameters, Spray
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.patch_plan import Wish, planned
-from ocean_tweak.core.sea.spray import CameraSpray, TileSpray
+from ocean_tweak.core.sea.spray import CameraSpray
 from ocean_tweak.core.spray import drops
 
-SEA = OceanParameters(
-    resolution=64, domain_size=100.0, seed=2, layers=(WaveLayer(wind_speed=22.0, fetch=300e3),), spray=Spray()
-)
+from .spray_points import SEA, made, points, spray_of
 
 
 @pytest.fixture
 def ocean(extension, empty_scene):
     return extension("scene.ocean_object").add(empty_scene, SEA)
-
-
-def points(item):
-    """What nodes make of the spray of an ocean: its attributes by name, (points, …)."""
-    graph = bpy.context.evaluated_depsgraph_get()
-    geometry = item.evaluated_get(graph).evaluated_geometry()
-    cloud, found = geometry.pointcloud, {}
-    for name, size in (("position", 3), ("velocity", 3), ("radius", 1), ("kind", 1), ("left", 1)):
-        values = np.empty(len(cloud.points) * size, np.float32)
-        cloud.attributes[name].data.foreach_get("vector" if size == 3 else "value", values)
-        found[name] = values.reshape(-1, size) if size == 3 else values
-    return found
-
-
-def spray_of(ocean):
-    return next((child for child in ocean.children if child.name.endswith("Spray")), None)
-
-
-def made(time):
-    """The core's particles."""
-    return TileSpray(Ocean(SEA)).at(time, Spray())
 
 
 def test_points_are_the_particles_of_the_frame(ocean, empty_scene):
@@ -84,13 +61,71 @@ def test_what_is_close_to_the_lens_is_no_ball_that_covers_the_picture(ocean, emp
         empty_scene.camera = camera
         bpy.context.view_layer.update()
         away = np.linalg.norm(expected.position - nearest - (0.0, 0.0, 0.1), axis=1)
-        seen = points(spray_of(ocean))["radius"]
+        found = points(spray_of(ocean))
+        seen = found["radius"]
         largest = np.where(is_mist, 0.25, 0.003) * away
-        np.testing.assert_allclose(seen, np.minimum(expected.radius, largest), rtol=1e-2, atol=1e-5)
+        is_drawn = ~is_mist | (found["mist_density"] > 0.0)
+        assert is_drawn.mean() > 0.99
+        drawn = np.where(is_drawn, np.minimum(expected.radius, largest), 0.0)
+        np.testing.assert_allclose(seen, drawn, rtol=1e-2, atol=1e-5)
         assert 0.0 < np.mean(seen < 0.99 * expected.radius) < 0.5
     empty_scene.camera = None
     bpy.context.view_layer.update()
     np.testing.assert_allclose(points(spray_of(ocean))["radius"], expected.radius, rtol=1e-5)
+
+
+@pytest.fixture
+def puffs(extension, empty_scene):
+    """A function that shows mist at places in m, around a camera at the origin: its points."""
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    empty_scene.collection.objects.link(camera)
+    empty_scene.camera = camera
+
+    def shown(places, radius):
+        random = np.random.default_rng(5)
+        mesh = bpy.data.meshes.new("Mist")
+        mesh.from_pydata(places.tolist(), [], [])
+        given = {
+            "radius": np.full(len(places), radius), "kind": np.full(len(places), drops.MIST),
+            "age": random.uniform(0.0, 4.0, len(places)), "number": random.integers(2**24, size=len(places)),
+        }  # fmt: skip
+        for name, values in given.items():
+            mesh.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", values.astype(np.float32))
+        item = bpy.data.objects.new("Mist", mesh)
+        empty_scene.collection.objects.link(item)
+        group = extension("nodes.versioned").node_group(extension("nodes.spray").SPRAY)
+        item.modifiers.new("Spray", "NODES").node_group = group
+        return points(item)
+
+    return shown
+
+
+def test_light_goes_through_tens_of_puffs_and_not_through_hundreds(puffs):
+    """Cycles ends it in black after 64: of a hurricane's mist that is hundreds along the horizon."""
+    radius, random = 3.0, np.random.default_rng(4)
+    places = np.array([50.0, -300.0, -4.0]) + random.uniform(size=(60_000, 3)) * (1350.0, 600.0, 8.0)
+    away = np.linalg.norm(places, axis=1)
+    found = puffs(places, radius)
+
+    angles = np.linspace(-0.2, 0.2, 41)
+    aims = np.stack([np.cos(angles), np.sin(angles), np.zeros(41)], axis=1)
+    passing = away[:, np.newaxis] ** 2 - (places @ aims.T) ** 2 < radius**2
+    assert passing.sum(axis=0).min() > 150
+    drawn = found["radius"] > 0.0
+    np.testing.assert_array_equal(drawn, found["mist_density"] > 0.0)
+    assert passing[drawn].sum(axis=0).max() < 64
+    # and they cover as much as all would, but for those near the lens
+    far = away > radius / 0.02
+    covering = far / away**2
+    assert np.dot(covering, found["mist_density"]) == pytest.approx(np.dot(covering, found["left"]), rel=0.03)
+
+
+def test_a_puff_alone_is_as_dense_as_it_is_old_and_does_not_stand_out_at_the_lens(puffs):
+    away, angles = np.array([500.0, 200.0, 100.0, 25.0, 5.0]), np.arange(5.0)
+    found = puffs(away[:, np.newaxis] * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], 1), 1.0)
+    np.testing.assert_allclose(found["radius"], 1.0)
+    expected = found["left"] * (1.0, 1.0, 1.0, 0.25, 0.01)  # of the square of the size, beyond 2 % of the way
+    np.testing.assert_allclose(found["mist_density"], expected, rtol=1e-4)
 
 
 def test_a_window_shows_an_eighth_as_much_larger(extension, ocean, empty_scene, monkeypatch):
@@ -212,7 +247,7 @@ def test_a_place_next_to_zero_is_no_option(extension, around, empty_scene):
     ocean, _, _ = around
     empty_scene.camera.location = (-1.25e-7, -2e-5, 4.0)
     bpy.context.view_layer.update()
-    words = extension("scene.spray").spray_arguments(ocean, empty_scene)
+    words = extension("scene.baked_spray").spray_arguments(ocean, empty_scene)
     bake = importlib.import_module("ocean_tweak.cli.arguments").make_parser(in_blender=False)
     read = bake.parse_args(["bake", "--frames", "1", *words])
     assert read.spray
@@ -281,55 +316,6 @@ def test_more_than_the_memory_holds_is_told(extension, ocean, monkeypatch):
 
 
 @pytest.fixture
-def baked(extension, ocean, empty_scene, tmp_path):
-    """The ocean with frames 12 to 14 baked, of which 13 has no spray."""
-    bake = importlib.import_module("ocean_tweak.cli").main
-    sea = tmp_path / "sea.json"
-    sea.write_text(ocean.ocean_tweak.to_parameters(empty_scene).to_json(), encoding="utf-8")
-    assert bake(["bake", "--params", str(sea), "--frames", "12-14", "--out", str(tmp_path), "--spray"]) == 0
-    (displacement,) = tmp_path.glob("*/*/*_disp.0012.exr")
-    (displacement.parent / "spray" / "sea_spray.0013.ply").unlink()
-    object_module = extension("scene.ocean_object")
-    sequence = extension("scene.image_sequence").find_sequence(displacement)
-    object_module.use_sequence(ocean, empty_scene, sequence)
-    return ocean
-
-
-def test_baked_points_are_those_of_the_files(baked, empty_scene, caplog):
-    item = spray_of(baked)
-    assert not item.is_runtime_data
-    assert len(item.data.vertices) == 0
-    for frame in (12, 14):
-        empty_scene.frame_set(frame)
-        expected = TileSpray(Ocean(SEA)).at((frame - 1) / 24.0, Spray())
-        shown = expected.id % 2**24 <= 2**24 / 8  # in a window
-        found = points(item)
-        np.testing.assert_allclose(found["position"], expected.position[shown], atol=1e-4)
-        np.testing.assert_allclose(found["velocity"], expected.velocity[shown], atol=1e-4)
-        np.testing.assert_allclose(found["radius"], expected.radius[shown] * 8**0.5, rtol=1e-5)
-    assert "spray" not in caplog.text
-
-
-def test_a_frame_without_a_file_is_told_and_shows_the_one_before(baked, empty_scene, caplog):
-    empty_scene.frame_set(12)
-    before = points(spray_of(baked))["position"]
-    empty_scene.frame_set(13)
-    assert "spray.0013.ply is missing, and the spray of frame 12 is shown" in caplog.text
-    np.testing.assert_array_equal(points(spray_of(baked))["position"], before)
-    assert not baked.ocean_tweak.error
-
-
-def test_baked_spray_is_kept_in_the_file_and_needs_no_extension(extension, baked, empty_scene, tmp_path):
-    path = tmp_path / "shot.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    with extension("scene.handlers").asleep():
-        bpy.ops.wm.open_mainfile(filepath=str(path))
-        item = next(item for item in bpy.data.objects if item.name.endswith("Spray"))
-        bpy.context.scene.frame_set(14)
-        assert len(points(item)["radius"]) > 100
-
-
-@pytest.fixture
 def asked(extension, ocean, empty_scene):
     """What a refresh is given at frame 13 of a sea that nobody has made yet."""
     with extension("scene.handlers").asleep():
@@ -391,121 +377,6 @@ def test_a_stretched_frame_shows_its_own_particles(ocean, empty_scene):
     expected = made(12.5 / 24.0)
     moved = expected.position + expected.velocity * 0.5 * 0.25 / 24.0
     np.testing.assert_allclose(points(spray_of(ocean))["position"], moved, atol=1e-4)
-
-
-def test_files_are_looked_at_when_they_change_and_not_a_frame(extension, baked, empty_scene, monkeypatch):
-    module, looks = extension("scene.spray"), []
-    whole = module.told_by_ply
-    monkeypatch.setattr(module, "told_by_ply", lambda *given: looks.append(given) or whole(*given))
-    for frame in (12, 14, 12):
-        empty_scene.frame_set(frame)
-    assert looks == []
-    (folder,) = extension("scene.patch_points").files_of(baked.ocean_tweak)[2].glob("spray")
-    for path in folder.iterdir():
-        path.unlink()
-    empty_scene.frame_set(14)
-    assert module.is_live(baked)
-    assert len(points(spray_of(baked))["radius"]) > 100
-
-
-def test_frames_of_spray_are_counted_by_themselves(extension, ocean, empty_scene, tmp_path, monkeypatch):
-    module, counts = extension("scene.bake_process"), []
-    whole = module.BakeProcess.take
-
-    def take(self, said):
-        whole(self, said)
-        counts.append((self.phase, self.done, self.left))
-
-    monkeypatch.setattr(module.BakeProcess, "take", take)
-    ocean.ocean_tweak.cache_folder = str(tmp_path)
-    shot = extension("scene.shots").shot_of(ocean, empty_scene, (12, 13))
-    bake = module.start(ocean, shot, (12, 13))
-    bake.wait()
-    module.forget(bake)
-    assert bake.is_complete, bake.error
-    assert len(list(bake.folder.glob("spray/*.ply"))) == 2
-    extension("scene.bake_versions").delete(ocean)  # with its spray
-    assert not bake.folder.exists()
-    each = [(0, 2), (1, 2), (2, 2)]
-    assert list(dict.fromkeys(counts)) == [("", *count) for count in each] + [
-        ("spray", *count) for count in each
-    ]
-
-
-def test_a_bake_without_the_spray_that_is_on_needs_the_extension(extension, baked, empty_scene):
-    needs_of, spray = extension("scene.portability").needs_of, extension("scene.spray")
-    assert needs_of(baked) == ()
-    (folder,) = extension("scene.patch_points").files_of(baked.ocean_tweak)[2].glob("spray")
-    for path in folder.glob("*.ply"):
-        path.unlink()
-    empty_scene.frame_set(14)
-    assert spray.is_live(baked)
-    (need,) = needs_of(baked)
-    assert need.text == "Ocean has spray, which its bake has not: bake it again"
-    baked.ocean_tweak.use_spray = False
-    assert needs_of(baked) == ()
-
-
-@pytest.mark.parametrize(("name", "value"), [("amount", 2.0), ("life", 1.0)])
-def test_spray_of_an_older_bake_is_told_and_shown(baked, empty_scene, caplog, name, value):
-    empty_scene.frame_set(14)
-    before = points(spray_of(baked))
-    setattr(baked.ocean_tweak.spray, name, value)
-    was = getattr(Spray(), name)
-    assert f"its spray was baked with a {name} of {was:g}, and the settings have {value:g}" in caplog.text
-    for key, values in points(spray_of(baked)).items():
-        np.testing.assert_array_equal(values, before[key])
-    assert not baked.ocean_tweak.error
-
-
-def test_spray_of_another_version_is_told_and_shown(extension, baked, empty_scene, monkeypatch, caplog):
-    monkeypatch.setattr(extension("core.data.formats"), "SPRAY", 99)
-    extension("scene.spray")._baked_in.cache_clear()
-    empty_scene.frame_set(14)
-    assert "its spray was baked by another version" in caplog.text
-    assert len(points(spray_of(baked))["radius"]) > 10
-
-
-def test_the_farm_s_render_reads_spray_where_the_bake_is_now(extension, baked, tmp_path):
-    script, modifier = extension("export.farm.render_baked"), spray_of(baked).modifiers[0]
-    folder = tmp_path / "farm"
-    (tmp_path / "farm/spray").mkdir(parents=True)
-    here = SimpleNamespace(name="sea", folder=folder)
-    with pytest.raises(script.RenderError, match=r"sea_spray\.0012\.ply is missing: Ocean Spray reads spray"):
-        script.show_points(modifier, here, [12])
-    (folder / "spray/sea_spray.0012.ply").touch()
-    assert script.show_points(modifier, here, [12])
-    files = extension("nodes.modifier_inputs").get_input(modifier, "Files")
-    assert files == str(folder / "spray/sea_spray.")
-    assert not script.show_points(modifier, SimpleNamespace(name="other", folder=folder), [12])
-
-
-def test_usd_of_the_panel_has_it(extension, ocean, empty_scene, monkeypatch):
-    module, told = extension("scene.usd"), []
-    monkeypatch.setattr(module.CommandProcess, "__init__", lambda _, name, words, *__: told.append(words))
-    shot = extension("scene.shots").shot_of(ocean, empty_scene, (1,))
-    ocean.ocean_tweak.spray.amount = 0.5
-    for bake in (None, "folder"):
-        monkeypatch.setattr(module, "used_bake", lambda _, given=bake: given)
-        for is_on in (True, False):
-            ocean.ocean_tweak.use_spray = is_on
-            module.UsdExport(ocean, shot, (1,))
-            words = told.pop()
-            assert ("--spray" in words) is is_on
-            assert ("--set=spray.amount=0.5" in words) is (is_on and bake is not None)
-
-
-@pytest.mark.parametrize("subframe", [0.25, -0.4])
-def test_baked_points_go_on_by_their_velocity_between_frames(baked, empty_scene, subframe):
-    """As both engines look at them for motion blur: EEVEE at other frames, where it pairs points by order."""
-    empty_scene.frame_set(14)
-    whole = points(spray_of(baked))
-    empty_scene.frame_set(14 if subframe > 0.0 else 13, subframe=subframe % 1.0)
-    between = points(spray_of(baked))
-    moved = whole["position"] + whole["velocity"] * subframe / 24.0
-    assert np.linalg.norm(moved - whole["position"], axis=1).max() > 0.05
-    np.testing.assert_allclose(between["position"], moved, atol=1e-4)
-    np.testing.assert_array_equal(between["velocity"], whole["velocity"])
 
 
 def test_each_particle_is_in_the_repeat_that_is_nearest_to_the_camera(extension, ocean, empty_scene):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -69,6 +70,38 @@ def test_another_amount_bakes_no_sea_anew(sea: Path, capsys: pytest.CaptureFixtu
     assert files(sea, "*.exr") == images
     again = files(sea, "spray/*.ply")
     assert all(len(again[name]) > 1.5 * len(spray[name]) for name in spray)
+
+
+def test_an_estimate_counts_spray(sea: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of frames without a file, whatever images there are; and nothing is written."""
+    wide = ("--set", "domain_size=400", "--set", "resolution=128")  # gusts and breakers even out
+
+    def told(*more: str) -> int:
+        assert bake(sea, "--estimate", "--json", *wide, *more, frames="12-14") == 0
+        line = next(line for line in capsys.readouterr().out.splitlines() if '"seconds"' in line)
+        assert json.loads(line)["seconds"] > 0.0
+        return int(json.loads(line)["bytes"])
+
+    spray = told("--spray") - told()
+    assert not list(sea.parent.glob("out/*/*/spray"))
+    assert bake(sea, "--spray", *wide, frames="12-14") == 0
+    sizes = [len(content) for content in files(sea, "spray/*.ply").values()]
+    assert spray == pytest.approx(sum(sizes), rel=0.25)
+    (path,) = sea.parent.glob("out/*/*/spray/sea_spray.0012.ply")
+    path.unlink()
+    capsys.readouterr()
+    assert told("--spray") - told() == pytest.approx(spray / 3, rel=0.25)
+
+
+def test_a_disk_without_room_for_spray_is_told_first(
+    sea: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usage = shutil.disk_usage(sea.parent)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: usage._replace(free=400_000))
+    assert bake(sea) == 0  # there is room for images
+    assert bake(sea, "--spray", "--set", "spray.amount=20") == 1
+    assert re.search(r"2 frames need about [\d.]+ \w+, and the disk has", capsys.readouterr().err)
+    assert not list(sea.parent.glob("out/*/*/spray/*.ply"))
 
 
 def test_a_file_cut_off_is_made_again(sea: Path) -> None:

@@ -11,7 +11,8 @@ import pytest
 from ocean_tweak.cli import main
 from ocean_tweak.core import Ocean, OceanParameters, Spray, WaveLayer
 from ocean_tweak.core.parameters.shot import Shot
-from ocean_tweak.core.sea.spray import ShotSpray, TileSpray
+from ocean_tweak.core.sea.shot_spray import ShotSpray
+from ocean_tweak.core.sea.spray import TileSpray
 from ocean_tweak.export.usd.export import Export
 from ocean_tweak.export.usd.library import UsdError
 from ocean_tweak.export.usd.package import Package

@@ -19,13 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..data.errors import ParameterError
-from ..data.frames import Frame
 from ..foam.model import FoamModel, breaking_of
 from ..foam.threshold import foam_outlook, foam_wind
 from ..numerics import random
 from ..numerics.machine import usable_memory
 from ..parameters.ocean_parameters import OceanParameters
-from ..parameters.shot import Shot
 from ..parameters.spray import Spray
 from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
@@ -131,6 +129,10 @@ class TileSpray:
         """
         return self._crests.in_the_air(self._foam.foam_model, time, spray, (_TILE,), self._look)
 
+    def outlook(self, time: Fraction, spray: Spray) -> float:
+        """Particles in the air where crests always break as at one moment: of that alone, it is quick."""
+        return self._crests.outlook(self._foam.foam_model, time, spray, (_TILE,), self._look)
+
     def _look(self, index: int, _squares: Sequence[Square]) -> list[_Looked]:
         foam = self._foam
         n, side, model = foam.parameters.resolution, foam.parameters.domain_size, foam.foam_model
@@ -166,6 +168,11 @@ class CameraSpray:
         model = self._levels.seas[0].foam_model
         return self._crests.in_the_air(model, time, spray, squares(self._levels, place), self._look)
 
+    def outlook(self, time: Fraction, spray: Spray, place: tuple[float, float]) -> float:
+        """Particles in the air where crests always break as at one moment: of that alone, it is quick."""
+        model = self._levels.seas[0].foam_model
+        return self._crests.outlook(model, time, spray, squares(self._levels, place), self._look)
+
     def _look(self, index: int, missing: Sequence[Square]) -> list[_Looked]:
         """Visible crests in each square, on the water of all waves, and what hulls throw up."""
         finest = self._levels.seas[0]
@@ -191,38 +198,6 @@ class CameraSpray:
             crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, births[part])
             made.append(_Looked(cells, crests))
         return made
-
-
-class ShotSpray:
-    """Spray of a shot's frames; fastest for consecutive ones.
-
-    place : centre (x, y) in m; None for the sea's tile, which must then exist
-    """
-
-    def __init__(self, shot: Shot, spray: Spray, place: tuple[float, float] | None = None) -> None:
-        self._shot = shot
-        self._spray = spray
-        self._place = place
-        self._made: tuple[OceanParameters, Callable[[Fraction], Particles]] | None = None
-
-    def at(self, frame: Frame) -> Particles:
-        """Particles at a frame, with velocities per second of the shot.
-
-        Raises SprayError for more than the memory holds.
-        """
-        moment = self._shot.at(frame)
-        if self._made is None or self._made[0] != moment.parameters:
-            self._made = moment.parameters, self._maker(moment.parameters)
-        made = self._made[1](moment.time)
-        return made if moment.rate == 1.0 else made._replace(velocity=made.velocity * np.float32(moment.rate))
-
-    def _maker(self, sea: OceanParameters) -> Callable[[Fraction], Particles]:
-        spray, place = self._spray, self._place
-        if place is None:
-            tile = TileSpray(Ocean(sea))
-            return lambda time: tile.at(time, spray)
-        around = CameraSpray(FoamLevels(sea))
-        return lambda time: around.at(time, spray, place)
 
 
 #: all of a sea's one tile
@@ -285,12 +260,27 @@ class _Remembered:
         moments = range(first, math.floor(now / step + Fraction(1, 2)) + 1)
         with self._busy:
             crests = self._looked_at(moments, around, look)
-        torn = sum(float(expected(each, spray, float(step)).sum()) for _, each in crests)
-        _check_memory(torn / len(moments) / float(step) * mean_life(spray), spray)
+        torn = _in_the_air([each for _, each in crests], spray, float(step))
+        _check_memory(torn / len(moments), spray)
         parts = (
             in_the_air(each, spray, wind, float(step), float(now - index * step)) for index, each in crests
         )
         return joined([*parts])
+
+    def outlook(
+        self,
+        model: FoamModel,
+        time: Fraction,
+        spray: Spray,
+        around: Sequence[Square],
+        look: Callable[[int, Sequence[Square]], list[_Looked]],
+    ) -> float:
+        """Particles in the air where crests always break as at one moment; nothing is remembered."""
+        if why_none(self._parameters) is not None:
+            return 0.0
+        found = look(math.floor(time / model.step), around)
+        crests = [each.seen_in(square) for square, each in zip(around, found, strict=True)]
+        return _in_the_air(crests, spray, float(model.step))
 
     def _looked_at(
         self,
@@ -397,6 +387,11 @@ def _crests(
 def _torn(strength: RealArray) -> RealArray:
     """Share of the area of breaking crests of some strength that is torn, float32."""
     return np.minimum(strength / np.float32(_ALL_TEARS), np.float32(1.0))
+
+
+def _in_the_air(crests: Sequence[Crests], spray: Spray, step: float) -> float:
+    """Expected particles in the air, where such crests break in each moment of `step` seconds."""
+    return sum(float(expected(each, spray, step).sum()) for each in crests) / step * mean_life(spray)
 
 
 def _check_memory(count: float, spray: Spray) -> None:

@@ -28,9 +28,13 @@ from ...core.parameters.shot import OCEAN_TIME, Shot
 from ...core.sea.bake import ShotSeas
 from ...core.sea.memory import TABLES, ground_of
 from ...core.sea.over_bed import mesh_over_bed, over_bed
+from ...core.sea.shot_spray import ShotSpray
+from ...core.spray.columns import BYTES_IN_FILE
+from ...core.spray.particles import longest_life
 from ...core.synthesis.channels import OF_MEMORY, SurfaceFields, is_put_together
 from ...core.waves.coast.ground import LEAST_RIM
 from ..shelf import nothing_kept
+from ..spray import SpraySequence
 from .job import CacheError, Job
 
 #: the trial frame's samples along each side: few enough to take a moment. Images of more are smoother and
@@ -61,6 +65,8 @@ _POINTS = 480
 #: of the rest
 _FOAM = 44
 
+#: s to make and write a particle of spray, and where in a shot it is counted
+_PARTICLE, _OUTLOOKS = 1.2e-6, (0.0, 0.5, 1.0)
 #: bytes a sample while the waves are made and measured
 _STATISTICS = 40
 
@@ -102,6 +108,27 @@ def estimate(folder: Path, job: Job, frames: Sequence[Frame], workers: int = 1) 
         return Estimate(0, 0, 0.0, free)
     size = _frame_bytes(folder, job, frames[0]) + _RECORD
     return Estimate(len(frames), size * len(frames), _seconds(folder, job, frames, workers), free)
+
+
+def with_spray(needed: Estimate, files: SpraySequence, frames: Sequence[Frame]) -> Estimate:
+    """An estimate together with frames of spray, which one process makes when all else is done."""
+    if not frames:
+        return needed
+    shot, changes = files.shot, _changes(files.shot)
+    maker = ShotSpray(shot, files.spray, files.place)
+    spread = [frames[round(share * (len(frames) - 1))] for share in _OUTLOOKS]
+    count = sum(map(maker.outlook, spread)) / len(spread)
+    moment = cpu_seconds(partial(maker.outlook, spread[-1]))
+    most = longest_life(files.spray) * LATTICE_RATE
+    gaps = (float(later - earlier) for earlier, later in pairwise(frames))
+    a_frame = LATTICE_RATE / float(shot.parameters.timing.fps)
+    looks = most + sum(most if changes else min(most, gap * a_frame) for gap in gaps)
+    return Estimate(
+        max(needed.frames, len(frames)),
+        needed.bytes + len(frames) * _room(count * BYTES_IN_FILE),
+        needed.seconds + looks * moment + len(frames) * count * _PARTICLE,
+        needed.free,
+    )
 
 
 def statistics_memory(parameters: OceanParameters) -> int:

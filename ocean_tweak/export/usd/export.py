@@ -13,7 +13,7 @@ import numpy as np
 from ...core import ParameterError
 from ...core.data.frames import Frame, format_frames
 from ...core.sea.bake import BakedFrame, bake
-from ...core.sea.spray import ShotSpray
+from ...core.sea.shot_spray import ShotSpray
 from ..cache.folders import read_job
 from ..cache.job import Job
 from ..cache.records import unfinished

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...core.sea.bake import BakedFrame
-from ...core.sea.spray import ShotSpray
+from ...core.sea.shot_spray import ShotSpray
 from ...core.spray.particles import Particles
 from .grid import turned
 from .layers import save, whole_layer, write_header

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spray that an ocean reads from the files of its bake, and what commands are told that bake it."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+
+from ..core.data import formats
+from ..core.data.errors import ParameterError
+from ..core.data.plain_data import from_plain, to_plain
+from ..core.data.printable import without_exponent
+from ..core.parameters.spray import Spray
+from ..core.sea.placed_waves import repeating
+from ..core.sea.spray import why_none
+from ..core.spray.columns import COLUMNS
+from ..export.frame_files import SPRAY, files_start
+from ..export.ply import told_by_ply
+from ..export.spray import WantedSpray, spray_files
+from .patch_points import files_of
+from .plan import camera_place, camera_surface_of
+from .settings import OceanSettings, settings_of
+from .units import metres_per_unit
+
+
+@dataclass(frozen=True)
+class BakedSpray:
+    """Spray that files have.
+
+    start : of the files' paths, up to the frame
+    frames : that have one, ascending
+    spray : what they were made from; the usual where they do not tell
+    is_older : whether an older version made them
+    """
+
+    start: str
+    frames: tuple[int, ...]
+    spray: Spray
+    is_older: bool
+
+    def differs(self, own: Spray | None) -> str | None:
+        """How it is another one than the settings say; None where it is that."""
+        if self.is_older:
+            return "its spray was baked by another version"
+        if own is None or self.spray == own:
+            return None
+        was, now = to_plain(self.spray), to_plain(own)
+        name = next(name for name in was if was[name] != now[name])
+        return f"its spray was baked with a {name} of {was[name]:g}, and the settings have {now[name]:g}"
+
+
+def baked_spray(settings: OceanSettings) -> BakedSpray | None:
+    """The spray of the bake that an ocean reads; None where it is live, or the bake has none."""
+    found = files_of(settings)
+    if found is None:
+        return None
+    stored, name, here = found
+    folder = here / SPRAY
+    try:
+        changed = folder.stat().st_mtime_ns
+    except OSError:
+        return None
+    return _baked_in(folder, name, stored, changed)
+
+
+@functools.lru_cache(maxsize=64)
+def _baked_in(folder: Path, name: str, stored: str, _changed: int) -> BakedSpray | None:
+    """The spray in a folder, which is read anew when it has changed."""
+    start, files = files_start(name, SPRAY), spray_files(folder.parent, name)
+    if not files:
+        return None
+    told = told_by_ply(files[min(files)], (COLUMNS,)) or {}
+    spray = Spray()
+    with contextlib.suppress(ParameterError):
+        spray = from_plain(Spray, told.get("spray", {}))
+    is_older = told.get("version", formats.SPRAY) != formats.SPRAY
+    return BakedSpray(f"{stored}{SPRAY}/{start}", tuple(files), spray, is_older)
+
+
+def spray_to_bake(ocean: bpy.types.Object, scene: bpy.types.Scene) -> WantedSpray | None:
+    """The spray that a bake of an ocean makes; None where there is none."""
+    parameters = repeating(settings_of(ocean).to_parameters(scene))
+    if parameters.spray is None or why_none(parameters) is not None:
+        return None
+    return WantedSpray(parameters.spray, bake_place(ocean, scene))
+
+
+def spray_arguments(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
+    """What the command `bake` is told of an ocean's spray."""
+    spray = spray_to_bake(ocean, scene)
+    if spray is None:
+        return []
+    return [
+        "--spray",
+        *(() if spray.place is None else ("--spray-place", *map(without_exponent, spray.place))),
+    ]
+
+
+def spray_numbers(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
+    """What a command is told of them besides, that takes the sea from a bake."""
+    spray = spray_to_bake(ocean, scene)
+    numbers = {} if spray is None else to_plain(spray.spray)
+    return [f"--set=spray.{name}={value}" for name, value in numbers.items()]
+
+
+def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> tuple[float, float] | None:
+    """Where the camera is now around which an ocean of patches is shown, m; None for another ocean.
+
+    A bake is without what does not repeat: one of a single patch has its spray on its tile.
+    """
+    surface = camera_surface_of(ocean)
+    if surface is None or not len(settings_of(ocean).patches):
+        return None
+    return camera_place(surface, scene, float(1 / metres_per_unit(scene)))
