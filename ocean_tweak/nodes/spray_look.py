@@ -27,7 +27,7 @@ _PANELS = (
             ("Color", "NodeSocketColor", (0.92, 0.93, 0.94, 1.0), "Of spume and mist"),
             ("Drops", "NodeSocketFloat", 0.9, "Opacity of single drops in their middle"),
             ("Spume", "NodeSocketFloat", 0.45, "Opacity of a piece of a sheet of spume in its middle"),
-            ("Mist", "NodeSocketFloat", 0.06, "Opacity of new mist in its middle"),
+            ("Mist", "NodeSocketFloat", 0.15, "Opacity of new mist in its middle"),
             ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
         ),
     ),

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import bpy
 
+from ..core.sea.placed_waves import has_tile
 from ..export.cache import clean
 from ..export.cache.estimate import Estimate, estimate, fitting_workers, with_spray
 from ..export.cache.folders import bakes_in
@@ -80,7 +81,7 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
         place = place.parent
     to_come = estimate(place, job, frames, fitting_workers(job, len(frames)))
     spray = spray_to_bake(item, scene)
-    if spray is not None and (spray.place is not None or not shot.parameters.is_cascade):
+    if spray is not None and (spray.place is not None or has_tile(shot.parameters)):
         to_come = with_spray(to_come, SpraySequence(place, job.name, shot, spray.spray, spray.place), frames)
     look(item)
     _listings[item.session_uid] = _listings[item.session_uid]._replace(to_come=to_come)

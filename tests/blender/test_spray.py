@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import ocean_tweak.core
-from ocean_tweak.core import OceanParameters, Spray
+from ocean_tweak.core import OceanParameters, Spray, WaveLayer
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.patch_plan import Wish, planned
 from ocean_tweak.core.sea.spray import CameraSpray

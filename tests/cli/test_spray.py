@@ -79,8 +79,9 @@ def test_an_estimate_counts_spray(sea: Path, capsys: pytest.CaptureFixture[str])
     def told(*more: str) -> int:
         assert bake(sea, "--estimate", "--json", *wide, *more, frames="12-14") == 0
         line = next(line for line in capsys.readouterr().out.splitlines() if '"seconds"' in line)
-        assert json.loads(line)["seconds"] > 0.0
-        return int(json.loads(line)["bytes"])
+        found = json.loads(line)
+        assert found["seconds"] > 0.0 or not found["bytes"]
+        return int(found["bytes"])
 
     spray = told("--spray") - told()
     assert not list(sea.parent.glob("out/*/*/spray"))

@@ -17,7 +17,7 @@ RealArray = NDArray[np.floating]
 SPUME, DROPLET, MIST = 0, 1, 2
 
 #: fractions of all particles, and ranges of radii in m
-SHARE = {SPUME: 0.798, DROPLET: 0.2, MIST: 0.002}
+SHARE = {SPUME: 0.794, DROPLET: 0.2, MIST: 0.006}
 _RADII = {SPUME: (0.3e-3, 1.0e-3), DROPLET: (0.6e-3, 2.0e-3), MIST: (0.1e-3, 0.25e-3)}
 #: exponents of the size distributions: r⁻⁸ from 0.1 to 0.25 mm (Andreas 1992), and r⁻⁵ for larger drops,
 # which his function lacks (fitted by Veron and others 2012)

@@ -38,7 +38,7 @@ _DIFFERENCE = 0.35
 _DROPS_FLY = 2.0
 #: drawn radii: the drop that has that of the settings, m; a piece of a sheet of spume, and mist, over it; and
 #: the friction velocities by which mist spreads
-_DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 6.0, 240.0, 0.3
+_DRAWN_AS, _SHEET, _MIST, _SPREADING = 0.5e-3, 16.0, 240.0, 0.3
 
 #: mist is seen from afar, in streaks as wide as its puffs: largest number that one may represent
 _PUFFS = 4.0
