@@ -91,12 +91,25 @@ SHOTS = {
         },
     ),
     "golden-hour": Shot(
-        "FRESH_BREEZE", sky="GOLDEN_HOUR", light={"sun_azimuth": math.radians(104.0)},
-        changes={"floats": "BOAT", "eye": 2.0},
+        "FRESH_BREEZE", (9.0, 80e3), sky="GOLDEN_HOUR", foam=1.5, away=(85.0, 115.0),
+        light={
+            "sun_azimuth": math.radians(99.0), "sun_elevation": math.radians(4.0), "clouds": 0.55,
+            "exposure": 0.2,
+        },
+        changes={
+            "eye": 3.6, "lens": 60.0, "tilt": math.radians(1.6), "rings": 0, "crest_distance": 14.0,
+            "vertices": 600_000,
+        },
     ),
     "dusk": Shot("CALM", sky="DUSK", away=(55.0, 75.0)),
     "moonlit-night": Shot("FRESH_BREEZE", sky="MOONLIT_NIGHT", away=(75.0, 95.0)),
-    "storm-light": Shot("STORM", sky="STORM_LIGHT"),
+    "storm-light": Shot(
+        "STORM", sky="STORM_LIGHT", light={"sun_azimuth": math.radians(130.0)},
+        changes={"lens": 50.0, "tilt": math.radians(-3.5)},
+    ),
+    "beach": Shot("BEACH"),
+    "harbour": Shot("HARBOUR"),
+    "islet": Shot("ISLET"),
 }  # fmt: skip
 
 
@@ -140,7 +153,7 @@ def build(extension: Extension, shot: Shot, engine: str) -> None:
     """A new file with the scene of a shot, ready to render."""
     moods, surroundings = extension.module("scene.moods"), extension.module("scene.surroundings")
     bpy.ops.wm.read_homefile(use_empty=True)
-    mood = moods.MOODS[shot.mood]
+    mood = (moods.MOODS | moods.COASTS)[shot.mood]
     sky = extension.module("scene.skies").SKIES[shot.sky].sky if shot.sky else mood.sky
     mood = dataclasses.replace(mood, **shot.changes, sky=dataclasses.replace(sky, **shot.light))
     if shot.wind is not None:
@@ -150,9 +163,13 @@ def build(extension: Extension, shot: Shot, engine: str) -> None:
         nearest, farthest = shot.away
         afloat["SHOT"] = dataclasses.replace(afloat["BOAT"], nearest=nearest, farthest=farthest)
         mood = dataclasses.replace(mood, floats="SHOT")
-    moods.MOODS["SHOT"] = mood
-    scene = bpy.context.scene
-    surroundings.build(scene, "SHOT", surroundings.Wishes(engine=engine, afloat=shot.is_afloat))
+    scene, wishes = bpy.context.scene, surroundings.Wishes(engine=engine, afloat=shot.is_afloat)
+    if mood.shore is None:
+        moods.MOODS["SHOT"] = mood
+        surroundings.build(scene, "SHOT", wishes)
+    else:
+        moods.COASTS["SHOT"] = mood
+        extension.module("scene.coast_scene").build(scene, "SHOT", wishes)
     if shot.shadows is not None:
         add_cloud_shadows(extension, scene, shot.shadows)
 

@@ -78,11 +78,28 @@ def add_afloat(
 
     place : of the camera, x, y and z in m, in the patch
     """
-    metres, chosen = float(metres_per_unit(scene)), AFLOAT[kind]
     heading = _heading(parameters)
+    x, y = _best_seen(AFLOAT[kind], place, camera.data.angle, heading, parameters)
+    return let_float(kind, x, y, heading, ocean, scene, collection)
+
+
+def let_float(
+    kind: str,
+    x: float,
+    y: float,
+    heading: float,
+    ocean: bpy.types.Object,
+    scene: bpy.types.Scene,
+    collection: bpy.types.Collection,
+) -> bpy.types.Object:
+    """Let something of AFLOAT ride an ocean.
+
+    x, y : in the patch, m
+    heading : rad counter-clockwise from +x
+    """
+    metres, chosen = float(metres_per_unit(scene)), AFLOAT[kind]
     item = chosen.new(chosen.label, metres)
     item[_OURS] = kind
-    x, y = _best_seen(chosen, place, camera.data.angle, heading, parameters)
     item.location = np.array(ocean.location) + np.array([x, y, 0.0]) / metres
     item.rotation_euler.z = heading
     collection.objects.link(item)

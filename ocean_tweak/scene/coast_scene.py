@@ -12,10 +12,13 @@ from mathutils import Vector
 from ..core import Coast, Raster, Timing
 from ..core.waves.coast.beds import BEDS, SPACING, grid
 from . import ocean_object, startup_file, water_material
+from .afloat import let_float
+from .beacon import new_beacon
 from .ground import add_ground
 from .moods import COASTS, VIEW
 from .refresh import refresh
 from .settings import VIEWPORT_RESOLUTION, settings_of
+from .sheds import new_sheds
 from .surroundings import Made, Wishes, new_camera, set_up
 from .units import frame_rate, metres_per_unit
 
@@ -54,4 +57,12 @@ def build(
     if wishes.camera or scene.camera is None:
         scene.camera = camera
     kept = set_up(scene, mood, wishes, target, is_empty, view)
+    if wishes.afloat and shore.boat is not None:
+        let_float("BOAT", *shore.boat, ocean, scene, target)
+    for is_port, place in zip((True, False), shore.beacons, strict=False):
+        beacon = new_beacon(is_port, metres)
+        beacon.location = Vector(place) / metres
+        target.objects.link(beacon)
+    if shore.sheds:
+        target.objects.link(new_sheds(shore.sheds, metres))
     return Made(ocean, camera, kept, replaced)

@@ -1,32 +1,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ground of ready scenes with a coast: a mesh of bed and land, its sand and its rock."""
+"""The ground of ready scenes with a coast: a mesh of bed and land. Its materials are in `ground_material`."""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..core.numerics.interpolation import between, smoothstep
+from ..core.numerics.random import hash_cells, uniform
 from ..core.waves.coast.beds import BEDS, SIDE
-from ..nodes.names import WET
-from ..nodes.shading import Shading, Socket
+from .ground_material import ROCK, ground_material
 
-_SAND, _WET_SAND, _ROCK = (0.46, 0.36, 0.24, 1.0), (0.17, 0.125, 0.08, 1.0), (0.075, 0.068, 0.06, 1.0)
-#: z of the normal of what is rock, and of what is sand
-_STEEP = (0.86, 0.94)
+Array = NDArray[np.float64]
+
 #: cells along each side of the mesh
 _CELLS = 512
-#: attribute between which sand goes from dry to wet; the edge is uneven by so much
-_DRY, _WET, _UNEVEN = 0.05, 0.4, 0.5
+#: beds that are stone from side to side: on others it is where the ground is steep, and some metres around
+_OF_STONE = {"HARBOUR", "ISLET"}
+#: z of the normal of what is sand, and how far below that all is rock
+_LEVEL, _STEEPER = 0.955, 0.07
+#: how far rock reaches from where it is steep, m
+_AROUND = 9
+#: length and height of rock's crags, m; and between which heights above the water they begin, m
+_CRAGS = ((21.0, 1.5), (9.0, 1.1), (4.5, 0.7))
+_CRAGS_BEGIN, _CRAGS_WHOLE = 0.1, 2.0
 
 
 def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scale: float) -> bpy.types.Object:
     """A mesh of one of the beds to begin with, its corner x = y = 0 at the origin.
 
+    Under water it is the bed; its land has crags where it is rock.
+
     scale : Blender units in a metre
     """
     along = np.linspace(0.0, SIDE, _CELLS + 1)
     x, y = np.meshgrid(along, along)
-    places = np.stack((x, y, BEDS[bed](x, y)), axis=-1).reshape(-1, 3) * scale
+    height = BEDS[bed](x, y)
+    rock = np.ones_like(height) if bed in _OF_STONE else _steep(height)
+    if bed != "HARBOUR":  # what is built is even
+        height = height + rock * _crags(x, y, height)
+    places = np.stack((x, y, height), axis=-1).reshape(-1, 3) * scale
     number = np.arange((_CELLS + 1) ** 2, dtype=np.int32).reshape(_CELLS + 1, _CELLS + 1)
     corners = np.stack((number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]), axis=-1)
     mesh = bpy.data.meshes.new(scene_name)
@@ -38,46 +52,48 @@ def add_ground(scene_name: str, bed: str, collection: bpy.types.Collection, scal
     mesh.polygons.foreach_set("loop_start", np.arange(0, corners.size, 4, dtype=np.int32))
     mesh.update(calc_edges=True)
     mesh.shade_smooth()
+    attribute = mesh.attributes.new(ROCK, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", rock.astype(np.float32).reshape(-1))
     item = bpy.data.objects.new(scene_name, mesh)
-    mesh.materials.append(_material(scale))
+    mesh.materials.append(ground_material(scale))
     collection.objects.link(item)
     return item
 
 
-def _material(scale: float) -> bpy.types.Material:
-    """Sand, wet near the waterline, and rock where the ground is steep."""
-    name = "Ocean Tweak Ground"
-    present = bpy.data.materials.get(name)
-    if present is not None:
-        return present
-    material = bpy.data.materials.new(name)
-    if material.node_tree is None:  # before Blender 5
-        material.use_nodes = True
-    shade = Shading(material.node_tree)
-    material.node_tree.nodes.clear()
-    surface = shade.node("ShaderNodeBsdfPrincipled")
-    shade.node("ShaderNodeOutputMaterial", {"Surface": surface.outputs[0]})
-    geometry = shade.node("ShaderNodeNewGeometry").outputs
-    place = geometry["Position"]
-    fine, coarse = shade.noise(place, 1.7 / scale, Detail=5.0), shade.noise(place, 0.06 / scale, Detail=4.0)
-    told = shade.value(WET)
-    uneven = shade.math("MULTIPLY", shade.math("SUBTRACT", fine, 0.5), _UNEVEN)
-    # even where it is all wet or all dry
-    edge = shade.math("MULTIPLY", told, shade.math("SUBTRACT", 1.0, told))
-    wet = shade.smooth(shade.math("MULTIPLY_ADD", uneven, edge, told), _DRY, _WET)
-    grain = shade.math("MULTIPLY_ADD", fine, 0.35, 0.95)
-    sand = shade.scale(shade.mix_vectors(wet, _SAND[:3], _WET_SAND[:3]), grain)
-    steep = shade.math("MULTIPLY_ADD", fine, 0.18, shade.separate(geometry["True Normal"])[2])
-    rock = shade.smooth(steep, _STEEP[0], _STEEP[1], 1.0, 0.0)
-    stone = shade.scale(_ROCK[:3], shade.math("MULTIPLY_ADD", coarse, 1.6, shade.math("ADD", grain, 0.3)))
-    _set(material, surface, "Base Color", shade.mix_vectors(rock, sand, stone))
-    dry = shade.mix(rock, 0.95, 0.85)
-    _set(material, surface, "Roughness", shade.mix(wet, dry, 0.38))
-    bump = shade.node("ShaderNodeBump", {"Height": shade.math("ADD", fine, coarse), "Distance": 0.3 * scale})
-    material.node_tree.links.new(shade.mix(rock, 0.25, 1.0), bump.inputs["Strength"])
-    _set(material, surface, "Normal", bump.outputs[0])
-    return material
+def _steep(height: Array) -> Array:
+    """0…1, rock where ground is steep and around it."""
+    along_y, along_x = np.gradient(height, SIDE / _CELLS)
+    normal = 1.0 / np.sqrt(1.0 + along_x**2 + along_y**2)
+    rock = smoothstep((_LEVEL - normal) / _STEEPER) * (height > -1.0)
+    wide = np.maximum(rock, _mean(rock, round(_AROUND * _CELLS / SIDE)) * 2.0)
+    return np.minimum(wide, 1.0)
 
 
-def _set(material: bpy.types.Material, node: bpy.types.Node, name: str, value: Socket) -> None:
-    material.node_tree.links.new(value, node.inputs[name])
+def _mean(field: Array, reach: int) -> Array:
+    """Mean over a square of so many samples to each side; at the edges, over what there is of it repeated."""
+    for axis in (0, 1):
+        wide = np.pad(field, [(reach + 1, reach) if each == axis else (0, 0) for each in (0, 1)], "edge")
+        total = np.cumsum(wide, axis=axis)
+        high, low = (np.take(total, np.arange(n, n + field.shape[axis]), axis) for n in (2 * reach + 1, 0))
+        field = (high - low) / (2 * reach + 1)
+    return field
+
+
+def _crags(x: Array, y: Array, height: Array) -> Array:
+    """m that rock stands out above the bed's formula, or falls short of it: none under water."""
+    total = np.zeros_like(height)
+    for number, (length, size) in enumerate(_CRAGS):
+        total += size * (0.6 - np.abs(2.0 * _lattice(x / length, y / length, number) - 1.0) * 1.4)
+    # land stays land
+    return smoothstep((height - _CRAGS_BEGIN) / (_CRAGS_WHOLE - _CRAGS_BEGIN)) * np.maximum(
+        total, -0.6 * np.maximum(height, 0.0)
+    )
+
+
+def _lattice(x: Array, y: Array, seed: int) -> Array:
+    """0…1, random at integers and smooth in between."""
+    columns = np.arange(int(x.max()) + 2, dtype=np.int64)
+    rows = np.arange(int(y.max()) + 2, dtype=np.int64)
+    values = uniform(hash_cells(columns[np.newaxis], rows[:, np.newaxis], seed), 0)
+    place = between(y, x, values.shape)
+    return np.asarray(place._replace(u=smoothstep(place.u), v=smoothstep(place.v)).read(values))

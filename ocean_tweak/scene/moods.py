@@ -24,11 +24,17 @@ class Shore:
 
     bed : a key of `core.waves.coast.beds.BEDS`
     eye, target : of the camera
+    boat : x and y in m, and the heading in rad, of a fishing boat; None for none
+    beacons : x, y and z in m of a red and a green one; () for none
+    sheds : x, y and z in m of the fronts of sheds on a quay; () for none
     """
 
     bed: str
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
+    boat: tuple[float, float, float] | None = None
+    beacons: tuple[tuple[float, float, float], ...] = ()
+    sheds: tuple[tuple[float, float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -130,6 +136,13 @@ MOODS = {
     ),
 }  # fmt: skip
 
+#: in rows of three along the harbour's quay
+_SHEDS = tuple(
+    (474.0 + shift, first + y, 2.4)
+    for first, shift in ((52.0, 0.0), (122.0, 2.0), (210.0, -1.0), (290.0, 1.5), (372.0, 0.0))
+    for y in (0.0, 14.0, 30.0)
+)
+
 #: seas with a coast
 COASTS = {
     "BEACH": Mood(
@@ -144,6 +157,17 @@ COASTS = {
         waves=partial(_coast, 12.0, 120e3, 0.0, 14.0, Foam()), water="COASTAL",
         sky=seen(28.0, 40.0, clouds=0.5),
         eye=0.0, crest_distance=0.0, lens=40.0, tilt=0.0, rings=0, floats="",
-        shore=Shore("HARBOUR", (-60.0, 256.0, 200.0), (245.0, 256.0, 0.0)),
+        shore=Shore(
+            "HARBOUR", (-60.0, 256.0, 200.0), (245.0, 256.0, 0.0),
+            boat=(168.0, 262.0, _degrees(-6.0)), beacons=((210.0, 298.0, 2.5), (210.0, 214.0, 2.5)),
+            sheds=_SHEDS,
+        ),
+    ),
+    "ISLET": Mood(
+        "Islet", "A rock in a swell that bends around it and breaks on it",
+        waves=partial(_coast, 12.0, 200e3, 0.0, 16.0, Foam(half_life=5.0)), water="COASTAL",
+        sky=seen(12.0, 50.0, clouds=0.55),
+        eye=0.0, crest_distance=0.0, lens=45.0, tilt=0.0, rings=0, floats="",
+        shore=Shore("ISLET", (120.0, 100.0, 14.0), (250.0, 262.0, 1.0)),
     ),
 }  # fmt: skip
