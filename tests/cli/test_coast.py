@@ -100,6 +100,16 @@ def test_an_area_is_baked_and_a_tile_refused_in_words(
     assert np.abs(pixels[..., 2]).max() > 0.3
 
 
+def test_what_a_bake_takes_is_told_for_any_rim(
+    coast: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The trial's samples are as far apart as the rim lets them, and fit into the domain: 5 m would not."""
+    wide = [*coast, "--set", "domain_size=202", "--set", "coast.step=4", "--set", "coast.rim=60"]
+    bake = ["bake", *wide, "--frames", "1-2", "--area", "200", "16", "-40", "0", "--estimate"]
+    assert main([*bake, "--out", str(tmp_path)]) == 0
+    assert "2 missing; about" in capsys.readouterr().out
+
+
 def test_spray_has_no_tile_and_nothing_is_begun(
     coast: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

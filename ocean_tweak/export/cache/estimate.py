@@ -243,7 +243,9 @@ def _coast_costs(job: Job, frame: Frame) -> tuple[float, float]:
     sea = moment.parameters
     assert sea.coast is not None
     whole = ground_of(sea)
-    step = min(_COARSER * whole.step, sea.coast.rim / LEAST_RIM)
+    most = min(_COARSER * whole.step, sea.coast.rim / LEAST_RIM)
+    # of which a whole number fits into the domain, as the bed's samples must
+    step = whole.domain_size / math.ceil(whole.domain_size / most)
     coarse = sea.replace(coast=replace(sea.coast, step=max(step, whole.step)), seed=_new_seed())
     few, of = ground_of(coarse), Ocean(coarse, workers=1)
     places, share = mesh_over_bed(of), whole.rows * whole.columns / (few.rows * few.columns)
