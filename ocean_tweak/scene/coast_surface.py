@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import bpy
 import numpy as np
@@ -77,34 +78,49 @@ def make_room(ocean: bpy.types.Object) -> None:
             setattr(ocean, name, value)
 
 
-def refresh(ocean: bpy.types.Object, plan: Plan) -> None:
+def refresh(ocean: bpy.types.Object, plan: Plan, patient: bool = True) -> bool:
     """Make, move or remove what shows the sea over the bed: points in the ocean's geometry, and a mesh where
     no surface around a camera shows these.
 
-    Raises ParameterError for a bed that waves cannot reach, OceanObjectError for a mesh that is linked or
-    edited.
+    patient : whether to compute the waves over it, however long that takes; else it stays as it is until they
+        are at hand, a new mesh flat
+
+    Returns whether it is complete. Raises ParameterError for a bed that waves cannot reach, OceanObjectError
+    for a mesh that is linked or edited.
     """
     if plan.over_bed is None:
         remove(ocean)
-        return
+        return True
     present = coast_of(ocean)
     if ocean.library is not None:  # Blender discards changes to it
         name = ocean.name if present is None else present.name
         if present is not None:
             held_sea.say_nothing(present, COAST)  # the ocean's panel does
         raise OceanObjectError(f"{name} is linked and its coast stands still: make a library override")
-    sea = sea_over_bed(plan)
-    bed_points.refresh(ocean, sea, plan)
-    if camera_surface_of(ocean) is not None:
+    sea, is_still = sea_over_bed(plan), not patient and making(plan) is not None
+    if not is_still:
+        bed_points.refresh(ocean, sea, plan)
+    if camera_surface_of(ocean) is None:
+        _show(present or _new(ocean, plan.over_bed), ocean, sea, plan, is_still)
+    elif not is_still:
         _remove_mesh(ocean)
         held_sea.tell(bed_points.points_of(ocean), COAST, math.floor(plan.frame))
-    else:
-        _show(present or _new(ocean, plan.over_bed), ocean, sea, plan)
-    wet_bed.refresh(ocean, sea, plan)
+    if not is_still:
+        wet_bed.refresh(ocean, sea, plan)
+    return not is_still
 
 
-def _show(item: bpy.types.Object, ocean: bpy.types.Object, sea: Ocean, plan: Plan) -> None:
-    """Let a mesh show the sea over its bed."""
+def making(plan: Plan) -> Callable[[Callable[[float], None]], object] | None:
+    """What computes the waves over a plan's bed, on any thread; None where they are at hand.
+
+    It tells the function that it is given which share is done.
+    """
+    coast = None if plan.over_bed is None else sea_over_bed(plan).coast
+    return None if coast is None or coast.is_made else coast.make
+
+
+def _show(item: bpy.types.Object, ocean: bpy.types.Object, sea: Ocean, plan: Plan, is_still: bool) -> None:
+    """Let a mesh show the sea over its bed; if still, as it was, or flat where there is none yet."""
     assert sea.coast is not None
     if item.data.is_editmode:
         raise OceanObjectError(f"{item.name} is in Edit Mode: leave Edit Mode to let its waves move")
@@ -119,6 +135,9 @@ def _show(item: bpy.types.Object, ocean: bpy.types.Object, sea: Ocean, plan: Pla
     if not fits or item.get(_COAST) != grid.tag:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
+        _place(item.data, _at_rest(grid, plan))
+    if is_still:
+        return
     _move(item.data, sea, grid, plan)
     held_sea.tell(item, COAST, math.floor(plan.frame))
 
@@ -148,8 +167,11 @@ def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: CoastMesh, plan: Plan) -> None
     fields["displacement"] = fields["displacement"] * np.float32(plan.scale)
     for name, field in fields.items():
         vertex_attributes.put(mesh, CHANNELS[name], field)
-    places = (_at_rest(grid, plan) + fields["displacement"]).astype(np.float32)
-    mesh.attributes["position"].data.foreach_set("vector", places.reshape(-1))
+    _place(mesh, _at_rest(grid, plan) + fields["displacement"])
+
+
+def _place(mesh: bpy.types.Mesh, places: Array) -> None:
+    mesh.attributes["position"].data.foreach_set("vector", places.astype(np.float32).reshape(-1))
     mesh.update_tag()
 
 

@@ -13,12 +13,12 @@ from collections.abc import Callable, Container, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 
 from ..core import OceanParameters
-from . import bake_state, evaluation, foam_rings, live_spray, patch_objects, patch_points
+from . import bake_state, coast_surface, evaluation, foam_rings, live_spray, patch_objects, patch_points
 from .modifiers import set_changed
 from .plan import camera_surface_of, plan_for
 from .refresh import EXPECTED_ERRORS, Wanted, is_live, refresh, tell
@@ -48,9 +48,14 @@ def _waves_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], o
 
 
 def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], object]:
-    """A job that computes the foam missing in the viewport; raises the errors of `_waves_job`."""
+    """A job that computes what the viewport lacks of foam, and of waves over a bed; raises the errors of
+    `_waves_job`."""
     settings = settings_of(item)
     plan, jobs = plan_for(item, settings, scene), list[Callable[[], object]]()
+    make_coast = coast_surface.making(plan)
+    if make_coast is not None:
+        told = partial(_tell_or_end, item.session_uid, "Computing the waves over the bed…")
+        jobs.append(partial(make_coast, told))
     if is_live(item):
         maker = evaluation.surfaces_of(plan.viewport_sea()).foam_of(plan.is_whole)
         jobs.append(lambda: maker.at(plan.time))
@@ -58,7 +63,7 @@ def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], ob
     if surface is not None:
         points = patch_points.points_of(settings, plan, scene)
         around = foam_rings.around(surface, plan, points, scene)
-        told = partial(_outstanding.shares.__setitem__, item.session_uid)
+        told = partial(_tell, item.session_uid, "Making the foam of earlier moments…")
         jobs += [partial(around.make, told)] if around is not None else []
     asked = live_spray.wanted(item, plan, scene)
     if asked is not None:
@@ -89,6 +94,29 @@ _JOBS: dict[Wanted, Callable[[bpy.types.Object, bpy.types.Scene], Callable[[], o
 }
 
 
+class Progress(NamedTuple):
+    """Of long work for an ocean: what it is, and which share is done, 0…1."""
+
+    doing: str
+    share: float
+
+
+class _OutdatedError(Exception):
+    """What is being made is no longer wanted."""
+
+
+def _tell(uid: int, doing: str, share: float) -> None:
+    """From the thread: how far it is."""
+    _outstanding.shares[uid] = Progress(doing, share)
+
+
+def _tell_or_end(uid: int, doing: str, share: float) -> None:
+    """As `_tell`. Raises _OutdatedError where the settings have changed meanwhile, or the file."""
+    if _outstanding.lacks(uid, Wanted.SAMPLES) or (uid, Wanted.HISTORY) not in _outstanding.making:
+        raise _OutdatedError
+    _tell(uid, doing, share)
+
+
 @dataclass
 class _Outstanding:
     """Outstanding work, by the object's session uid.
@@ -96,14 +124,14 @@ class _Outstanding:
     missing : missing parts of an ocean, from _JOBS
     due : time at which all samples are due
     making : parts being computed
-    shares : completed fraction of foam around a camera that is being computed, 0…1
+    shares : progress of foam around a camera, or of waves over a bed, that are being computed
     worker : the thread
     """
 
     missing: dict[int, Wanted] = field(default_factory=dict)
     due: dict[int, float] = field(default_factory=dict)
     making: dict[tuple[int, Wanted], Future[Any]] = field(default_factory=dict)
-    shares: dict[int, float] = field(default_factory=dict)
+    shares: dict[int, Progress] = field(default_factory=dict)
     worker: ThreadPoolExecutor | None = None
 
     @property
@@ -244,8 +272,8 @@ def is_unfinished(item: bpy.types.Object) -> bool:
     return _outstanding.lacks(item.session_uid, Wanted.SAMPLES | Wanted.HISTORY)
 
 
-def foam_share(item: bpy.types.Object) -> float | None:
-    """Completed fraction of foam around a camera that is being computed, 0…1; None if none is."""
+def progress_of(item: bpy.types.Object) -> Progress | None:
+    """Progress of foam around a camera, or of waves over a bed, that are being computed; None if none are."""
     uid = item.session_uid
     return _outstanding.shares.get(uid) if (uid, Wanted.HISTORY) in _outstanding.making else None
 
@@ -311,6 +339,8 @@ def _take(item: bpy.types.Object, part: Wanted, future: Future[Any]) -> None:
         return
     try:
         made = future.result()
+    except _OutdatedError:  # it begins again
+        return
     except EXPECTED_ERRORS as error:
         _fail(item, part, error)
         return

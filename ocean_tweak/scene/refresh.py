@@ -52,7 +52,8 @@ class Wanted(Flag):
 
     SURFACE : the viewport's mesh, and what moves it: modifiers, attributes and images
     SAMPLES : all samples of a live surface and of patches; without it, they have few
-    HISTORY : foam that remembers, however long that takes; without it, only where it is quickly made
+    HISTORY : foam that remembers, and waves over a bed, however long that takes; without it, only where they
+        are quickly made
     STATISTICS : those of the sea; without it, only where they are known
     PATCHES : meshes of the patches, of which a surface around the camera is made
     FILES : the note of the file that the present frame lacks
@@ -182,7 +183,7 @@ def _refresh_parts(
     patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
     is_complete = patch_objects.refresh(item, plan, points, scene, patient, coarse)
     if not coarse:
-        coast_surface.refresh(item, plan)
+        is_complete = coast_surface.refresh(item, plan, patient) and is_complete
         is_complete = spray.refresh(item, plan, scene, patient) and is_complete
     return _NOTHING if is_complete else Wanted.HISTORY
 

@@ -43,9 +43,11 @@ class SteppedOperator:
     """`begin` gives the work and `conclude` takes its result. Without a window all steps are taken at once.
 
     doing : what it does, for the status bar
+    cancelled : what Esc leaves
     """
 
     doing = ""
+    cancelled = "Cancelled: nothing was changed"
     _work: Work
 
     def begin(self, context: bpy.types.Context) -> Work:
@@ -76,7 +78,7 @@ class SteppedOperator:
                 self._work.cancel()
             finally:
                 self._clean_up(context)
-            self.report({"WARNING"}, translated("Cancelled: nothing was changed"))
+            self.report({"WARNING"}, translated(self.cancelled))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}

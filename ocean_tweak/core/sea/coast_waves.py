@@ -83,6 +83,11 @@ class CoastWaves:
         """What becomes of them; made once, whatever acts after the waves are drawn."""
         return self.make()
 
+    @property
+    def is_made(self) -> bool:
+        """Whether the pictures are at hand, so that fields are quickly made."""
+        return self._pictures is not None or MEMO.find(_PICTURES, self._made_of) is not None
+
     def make(self, tell: Callable[[float], None] = lambda done: None) -> Pictures:
         """The pictures, where they are not at hand from the shelf or computed.
 
@@ -115,7 +120,7 @@ class CoastWaves:
 
     def afloat(self, x: Array, y: Array) -> Weights:
         """Of waves that come from elsewhere, as wakes do, at places in m: 0 on land."""
-        return self._weights.read(3, x, y)
+        return self._afloat.read(0, x, y)
 
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """What is added at rest positions in m, of one flat shape."""
@@ -194,8 +199,12 @@ class CoastWaves:
     def _weights(self) -> _BedWeights:
         share = np.repeat(self.ground.blend[:, np.newaxis], self.ground.columns, axis=1)
         limited = share * self._limit
-        afloat = smoothstep(self.ground.depth / _AFLOAT)
-        return _BedWeights(self.ground, (1.0 - share + limited, share, limited, afloat))
+        return _BedWeights(self.ground, (1.0 - share + limited, share, limited))
+
+    @cached_property
+    def _afloat(self) -> _BedWeights:
+        # of the depth alone, whatever the waves
+        return _BedWeights(self.ground, (smoothstep(self.ground.depth / _AFLOAT),))
 
     @property
     def share_of_energy(self) -> float:

@@ -3,6 +3,8 @@
 
 import bpy
 
+from ...scene import refinement
+from ..active_ocean import shown_ocean
 from ..coast_operators import OCEAN_OT_make_coast
 from ..field_drawing import draw_fields
 from .drawing import SubPanel, active_settings, split
@@ -28,6 +30,9 @@ class OCEAN_PT_coast(SubPanel, bpy.types.Panel):
         layout.operator(OCEAN_OT_make_coast.bl_idname, text=text, icon="FILE_REFRESH")
         if not group.use:
             return
+        progress = refinement.progress_of(shown_ocean(context))
+        if progress is not None:
+            layout.progress(factor=progress.share, text=progress.doing)
         draw_image(layout, group)
         draw_fields(layout.column(align=True), group, "spacing", "x", "y")
         draw_fields(layout, group, "rim", "shortest_wavelength", "step", "breaking", "muted")

@@ -165,9 +165,9 @@ def _waves(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _waves_title(layout: bpy.types.UILayout, item: bpy.types.Object, is_baked: bool, is_known: bool) -> None:
     """Always draw exactly one row, so that rows below do not move when a refinement begins or ends."""
-    share = refinement.foam_share(item)
-    if share is not None:
-        layout.progress(factor=share, text="Making the foam of earlier moments…")
+    progress = refinement.progress_of(item)
+    if progress is not None:
+        layout.progress(factor=progress.share, text=progress.doing)
     elif refinement.is_outstanding(item):
         layout.label(text="Refining…", icon="SORTTIME")
     elif is_baked:
