@@ -28,12 +28,12 @@ from ..core.numerics.memo import MEMO
 from ..core.sea.foam_fan import Fan, FoamFan, View
 from ..core.sea.foam_levels import FINEST, FoamLevels
 from ..core.sea.foam_rings import FoamRings, Place, Rings, samples_for
-from ..core.sea.placed_waves import is_seen_around, makes_foam, repeating, with_own_foam
+from ..core.sea.placed_waves import Afloat, is_seen_around, makes_foam, repeating, with_own_foam
 from ..nodes.camera_foam import RING_FOAM
 from ..nodes.modifier_inputs import get_input
 from .camera_view import view_of
 from .patch_points import Points
-from .plan import Plan, camera_place, surface_modifier
+from .plan import Plan, camera_place, sea_over_bed, surface_modifier
 from .units import time_stretch
 
 # s after the foam that was made last, within which the next one is quickly made
@@ -143,6 +143,7 @@ class Around:
     in_window : of the surface in a window
     frame : of the scene, in which it is shown
     scale : Blender units in a metre
+    afloat : what is left of hulls' foam over a bed; None on the open sea
     """
 
     sea: OceanParameters
@@ -154,6 +155,7 @@ class Around:
     in_window: int
     frame: float
     scale: float
+    afloat: Afloat | None
 
     def write(self, mesh: bpy.types.Mesh, patient: bool) -> bool:
         """Put it on the points of a mesh; returns whether it is all that it will be.
@@ -183,7 +185,7 @@ class Around:
     def values(self, foam: Whitecaps, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float32]:
         """(places, 3) foam, breaking and age at places in m: the waves', and that of hulls."""
         of_waves = Whitecaps(*(np.ravel(field) for field in foam))
-        found = with_own_foam(self.whole, of_waves, np.ravel(x), np.ravel(y), self.time)
+        found = with_own_foam(self.whole, of_waves, np.ravel(x), np.ravel(y), self.time, self.afloat)
         return np.stack(found, axis=-1).astype(np.float32, copy=False)
 
     @property
@@ -217,7 +219,11 @@ def around(
         get_input(surface_modifier(surface), name) for name in ("Vertex Budget", "Viewport Vertex Budget")
     )
     frame = float(plan.frame / time_stretch(scene))
-    return Around(sea, whole, time, place, view_of(surface, scene, plan.scale), *budgets, frame, plan.scale)
+    view, coast = view_of(surface, scene, plan.scale), None
+    if plan.over_bed is not None and makes_foam(whole):
+        coast = sea_over_bed(plan).coast
+    afloat = None if coast is None else coast.afloat
+    return Around(sea, whole, time, place, view, *budgets, frame, plan.scale, afloat)
 
 
 def _fill(mesh: bpy.types.Mesh, rings: Rings, shown: Around) -> None:

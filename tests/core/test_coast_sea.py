@@ -317,7 +317,7 @@ def test_a_wake_over_a_bed_ends_at_the_shore() -> None:
     x, y = np.meshgrid(4.0 * np.arange(70), 4.0 * np.arange(50))
     for time in (20.0, 45.0):
         over_bed, without, open_one, open_without = (
-            Ocean(each).surface(time, ("displacement", "strain"), Places(x, y))
+            Ocean(each).surface(time, ("displacement", "strain", "foam"), Places(x, y))
             for each in (both, calm, open_sea(both), open_sea(calm))
         )
         made = over_bed.displacement - without.displacement
@@ -328,6 +328,10 @@ def test_a_wake_over_a_bed_ends_at_the_shore() -> None:
         assert np.abs(whole[land]).max() > 0.02
         assert np.abs(made[land]).max() < 1e-5
         assert np.abs(over_bed.strain[land]).max() < 1e-5
+        assert_allclose(over_bed.foam[land], without.foam[land], atol=1e-5)
+        own = wake.own_foam(both, x.ravel(), y.ravel(), time).foam.reshape(x.shape)
+        assert (over_bed.foam >= own - 0.01)[deep].all()
+    assert np.count_nonzero(own[land] > 0.5) > 5
 
 
 def test_a_sea_in_single_precision_has_its_bytes_whatever_was_asked_in_double() -> None:

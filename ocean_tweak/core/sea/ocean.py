@@ -315,8 +315,10 @@ class Ocean:
             return self.foam_history.whitecaps(time).at(x, y, self.parameters.domain_size)
         sea = self.of_foam
         found = whitecaps_at(sea.foam_model, sea._anywhere.compression_at, x, y, time)
-        whole = with_own_foam(self.parameters, found, x, y, time)
-        return whole if self.coast is None else whole.over(*self.coast.foam(x, y, time))
+        if self.coast is None:
+            return with_own_foam(self.parameters, found, x, y, time)
+        whole = with_own_foam(self.parameters, found, x, y, time, self.coast.afloat)
+        return whole.over(*self.coast.foam(x, y, time))
 
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is

@@ -30,6 +30,9 @@ RealArray = NDArray[np.floating]
 #: components of the displacement that ADDING need
 ADDED = frozenset[Key]().union(*(CHANNELS[name].needs for name in ADDING))
 
+#: what is left of these waves at places in m, if they may run aground
+Afloat = Callable[[Array, Array], Weights]
+
 #: width of the border in which waves shown in an area fade to 0, relative to its size
 _RIM = 0.1
 
@@ -169,7 +172,7 @@ def placed_fields(
     sea: OceanParameters,
     area: Area,
     time: float | Fraction,
-    afloat: Callable[[Array, Array], Weights] | None = None,
+    afloat: Afloat | None = None,
 ) -> SurfaceFields:
     """ADDING of these layers only, in an area, (n, n, …) float32, fading to 0 at its outermost samples.
 
@@ -206,11 +209,23 @@ def _rim(area: Area) -> Weights:
 
 
 def with_own_foam(
-    sea: OceanParameters, whitecaps: Whitecaps, x: Array, y: Array, time: float | Fraction
+    sea: OceanParameters,
+    whitecaps: Whitecaps,
+    x: Array,
+    y: Array,
+    time: float | Fraction,
+    afloat: Afloat | None = None,
 ) -> Whitecaps:
-    """The foam of a sea's waves with that which layers make of their own, at flat rest positions in m."""
-    for own in _own_foams(sea, x, y, time):
-        whitecaps = whitecaps.over(*own)
+    """The foam of a sea's waves with that which layers make of their own, at flat rest positions in m.
+
+    afloat : as of `placed_fields`
+    """
+    share = None
+    for foam, breaking, age in _own_foams(sea, x, y, time):
+        if afloat is not None:
+            share = afloat(x, y).value.astype(np.float32) if share is None else share
+            foam, breaking = foam * share, breaking * share
+        whitecaps = whitecaps.over(foam, breaking, age)
     return whitecaps
 
 
