@@ -169,8 +169,8 @@ def _build(tree: bpy.types.NodeTree) -> None:
     }  # fmt: skip
     water = shade.node("ShaderNodeBsdfPrincipled", inputs, distribution="GGX").outputs[0]
     piled = _normal(shade, given, cover.slope)
-    foam_shown = foam_shader(shade, given, cover, below, piled)
-    shown = shade.mix_shaders(cover.amount, water, foam_shown)
+    foam_shown = foam_shader(shade, given, cover, piled)
+    shown = shade.mix_shaders(shade.math("MULTIPLY", cover.amount, cover.density), water, foam_shown)
     hazy = _in_haze(shade, given, at, shown)
     shade.finish({"Surface": hazy, "Volume": _volume(shade, given, at), "Foam": cover.amount})
 
@@ -287,4 +287,4 @@ def _volume(shade: Shading, given: dict[str, Socket], at: Place) -> Socket:
     return shade.node("ShaderNodeVolumeCoefficients", inputs).outputs[0]
 
 
-WATER = GroupKind("Ocean Tweak Water", 12, _build, "ShaderNodeTree")
+WATER = GroupKind("Ocean Tweak Water", 13, _build, "ShaderNodeTree")

@@ -21,13 +21,15 @@ from .shading import Shading
 from .water_pattern import WIND_SPEED, Place, lace
 
 #: laces: length of their cells in Foam Sizes, turn away from the wind in rad, and how much narrower they are
-#: across; four for foam as it was made, and two for what the wind has drawn out
-_LACES = ((0.013, 1.1, 1), (0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (0.7, 0.04, 5), (3.0, 0.0, 9))
+#: across; four for foam as it was made, and two of threads that the wind has drawn out
+_LACES = ((0.013, 1.1, 1), (0.04, 0.7, 1), (0.12, 0.3, 1), (0.35, -0.4, 1), (1.0, 0.04, 12), (4.0, 0.0, 24))
 #: variances of the laces: of foam that is being made, of some seconds and old; and in a wind that draws it
 #: out, down the crests' fronts while it is young
-_FRESH = (0.05, 0.17, 0.58, 0.20, 0.0, 0.0)
-_YOUNG, _OLD = (0.01, 0.06, 0.37, 0.56, 0.0, 0.0), (0.005, 0.025, 0.17, 0.8, 0.0, 0.0)
-_SPILLED, _DRAWN_OUT = (0.04, 0.10, 0.24, 0.17, 0.45, 0.0), (0.02, 0.06, 0.15, 0.09, 0.33, 0.35)
+_FRESH = (0.08, 0.22, 0.40, 0.30, 0.0, 0.0)
+_YOUNG, _OLD = (0.02, 0.09, 0.36, 0.53, 0.0, 0.0), (0.01, 0.04, 0.18, 0.77, 0.0, 0.0)
+_SPILLED, _DRAWN_OUT = (0.03, 0.08, 0.19, 0.14, 0.40, 0.16), (0.01, 0.04, 0.10, 0.08, 0.40, 0.37)
+#: a vector has three numbers
+_HALVES = (slice(0, 3), slice(3, 6))
 _YOUTH = 0.8  # s, in which foam loses half of what it had while it was made
 _BREAKS = 0.2  # strength of breaking from which foam is new
 _GROWTH = (0.5, 9.0)  # s, between which holes grow
@@ -35,31 +37,33 @@ _FADING = 2.5  # s, half-life of foam that says nothing of its age
 #: m/s: from 7 Beaufort on old foam begins to lie in streaks, at 9 all of it does (WMO)
 _STREAKS = (13.9, 20.8)
 #: standard deviation of what softens the rims of old foam, which is thin, and of fresh foam
-_SOFT = (0.22, 0.13)
+_SOFT = (0.20, 0.15)
 #: cells in a pixel's footprint from which a lace begins to fade, and with which it is its mean
 _FADE = (0.25, 1.0)
 #: Φ(x) = 1/(1 + exp(-ax - bx³)), wrong by 1.4e-4 at most (Page 1977)
 _PAGE = (1.5976, 0.070566)
-#: how dense foam is at its rim, and until where inwards, in standard deviations of the laces, it lets 1/e of
-#: that through which it does at its rim; of old and of fresh foam
-_RIM, _FILM = (0.38, 0.68), (0.42, 0.24)
-#: how far inside foam its points are where no lace is seen, whose density is the mean: at the share ½, of old
-#: and of fresh foam, and how its logarithm grows with the share's quantile
-_INSIDE, _INSIDE_GROWTH = (0.50, 0.42), 0.4
-#: density of old foam in its thickest places, as its bubbles burst
-_THINNED = 0.8
-#: weights of the laces in the grain of foam, whose variance is 1
-_GRAIN = (0.30, 0.40, 0.50, 0.50, 0.50, 0.0)
-#: from which height of the grain downwards to its opposite foam is thinner, and by how much, old and fresh
-_GRAINY, _GRAIN_DEPTH = 1.5, (0.24, 0.10)
+#: optical thickness of foam, a standard deviation of the laces inside its rim: over _GROWTH of age; and fresh
+#: where the crest breaks weakly and strongly, which it does from _STRONG on
+_THICK_OLD, _THICK_FRESH, _STRONG = (1.8, 0.22), (1.4, 5.0), (0.1, 0.7)
+#: of the logarithm of the thickness, for a grain of 1; of old and of fresh foam
+_UNEVEN = (-1.2, -0.6)
+#: where no lace is seen, at the share ½: mean of what thickness is in proportion to, and its relative
+#: variance; and how their logarithms grow with the share's quantile. Of old and of fresh foam, fitted to what
+#: is seen near the camera
+_INSIDE, _INSIDE_GROWTH = (4.1, 1.65), (0.1, 0.4)
+_CLUMPED, _CLUMPED_GROWTH = (2.3, 1.4), -0.15
+#: weights of the laces in the grain of foam, whose variance is 1: of fresh foam, and of old as it was made
+#: and drawn out
+_FRESH_GRAIN = (0.50, 0.55, 0.54, 0.40, 0.0, 0.0)
+_GRAIN, _DRAWN_GRAIN = (0.26, 0.35, 0.44, 0.79, 0.0, 0.0), (0.2, 0.3, 0.4, 0.4, 0.6, 0.45)
 #: from a rim inwards, in standard deviations of the laces: how far the slope of foam reaches
 _SLOPING = 0.6
 #: height of foam at its rim in cells, of old and of fresh foam, and of the billows of fresh foam
-_EDGE, _BILLOW = (0.035, 0.07), 0.05
+_EDGE, _BILLOW = (0.035, 0.05), 0.055
 #: light that creases of fresh foam keep from themselves, and of piles that are too small to be seen
-_CREASED, _SHADOW = 0.27, 0.205
+_CREASED, _SHADOW = 0.35, 0.17
 #: from a rim outwards, in standard deviations of the laces: where water is shaded by foam, and how much
-_BESIDE, _SHADED = 0.25, (0.2, 0.5)
+_BESIDE, _SHADED = 0.25, (0.08, 0.4)
 #: how far bubbles reach beyond the foam above them, and how softly, in standard deviations of the laces
 _HALO, _HALO_SOFT = 0.7, 0.6
 
@@ -70,11 +74,13 @@ class Foam(NamedTuple):
     share : 0…1, of the water that is white
     youth : 1 where foam is being made, towards 0 with age
     age : s
+    breaking : 0…1, how strongly the crest breaks
     """
 
     share: Socket
     youth: Socket
     age: Socket
+    breaking: Socket
 
 
 class Cover(NamedTuple):
@@ -111,8 +117,9 @@ def foam_at(shade: Shading, given: dict[str, Socket]) -> Foam:
     is_told = shade.math("MULTIPLY", is_told, meshes, clamp=True)
     age = shade.mix(is_told, shade.math("MULTIPLY", halvings, _FADING), told)
     by_age = shade.math("POWER", 0.5, shade.math("DIVIDE", age, _YOUTH))
-    by_birth = shade.smooth(shade.value(BREAKING), 0.0, _BREAKS)
-    return Foam(share, shade.math("MAXIMUM", by_age, by_birth), age)
+    breaking = shade.value(BREAKING)
+    by_birth = shade.smooth(breaking, 0.0, _BREAKS)
+    return Foam(share, shade.math("MAXIMUM", by_age, by_birth), age, breaking)
 
 
 class _Laid(NamedTuple):
@@ -162,7 +169,9 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
     unseen: Socket | float = 0.0
     slope: Socket | tuple[float, float, float] = (0.0, 0.0, 0.0)
     grain: Socket | float = 0.0
-    variances = _variances(shade, given, foam)
+    streaks = _streaks(shade, given)
+    variances = _variances(shade, streaks, foam)
+    weights = _weights(shade, streaks, foam)
     for number, (size, turn, stretch) in enumerate(_LACES):
         variance = variances[number]
         cell = shade.math("MULTIPLY", given["Foam Size"], size)
@@ -174,25 +183,37 @@ def _laid(shade: Shading, given: dict[str, Socket], at: Place, foam: Foam) -> _L
         height = shade.math("MULTIPLY_ADD", layer.height, weight, height)
         slope = shade.vector("ADD", slope, shade.scale(layer.slope, weight))
         unseen = shade.math("ADD", unseen, hidden)
-        if _GRAIN[number] > 0.0:
-            seen = shade.math("SUBTRACT", _GRAIN[number], shade.math("MULTIPLY", fading, _GRAIN[number]))
-            grain = shade.math("MULTIPLY_ADD", layer.height, seen, grain)
+        seen = shade.math("MULTIPLY", weights[number], shade.math("SUBTRACT", 1.0, fading))
+        grain = shade.math("MULTIPLY_ADD", layer.height, seen, grain)
     return _Laid(height, slope, unseen, grain)
 
 
-def _variances(shade: Shading, given: dict[str, Socket], foam: Foam) -> tuple[Socket, ...]:
-    """Of each lace; their sum is 1."""
+def _streaks(shade: Shading, given: dict[str, Socket]) -> Socket:
+    """0…1, how far old foam is drawn out along the wind."""
     by_wind = shade.smooth(shade.value(WIND_SPEED, "OBJECT"), *_STREAKS)
     asked = given["Foam Streaks"]
-    streaks = shade.mix(shade.math("LESS_THAN", asked, 0.0), asked, by_wind)
+    return shade.mix(shade.math("LESS_THAN", asked, 0.0), asked, by_wind)
+
+
+def _variances(shade: Shading, streaks: Socket, foam: Foam) -> tuple[Socket, ...]:
+    """Of each lace; their sum is 1."""
     grown = shade.smooth(foam.age, *_GROWTH)
-    variances = []
-    for part in (slice(0, 3), slice(3, 6)):
+    variances: list[Socket] = []
+    for part in _HALVES:
         young = shade.mix_vectors(streaks, _YOUNG[part], _SPILLED[part])
         old = shade.mix_vectors(streaks, _OLD[part], _DRAWN_OUT[part])
         aged = shade.mix_vectors(grown, young, old)
-        variances.append(shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part])))
-    return *variances[0], *variances[1]
+        variances += shade.separate(shade.mix_vectors(foam.youth, aged, _FRESH[part]))
+    return tuple(variances)
+
+
+def _weights(shade: Shading, streaks: Socket, foam: Foam) -> tuple[Socket, ...]:
+    """Of each lace in the grain."""
+    weights: list[Socket] = []
+    for part in _HALVES:
+        old = shade.mix_vectors(streaks, _GRAIN[part], _DRAWN_GRAIN[part])
+        weights += shade.separate(shade.mix_vectors(foam.youth, old, _FRESH_GRAIN[part]))
+    return tuple(weights)
 
 
 def _normal_share(shade: Shading, value: Socket) -> Socket:
@@ -220,24 +241,31 @@ def _quantile(shade: Shading, share: Socket) -> Socket:
 
 
 def _density(shade: Shading, foam: Foam, laid: _Laid, inwards: Socket) -> Socket:
-    """How much of the water foam hides: a film at its rims, more inside, less in its cells and with age."""
-    mean = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, _INSIDE_GROWTH))
-    mean = shade.math("MULTIPLY", mean, shade.mix(foam.youth, *_INSIDE))
+    """How much of the light foam keeps from the water: by Beer and Lambert's law, of a thickness that grows
+    inwards from nothing, and varies.
+
+    Thickness that is too small to be seen has a gamma distribution of the relative variance v, by which
+    exp(-t) becomes (1 + vt)^(-1/v) in the mean (Barker 1996).
+    """
+    growth = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, shade.mix(foam.youth, *_INSIDE_GROWTH)))
+    mean = shade.math("MULTIPLY", growth, shade.mix(foam.youth, *_INSIDE))
     inside = shade.mix(laid.unseen, shade.math("MAXIMUM", inwards, 0.0), mean)
-    part = shade.math("DIVIDE", inside, shade.mix(foam.youth, *_FILM))
-    film = shade.math("EXPONENT", shade.math("MULTIPLY", part, -1.0))
-    clear = shade.math("SUBTRACT", 1.0, shade.mix(foam.youth, *_RIM))
-    dense = shade.math("SUBTRACT", 1.0, shade.math("MULTIPLY", film, clear))
-    thinned = shade.smooth(foam.age, *_GROWTH, 1.0, _THINNED)
-    dense = shade.math("MULTIPLY", dense, shade.mix(foam.youth, thinned, 1.0))
-    depth = shade.mix(foam.youth, *_GRAIN_DEPTH)
-    grain = shade.smooth(laid.grain, -_GRAINY, _GRAINY, 0.0, depth)
-    return shade.math("MULTIPLY", dense, shade.math("SUBTRACT", 1.0, grain))
+    old = shade.smooth(foam.age, *_GROWTH, *_THICK_OLD)
+    fresh = shade.smooth(foam.breaking, *_STRONG, *_THICK_FRESH)
+    uneven = shade.math("MULTIPLY", laid.grain, shade.mix(foam.youth, *_UNEVEN))
+    thick = shade.math("MULTIPLY", shade.mix(foam.youth, old, fresh), shade.math("EXPONENT", uneven))
+    clumped = shade.math("EXPONENT", shade.math("MULTIPLY", inwards, _CLUMPED_GROWTH))
+    clumped = shade.math("MULTIPLY", clumped, shade.mix(foam.youth, *_CLUMPED))
+    variance = shade.math("MULTIPLY_ADD", laid.unseen, clumped, 0.02)
+    thick = shade.math("MULTIPLY", thick, inside)
+    base = shade.math("MULTIPLY_ADD", variance, thick, 1.0)
+    through = shade.math("POWER", base, shade.math("DIVIDE", -1.0, variance))
+    return shade.math("SUBTRACT", 1.0, through)
 
 
 def _light(shade: Shading, foam: Foam, laid: _Laid) -> Socket:
     """What is left of the brightness: fresh foam has deep creases between its billows."""
-    creased = shade.smooth(laid.height, -1.6, 0.4, _CREASED, 0.0)
+    creased = shade.smooth(laid.grain, -1.0, 1.4, 0.0, _CREASED)
     lost = shade.mix(laid.unseen, creased, _SHADOW)
     return shade.math("MULTIPLY_ADD", lost, shade.math("MULTIPLY", foam.youth, -1.0), 1.0)
 
@@ -264,15 +292,10 @@ def _steepness(shade: Shading, given: dict[str, Socket], foam: Foam, inwards: So
     return shade.math("MULTIPLY", shade.math("SUBTRACT", billow, edge), given["Foam Relief"])
 
 
-def foam_shader(
-    shade: Shading, given: dict[str, Socket], cover: Cover, below: Socket, normal: Socket
-) -> Socket:
-    """Bubbles scatter all light that meets them; a film lets water through, which is coloured by what is
-    `below`.
-    """
-    white = shade.scale(given["Foam Color"], cover.light)
+def foam_shader(shade: Shading, given: dict[str, Socket], cover: Cover, normal: Socket) -> Socket:
+    """Bubbles scatter all light that meets them."""
     inputs = {
-        "Base Color": shade.mix_vectors(cover.density, below, white), "Roughness": given["Foam Roughness"],
+        "Base Color": shade.scale(given["Foam Color"], cover.light), "Roughness": given["Foam Roughness"],
         "IOR": given["IOR"], "Normal": normal,
     }  # fmt: skip
     return shade.node("ShaderNodeBsdfPrincipled", inputs).outputs[0]

@@ -283,6 +283,26 @@ def test_foam_stays_white_whatever_its_age_and_however_far(inputs, sea, seen, em
         assert shown[1] > 0.45
 
 
+def test_old_foam_is_a_film(inputs, sea, seen, empty_scene):
+    """Over their life whitecaps throw back 0.4 of what fresh foam does, ± 0.2 (Koepke 1984)."""
+    for link in inputs["Pixel Angle"].links:
+        sea.active_material.node_tree.links.remove(link)
+    inputs["Bubbles"].default_value, inputs["Pixel Angle"].default_value = 0.0, 0.0
+    empty_scene.camera.data.ortho_scale = 40.0
+    none = seen()[0]
+    for name in ("foam", "foam_age", "breaking"):
+        sea.data.attributes.new(name, "FLOAT", "POINT")
+    shown = []
+    for age, breaking in ((0.0, 1.0), (0.0, 0.0), (4.0, 0.0), (20.0, 0.0)):
+        for name, value in (("foam", 0.7), ("foam_age", age), ("breaking", breaking)):
+            sea.data.attributes[name].data.foreach_set("value", np.full(4, value, np.float32))
+        sea.data.update()
+        shown.append(seen()[0] - none)
+    assert shown[0] > shown[1] > shown[3]
+    assert shown[2] > shown[3]
+    assert shown[3] / shown[0] == pytest.approx(0.4, abs=0.2)
+
+
 def test_describe_says_what_the_sea_is_and_only_once(ocean_object, water, make_parameters, core, empty_scene):
     parameters = make_parameters(domain_size=200.0, resolution=64, water=core.Water(depth=12.0))
     item = ocean_object.add(empty_scene, parameters)
