@@ -11,7 +11,7 @@ import pytest
 from ocean_tweak.core import Ocean, Spray
 from ocean_tweak.core.sea.spray import TileSpray
 
-from .spray_points import SEA, points, spray_of
+from .spray_points import SEA, made, points, spray_of
 
 
 @pytest.fixture
@@ -181,3 +181,15 @@ def test_baked_points_go_on_by_their_velocity_between_frames(baked, empty_scene,
     assert np.linalg.norm(moved - whole["position"], axis=1).max() > 0.05
     np.testing.assert_allclose(between["position"], moved, atol=1e-4)
     np.testing.assert_array_equal(between["velocity"], whole["velocity"])
+
+
+def test_the_next_bake_is_foreseen_with_its_spray(extension, ocean, empty_scene, tmp_path):
+    module, bytes_of = extension("scene.bake_versions"), {}
+    ocean.ocean_tweak.cache_folder = str(tmp_path)
+    empty_scene.frame_start, empty_scene.frame_end = 12, 13
+    for is_on in (True, False):
+        ocean.ocean_tweak.use_spray = is_on
+        module.foresee(ocean, empty_scene)
+        bytes_of[is_on] = module.known(ocean).to_come.bytes
+    in_the_air = np.mean([len(made((frame - 1) / 24.0).age) for frame in (12, 13)])
+    assert bytes_of[True] - bytes_of[False] == pytest.approx(2 * 40 * in_the_air, rel=0.5)  # gusts vary

@@ -364,15 +364,45 @@ def test_memory_is_asked_for_as_many_squares_as_there_are(monkeypatch: pytest.Mo
     assert beforehand == pytest.approx(found, rel=0.5)
 
 
-def test_mist_that_is_far_away_is_of_more_and_smaller_puffs_and_covers_as_much() -> None:
-    """Of many particles one is drawn for so many: what they cover together is the same, for both."""
-    n, spray, wind = 200_000, Spray(), Wind(25.0, 0.0)
+def _torn_at_one_place(wind: Wind, since: float, water: float = 0.0, together: float = 1.0) -> Particles:
+    """What 30,000 cells at the origin threw up in a moment, on water of a speed along x."""
+    n = 30_000
     key, gust = (random.hash_cells(np.arange(n), np.arange(n), 3, stream) for stream in (1, 2))
     rest, ones = np.zeros((n, 3), np.float32), np.ones(n, np.float32)
-    covered, rate = {}, 0.12 * drops.torn_rate(wind.speed)
+    rate = 0.12 * drops.torn_rate(wind.speed)
+    velocity = np.tile(np.array([water, 0.0, 0.0], np.float32), (n, 1))
+    crests = Crests(key, gust, rate * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), velocity)
+    return in_the_air(crests, Spray(), wind, 0.125, since)
+
+
+def test_another_wind_turns_all_flights() -> None:
+    along, turned = (_torn_at_one_place(Wind(25.0, angle), 0.25) for angle in (0.0, 0.7))
+    rotation = np.array([[math.cos(0.7), -math.sin(0.7)], [math.sin(0.7), math.cos(0.7)]])
+    assert np.abs(along.position[:, 1]).max() > 1.0  # turbulence goes across, too
+    np.testing.assert_allclose(turned.position[:, :2], along.position[:, :2] @ rotation.T, atol=1e-4)
+    np.testing.assert_allclose(turned.position[:, 2], along.position[:, 2], atol=1e-5)
+
+
+def test_a_crest_moves_on_with_its_water_within_a_moment() -> None:
+    """It was at the origin in the moment's middle, 0.06 s ago: what is being born is where it is now."""
+    made = _torn_at_one_place(Wind(25.0, 0.0), 0.06, water=10.0)
+    born = made.age < 0.004
+    assert np.count_nonzero(born) > 100
+    np.testing.assert_allclose(made.position[born, 0], 10.0 * 0.06, atol=0.15)  # wind blows 20 m/s at most
+
+
+def test_mist_spreads_as_it_ages() -> None:
+    """By 0.3 friction velocities, which are 1.17 m/s in a wind of 25 m/s (Smith 1980)."""
+    early, late = (_torn_at_one_place(Wind(25.0, 0.0), since) for since in (0.1, 2.1))
+    radius = [float(made.radius[made.kind == drops.MIST].mean()) for made in (early, late)]
+    assert radius[1] - radius[0] == pytest.approx(0.3 * 1.17 * 2.0, rel=0.03)
+
+
+def test_mist_that_is_far_away_is_of_more_and_smaller_puffs_and_covers_as_much() -> None:
+    """Of many particles one is drawn for so many: what they cover together is the same, for both."""
+    covered = {}
     for together in (1.0, 64.0):
-        crests = Crests(key, gust, rate * ones, together * ones, rest, np.zeros((n, 2, 3), np.float32), rest)
-        made = in_the_air(crests, spray, wind, 0.125, 0.25)
+        made = _torn_at_one_place(Wind(25.0, 0.0), 0.25, together=together)
         for kind in (drops.SPUME, drops.DROPLET, drops.MIST):
             own = made.kind == kind
             area = float((made.radius[own].astype(float) ** 2).sum())
