@@ -13,6 +13,7 @@ from ..nodes.globe import EARTH_RADIUS
 from ..nodes.modifier_inputs import set_inputs
 from ..nodes.versioned import node_group
 from . import coast_surface, patch_objects, portability, solid_foam, water_material
+from .ownership import remove_with_meshes
 from .plan import camera_surface_of
 from .refinement import show_new
 from .refresh import AROUND_CAMERA, Wanted
@@ -87,10 +88,7 @@ def remove_camera_surface(ocean: bpy.types.Object) -> None:
     """Show an ocean by its own mesh and horizon again."""
     surface = camera_surface_of(ocean)
     if surface is not None:
-        mesh = surface.data
-        bpy.data.objects.remove(surface)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)
+        remove_with_meshes([surface])
     patch_objects.remove(ocean)
     portability.look_at(ocean)
     _make_room(ocean, is_there=False)

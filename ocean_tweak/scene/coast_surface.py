@@ -17,6 +17,7 @@ from ..core.waves.coast.mesh import CoastMesh
 from ..nodes.held import COAST
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
 from . import bed_points, held_sea, vertex_attributes, water_material, wet_bed
+from .ownership import remove_with_meshes
 from .plan import Plan, camera_surface_of, sea_over_bed
 from .settings import OceanObjectError, all_oceans, link_beside
 
@@ -54,10 +55,7 @@ def remove(ocean: bpy.types.Object) -> None:
 def _remove_mesh(ocean: bpy.types.Object) -> None:
     item = coast_of(ocean)
     if item is not None:
-        mesh = item.data
-        bpy.data.objects.remove(item)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)
+        remove_with_meshes([item])
         make_room(ocean)
 
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of an ocean object, `object.ocean_tweak`, and their conversion to and from OceanParameters."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 import bpy
@@ -56,6 +55,7 @@ from . import (
 from .layer_properties import OCEAN_PG_layer
 from .parameter_properties import changed, path_changed
 from .patch_properties import OCEAN_PG_patch
+from .quiet import Quiet
 from .usd_properties import OCEAN_PG_usd
 
 # frame rate and time stretching are the scene's
@@ -160,7 +160,7 @@ def _repeats(axis: str) -> object:
     )  # fmt: skip
 
 
-class OCEAN_PG_ocean(bpy.types.PropertyGroup):
+class OCEAN_PG_ocean(Quiet, bpy.types.PropertyGroup):
     """An ocean object's settings; see scene.settings.OceanSettings for what the scene needs of them."""
 
     __annotations__ = {
@@ -267,15 +267,6 @@ class OCEAN_PG_ocean(bpy.types.PropertyGroup):
         "statistics": StringProperty(**_HIDDEN),
         "usd": PointerProperty(type=OCEAN_PG_usd, **_OVERRIDE),
     }  # fmt: skip
-
-    @contextmanager
-    def quiet(self) -> Iterator[None]:
-        """While this is open, a changed property refreshes nothing."""
-        before, self.is_quiet = self.is_quiet, True
-        try:
-            yield
-        finally:
-            self.is_quiet = before
 
     def to_parameters(self, scene: bpy.types.Scene) -> OceanParameters:
         """The sea of these settings, at the scene's units and frame rate.

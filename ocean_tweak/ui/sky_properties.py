@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a scene's sky, `Scene.ocean_tweak_sky`."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from math import radians
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, PointerProperty, StringProperty
 
 from ..scene import scene_sky
+from .quiet import Quiet
 
 
 def _changed(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
@@ -33,7 +32,7 @@ def _share(name: str, default: float, description: str) -> object:
     )
 
 
-class OCEAN_PG_sky(bpy.types.PropertyGroup):
+class OCEAN_PG_sky(Quiet, bpy.types.PropertyGroup):
     """A scene's sky; see scene.scene_sky.SkySettings for what the scene needs of it."""
 
     __annotations__ = {
@@ -88,15 +87,6 @@ class OCEAN_PG_sky(bpy.types.PropertyGroup):
         "error": StringProperty(options={"HIDDEN"}),
         "is_quiet": BoolProperty(options={"HIDDEN", "SKIP_SAVE"}),
     }  # fmt: skip
-
-    @contextmanager
-    def quiet(self) -> Iterator[None]:
-        """While this is open, a changed property shows nothing."""
-        before, self.is_quiet = self.is_quiet, True
-        try:
-            yield
-        finally:
-            self.is_quiet = before
 
 
 def register() -> None:

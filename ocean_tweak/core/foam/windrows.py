@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 
 from ..numerics import random
 from ..numerics.choice import chosen
+from ..numerics.interpolation import smoothstep
 
 Array = NDArray[np.float64]
 RealArray = NDArray[np.floating]
@@ -194,8 +195,7 @@ def windrows(
     """The windrows of a wind in m/s at 10 m; None if the wind is too weak or the sea too small."""
     if not are_there(wind_speed):
         return None
-    part = min(1.0, max(0.0, (wind_speed - _FROM) / (_WHOLE - _FROM)))
-    strength = part * part * (3.0 - 2.0 * part)
+    strength = float(smoothstep(np.array((wind_speed - _FROM) / (_WHOLE - _FROM))))
     if side < 2.0 * _CELL:
         return None
     return Windrows(strength, direction, side, seed, spacing)

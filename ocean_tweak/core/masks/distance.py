@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numerics.interpolation import smoothstep, smoothstep_slope
 from .parameters import Mask
 
 Array = NDArray[np.float64]
@@ -23,9 +24,9 @@ def by_distance(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Arr
     domain."""
     dx, dy = (_from_place if mask.lines is None else _from_lines)(mask, domain_size, x, y)
     distance = np.hypot(dx, dy)
-    part = np.clip((distance - mask.inner_radius) / (mask.outer_radius - mask.inner_radius), 0.0, 1.0)
-    rate = 6.0 * part * (1.0 - part) / (mask.outer_radius - mask.inner_radius) / np.maximum(distance, 1e-12)
-    return part * part * (3.0 - 2.0 * part), rate * dx, rate * dy
+    part = (distance - mask.inner_radius) / (mask.outer_radius - mask.inner_radius)
+    rate = smoothstep_slope(part) / (mask.outer_radius - mask.inner_radius) / np.maximum(distance, 1e-12)
+    return smoothstep(part), rate * dx, rate * dy
 
 
 def _from_place(mask: Mask, domain_size: float, x: Array, y: Array) -> tuple[Array, Array]:

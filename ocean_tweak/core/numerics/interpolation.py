@@ -31,6 +31,13 @@ def smoothstep(part: NDArray[_Real]) -> NDArray[_Real]:
     return result
 
 
+def smoothstep_slope(part: NDArray[_Real]) -> NDArray[_Real]:
+    """Derivative of `smoothstep`: 6p(1 - p), and 0 beyond its ends."""
+    share = np.clip(part, 0.0, 1.0)
+    result: NDArray[_Real] = 6.0 * share * (1.0 - share)
+    return result
+
+
 class Between(NamedTuple):
     """Positions of places in a periodic field.
 

@@ -15,6 +15,7 @@ from ..foam.model import Whitecaps
 from ..masks.noise import SeaTime
 from ..masks.parameters import Mask
 from ..masks.weights import Weights, move, unweighted, weighted, weights
+from ..numerics.interpolation import smoothstep, smoothstep_slope
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import open_sea
 from ..synthesis.channels import ADDING, CHANNELS, SurfaceFields
@@ -201,10 +202,10 @@ def adding_fields(sums: Summed, shape: tuple[int, ...]) -> dict[str, RealArray]:
 def _rim(area: Area) -> Weights:
     """1 inside, 0 at the outermost samples, and smooth between."""
     along = np.arange(area.resolution) / max(area.resolution - 1, 1)
-    part = np.clip(np.minimum(along, 1.0 - along) / _RIM, 0.0, 1.0)
-    share = part * part * (3.0 - 2.0 * part)
+    part = np.minimum(along, 1.0 - along) / _RIM
+    share = smoothstep(part)
     reach = _RIM * area.size * (area.resolution - 1) / area.resolution
-    slope = np.sign(0.5 - along) * 6.0 * part * (1.0 - part) / reach
+    slope = np.sign(0.5 - along) * smoothstep_slope(part) / reach
     return Weights(*(np.outer(v, u).ravel() for v, u in ((share, share), (share, slope), (slope, share))))
 
 

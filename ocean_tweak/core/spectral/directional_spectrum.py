@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..numerics.grid import WaveVectorGrid
+from ..numerics.interpolation import smoothstep
 from . import dispersion
 from .equaliser import Equalising
 from .spectra import LayerScales, layer_scales, scaled_spectrum
@@ -374,5 +375,4 @@ def _rise(octaves: Array, width: float) -> Array:
     if width == 0.0:
         return (octaves >= 0.0).astype(np.float64)
     # clipped before the division: the width may be the smallest float
-    x = np.clip(np.clip(octaves, -width, width) / width + 0.5, 0.0, 1.0)
-    return x * x * (3.0 - 2.0 * x)
+    return smoothstep(np.clip(octaves, -width, width) / width + 0.5)

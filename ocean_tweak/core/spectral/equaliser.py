@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..data.validation import Off, Validated, changing_fields, number
+from ..numerics.interpolation import smoothstep
 
 Array = NDArray[np.float64]
 
@@ -80,7 +81,7 @@ class Equalising(NamedTuple):
         below = np.minimum(position.astype(np.int64), len(OCTAVES) - 2)
         x = position - below
         gains = np.array(self.equaliser.gains)
-        return gains[below] + x * x * (3.0 - 2.0 * x) * (gains[below + 1] - gains[below])
+        return gains[below] + smoothstep(x) * (gains[below + 1] - gains[below])
 
     def energy_gain(self, k: ArrayLike) -> Array:
         """Factor of the energy over k in rad/m: heights grow by 10^(dB/20), energy by its square."""

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numerics.interpolation import smoothstep
 from .flight import GRAVITY
 
 Array = NDArray[np.float64]
@@ -41,8 +42,8 @@ def torn_rate(wind_speed: float) -> float:
     Spume begins at 9 to 11 m/s (Andreas 1992). The rates are chosen by eye, far below those of real drops:
     each particle represents many.
     """
-    part = min(1.0, max(0.0, (wind_speed - LEAST_WIND) / (_ALL_TORN - LEAST_WIND)))
-    return part * part * (3.0 - 2.0 * part) * _RATE * (wind_speed / _RATE_WIND) ** _RATE_POWER
+    torn = float(smoothstep(np.array((wind_speed - LEAST_WIND) / (_ALL_TORN - LEAST_WIND))))
+    return torn * _RATE * (wind_speed / _RATE_WIND) ** _RATE_POWER
 
 
 def kinds(share: Array, mist: RealArray) -> NDArray[np.int8]:

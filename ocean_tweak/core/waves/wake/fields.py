@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...masks.weights import Weights, unweighted, weighted
-from ...numerics.interpolation import Reader, wrapped
+from ...numerics.interpolation import Reader, smoothstep, smoothstep_slope, wrapped
 from ...numerics.memo import MEMO, total_bytes
 from .elevation import Basin, Past
 from .footprint import Footprint
@@ -173,8 +173,8 @@ def _rim(off_x: Array, off_y: Array, side: float, velocity: tuple[float, float])
     show in its corners what has come around the area's sides.
     """
     distance = np.hypot(off_x, off_y)
-    part = np.clip((0.5 - distance / side) / _RIM, 0.0, 1.0)
-    slope = -6.0 * part * (1.0 - part) / (_RIM * side) / np.maximum(distance, 1e-9 * side)
+    part = (0.5 - distance / side) / _RIM
+    slope = -smoothstep_slope(part) / (_RIM * side) / np.maximum(distance, 1e-9 * side)
     by_x, by_y = slope * off_x, slope * off_y
     by_t = -(velocity[0] * by_x + velocity[1] * by_y)
-    return Weights(part * part * (3.0 - 2.0 * part), by_x, by_y, by_t)
+    return Weights(smoothstep(part), by_x, by_y, by_t)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...numerics.interpolation import smoothstep
 from ..contribution import OwnFoam
 from .outlook import froude_number
 from .track import Track
@@ -89,8 +90,8 @@ class HullFoam:
         """
         speed = stretch.speed
         froude = froude_number(speed, self.length, self.gravity)
-        part = min(max((froude - _BEGINS) / (_FULL - _BEGINS), 0.0), 1.0)
-        born = self.amount * stretch.immersion * part * part * (3.0 - 2.0 * part)
+        quick = float(smoothstep(np.array((froude - _BEGINS) / (_FULL - _BEGINS))))
+        born = self.amount * stretch.immersion * quick
         if born <= 0.0:
             return []
         astern = since - 0.5 * self.length / speed
