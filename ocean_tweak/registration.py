@@ -15,10 +15,9 @@ from .scene import asset_library, handlers
 from .scene.baked_spray import bake_place
 from .scene.cache_place import cache_folder, own_uid
 from .scene.command_process import CommandProcess
-from .scene.patch_objects import shot_maps
 from .scene.portability import needs_of
 from .scene.settings import OceanObjectError, all_oceans, shown_oceans
-from .scene.shots import scene_frames, shot_of
+from .scene.shots import needed_maps, scene_frames, shot_of
 from .scene.view_layers import is_in_view_layer
 from .ui import (
     adding,
@@ -117,7 +116,7 @@ class _SceneOceans(Mapping[str, cli.FileSea]):
             cache = None
         needs = tuple(need.text for need in needs_of(item))
         return cli.FileSea(
-            shot, own_uid(item), frames, cache, shot_maps(item), needs, bake_place(item, scene)
+            shot, own_uid(item), frames, cache, needed_maps(item), needs, bake_place(item, scene)
         )
 
     def __iter__(self) -> Iterator[str]:

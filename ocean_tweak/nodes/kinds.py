@@ -11,6 +11,7 @@ from . import (
     camera_patch,
     camera_sum,
     camera_surface,
+    coast,
     contact,
     extension_check,
     floating,
@@ -33,6 +34,7 @@ from . import (
     surface,
     water,
     water_pattern,
+    wet_bed,
 )
 
 ALL_KINDS = (
@@ -67,7 +69,8 @@ ALL_KINDS = (
     camera_foam.CAMERA_FAN,
     foam_pile.FOAM_PILE,
     camera_surface.CAMERA_SURFACE,
-    held.COAST,
+    coast.COAST,
+    wet_bed.WET_BED,
     held.AREA,
     spray.SPRAY,
     spray_look.SPRAY_LOOK,

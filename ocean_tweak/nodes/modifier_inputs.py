@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import bpy
@@ -53,6 +53,12 @@ def get_input(modifier: bpy.types.NodesModifier, name: str) -> Any:
 def all_inputs(modifier: bpy.types.NodesModifier) -> dict[str, Any]:
     """The values of all inputs by name, without the geometry."""
     return {name: _get(modifier, identifier) for name, identifier in _identifiers(modifier).items()}
+
+
+def reads(item: bpy.types.Object, others: Collection[bpy.types.Object]) -> bool:
+    """Whether a modifier of an object has one of others as an input."""
+    nodes = (each for each in item.modifiers if each.type == "NODES" and each.node_group is not None)
+    return any(other in all_inputs(modifier).values() for modifier in nodes for other in others)
 
 
 def input_property(modifier: bpy.types.NodesModifier, name: str) -> tuple[Any, str]:

@@ -15,6 +15,8 @@ from .building import Builder, Plug, Socket, output
 from .fields import alone, combined, named_attribute, sample_index, whole_number
 from .names import DISPLACEMENT, SLOPE, SLOPE_VARIANCE, STRAIN, VELOCITY
 from .patch import SCALE_INPUTS, moved_on
+from .point_files import column as file_column
+from .point_files import point_file
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
@@ -58,9 +60,10 @@ def _build(tree: bpy.types.NodeTree) -> None:
     place = told(output(build.add("GeometryNodeInputPosition"), "Position"))
     moved = build.vector("SUBTRACT", place, _at_rest(build, near_column, near_row, along))
     values = {
-        name: told(combined(build, *(_number(build, each) for each in _NUMBERS[name]))) for name in _NUMBERS
+        name: told(combined(build, *(file_column(build, each) for each in _NUMBERS[name])))
+        for name in _NUMBERS
     }
-    variance = told(_number(build, SLOPE_VARIANCE), "FLOAT")
+    variance = told(file_column(build, SLOPE_VARIANCE), "FLOAT")
     values[VELOCITY] = build.scaled(values[VELOCITY], build.given("Velocity Scale"))
     scaled = build.scaled(moved, build.given("Scale"))
     values[DISPLACEMENT] = moved_on(build, scaled, values[VELOCITY], output(frame, "Seconds"))
@@ -77,15 +80,7 @@ def _read(build: Builder, frame: Socket) -> Socket:
     """Read the points of a frame."""
     is_window = output(build.add("GeometryNodeIsViewport"), "Is Viewport")
     files = build.switch("STRING", is_window, *(build.given(name) for name in FILES))
-    path = build.add("FunctionNodeFormatString", {"Format": "{files}{frame:04}.ply"})
-    for kind, name, value in (("STRING", "files", files), ("INT", "frame", frame)):
-        path.format_items.new(kind, name)
-        build.tree.links.new(value, path.inputs[name])
-    return output(build.add("GeometryNodeImportPLY", {"Path": output(path, "String")}), "Mesh")
-
-
-def _number(build: Builder, name: str) -> Socket:
-    return output(named_attribute(build, name, "FLOAT"), "Attribute")
+    return point_file(build, files, frame)
 
 
 def _at_rest(build: Builder, column: Socket, row: Socket, along: Socket) -> Socket:

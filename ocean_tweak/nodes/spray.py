@@ -15,8 +15,9 @@ import bpy
 from ..core.spray.columns import COLUMNS, NUMBERS
 from ..core.spray.drops import MIST
 from .building import Builder, Plug, Socket, output
-from .fields import alone, combined, coordinates, named_attribute, whole_number
+from .fields import alone, combined, coordinates, whole_number
 from .names import VELOCITY
+from .point_files import column, is_given, point_file
 from .shown_frame import FRAME_INPUTS, SHOWN_FRAME
 from .versioned import GroupKind, node_group
 
@@ -63,47 +64,37 @@ def _build(tree: bpy.types.NodeTree) -> None:
     build = Builder(tree, INPUTS)
     frame = build.group(node_group(SHOWN_FRAME), {name: build.given(name) for name, *_ in FRAME_INPUTS})
     files, live = build.given(FILES), build.given("Geometry")
-    length = output(build.add("FunctionNodeStringLength", {"String": files}), "Length")
-    is_baked = build.compare("GREATER_THAN", length, 0)
-    particles = build.switch("GEOMETRY", is_baked, live, _read(build, files, output(frame, "Frame")))
+    is_baked = is_given(build, files)
+    particles = build.switch("GEOMETRY", is_baked, live, point_file(build, files, output(frame, "Frame")))
     scale = build.given("Scale")
     share = _share(build)
     shown = _thinned(build, particles, share)
     velocity = build.scaled(
-        combined(build, *(_number(build, name) for name in COLUMNS[3:6])), build.given("Velocity Scale")
+        combined(build, *(column(build, name) for name in COLUMNS[3:6])), build.given("Velocity Scale")
     )
     position = output(build.add("GeometryNodeInputPosition"), "Position")
     moved = build.vector(
         "ADD", build.scaled(position, scale), build.scaled(velocity, output(frame, "Seconds"))
     )
     larger = build.math("DIVIDE", 1.0, build.math("SQRT", share, None))
-    radius = build.math("MULTIPLY", build.math("MULTIPLY", _number(build, "radius"), scale), larger)
-    is_mist = build.compare("GREATER_THAN", _number(build, KIND), MIST - 0.5, "FLOAT")
+    radius = build.math("MULTIPLY", build.math("MULTIPLY", column(build, "radius"), scale), larger)
+    is_mist = build.compare("GREATER_THAN", column(build, KIND), MIST - 0.5, "FLOAT")
     view = _from_camera(build, moved)
     away = alone(build, "LENGTH", view)
     largest = build.math("MULTIPLY", away, build.switch("FLOAT", is_mist, _LARGEST_DROP, _LARGEST_MIST))
     radius = build.math("MINIMUM", radius, largest)
-    left = build.math("SUBTRACT", 1.0, build.math("DIVIDE", _number(build, "age"), build.given("Life")))
+    left = build.math("SUBTRACT", 1.0, build.math("DIVIDE", column(build, "age"), build.given("Life")))
     shown = build.store(shown, VELOCITY, velocity, "FLOAT_VECTOR")
     shown = build.store(shown, LEFT, left, "FLOAT")
     seen = build.math("DIVIDE", radius, away)
     layers = _layers(build, view, build.math("MULTIPLY", seen, is_mist))
     shown = build.store(shown, DENSITY, _density(build, layers, left, seen, share), "FLOAT")
     # none is deleted: EEVEE pairs points by their order, and the camera moves within a frame
-    is_drawn = build.compare("GREATER_THAN", _number(build, DENSITY), 0.0, "FLOAT")
+    is_drawn = build.compare("GREATER_THAN", column(build, DENSITY), 0.0, "FLOAT")
     is_drawn = build.logic("OR", is_drawn, build.logic("NOT", is_mist, False))
     radius = build.switch("FLOAT", is_drawn, 0.0, radius)
     points = build.change("GeometryNodeMeshToPoints", shown, {"Position": moved, "Radius": radius})
     build.finish(build.change("GeometryNodeSetMaterial", points, {"Material": build.given("Material")}))
-
-
-def _read(build: Builder, files: Socket, frame: Socket) -> Socket:
-    """The particles of a frame's file."""
-    path = build.add("FunctionNodeFormatString", {"Format": "{files}{frame:04}.ply"})
-    for kind, name, value in (("STRING", "files", files), ("INT", "frame", frame)):
-        path.format_items.new(kind, name)
-        build.tree.links.new(value, path.inputs[name])
-    return output(build.add("GeometryNodeImportPLY", {"Path": output(path, "String")}), "Mesh")
 
 
 def _share(build: Builder) -> Socket:
@@ -115,7 +106,7 @@ def _share(build: Builder) -> Socket:
 
 def _thinned(build: Builder, particles: Socket, share: Socket) -> Socket:
     """The particles with the smallest numbers: those have no order."""
-    part = build.math("DIVIDE", _number(build, "number"), float(NUMBERS))
+    part = build.math("DIVIDE", column(build, "number"), float(NUMBERS))
     more = build.compare("GREATER_THAN", part, share, "FLOAT")
     return build.change("GeometryNodeDeleteGeometry", particles, {"Selection": more}, domain="POINT")
 
@@ -163,17 +154,13 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     crowd = build.math("DIVIDE", layers, _LAYERS)
     least = build.math("MAXIMUM", build.math("MINIMUM", crowd, _DENSEST), _TINY)
     left = build.math("MAXIMUM", left, 0.0)
-    number = build.math("DIVIDE", _number(build, "number"), build.math("MULTIPLY", share, float(NUMBERS)))
+    number = build.math("DIVIDE", column(build, "number"), build.math("MULTIPLY", share, float(NUMBERS)))
     limit = build.math("MULTIPLY", least, build.math("MAXIMUM", number, _TINY))
     over = build.math("SUBTRACT", build.math("DIVIDE", build.math("MULTIPLY", left, _FADING), limit), 1.0)
     fade = build.math("MINIMUM", build.math("MAXIMUM", over, 0.0), 1.0)
     near = build.math("DIVIDE", _LARGE_PUFF, build.math("MAXIMUM", seen, _LARGE_PUFF))
     density = build.math("MULTIPLY", build.math("MAXIMUM", left, least), fade)
     return build.math("MULTIPLY", density, build.math("MULTIPLY", near, near))
-
-
-def _number(build: Builder, name: str) -> Socket:
-    return output(named_attribute(build, name, "FLOAT"), "Attribute")
 
 
 SPRAY = GroupKind("Ocean Tweak Spray", 3, _build)

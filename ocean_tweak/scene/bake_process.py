@@ -18,9 +18,9 @@ from ..core.parameters.shot import Shot
 from .baked_spray import spray_arguments
 from .cache_place import bake_name, cache_folder, own_uid
 from .command_process import CommandProcess, Running
-from .patch_objects import shot_maps
 from .preferences import preferences
 from .settings import maps_of, scene_of, settings_of, wanted_channels
+from .shots import needed_maps
 
 
 class BakeProcess(CommandProcess):
@@ -34,7 +34,7 @@ class BakeProcess(CommandProcess):
         """Start it. Raises OSError for what the disk refuses."""
         self.frames = tuple(frames)
         self.folder: Path | None = None
-        maps = (*maps_of(wanted_channels(settings_of(item))), *shot_maps(item))
+        maps = (*maps_of(wanted_channels(settings_of(item))), *needed_maps(item))
         arguments = [
             "bake", f"--frames={format_frames(frames)}", f"--out={cache_folder(item)}",
             f"--name={bake_name(item)}", f"--uid={own_uid(item)}",

@@ -17,7 +17,7 @@ from ..core.data.raster import has_brief_rasters, raster_bytes
 from ..core.numerics.memo import remembered
 from ..core.parameters.former_json import modern
 from ..core.parameters.shot import OCEAN_TIME, Moment, Shot
-from ..core.sea.placed_waves import repeating
+from ..core.sea.placed_waves import repeating, without_placed
 from ..export.cache.folders import JOB_FILE, read_job
 from ..export.cache.job import CacheError
 from ..export.exr import ExrError, read_header
@@ -187,8 +187,10 @@ def warn(item: bpy.types.Object) -> None:
 def differences(shot: Shot, frame: int, settings: OceanSettings, scene: bpy.types.Scene) -> list[Difference]:
     """The differences between settings and a frame of a bake. Raises ParameterError for invalid settings."""
     moment, parameters = _moment(shot, frame), settings.to_parameters(scene)
-    seas = (moment.parameters, parameters)  # of which no bake holds what does not repeat
-    baked, own = (repeating(sea.replace(spray=None)).to_dict(brief=True) for sea in seas)
+    # no bake of a tile holds what does not repeat, but it may hold a coast beside it
+    bare = without_placed if moment.parameters.has_coast else repeating
+    seas = (moment.parameters, parameters)
+    baked, own = (bare(sea.replace(spray=None)).to_dict(brief=True) for sea in seas)
     found = sorted(_different("", baked, own))
     has_clock = shot.animation is not None and OCEAN_TIME in dict(shot.animation.samples)
     if has_clock or has_own_time(settings):

@@ -25,7 +25,7 @@ from .baked_spray import spray_to_bake
 from .cache_place import bake_name, cache_folder, own_uid
 from .image_sequence import folder_of
 from .settings import OceanObjectError, all_oceans, maps_of, settings_of, wanted_channels
-from .shots import bake_shot_of, scene_frames
+from .shots import bake_shot_of, needed_maps, scene_frames
 
 
 class Version(NamedTuple):
@@ -74,7 +74,10 @@ def foresee(item: bpy.types.Object, scene: bpy.types.Scene) -> None:
     Raises ParameterError for settings that are no sea, OSError.
     """
     frames = scene_frames(scene)
-    shot, maps = bake_shot_of(item, scene, frames), tuple(maps_of(wanted_channels(settings_of(item))))
+    shot, maps = (
+        bake_shot_of(item, scene, frames),
+        (*maps_of(wanted_channels(settings_of(item))), *needed_maps(item)),
+    )
     job = Job(bake_name(item), own_uid(item), shot, maps, frames=frames)
     place = cache_folder(item)
     while not place.is_dir() and place != place.parent:

@@ -11,15 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
+from ..core.sea.memory import ground_of
 from ..core.sea.over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed
 from ..core.synthesis.channels import CHANNELS
-from ..core.waves.coast.mesh import CoastMesh
-from ..nodes.held import COAST
+from ..core.waves.coast.mesh import CoastMesh, coast_mesh
+from ..export.frame_files import COAST as COAST_POINTS
+from ..export.frame_files import files_start
+from ..nodes.coast import COAST, FILES
+from ..nodes.modifier_inputs import reads, set_inputs
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
-from . import bed_points, held_sea, vertex_attributes, water_material, wet_bed
+from . import bed_points, held_sea, patch_points, vertex_attributes, water_material, wet_bed
 from .ownership import remove_with_meshes
+from .patch_points import Points
 from .plan import Plan, camera_surface_of, sea_over_bed
-from .settings import OceanObjectError, all_oceans, link_beside
+from .settings import OceanObjectError, all_oceans, link_beside, settings_of
 
 Array = NDArray[np.float64]
 
@@ -41,13 +46,42 @@ def is_ours(item: bpy.types.Object) -> bool:
 
 def has_bed(ocean: bpy.types.Object) -> bool:
     """Whether an ocean shows a coast, by a mesh over its bed or around a camera."""
-    return bed_points.points_of(ocean) is not None
+    return coast_of(ocean) is not None or bed_points.points_of(ocean) is not None
+
+
+def shot_maps(ocean: bpy.types.Object) -> tuple[str, ...]:
+    """The maps, besides images, that a bake needs so that the mesh over the bed moves."""
+    return () if coast_of(ocean) is None else (COAST_POINTS,)
+
+
+def is_live(ocean: bpy.types.Object) -> bool:
+    """Whether an ocean has a coast that no files move, by a mesh or for what reads the ocean."""
+    return bed_points.points_of(ocean) is not None or (coast_of(ocean) is not None and not is_baked(ocean))
+
+
+def lacks_points(ocean: bpy.types.Object) -> bool:
+    """Whether something reads an ocean that has no points over its bed."""
+    return coast_of(ocean) is not None and bed_points.points_of(ocean) is None and _is_read(ocean)
+
+
+def is_baked(ocean: bpy.types.Object) -> bool:
+    """Whether files move the mesh over an ocean's bed."""
+    return patch_points.has_points(settings_of(ocean), COAST_POINTS)
+
+
+def _is_read(ocean: bpy.types.Object) -> bool:
+    return any(item != ocean and reads(item, (ocean,)) for item in bpy.data.objects)
+
+
+def points_of(ocean: bpy.types.Object, plan: Plan, scene: bpy.types.Scene) -> Points | None:
+    """The baked points that move the mesh over the bed; None where it is live."""
+    return patch_points.points_of(settings_of(ocean), plan, scene, COAST_POINTS)
 
 
 def remove(ocean: bpy.types.Object) -> None:
     """Let an ocean be the open sea again, shown by its own mesh, if it had a coast."""
-    _remove_mesh(ocean)
     if has_bed(ocean):
+        _remove_mesh(ocean)
         bed_points.remove(ocean)
         dry_other_beds()
 
@@ -76,10 +110,12 @@ def make_room(ocean: bpy.types.Object) -> None:
             setattr(ocean, name, value)
 
 
-def refresh(ocean: bpy.types.Object, plan: Plan, patient: bool = True) -> bool:
+def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None, patient: bool = True) -> bool:
     """Make, move or remove what shows the sea over the bed: points in the ocean's geometry, and a mesh where
     no surface around a camera shows these.
 
+    points : the baked ones that move the mesh; those in the ocean's geometry are then only made where
+        something reads them
     patient : whether to compute the waves over it, however long that takes; else it stays as it is until they
         are at hand, a new mesh flat
 
@@ -91,20 +127,35 @@ def refresh(ocean: bpy.types.Object, plan: Plan, patient: bool = True) -> bool:
         return True
     present = coast_of(ocean)
     if ocean.library is not None:  # Blender discards changes to it
+        if present is not None and points is not None:
+            return True  # files move it
         name = ocean.name if present is None else present.name
         if present is not None:
             held_sea.say_nothing(present, COAST)  # the ocean's panel does
         raise OceanObjectError(f"{name} is linked and its coast stands still: make a library override")
-    sea, is_still = sea_over_bed(plan), not patient and making(plan) is not None
+    has_surface = camera_surface_of(ocean) is not None
+    is_still = not patient and making(plan) is not None
+    if points is not None and not has_surface:
+        _read_files(_ready_mesh(ocean, plan), ocean, plan, points)
+        return _refresh_for_readers(ocean, plan, is_still)
     if not is_still:
-        bed_points.refresh(ocean, sea, plan)
-    if camera_surface_of(ocean) is None:
-        _show(present or _new(ocean, plan.over_bed), ocean, sea, plan, is_still)
+        bed_points.refresh(ocean, sea_over_bed(plan), plan)
+        wet_bed.refresh(ocean, sea_over_bed(plan), plan)
+    if not has_surface:
+        _show(_ready_mesh(ocean, plan), sea_over_bed(plan), plan, is_still)
     elif not is_still:
         _remove_mesh(ocean)
         held_sea.tell(bed_points.points_of(ocean), COAST, math.floor(plan.frame))
+    return not is_still
+
+
+def _refresh_for_readers(ocean: bpy.types.Object, plan: Plan, is_still: bool) -> bool:
+    """Give a baked ocean the points over its bed that something reads. Returns whether they are complete."""
+    if not _is_read(ocean):
+        bed_points.remove(ocean)
+        return True
     if not is_still:
-        wet_bed.refresh(ocean, sea, plan)
+        bed_points.refresh(ocean, sea_over_bed(plan), plan)
     return not is_still
 
 
@@ -117,9 +168,10 @@ def making(plan: Plan) -> Callable[[Callable[[float], None]], object] | None:
     return None if coast is None or coast.is_made else coast.make
 
 
-def _show(item: bpy.types.Object, ocean: bpy.types.Object, sea: Ocean, plan: Plan, is_still: bool) -> None:
-    """Let a mesh show the sea over its bed; if still, as it was, or flat where there is none yet."""
-    assert sea.coast is not None
+def _ready_mesh(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object:
+    """The mesh over a bed, made where there is none, with data of its own and the ocean's material."""
+    assert plan.over_bed is not None
+    item = coast_of(ocean) or _new(ocean, plan.over_bed)
     if item.data.is_editmode:
         raise OceanObjectError(f"{item.name} is in Edit Mode: leave Edit Mode to let its waves move")
     if item.data.users > 1:  # of a duplicate, or of what an override is of
@@ -128,16 +180,53 @@ def _show(item: bpy.types.Object, ocean: bpy.types.Object, sea: Ocean, plan: Pla
     if material is not None and list(item.data.materials) != [material]:
         item.data.materials.clear()
         item.data.materials.append(material)
+    return item
+
+
+def _show(item: bpy.types.Object, sea: Ocean, plan: Plan, is_still: bool) -> None:
+    """Let a mesh show the sea over its bed; if still, as it was, or flat where there is none yet."""
     grid = mesh_over_bed(sea)
+    _shape(item, grid, plan)
+    if is_still:
+        return
+    _move(item.data, sea, grid, plan)
+    held_sea.tell(item, COAST, math.floor(plan.frame))
+    set_inputs(held_sea.modifier_of(item, COAST), {FILES: ""})
+
+
+def _read_files(item: bpy.types.Object, ocean: bpy.types.Object, plan: Plan, points: Points) -> None:
+    """Let baked points move a mesh, and wet the sand."""
+    baked = points.parameters
+    ground = ground_of(baked)
+    grid = coast_mesh(ground, baked.domain_size, baked.resolution)
+    _shape(item, grid, plan)
+    _rest(item.data, grid, plan)
+    files = {
+        FILES: points.folder + files_start(points.name, COAST_POINTS),
+        **patch_points.frame_inputs(points),
+    }
+    warn = settings_of(ocean).out_of_range == "WARN"
+    set_inputs(held_sea.modifier_of(item, COAST), {"Live": False, "Warn Out of Range": warn, **files})
+    item.update_tag()
+    wet_bed.read_files(ocean, ground, grid, points)
+
+
+def _shape(item: bpy.types.Object, grid: CoastMesh, plan: Plan) -> None:
+    """Let the mesh have the grid's vertices; new ones are on still water."""
     fits = len(item.data.vertices) == grid.vertices and TEXTURE_COORDINATES in item.data.uv_layers
     if not fits or item.get(_COAST) != grid.tag:
         _fill(item.data, grid)
         item[_COAST] = grid.tag
         _place(item.data, _at_rest(grid, plan))
-    if is_still:
-        return
-    _move(item.data, sea, grid, plan)
-    held_sea.tell(item, COAST, math.floor(plan.frame))
+
+
+def _rest(mesh: bpy.types.Mesh, grid: CoastMesh, plan: Plan) -> None:
+    """Let the vertices be on still water, as files move them."""
+    vertex_attributes.remove(mesh)
+    wanted, found = _at_rest(grid, plan), np.empty(3 * grid.vertices, np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", found)
+    if not np.array_equal(found, wanted.astype(np.float32).reshape(-1)):
+        _place(mesh, wanted)
 
 
 def _fill(mesh: bpy.types.Mesh, grid: CoastMesh) -> None:

@@ -21,6 +21,7 @@ from ..nodes.upgrades import upgrade_groups
 from . import (
     bake_state,
     cache_place,
+    coast_surface,
     command_process,
     contact,
     failures,
@@ -246,6 +247,9 @@ def look_around(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None =
 
 def _look_around() -> None:
     portability.look()
+    for ocean, scene in shown_oceans().items():
+        if coast_surface.lacks_points(ocean):
+            show(ocean, scene, AROUND_CAMERA)
     contact.refresh()
     hull_cut.refresh()
     failures.keep_only(all_oceans())

@@ -56,9 +56,9 @@ def keep_out(item: bpy.types.Object, is_out: bool) -> None:
 def tell(item: bpy.types.Object, kind: GroupKind, frame: int) -> None:
     """Let an object whose mesh was written for a frame say so where the extension is missing.
 
-    kind : of `nodes.held`
+    kind : with INPUTS of `nodes.extension_check`
     """
-    set_inputs(_modifier(item, kind), {"Live": True, "Held Frame": frame})
+    set_inputs(modifier_of(item, kind), {"Live": True, "Held Frame": frame})
 
 
 def say_nothing(item: bpy.types.Object, kind: GroupKind) -> None:
@@ -71,14 +71,17 @@ def _own_modifiers(item: bpy.types.Object, kind: GroupKind) -> list[bpy.types.Mo
     return [each for each in item.modifiers if each.type == "NODES" and is_of_kind(each.node_group, kind)]
 
 
-def _modifier(item: bpy.types.Object, kind: GroupKind) -> bpy.types.Modifier:
-    """Made where there is none. In an override that of the library is replaced, as its group is linked."""
+def modifier_of(item: bpy.types.Object, kind: GroupKind) -> bpy.types.Modifier:
+    """The modifier of a kind, made where there is none. In an override that of the library is replaced, as
+    its group is linked."""
     found = _own_modifiers(item, kind)
     for modifier in found:
         if is_of_library(modifier):
             set_changed(modifier, show_viewport=False, show_render=False)
     own = [modifier for modifier in found if not is_of_library(modifier)]
     if own:
+        if own[0].node_group != node_group(kind):
+            own[0].node_group = node_group(kind)
         return own[0]
     modifier = item.modifiers.new(kind.name, "NODES")
     modifier.node_group = node_group(kind)

@@ -56,13 +56,18 @@ class Points:
     velocity_scale: float
 
 
-def points_of(settings: OceanSettings, plan: Plan, scene: bpy.types.Scene) -> Points | None:
-    """The baked points that an ocean with these settings reads; None where it is live or they are missing."""
+def points_of(
+    settings: OceanSettings, plan: Plan, scene: bpy.types.Scene, kind: str = POINTS
+) -> Points | None:
+    """The baked points that an ocean with these settings reads; None where it is live or they are missing.
+
+    kind : POINTS or COAST
+    """
     found = files_of(settings)
     if found is None:
         return None
     folder, name, here = found
-    shot = _baked_shot(here)
+    shot = _baked_shot(here, kind)
     if shot is None:
         return None
     shown = shot.at(shown_frame(settings, scene, scene.frame_current))
@@ -93,11 +98,9 @@ def read_points(item: bpy.types.Object, number: int, part: Part, points: Points)
         {
             FILES[0]: points.folder + files_start(points.name, POINTS, number),
             FILES[1]: points.folder + files_start(points.name, in_window, number),
-            **frame_values(points.frames, points.files_per_frame, points.seconds_per_file),
+            **frame_inputs(points),
             "Domain Size": part.parameters.domain_size,
             "Resolution": samples,
-            "Scale": points.scale,
-            "Velocity Scale": points.velocity_scale,
         },
     )
     item.update_tag()
@@ -133,7 +136,22 @@ def files_of(settings: OceanSettings) -> tuple[str, str, Path] | None:
     return None if file is None else (folder, file.name, image_file(image).parent)
 
 
-def _baked_shot(folder: Path) -> Shot | None:
-    """The shot of a bake with points; None for other bakes."""
+def has_points(settings: OceanSettings, kind: str) -> bool:
+    """Whether the bake that an ocean reads has points of a kind; not for a live one."""
+    found = files_of(settings)
+    return found is not None and _baked_shot(found[2], kind) is not None
+
+
+def frame_inputs(points: Points) -> dict[str, object]:
+    """Values of the inputs for the frame and its scale, of groups that read points."""
+    return {
+        **frame_values(points.frames, points.files_per_frame, points.seconds_per_file),
+        "Scale": points.scale,
+        "Velocity Scale": points.velocity_scale,
+    }
+
+
+def _baked_shot(folder: Path, kind: str) -> Shot | None:
+    """The shot of a bake with points of a kind; None for other bakes."""
     told = told_by(folder / JOB_FILE)
-    return told.shot if POINTS in told.maps else None
+    return told.shot if kind in told.maps else None

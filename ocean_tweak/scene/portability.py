@@ -6,13 +6,13 @@ This examines all objects of the file, and is therefore done on events instead o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import bpy
 
-from ..nodes.modifier_inputs import all_inputs
+from ..nodes.modifier_inputs import reads
 from . import coast_surface, float_carrier, patch_objects, spray
 from .cache_place import shown_bake
 from .plan import camera_surface_of
@@ -33,13 +33,6 @@ class Need(NamedTuple):
     def text(self) -> str:
         """As one line of text."""
         return f"{self.name} {self.reason}: {self.remedy}"
-
-
-#: why the mesh over a bed needs the extension, and what helps
-_OVER_BED = (
-    "shows a coast, which no bake in Blender has",
-    "enable the extension wherever it is rendered, or switch Coast off",
-)
 
 
 class Neighbours(NamedTuple):
@@ -118,7 +111,7 @@ def look() -> None:
     oceans = list(all_oceans())
     _seen.of.clear()
     _seen.objects = len(bpy.data.objects)
-    _seen.readers = {item.session_uid for item in bpy.data.objects if _reads(item, oceans)}
+    _seen.readers = {item.session_uid for item in bpy.data.objects if reads(item, oceans)}
     keys = {scene: tuple(sorted(map(_key, oceans_in(scene)), key=_by_name)) for scene in bpy.data.scenes}
     _seen.scenes = {scene.session_uid: found for scene, found in keys.items() if found}
     for ocean in oceans:
@@ -165,12 +158,13 @@ def forget_all() -> None:
 def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
     """The ocean and objects that read it, as far as they need the extension; none if everything is baked."""
     surface = camera_surface_of(ocean)
-    coast = (coast_surface.coast_of(ocean) or surface) if coast_surface.has_bed(ocean) else None
-    over_bed = () if coast is None else (Need(coast.name, *_OVER_BED),)
     if settings_of(ocean).source == "LIVE":
-        # a bake would not have the coast either
-        return (*(over_bed or (_live(ocean),)), *_readers(ocean))
-    dry = (*over_bed, *_dry(ocean))
+        what, bake = f"{ocean.name}, which is computed live", f"bake {ocean.name}"
+        around = _coast_around_camera(ocean, surface)
+        shown = () if surface is None or around else (Need(surface.name, f"reads {what}", bake),)
+        floating = f"{bake}, or bake the floating to keys"
+        return (*around, _live(ocean), *shown, *_readers(ocean, what, bake, floating))
+    dry = (*_over_bed(ocean, surface), *_dry(ocean))
     if surface is not None and patch_objects.shows_area(ocean):
         reason = f"shows waves of {ocean.name} that do not repeat, which a bake of its tile does not have"
         return (Need(surface.name, reason, "mute their layers"), *dry)
@@ -178,6 +172,25 @@ def needs_of(ocean: bpy.types.Object) -> tuple[Need, ...]:
         reason = f"shows the patches of {ocean.name}, whose bake has no points"
         return (Need(surface.name, reason, f"bake {ocean.name} again"), *dry)
     return dry
+
+
+def _over_bed(ocean: bpy.types.Object, surface: bpy.types.Object | None) -> Iterator[Need]:
+    """What shows the coast of a baked ocean live."""
+    if not coast_surface.is_live(ocean):
+        return
+    yield from _coast_around_camera(ocean, surface)
+    coast = coast_surface.coast_of(ocean)
+    if coast is not None and not coast_surface.is_baked(ocean):
+        yield Need(coast.name, f"shows the coast of {ocean.name}, whose bake has none", "bake it again")
+    what = f"the coast of {ocean.name}, of which a bake moves the mesh only"
+    yield from _readers(ocean, what, "enable the extension", "bake the floating to keys")
+
+
+def _coast_around_camera(ocean: bpy.types.Object, surface: bpy.types.Object | None) -> tuple[Need, ...]:
+    if surface is None or not coast_surface.has_bed(ocean):
+        return ()
+    reason = f"shows the coast of {ocean.name} around a camera, which no bake has"
+    return (Need(surface.name, reason, "remove the camera surface, so that a bake shows the coast"),)
 
 
 def _dry(ocean: bpy.types.Object) -> Iterator[Need]:
@@ -192,23 +205,20 @@ def _live(ocean: bpy.types.Object) -> Need:
     return Need(ocean.name, "is computed live", "bake it")
 
 
-def _readers(ocean: bpy.types.Object) -> Iterator[Need]:
-    """Objects whose modifiers read a live ocean, and those that float on it."""
+def _readers(ocean: bpy.types.Object, what: str, remedy: str, for_floating: str) -> Iterator[Need]:
+    """Objects whose modifiers read an ocean, and those that float on it, but no camera surface.
+
+    what : they read
+    """
+    surface = camera_surface_of(ocean)
     for item in bpy.data.objects:
-        if item == ocean or not _reads(item, (ocean,)):
+        if item in (ocean, surface) or not reads(item, (ocean,)):
             continue
         if not float_carrier.is_carrier(item):
-            yield Need(item.name, f"reads {ocean.name}, which is computed live", f"bake {ocean.name}")
+            yield Need(item.name, f"reads {what}", remedy)
             continue
         for other in float_carrier.carried_by(item):
-            remedy = f"bake {ocean.name}, or bake the floating to keys"
-            yield Need(other.name, f"floats on {ocean.name}, which is computed live", remedy)
-
-
-def _reads(item: bpy.types.Object, oceans: Sequence[bpy.types.Object]) -> bool:
-    """Whether a modifier of an object has one of some oceans as an input."""
-    nodes = (each for each in item.modifiers if each.type == "NODES" and each.node_group is not None)
-    return any(ocean in all_inputs(modifier).values() for modifier in nodes for ocean in oceans)
+            yield Need(other.name, f"floats on {what}", for_floating)
 
 
 def _concerns(update: bpy.types.DepsgraphUpdate) -> bool:

@@ -52,7 +52,8 @@ def _foam_job(item: bpy.types.Object, scene: bpy.types.Scene) -> Callable[[], ob
     `_waves_job`."""
     settings = settings_of(item)
     plan, jobs = plan_for(item, settings, scene), list[Callable[[], object]]()
-    make_coast = coast_surface.making(plan)
+    is_shown = coast_surface.is_live(item) or not coast_surface.is_baked(item)
+    make_coast = coast_surface.making(plan) if is_shown else None
     if make_coast is not None:
         told = partial(_tell_or_end, item.session_uid, "Computing the waves over the bed…")
         jobs.append(partial(make_coast, told))

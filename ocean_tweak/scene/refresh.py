@@ -90,14 +90,14 @@ _OF_SEA = Wanted.SURFACE | Wanted.PATCHES | Wanted.RENDER
 def of_a_frame(item: bpy.types.Object) -> Wanted:
     """The parts that change with the frame; Blender itself reads the files of a baked ocean.
 
-    Its patches are live if there are no baked points; what lies over a bed always is.
+    Its patches and what lies over a bed are live if there are no baked points.
     """
     if is_live(item):
         return Wanted.ALL & ~Wanted.NEIGHBOURS
     wanted = Wanted.FILES
     if bake_state.moves(item):
         wanted |= Wanted.BAKE
-    if patch_objects.are_live(item) or spray.is_live(item) or coast_surface.has_bed(item):
+    if patch_objects.are_live(item) or spray.is_live(item) or coast_surface.is_live(item):
         wanted |= AROUND_CAMERA
     return wanted
 
@@ -183,7 +183,8 @@ def _refresh_parts(
     patient, coarse = Wanted.HISTORY in wanted, Wanted.SAMPLES not in wanted
     is_complete = patch_objects.refresh(item, plan, points, scene, patient, coarse)
     if not coarse:
-        is_complete = coast_surface.refresh(item, plan, patient) and is_complete
+        of_coast = coast_surface.points_of(item, plan, scene)
+        is_complete = coast_surface.refresh(item, plan, of_coast, patient) and is_complete
         is_complete = spray.refresh(item, plan, scene, patient) and is_complete
     return _NOTHING if is_complete else Wanted.HISTORY
 

@@ -17,7 +17,7 @@ from ..core.data.validation import changing_fields
 from ..core.parameters.shot import OCEAN_TIME, Animation, Samples, Shot
 from ..core.sea.placed_waves import repeating
 from ..core.spectral.equaliser import GAINS
-from . import handlers, mask_place
+from . import coast_surface, handlers, mask_place, patch_objects
 from .animated import clock_of, has_own_time, is_animated, key_each_frame, set_keys, shown_settings
 from .plan import camera_surface_of
 from .settings import OceanObjectError, settings_of
@@ -63,6 +63,12 @@ def bake_shot_of(item: bpy.types.Object, scene: bpy.types.Scene, frames: Iterabl
     if camera_surface_of(item) is None:
         return shot
     return replace(shot, parameters=repeating(shot.parameters))
+
+
+def needed_maps(item: bpy.types.Object) -> tuple[str, ...]:
+    """The maps, besides images, that a bake needs so that everything in the file that shows the ocean
+    moves."""
+    return (*patch_objects.shot_maps(item), *coast_surface.shot_maps(item))
 
 
 def _joined(path: str, values: list[float | Raster]) -> Samples:

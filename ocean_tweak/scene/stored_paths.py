@@ -16,15 +16,22 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..export.places import is_foreign, path_of
+from ..nodes.coast import COAST
+from ..nodes.coast import FILES as COAST_FILES
 from ..nodes.modifier_inputs import get_input, set_input
 from ..nodes.names import MAP_INPUTS
 from ..nodes.patch_points import FILES, PATCH_POINTS
 from ..nodes.spray import FILES as SPRAY_FILES
 from ..nodes.spray import SPRAY
 from ..nodes.versioned import is_of_kind
+from ..nodes.wet_bed import FILES as BED_FILES
+from ..nodes.wet_bed import WET_BED
 from .settings import OceanObjectError, all_oceans, settings_of
 
 _BESIDE = "//"
+
+#: groups whose input has a path where they read files
+_MAYBE_FILES = ((SPRAY, SPRAY_FILES), (COAST, COAST_FILES), (WET_BED, BED_FILES))
 
 
 class Kept(NamedTuple):
@@ -76,8 +83,9 @@ def _of_points() -> Iterator[Kept]:
         for modifier in item.modifiers:
             group = modifier.node_group if modifier.type == "NODES" else None
             names = FILES if is_of_kind(group, PATCH_POINTS) else ()
-            if is_of_kind(group, SPRAY) and get_input(modifier, SPRAY_FILES):
-                names = (SPRAY_FILES,)
+            for kind, name in _MAYBE_FILES:
+                if is_of_kind(group, kind) and get_input(modifier, name):
+                    names = (name,)
             yield from (Kept(_Input(modifier, name), "value", follows=False) for name in names)
 
 

@@ -229,7 +229,8 @@ def check_settings(item: bpy.types.Object, bake: Bake, frames: list[int]) -> Non
 
 
 def show_points(modifier: bpy.types.NodesModifier, bake: Bake, frames: list[int]) -> bool:
-    """Let a modifier that reads points or spray of such a bake read this one's. Returns whether it does.
+    """Let a modifier that reads points, a coast or spray of such a bake read this one's. Returns whether it
+    does.
 
     Raises RenderError where the bake has none.
     """
@@ -237,12 +238,14 @@ def show_points(modifier: bpy.types.NodesModifier, bake: Bake, frames: list[int]
     for name in (name for name in _POINTS if name in sockets):
         begin = re.split(r"[\\/]", str(modifier_input(modifier, sockets[name])))[-1]
         is_spray = begin == f"{bake.name}_spray."
-        if not is_spray and not begin.startswith(f"{bake.name}_p"):
+        is_coast = begin == f"{bake.name}_coast."
+        if not (is_spray or is_coast or begin.startswith(f"{bake.name}_p")):
             return False
         folder = bake.folder / "spray" if is_spray else bake.folder
         path = folder / f"{begin}{frames[0]:04d}.ply"
         if not path.is_file():
             kind, remedy = ("spray", " with --spray") if is_spray else ("points of patches", "")
+            kind = "points of a coast" if is_coast else kind
             raise RenderError(
                 f"{path} is missing: {modifier.id_data.name} reads {kind}; write the job anew from the "
                 f".blend file{remedy}, so that they are baked"
