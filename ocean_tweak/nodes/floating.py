@@ -15,7 +15,7 @@ import math
 
 import bpy
 
-from ..core.sea.riding import LEAST_DAMPING
+from ..core.sea.riding import LEAST_DAMPING, USUAL_DAMPING, USUAL_ROLL_DAMPING
 from ..core.sea.waterline import POINTS
 from .building import Builder, Input, Plug, Socket, output
 from .fields import alone, combined, connect, coordinates, sample_index, whole_number
@@ -63,10 +63,13 @@ DAMPED_INPUTS = (
     Plug("Pitch Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
     Plug("Roll Period", "NodeSocketFloat", 0.0, "Natural period in seconds; 0 is that of its size"),
     Plug(
-        "Damping", "NodeSocketFloat", 0.3,
+        "Damping", "NodeSocketFloat", USUAL_DAMPING,
         "Of heave and pitch: 1 does not swing at all, 0.3 is usual for ships",
     ),
-    Plug("Roll Damping", "NodeSocketFloat", 0.1, "Of roll: 1 does not swing at all, 0.1 is usual for ships"),
+    Plug(
+        "Roll Damping", "NodeSocketFloat", USUAL_ROLL_DAMPING,
+        "Of roll: 1 does not swing at all, 0.1 is usual for ships",
+    ),
 )  # fmt: skip
 #: where a hull is that rides damped or over a bed, and at which frame of the scene
 SOLVED_INPUTS = (

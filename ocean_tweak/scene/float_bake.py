@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import bpy
 from mathutils import Matrix
 
+from ..core.sea.felt_water import felt
 from ..core.sea.waterline import Plane
 from . import contact, float_carrier, float_keys, float_riding, floating, handlers
 from .animated import shown_settings
@@ -119,7 +120,7 @@ class FloatBake:
             return None
         under = float_riding.footprint(place, ocean, rider.ride, float(plan.metres))
         under = float_riding.gone_along(under, water.come)
-        rider.felt.append(float_riding.felt(under, water.carried, lambda x, y: water.surface(x, y)[0]))
+        rider.felt.append(felt(under, water.carried, lambda x, y: water.surface(x, y)[0]))
         seconds, gravity = 1 / frame_rate(scene), plan.parameters.water.gravity
         return float_riding.solve_by_frames(rider.felt, seconds, rider.ride, under, gravity)
 

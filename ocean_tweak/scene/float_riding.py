@@ -22,12 +22,12 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
-from ..core import Ocean, OceanParameters, ParameterError
+from ..core import OceanParameters, ParameterError
 from ..core.numerics.memo import MEMO
-from ..core.sea.placed_waves import repeating, without_placed
-from ..core.sea.regions import Places
+from ..core.sea.felt_water import FeltWater, Footprint, felt_sea
+from ..core.sea.placed_waves import without_placed
 from ..core.sea.riding import LEAST_DAMPING, Moments, Oscillator, moments, natural_periods, ride
-from ..core.sea.waterline import Plane, fitted_plane, stencil
+from ..core.sea.waterline import Plane
 from ..nodes.floating import CARRIER
 from ..nodes.modifier_inputs import all_inputs, get_input
 from ..nodes.versioned import is_of_kind
@@ -44,10 +44,6 @@ Array = NDArray[np.float64]
 #: of MEMO
 _FELT = "water that hulls felt"
 MEMO.limit(_FELT, 16)
-#: waters that are kept of a sea, and the bytes of one
-_MOST, _BYTES = 50_000, 400
-#: samples of a sea in a beam, of which hulls feel no more
-_IN_BEAM = 3.0
 #: digits of m and of rad below which two places are one
 _DIGITS = 3, 5
 #: m, half of the size of what follows the surface at a point of a bed's waves
@@ -63,74 +59,12 @@ _NEVER = -1e6
 _known: dict[int, object] = {}
 
 
-class Footprint(NamedTuple):
-    """Where a waterline lies in the ocean's space, m and rad.
-
-    heading : of its bow or stern, from the x axis
-    drift : how much it goes along with the water
-    """
-
-    x: float
-    y: float
-    heading: float
-    half_length: float
-    half_beam: float
-    drift: float
-
-
 class Solved(NamedTuple):
     """Where a hull is: height in m and slopes along x and y, in the ocean's space."""
 
     height: float
     slope_x: float
     slope_y: float
-
-
-class _Felt:
-    """What hulls felt of a sea, by moment and place."""
-
-    def __init__(self, parameters: OceanParameters) -> None:
-        self._ocean = Ocean(parameters)
-        self._waters: dict[tuple[Fraction, Footprint], Plane] = {}
-
-    @property
-    def nbytes(self) -> int:
-        return _BYTES * len(self._waters)
-
-    def at(self, time: Fraction, place: Footprint) -> Plane:
-        """Height, and slopes along the hull and across it."""
-        known = self._waters.get((time, place))
-        if known is None:
-            while len(self._waters) >= _MOST:
-                del self._waters[next(iter(self._waters))]
-            known = self._waters[time, place] = self._new(time, place)
-        return known
-
-    def _new(self, time: Fraction, place: Footprint) -> Plane:
-        return felt(
-            place,
-            lambda x, y: self._ocean.surface(time, on=Places(x, y)).displacement[:, :2],
-            lambda x, y: self._ocean.height_at(x, y, time),
-        )
-
-
-def felt(
-    place: Footprint, carried: Callable[[Array, Array], Array], height: Callable[[Array, Array], Array]
-) -> Plane:
-    """Height, and slopes along the hull and across it, of water in m.
-
-    carried : (points, 2) how far the water of places at rest has gone
-    height : (points,) of the surface above places
-    """
-    half = place.half_length, place.half_beam
-    along, across = (np.array(half) * stencil()).T
-    cosine, sine = math.cos(place.heading), math.sin(place.heading)
-    x = place.x + along * cosine - across * sine
-    y = place.y + along * sine + across * cosine
-    if place.drift:
-        drift_x, drift_y = place.drift * carried(x, y).mean(axis=0)
-        x, y = x + drift_x, y + drift_y
-    return fitted_plane(height(x, y), half)
 
 
 def can_ride(ride: Ride) -> bool:
@@ -230,7 +164,7 @@ def solve(
 
     now = lies(plan.time)
     sea = _sea_of(plan, now)
-    felt = MEMO.get(_FELT, sea, lambda: _Felt(sea))
+    felt = MEMO.get(_FELT, sea, lambda: FeltWater(sea))
     if can_ride(ride_of_hull):
         water = cache(lambda time: felt.at(time, lies(time)))  # modes have moments in common
         along = []
@@ -267,10 +201,7 @@ def _sea_of(plan: Plan, place: Footprint) -> OceanParameters:
     # without what hulls make, or it would lie in the dent that it makes itself
     if plan.over_bed is not None:
         return without_placed(plan.over_bed)
-    parameters = repeating(plan.parameters)
-    beam = 2.0 * min(place.half_beam, place.half_length)
-    wanted = 2 ** math.ceil(math.log2(max(_IN_BEAM * parameters.domain_size / beam, 16.0)))
-    return parameters.at_resolution(min(wanted, parameters.resolution))
+    return felt_sea(plan.parameters, 2.0 * min(place.half_beam, place.half_length))
 
 
 def follow_before_frame(scene: bpy.types.Scene) -> None:

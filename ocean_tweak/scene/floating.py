@@ -12,6 +12,7 @@ from typing import Any
 
 import bpy
 
+from ..core.sea.riding import USUAL_DAMPING, USUAL_ROLL_DAMPING
 from ..nodes.modifier_inputs import all_inputs
 from . import contact, float_carrier, float_keys, hull_cut
 from .float_carrier import carrier_of, new_carrier, remove_carrier
@@ -74,8 +75,8 @@ class Ride:
     heave_period: float = 0.0
     pitch_period: float = 0.0
     roll_period: float = 0.0
-    damping: float = 0.3
-    roll_damping: float = 0.1
+    damping: float = USUAL_DAMPING
+    roll_damping: float = USUAL_ROLL_DAMPING
 
     @property
     def level(self) -> float:

@@ -60,14 +60,14 @@ def afloat(boat, ocean, select, set_ride):
 @pytest.fixture
 def queries(extension, monkeypatch):
     """The moments for which the water was asked."""
-    riding, asked = extension("scene.float_riding"), []
-    of_sea = riding._Felt._new
+    water, asked = extension("core.sea.felt_water"), []
+    of_sea = water.FeltWater._new
 
     def counted(self, time, place):
         asked.append((time, place))
         return of_sea(self, time, place)
 
-    monkeypatch.setattr(riding._Felt, "_new", counted)
+    monkeypatch.setattr(water.FeltWater, "_new", counted)
     return asked
 
 

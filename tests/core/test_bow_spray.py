@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from ocean_tweak.core import (
 )
 from ocean_tweak.core.sea.foam_levels import FoamLevels
 from ocean_tweak.core.sea.foam_rings import FoamRings, Place
+from ocean_tweak.core.sea.hull_motion import HullMotion
 from ocean_tweak.core.sea.patch_plan import Wish, planned
 from ocean_tweak.core.sea.placed_waves import has_tile, is_seen_around, own_spray
 from ocean_tweak.core.sea.spray import CameraSpray, check_spray, why_none
@@ -74,6 +76,61 @@ def test_the_faster_hull_and_water_meet_the_more_is_thrown() -> None:
     assert thrown(water=(0.0, 0.0, SPEED))[1].sum() == pytest.approx(2.0 * calm, rel=1e-6)
     assert thrown(water=(0.0, 0.0, -SPEED))[1].sum() == pytest.approx(calm, rel=1e-6)
     assert thrown(water=(SPEED, 0.0, 0.0))[1].sum() == 0.0
+
+
+def test_a_hull_meets_the_water_as_fast_as_it_goes_down_itself() -> None:
+    """A bow that falls is as water that rises, and one that is lifted out throws nothing."""
+
+    def with_bow(raised: float, rise: float) -> float:
+        x, y = (each.ravel() for each in np.meshgrid(np.arange(0.0, 25.0, 0.5), np.arange(-10.25, 10.5, 0.5)))
+        still, water = np.zeros(x.size), np.zeros((x.size, 3))
+
+        def lifts(layer: object, *_: object) -> tuple[np.ndarray, np.ndarray]:
+            assert layer is SHIP
+            return np.full(x.size, raised), np.full(x.size, rise)
+
+        own = own_spray(around(), x, y, TIME, still, water, lifts)
+        there = own.strength > 0.0
+        assert np.all(own.velocity[there, 2] > 0.0)
+        return float(own.strength.sum())
+
+    calm = with_bow(0.0, 0.0)
+    assert with_bow(0.0, -SPEED) == pytest.approx(2.0 * calm, rel=1e-6)
+    assert with_bow(0.0, SPEED) == pytest.approx(calm, rel=1e-6)
+    assert with_bow(SHIP.draught, 0.0) == 0.0
+    assert with_bow(-SHIP.draught, 0.0) == pytest.approx(2.0 * calm, rel=1e-6)
+
+
+def swell(period: float, height: float, size: float) -> OceanParameters:
+    waves = WaveLayer(definition="SEA_STATE", significant_wave_height=height, peak_period=period)
+    return OceanParameters(resolution=128, domain_size=size, seed=2, layers=(waves, SHIP))
+
+
+def test_on_a_long_swell_a_bow_goes_with_the_water() -> None:
+    """Waves of 15 hulls, and shorter ones down to 2: at the bow, hull and water go up and down together."""
+    sea = swell(20.0, 4.0, 4096.0)
+    motion, calm = HullMotion(sea), Ocean(sea.replace(layers=sea.layers[:1]))
+    found = []
+    for time in np.arange(5.0, 60.0, 3.7).tolist():
+        x, y = np.array([-10.0 * SPEED + SPEED * time + 20.0]), np.array([0.0])
+        lifted = motion.at(SHIP, x, y, Fraction(time))
+        assert lifted is not None
+        water = calm.surface(time, {"displacement", "velocity"}, on=Places(x, y))
+        of_water = water.displacement[0, 2], water.velocity[0, 2]
+        found.append((*of_water, lifted.height.item(), lifted.rise.item()))
+    height, speed, raised, rise = np.array(found).T
+    assert height.std() > 0.2
+    for of_hull, of_water in ((raised, height), (rise, speed)):
+        assert np.corrcoef(of_hull, of_water)[0, 1] > 0.9
+        assert of_hull.std() == pytest.approx(of_water.std(), rel=0.3)
+
+
+def test_short_waves_do_not_lift_a_hull() -> None:
+    sea = swell(2.2, 0.2, 256.0)  # 7.5 m long
+    motion = HullMotion(sea)
+    assert motion.at(sea.layers[0], np.zeros(1), np.zeros(1), Fraction(1)) is None
+    at = [motion.at(SHIP, np.array([20.0]), np.zeros(1), Fraction(time)) for time in (3, 7, 11)]
+    assert max(abs(each.height.item()) for each in at if each is not None) < 0.1
 
 
 def test_a_bow_in_a_trough_throws_nothing() -> None:

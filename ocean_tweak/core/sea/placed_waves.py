@@ -34,6 +34,9 @@ ADDED = frozenset[Key]().union(*(CHANNELS[name].needs for name in ADDING))
 #: what is left of these waves at places in m, if they may run aground
 Afloat = Callable[[Array, Array], Weights]
 
+#: how high the hull of a layer is raised at places and a time, m, and how fast, m/s; None without a hull
+Lifts = Callable[[Contribution, Array, Array, Fraction], tuple[Array, Array] | None]
+
 #: width of the border in which waves shown in an area fade to 0, relative to its size
 _RIM = 0.1
 
@@ -79,13 +82,18 @@ class PlacedWaves:
         return OwnFoam(found.foam * share, found.breaking * share, found.age)
 
     def spray(
-        self, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
+        self, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array, lifts: Lifts | None
     ) -> OwnSpray | None:
         """What the layer throws up at rest positions in m, of one flat shape.
 
         height, velocity : of the water there, (places,) m and (places, 3) m/s
+        lifts : how its hull rides the other waves; None for one that does not
         """
         layer, (come_x, come_y), drift = self._in_water(time)
+        lifted = None if lifts is None else lifts(self._layer, x, y, Fraction(time))
+        if lifted is not None:
+            raised, rise = lifted
+            height, drift = height - raised, drift + rise[:, np.newaxis] * (0.0, 0.0, 1.0)
         found = layer.own_spray(self._sea, x - come_x, y - come_y, time, height, velocity - drift)
         if found is None:
             return None
@@ -245,15 +253,22 @@ def _own_foams(sea: OceanParameters, x: Array, y: Array, time: float | Fraction)
 
 
 def own_spray(
-    sea: OceanParameters, x: Array, y: Array, time: float | Fraction, height: Array, velocity: Array
+    sea: OceanParameters,
+    x: Array,
+    y: Array,
+    time: float | Fraction,
+    height: Array,
+    velocity: Array,
+    lifts: Lifts | None = None,
 ) -> OwnSpray:
     """What layers throw up at flat rest positions in m: of several, that of which there is most.
 
     height, velocity : of the water there, (places,) m and (places, 3) m/s
+    lifts : how hulls ride the other waves, as of `hull_motion.HullMotion.at`; by default they do not
     """
     strongest = OwnSpray(np.zeros(x.size), velocity)
     for waves in placed_waves(sea):
-        own = waves.spray(x, y, time, height, velocity)
+        own = waves.spray(x, y, time, height, velocity, lifts)
         if own is not None:
             more = own.strength > strongest.strength
             strongest = OwnSpray(

@@ -36,6 +36,8 @@ _PER_PERIOD = 16
 _FORGOTTEN = 0.005
 #: oldest part of the past over which responses are faded out, so that the cut-off causes no jump
 _FADES = 0.25
+#: damping ratios of ships in heave and pitch, and in roll
+USUAL_DAMPING, USUAL_ROLL_DAMPING = 0.3, 0.1
 #: lowest damping ratio: with it, a response lasts 42 periods, and up to 1352 moments
 LEAST_DAMPING = 0.02
 #: block coefficient over waterplane coefficient, of boats and ships

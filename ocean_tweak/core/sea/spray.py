@@ -29,6 +29,7 @@ from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
 from ..waves.contribution import Wind
 from .foam_levels import FoamLevels
+from .hull_motion import HullMotion
 from .ocean import Ocean
 from .placed_waves import check_repeats, has_tile, is_seen_around, makes_foam, own_spray, throws
 from .regions import TILE, Places
@@ -153,12 +154,13 @@ class CameraSpray:
 
     def __init__(self, levels: FoamLevels) -> None:
         self._levels = levels
+        self._hulls = HullMotion(levels.parameters)
         self._crests = _Remembered(levels.parameters)
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the crests that are remembered."""
-        return self._crests.nbytes
+        """Bytes of the crests that are remembered, and of what hulls felt."""
+        return self._crests.nbytes + self._hulls.nbytes
 
     def at(self, time: float | Fraction, spray: Spray, place: tuple[float, float]) -> Particles:
         """All that is in the air at a time in s around a place at rest, in m.
@@ -184,7 +186,8 @@ class CameraSpray:
         water = _Water(*(fields[name].astype(np.float64) for name in _Water._fields))
         rate = torn_rate(_wind(finest.parameters).speed)
         births = rate * np.concatenate([_torn(strength) for _, strength in found])
-        own = own_spray(finest.parameters, x, y, time, water.displacement[:, 2], water.velocity)
+        height, velocity = water.displacement[:, 2], water.velocity
+        own = own_spray(finest.parameters, x, y, time, height, velocity, self._hulls.at)
         thrown = _OF_A_CREST * own.strength
         more = thrown > births
         births = np.where(more, thrown, births)

@@ -145,6 +145,17 @@ class OwnSpray(NamedTuple):
     velocity: Array
 
 
+class HullPlace(NamedTuple):
+    """Where a hull is on the water, m and rad: its middle, and the direction of its bow from +x."""
+
+    x: float
+    y: float
+    heading: float
+    length: float
+    beam: float
+    draught: float
+
+
 class Sharing(Protocol):
     """Computes contributions to the coefficients of the displacement's components."""
 
@@ -244,6 +255,10 @@ class Contribution(Validated):
         """Whether it has any `own_foam` or `own_spray`."""
         return False
 
+    def hull_at(self, time: float | Fraction) -> HullPlace | None:
+        """The hull that makes its waves, at a time in s; None without any."""
+        return None
+
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """Foam beside that of breaking waves, at rest positions in m, of one flat shape; None without any."""
         return None
@@ -253,7 +268,8 @@ class Contribution(Validated):
     ) -> OwnSpray | None:
         """Spray beside that of breaking waves, at rest positions in m, of one flat shape; None without any.
 
-        height, velocity : of the water there above calm water in m, (places,), and (places, 3) in m/s
+        height, velocity : of the water there, above calm water or beside the hull that rides it, in m,
+            (places,), and (places, 3) in m/s
         """
         return None
 

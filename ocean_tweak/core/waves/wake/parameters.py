@@ -32,6 +32,7 @@ from ...numerics.memo import MEMO, remembered
 from ..contribution import (
     Contribution,
     Gives,
+    HullPlace,
     Key,
     MemoryNeed,
     Names,
@@ -254,6 +255,12 @@ class WakeLayer(Contribution):
     def makes_foam(self) -> bool:
         """Whether it stirs the water white."""
         return self.foam > 0.0
+
+    def hull_at(self, time: float | Fraction) -> HullPlace:
+        """On its path, as deep as it is there."""
+        (x, y), _ = self.track.place(float(time))
+        heading = self.track.heading(float(time))
+        return HullPlace(x, y, heading, self.length, self.beam, self.draught)
 
     def own_foam(self, sea: OceanParameters, x: Array, y: Array, time: float | Fraction) -> OwnFoam | None:
         """The band astern, and what the bow throws aside."""

@@ -134,13 +134,20 @@ class Track:
 
     def place(self, time: float) -> tuple[tuple[float, float], tuple[float, float]]:
         """x and y in m at a time in s, and the velocity there in m/s."""
-        index = int(
-            np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, len(self._velocities) - 1)
-        )
+        index = self._stretch(time)
         vx, vy = self._velocities[index].tolist()
         x, y = self.positions[index].tolist()
         since = time - float(self.times[index])
         return (x + since * vx, y + since * vy), (vx, vy)
+
+    def heading(self, time: float) -> float:
+        """Direction in which the object points at a time in s, rad."""
+        return float(self._headings[self._stretch(time)])
+
+    def _stretch(self, time: float) -> int:
+        """Of those between samples, the one at a time in s."""
+        last = int(np.searchsorted(self.times, time, side="right")) - 1
+        return min(max(last, 0), len(self._velocities) - 1)
 
     def immersion(self, time: float) -> float:
         """What the draught is multiplied by at a time in s."""
