@@ -24,7 +24,7 @@ from ocean_tweak.export.spectra.reading import (
     read_spectra,
 )
 from ocean_tweak.export.spectra.records import Record
-from tests.export.spectrum_files import BUOY_FILES, F, bump, swan_text, write_buoy
+from tests.export.spectrum_files import BUOY_FILES, F, bump, historical, swan_text, write_buoy
 
 NAUTICAL = np.arange(5.0, 360.0, 10.0)
 CARTESIAN = np.arange(0.0, 360.0, 15.0)[::-1]
@@ -122,6 +122,76 @@ def test_a_spectrum_of_frequencies_with_a_direction_and_a_spread(tmp_path: Path)
     assert math.degrees(state.directional_spread) == pytest.approx(20.0, abs=0.01)
 
 
+def test_a_place_and_a_time_are_found_by_what_they_are_called(tmp_path: Path) -> None:
+    """The first is not the tenth, and an hour of another zone is that of UTC."""
+    spectrum = bump(NAUTICAL, 0.0, True)
+    places = [(float(number), 0.0) for number in range(10)]
+    path = written(tmp_path, swan_text(["ZERO", *[spectrum] * 9], places=places, directions=NAUTICAL))
+    records = read_spectra([path])
+    assert chosen_place(records, "10").place == "10 (9, 0)"
+    with pytest.raises(ParameterError, match="place = '1': has no spectrum with energy"):
+        chosen_place(records, "1")
+    assert len(chosen_times(records[0], "2020-01-01T01:00+01:00").times) == 1
+    with pytest.raises(ParameterError, match="is not in the file"):
+        chosen_times(records[0], "2020-01-01T01:00")
+
+
+def test_frequencies_without_energy_make_no_larger_sea(tmp_path: Path) -> None:
+    """Of 1.2 km: four of the longest waves, of which those below 0.07 Hz have a fiftieth of the energy."""
+    spectrum = bump(NAUTICAL, 0.0, True)
+    more = np.concatenate((np.zeros((2, 36)), spectrum))
+    records = (
+        only(written(tmp_path, swan_text([each], f=f, directions=NAUTICAL)))
+        for f, each in ((F, spectrum), (np.array([0.01, 0.02, *F]), more))
+    )
+    plain, wide = (measured_sea(record).domain_size for record in records)
+    assert plain == wide
+    assert 4.0 * 1.56 / 0.08**2 < plain < 4.0 * 1.57 / 0.06**2
+
+
+@pytest.mark.parametrize("spread", [20.0, 50.0])
+def test_a_spread_is_that_of_the_usual_cosine(tmp_path: Path, spread: float) -> None:
+    """The second moment too, of cos²ˢ(θ/2), by a sum over θ."""
+    rows = np.stack([np.ones(len(F)), np.full(len(F), 270.0), np.full(len(F), spread)], axis=1)
+    record = only(written(tmp_path, swan_text([rows], directions=None)))
+    r1 = 1.0 - 0.5 * math.radians(spread) ** 2
+    theta = np.linspace(-np.pi, np.pi, 4001)
+    shape = np.cos(0.5 * theta) ** (2.0 * r1 / (1.0 - r1))
+    expected = [float(np.sum(shape * np.cos(order * theta)) / np.sum(shape)) for order in (1, 2)]
+    assert record.moments is not None
+    np.testing.assert_allclose(record.moments[0, :, ::2], [expected] * len(F), atol=1e-3)
+    rows[:, 2] = 300.0  # more than any has: waves go everywhere
+    everywhere = only(written(tmp_path, swan_text([rows], directions=None))).moments
+    assert everywhere is not None
+    assert not everywhere.any()
+
+
+def test_frequencies_may_be_those_in_the_moving_water(tmp_path: Path) -> None:
+    spectrum = bump(NAUTICAL, 0.0, True)
+    for word, absolute in (("AFREQ", True), ("RFREQ", False)):
+        record = only(written(tmp_path, swan_text([spectrum], directions=NAUTICAL, frequencies=word)))
+        assert record.absolute is absolute
+        assert record.spectra().absolute is absolute
+
+
+def test_energy_that_is_missing_is_none(tmp_path: Path) -> None:
+    """As the head of the file writes it, whatever the factor: -0.9900E+02."""
+    content = swan_text([np.ones((len(F), 36))], directions=NAUTICAL)
+    row = " ".join(["99999"] * 36)
+    hole = only(written(tmp_path, content.replace(row, " ".join(["-99"] * 18 + ["99999"] * 18), 1)))
+    whole = only(written(tmp_path, content))
+    np.testing.assert_allclose(hole.energy[0] / whole.energy[0], [0.5, *[1.0] * (len(F) - 1)], rtol=1e-4)
+
+
+def test_of_spectra_of_one_time_the_first_counts(tmp_path: Path) -> None:
+    low, high = (bump(NAUTICAL, 0.0, True, height) for height in (1.0, 3.0))
+    times = ("20200101.000000", "20200101.000000", "20200101.010000")
+    record = only(written(tmp_path, swan_text([low, high, high], directions=NAUTICAL, times=times)))
+    heights = [record.summary(index).significant_wave_height for index in range(2)]
+    assert heights == pytest.approx([1.0, 3.0], rel=0.01)
+    assert record.notes == ("1 spectra of times that stand twice are left out",)
+
+
 def test_a_direction_that_is_missing_is_no_angle(tmp_path: Path) -> None:
     """-999 beside energy, at the peak too: as for a buoy it is that of the nearest frequency, and told."""
     energy = np.exp(-((np.log(F / 0.1) / 0.3) ** 2))
@@ -212,6 +282,47 @@ def test_what_is_missing_is_no_number(tmp_path: Path) -> None:
     (alone,) = read_spectra(write_buoy(tmp_path, "41002", missing="k"))
     assert alone.moments is None
     assert any("r2 (swr2, k)" in note for note in alone.notes)
+
+
+def test_a_frequency_without_a_direction_has_that_of_the_nearest(tmp_path: Path) -> None:
+    paths = write_buoy(tmp_path)
+    degrees = np.linspace(100.0, 290.0, len(F))
+    for path in paths[1:3]:
+        path.write_text(historical("d", [("2020 01 01 00 00", degrees), ("2020 01 01 01 00", degrees)]))
+    told = paths[1].read_text().splitlines()
+    told[1] = " ".join([*told[1].split()[:17], "999.00", "999.00", *told[1].split()[19:]])
+    paths[1].write_text("\n".join(told) + "\n")
+    (record,) = read_spectra(paths)
+    assert record.moments is not None
+    a1, b1 = record.moments[0, :, :2].T
+    comes_from = np.mod(270.0 - np.degrees(np.arctan2(b1, a1)), 360.0)
+    expected = degrees.copy()
+    expected[12:14] = degrees[11], degrees[14]
+    np.testing.assert_allclose(comes_from, expected, atol=0.01)
+
+
+def test_files_of_one_time_after_the_other_are_one(tmp_path: Path) -> None:
+    """Times without directions are left out; years before 1999 have two digits."""
+    paths = write_buoy(tmp_path)
+    energy = np.exp(-((np.log(F / 0.12) / 0.35) ** 2))
+    older = tmp_path / "41001w1998.txt"
+    older.write_text(historical("w", [("98 12 31 23 00", energy)]).replace("#YY ", "YY "))
+    (alone,) = read_spectra([older, paths[0]])
+    assert [time.year for time in alone.times if time] == [1998, 2020, 2020]
+    (record,) = read_spectra([*paths, older])
+    assert [time.year for time in record.times if time] == [2020, 2020]
+    assert record.notes == ("1 spectra without directions are left out",)
+
+
+def test_a_wind_that_is_missing_is_that_of_the_time_before(tmp_path: Path) -> None:
+    weather = tmp_path / "41001h2020.txt"
+    weather.write_text(
+        "#YY  MM DD hh mm WDIR WSPD GST  WVHT\n2020 01 01 00 00 270  8.0 10.0  1.0\n"
+        "2020 01 01 01 00 999 99.0 99.0 99.00\n"
+    )
+    (record,) = read_spectra([*write_buoy(tmp_path), weather])
+    assert record.wind is not None
+    np.testing.assert_allclose(record.wind, [8.0, 8.0], atol=1e-12)
 
 
 def test_the_weather_gives_the_wind(tmp_path: Path) -> None:

@@ -337,7 +337,7 @@ def _around(values: Array, theta: Array) -> tuple[Array, float]:
 def _moments(values: Array, is_nautical: bool) -> tuple[ComplexArray, ComplexArray]:
     """a₁ + ib₁ and a₂ + ib₂ of cos²ˢ(θ/2) with a mean direction and a spread: r₁ = s/(s+1), r₂ =
     s(s-1)/((s+1)(s+2)); NaN where those are missing."""
-    mean, spread = values[..., 1], np.radians(np.clip(values[..., 2], 0.0, 81.0))
+    mean, spread = values[..., 1], np.radians(values[..., 2])
     theta = towards(mean) if is_nautical else np.radians(mean)
     r1 = np.clip(1.0 - 0.5 * spread**2, 0.0, 0.999)
     s = r1 / (1.0 - r1)
