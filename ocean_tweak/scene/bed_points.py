@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Ocean
+from ..core import Ocean, OceanParameters
 from ..core.numerics.interpolation import wrapped
 from ..core.sea.coast_waves import CoastWaves
 from ..core.synthesis.channels import CHANNELS
@@ -31,6 +31,14 @@ RealArray = NDArray[np.float32]
 
 _MARK = "ocean_tweak_bed_points"
 _NAME = "Ocean Tweak Bed"
+
+# by the session uid of a mesh: of which sea, and in which units, it holds what does not change with time
+_written: dict[int, tuple[OceanParameters | None, float]] = {}
+
+
+def forget_all() -> None:
+    """Another file is opened, or a step undone."""
+    _written.clear()
 
 
 def is_ours(item: bpy.types.Object) -> bool:
@@ -70,22 +78,30 @@ def refresh(ocean: bpy.types.Object, sea: Ocean, plan: Plan) -> None:
 
 
 def _write(mesh: bpy.types.Mesh, coast: CoastWaves, plan: Plan) -> None:
-    ground, scale = coast.ground, plan.scale
     fields = {name: _laid(field) for name, field in coast.on_samples(plan.time).items()}
     for name, field in fields.items():
         field *= np.float32(in_units(CHANNELS[name], plan))
-    x, y = ground.places
-    patch_averages.write_points(mesh, _laid(scale * np.stack((x, y, np.zeros_like(x)), axis=-1)), fields)
-    shares = coast.shares(x.ravel(), y.ravel())
-    share = np.stack((shares.value, shares.by_x / scale, shares.by_y / scale), axis=-1)
-    of_samples = {OPEN_SHARE: share.reshape(*x.shape, 3), COAST_DEPTH: np.maximum(ground.depth, FILM)}
+    has_levels = patch_averages.write(mesh, fields)
+    still = plan.over_bed, plan.scale
+    if not has_levels or _written.get(mesh.session_uid) != still:
+        _write_still(mesh, coast, plan.scale)
+        _written[mesh.session_uid] = still
     if "foam" in plan.channels:
-        foam = coast.foam(x.ravel(), y.ravel(), plan.time)
-        of_samples[BED_FOAM] = np.stack(foam, axis=-1).reshape(*x.shape, 3)
+        foam = np.stack(coast.foam_on_samples(plan.time), axis=-1)
+        patch_averages.put_samples(mesh, BED_FOAM, _laid(foam))
     elif BED_FOAM in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[BED_FOAM])
-    for name, values in of_samples.items():
-        patch_averages.put_samples(mesh, name, _laid(values))
+
+
+def _write_still(mesh: bpy.types.Mesh, coast: CoastWaves, scale: float) -> None:
+    """Write what does not change with time."""
+    x, y = coast.ground.places
+    shares = coast.shares(x.ravel(), y.ravel())
+    share = np.stack((shares.value, shares.by_x / scale, shares.by_y / scale), axis=-1)
+    places = scale * np.stack((x, y, np.zeros_like(x)), axis=-1)
+    patch_averages.put_samples(mesh, "position", _laid(places))
+    patch_averages.put_samples(mesh, OPEN_SHARE, _laid(share.reshape(places.shape)))
+    patch_averages.put_samples(mesh, COAST_DEPTH, _laid(np.maximum(coast.ground.depth, FILM)))
 
 
 def _laid(field: NDArray[np.floating]) -> RealArray:

@@ -20,6 +20,7 @@ from ..nodes.kinds import ALL_KINDS
 from ..nodes.upgrades import upgrade_groups
 from . import (
     bake_state,
+    bed_points,
     cache_place,
     coast_surface,
     command_process,
@@ -342,6 +343,7 @@ def refresh_after_undo(_scene: object = None, _unused: object = None) -> None:
     show_that_it_runs()
     live_image.forget_all()
     patch_objects.forget_all()
+    bed_points.forget_all()
     spray.forget_all()
     source_images.forget_all()
     float_carrier.follow()
@@ -457,6 +459,7 @@ def _forget_all() -> None:
     MEMO.drop()
     live_image.forget_all()
     patch_objects.forget_all()
+    bed_points.forget_all()
     spray.forget_all()
     source_images.forget_all()
 

@@ -22,25 +22,25 @@ from .grid_mesh import Grid
 RealArray = NDArray[np.float32]
 
 
-def write(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], lost: float) -> None:
-    """Write a patch and its averages to points, at their places now.
+def write_patch(mesh: bpy.types.Mesh, grid: Grid, fields: Mapping[str, RealArray], lost: float) -> None:
+    """Write a patch and its averages to points, and where they are now.
 
     grid : of the patch, in Blender units
     fields : ADDING, (N+1, N+1, …) each, in Blender units
     lost : mean square slope of the waves too short for these samples
     """
+    write(mesh, fields, lost)
     places = grid.positions() + fields["displacement"].reshape(-1, 3)
-    write_points(mesh, places.reshape(fields["displacement"].shape), fields, lost)
+    put_samples(mesh, "position", places.reshape(fields["displacement"].shape))
 
 
-def write_points(
-    mesh: bpy.types.Mesh, places: RealArray, fields: Mapping[str, RealArray], lost: float = 0.0
-) -> None:
+def write(mesh: bpy.types.Mesh, fields: Mapping[str, RealArray], lost: float = 0.0) -> bool:
     """Write samples and their averages to points.
 
-    places : (rows+1, columns+1, 3) of the samples, Blender units
     fields : ADDING, (rows+1, columns+1, …) each, in Blender units
     lost : mean square slope of the waves too short for these samples
+
+    Returns whether the points were there already; of new ones nothing else is known.
     """
     whole = {
         DISPLACEMENT: fields["displacement"],
@@ -48,8 +48,9 @@ def write_points(
         SLOPES: _slopes(fields["slope"], lost),
         OTHERS: fields["strain"],
     }
-    table = _table(*places.shape[:2])
-    if len(mesh.vertices) != len(table) or not np.array_equal(_first_of(mesh), table[0]):
+    table = _table(*fields["displacement"].shape[:2])
+    were_there = len(mesh.vertices) == len(table) and np.array_equal(_first_of(mesh), table[0])
+    if not were_there:
         mesh.clear_geometry()
         mesh.vertices.add(len(table))
         for name in (AVERAGES_TABLE, *whole):
@@ -58,8 +59,8 @@ def write_points(
     for name, closed in whole.items():
         more = (wrapped(level) for level in averages(closed[:-1, :-1]))
         _put(mesh, name, np.concatenate([level.reshape(-1, 3) for level in chain([closed], more)]))
-    put_samples(mesh, "position", places)
     mesh.update_tag()
+    return were_there
 
 
 def put_samples(mesh: bpy.types.Mesh, name: str, values: RealArray) -> None:

@@ -22,12 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..masks.weights import Weights, unweighted, weighted
-from ..numerics.interpolation import smoothstep
+from ..numerics.interpolation import Between, smoothstep
 from ..numerics.memo import MEMO, total_bytes
 from ..parameters.ocean_parameters import OceanParameters
 from ..statistics.sea_spectrum import SeaSpectrum
 from ..statistics.sea_statistics import continuous_state
-from ..synthesis.transforms import Synthesis
+from ..synthesis.transforms import Synthesis, Z
 from ..waves.coast.breakers import broken_share
 from ..waves.coast.ground import Ground
 from ..waves.contribution import OwnFoam
@@ -116,24 +116,32 @@ class CoastWaves:
 
     def shares(self, x: Array, y: Array) -> Weights:
         """Of the open sea, at places in m."""
-        return self._weights.read(0, x, y)
+        return self._weights.read(0, self.ground.between(x, y))
 
     def afloat(self, x: Array, y: Array) -> Weights:
         """Of waves that come from elsewhere, as wakes do, at places in m: 0 on land."""
-        return self._afloat.read(0, x, y)
+        return self._afloat.read(0, self.ground.between(x, y))
 
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """What is added at rest positions in m, of one flat shape."""
-        wanted = unweighted(closed(keys))
-        over_bed, open_sea = self._field(time, wanted), self._long(time, wanted)
-        here = weighted(over_bed.read(x, y), self._weights.read(1, x, y))
-        instead_of = weighted(open_sea.read(x, y), self._weights.read(2, x, y))
-        return {key: here[key] - instead_of[key] for key in wanted}
+        return self._added(x, y, self.ground.between(x, y), time, keys)
 
     def on_samples(self, time: float | Fraction) -> dict[str, RealArray]:
         """ADDING of what is added, on the bed's samples: (rows, columns, …) float32 each."""
         x, y = self.ground.places
-        return adding_fields(Summed([self.at(x.ravel(), y.ravel(), time, ADDED)]), x.shape)
+        added = self._added(x.ravel(), y.ravel(), _Samples(), time, ADDED)
+        return adding_fields(Summed([added]), x.shape)
+
+    def _added(
+        self, x: Array, y: Array, where: Between | _Samples, time: float | Fraction, keys: Iterable[Key]
+    ) -> dict[Key, RealArray]:
+        """What is added at places in m, which lie so among the bed's samples."""
+        wanted = unweighted(closed(keys))
+        made = _made_together(wanted)
+        over_bed, open_sea = self._field(time, made), self._long(time, made)
+        here = weighted(over_bed.read(where, wanted), self._weights.read(1, where))
+        instead_of = weighted(open_sea.read(x, y), self._weights.read(2, where))
+        return {key: here[key] - instead_of[key] for key in wanted}
 
     def field(self, time: float | Fraction) -> Field:
         """Their own surface at a time."""
@@ -160,7 +168,7 @@ class CoastWaves:
 
     def _made(self, time: float | Fraction, keys: frozenset[Key]) -> _BedGrid:
         values = self.over_bed.components(time, keys)
-        return _BedGrid(self.ground, turned(values, self.ground.turn))
+        return _BedGrid(turned(values, self.ground.turn))
 
     @cached_property
     def over_bed(self) -> OverBed:
@@ -171,12 +179,20 @@ class CoastWaves:
 
     def foam(self, x: Array, y: Array, time: float | Fraction) -> OwnFoam:
         """Of waves that break for lack of depth, at rest positions in m, of one flat shape."""
+        return self._foam(self.ground.between(x, y), time)
+
+    def foam_on_samples(self, time: float | Fraction) -> OwnFoam:
+        """The same on the bed's samples, (rows, columns)."""
+        found = self._foam(_Samples(), time)
+        return OwnFoam(*(field.reshape(self.ground.depth.shape) for field in found))
+
+    def _foam(self, where: Between | _Samples, time: float | Fraction) -> OwnFoam:
         # of the whole sea: which waves break follows from those of all patches
         key = (self._sea, self._waves.precision, time, "foam")
         foam, breaking, age = MEMO.get(_FIELDS, key, lambda: _FoamOverBed(self.over_bed.foam(time))).fields
-        where, share = self.ground.between(x, y), self._weights.read(1, x, y).value
+        share = self._weights.read(1, where).value.astype(np.float32)
         here = [where.read(each).astype(np.float32) for each in (foam, breaking, age)]
-        return OwnFoam(here[0] * share.astype(np.float32), here[1] * share.astype(np.float32), here[2])
+        return OwnFoam(here[0] * share, here[1] * share, here[2])
 
     def wet(self, x: Array, y: Array, time: float | Fraction) -> NDArray[np.float32]:
         """0…1 at places of the bed and the land in m, of one flat shape: 1 in water, and on land less the
@@ -276,21 +292,36 @@ def smoothed(field: Array, samples: float) -> Array:
     return result
 
 
+class _Samples:
+    """The places of a bed's own samples."""
+
+    def read(self, field: RealArray) -> RealArray:
+        """Flat, from (rows, columns)."""
+        return field.reshape(-1)
+
+
+def _made_together(keys: frozenset[Key]) -> frozenset[Key]:
+    """Components that are made where some are wanted: of a surface the same ones, for all who look at it."""
+    if (Z, "") not in keys:  # of foam's births
+        return keys
+    moves = any(by == "t" for _, by in keys)
+    return keys | {key for key in unweighted(closed(ADDED)) if moves or key[1] != "t"}
+
+
 class _BedGrid:
     """Components (rows, columns) on the bed's samples, in the sea's axes."""
 
-    def __init__(self, ground: Ground, values: dict[Key, RealArray]) -> None:
-        self._ground, self._values = ground, values
+    def __init__(self, values: dict[Key, RealArray]) -> None:
+        self._values = values
 
     @property
     def nbytes(self) -> int:
         """Bytes of the components."""
         return total_bytes(self._values.values())
 
-    def read(self, x: Array, y: Array) -> dict[Key, RealArray]:
-        """At places in m, of one flat shape."""
-        where = self._ground.between(x, y)
-        return {key: where.read(field).astype(field.dtype) for key, field in self._values.items()}
+    def read(self, where: Between | _Samples, keys: Iterable[Key]) -> dict[Key, RealArray]:
+        """Some of them at flat places."""
+        return {key: where.read(self._values[key]).astype(self._values[key].dtype) for key in keys}
 
 
 class _FoamOverBed(NamedTuple):
@@ -308,7 +339,6 @@ class _BedWeights:
     """Weights on the bed's samples, and beyond its ends those at the ends."""
 
     def __init__(self, ground: Ground, values: Iterable[Array]) -> None:
-        self._ground = ground
         self._fields = []
         c, s = math.cos(ground.turn), math.sin(ground.turn)
         for value in values:
@@ -317,7 +347,6 @@ class _BedWeights:
             across = (np.roll(value, -1, axis=1) - np.roll(value, 1, axis=1)) / (2.0 * ground.step)
             self._fields.append((value, c * along - s * across, s * along + c * across))
 
-    def read(self, index: int, x: Array, y: Array) -> Weights:
-        """One of them at places in m."""
-        where = self._ground.between(x, y)
+    def read(self, index: int, where: Between | _Samples) -> Weights:
+        """One of them at flat places."""
         return Weights(*(np.asarray(where.read(field), np.float64) for field in self._fields[index]))
