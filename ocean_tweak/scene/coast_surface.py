@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
+from ..core.foam.model import Whitecaps
 from ..core.sea.memory import ground_of
-from ..core.sea.over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed
+from ..core.sea.over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed, with_whitecaps
 from ..core.synthesis.channels import CHANNELS
 from ..core.waves.coast.mesh import CoastMesh, coast_mesh
 from ..export.frame_files import COAST as COAST_POINTS
@@ -20,7 +21,7 @@ from ..export.frame_files import files_start
 from ..nodes.coast import COAST, FILES
 from ..nodes.modifier_inputs import reads, set_inputs
 from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
-from . import bed_points, held_sea, patch_points, vertex_attributes, water_material, wet_bed
+from . import bed_points, evaluation, held_sea, patch_points, vertex_attributes, water_material, wet_bed
 from .ownership import remove_with_meshes
 from .patch_points import Points
 from .plan import Plan, camera_surface_of, sea_over_bed
@@ -110,14 +111,21 @@ def make_room(ocean: bpy.types.Object) -> None:
             setattr(ocean, name, value)
 
 
-def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None, patient: bool = True) -> bool:
+def refresh(
+    ocean: bpy.types.Object,
+    plan: Plan,
+    points: Points | None,
+    patient: bool = True,
+    is_rendered: bool = False,
+) -> bool:
     """Make, move or remove what shows the sea over the bed: points in the ocean's geometry, and a mesh where
     no surface around a camera shows these.
 
     points : the baked ones that move the mesh; those in the ocean's geometry are then only made where
         something reads them
     patient : whether to compute the waves over it, however long that takes; else it stays as it is until they
-        are at hand, a new mesh flat
+        are at hand, a new mesh flat. Whitecaps then are without their history where that would take long
+    is_rendered : whether whitecaps are to be those of a render, which without a window they always are
 
     Returns whether it is complete. Raises ParameterError for a bed that waves cannot reach, OceanObjectError
     for a mesh that is linked or edited.
@@ -142,8 +150,11 @@ def refresh(ocean: bpy.types.Object, plan: Plan, points: Points | None, patient:
         bed_points.refresh(ocean, sea_over_bed(plan), plan)
         wet_bed.refresh(ocean, sea_over_bed(plan), plan)
     if not has_surface:
-        _show(_ready_mesh(ocean, plan), sea_over_bed(plan), plan, is_still)
-    elif not is_still:
+        item = _ready_mesh(ocean, plan)
+        whitecaps, has_history = _whitecaps(plan, patient, is_rendered or bpy.app.background)
+        _show(item, sea_over_bed(plan), plan, whitecaps, is_still)
+        return has_history and not is_still
+    if not is_still:
         _remove_mesh(ocean)
         held_sea.tell(bed_points.points_of(ocean), COAST, math.floor(plan.frame))
     return not is_still
@@ -168,6 +179,22 @@ def making(plan: Plan) -> Callable[[Callable[[float], None]], object] | None:
     return None if coast is None or coast.is_made else coast.make
 
 
+def show_for_render(ocean: bpy.types.Object, plan: Plan, points: Points | None) -> None:
+    """Give the mesh the whitecaps of a render, where a window shows others."""
+    if plan.over_bed is not None and plan.has_own_render and not bpy.app.background:
+        refresh(ocean, plan, points, is_rendered=True)
+
+
+def _whitecaps(plan: Plan, patient: bool, is_rendered: bool) -> tuple[Whitecaps | None, bool]:
+    """Those of the open sea's tile, if foam is wanted, and whether they are final."""
+    if "foam" not in plan.channels:
+        return None, True
+    tile = evaluation.surfaces_of(plan.parameters if is_rendered else plan.viewport_sea())
+    wanted = frozenset(Whitecaps._fields) | {"cusp"}
+    fields, is_complete = tile.fields(plan.time, wanted, plan.is_whole, patient)
+    return Whitecaps(*(fields[name][:-1, :-1] for name in Whitecaps._fields)), is_complete
+
+
 def _ready_mesh(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object:
     """The mesh over a bed, made where there is none, with data of its own and the ocean's material."""
     assert plan.over_bed is not None
@@ -183,13 +210,15 @@ def _ready_mesh(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object:
     return item
 
 
-def _show(item: bpy.types.Object, sea: Ocean, plan: Plan, is_still: bool) -> None:
+def _show(
+    item: bpy.types.Object, sea: Ocean, plan: Plan, whitecaps: Whitecaps | None, is_still: bool
+) -> None:
     """Let a mesh show the sea over its bed; if still, as it was, or flat where there is none yet."""
     grid = mesh_over_bed(sea)
     _shape(item, grid, plan)
     if is_still:
         return
-    _move(item.data, sea, grid, plan)
+    _move(item.data, sea, plan, whitecaps)
     held_sea.tell(item, COAST, math.floor(plan.frame))
     set_inputs(held_sea.modifier_of(item, COAST), {FILES: ""})
 
@@ -244,11 +273,14 @@ def _fill(mesh: bpy.types.Mesh, grid: CoastMesh) -> None:
     mesh.attributes.new(COAST_DEPTH, "FLOAT", "POINT").data.foreach_set("value", grid.depth)
 
 
-def _move(mesh: bpy.types.Mesh, sea: Ocean, grid: CoastMesh, plan: Plan) -> None:
-    """Put the sea of the plan's moment on the vertices."""
+def _move(mesh: bpy.types.Mesh, sea: Ocean, plan: Plan, whitecaps: Whitecaps | None) -> None:
+    """Put the sea of the plan's moment on the vertices, with the open sea's whitecaps."""
+    grid = mesh_over_bed(sea)
     wanted = plan.channels & set(OVER_BED_CHANNELS) | {"displacement"}
     x, y = grid.x[: grid.vertices], grid.y[: grid.vertices]
     fields = over_bed(sea, x, y, plan.time, wanted)
+    if whitecaps is not None:
+        fields = with_whitecaps(sea, fields, x, y, whitecaps)
     if "velocity" in fields:
         fields["velocity"] = fields["velocity"] * np.float32(plan.scale * plan.rate)
     fields["displacement"] = fields["displacement"] * np.float32(plan.scale)

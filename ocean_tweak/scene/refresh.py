@@ -163,6 +163,7 @@ def _refresh_sea(
         missing |= _refresh_parts(item, plan, points, scene, wanted)
     if Wanted.RENDER in wanted:
         patch_objects.show_for_render(item, plan, points, scene)
+        coast_surface.show_for_render(item, plan, coast_surface.points_of(item, plan, scene))
         spray.refresh(item, plan, scene, is_rendered=True)
         if plan.has_own_render and not is_baked:
             _write_render(settings, plan)

@@ -23,6 +23,7 @@ from ocean_tweak.core import (
     WaveLayer,
 )
 from ocean_tweak.core.parameters.shot import Shot
+from ocean_tweak.core.sea.over_bed import mesh_over_bed
 from ocean_tweak.export.cache.estimate import estimate, process_memory
 from ocean_tweak.export.cache.job import Job
 from ocean_tweak.export.coast_points import COLUMNS
@@ -82,7 +83,19 @@ def test_sand_is_wet_on_land_and_foam_is_where_it_is_shallow(baked: Path) -> Non
     assert on_land.min() == 0.0
     assert 0.0 < on_land.max() <= 1.0
     assert points["foam"][(depth < 2.0) & (depth > 0.2)].max() > 0.3
-    assert points["foam"][points["x"] < -100.0].max() == 0.0
+
+
+def test_whitecaps_before_the_bed_are_those_of_the_open_sea(baked: Path) -> None:
+    points, sea = read_ply(baked / "sea_coast.0005.ply", (COLUMNS,)), Ocean(SEA)
+    open_sea = Ocean(SEA.replace(coast=replace(SEA.coast, muted=True)))
+    places = mesh_over_bed(sea)
+    offshore, on_land = places.x < -170.0, places.x > 190.0
+    tile = open_sea.foam_history.whitecaps(SEA.timing.time(5))
+    expected = tile.at(places.x[offshore], places.y[offshore], 200.0)
+    assert expected.foam.max() > 0.1
+    for column, field in zip(("foam", "breaking", "foam_age"), expected, strict=True):
+        np.testing.assert_allclose(points[column][offshore], field, atol=1e-6)
+    assert points["foam"][on_land].max() == 0.0
 
 
 def test_workers_do_not_matter_and_what_is_lost_is_made_again(

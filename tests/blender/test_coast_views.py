@@ -170,3 +170,21 @@ def test_a_ship_makes_waves_over_the_bed_that_end_on_land(
     on_land = near & (rest[:, 0] > 192.0)
     assert on_land.sum() > 10
     assert np.abs(moved[on_land]).max() < 1e-3
+
+
+@pytest.mark.parametrize("ocean", [False], indirect=True, ids=["one patch"])
+def test_whitecaps_of_the_open_sea_are_where_they_were_without_a_coast(ocean, core, coast_of, empty_scene):
+    """On the coast's mesh before the bed; over land there are none."""
+    empty_scene.frame_set(FRAME)
+    mesh = coast_of(ocean).data
+    rest = numbers(mesh, "position", 3) - numbers(mesh, "displacement", 3)
+    shown = [numbers(mesh, name, 1)[:, 0] for name in ("foam", "breaking", "foam_age")]
+    _, time = sea(core, ocean)
+    ocean.ocean_tweak.coast.muted = True
+    open_sea, _ = sea(core, ocean)
+    offshore = rest[:, 0] < -170.0
+    expected = open_sea.foam_history.whitecaps(time).at(*rest[offshore, :2].T, SIDE)
+    assert expected.foam.max() > 0.1
+    for found, field in zip(shown, expected, strict=True):
+        np.testing.assert_allclose(found[offshore], field, atol=1e-5)
+    assert shown[0][rest[:, 0] > 192.0].max() < 0.01

@@ -14,6 +14,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ..data.frames import Frame
+from ..foam.model import Whitecaps
 from ..numerics.memo import MEMO
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import OVER_BED, PARTS, open_sea
@@ -21,7 +22,7 @@ from ..parameters.shot import Moment, Shot
 from ..synthesis.channels import ADDING, CHANNELS, OF_MEMORY, SurfaceFields
 from .memory import check_memory, memory_need, remedy_for
 from .ocean import Ocean
-from .over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed
+from .over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed, with_whitecaps
 from .regions import TILE, Area, Tile
 
 
@@ -89,6 +90,14 @@ class ShotSeas:
                 fields[name] = fields[name] * np.float32(moment.rate)
         return SurfaceFields(float(moment.time), fields)
 
+    def with_whitecaps(self, frame: Frame, over_bed: SurfaceFields, tile: SurfaceFields) -> SurfaceFields:
+        """What is over the bed, with the whitecaps of the open sea's tile."""
+        whole = self.whole(frame)
+        places = mesh_over_bed(whole)
+        before = {name: over_bed[name] for name in OVER_BED_CHANNELS}
+        whitecaps = Whitecaps(*(tile[name] for name in Whitecaps._fields))
+        return SurfaceFields(over_bed.time, with_whitecaps(whole, before, places.x, places.y, whitecaps))
+
     def seas(self, frame: Frame) -> tuple[Ocean, ...]:
         """The seas whose fields make up a frame: each patch, or their sum in an area."""
         sea = self.sea(frame)
@@ -104,7 +113,7 @@ class ShotSeas:
 
     def frames(self, frame: Frame, outputs: Iterable[str]) -> tuple[SurfaceFields, ...]:
         """Fields of each of its seas in a frame, ADDING of each part if PARTS is requested, and what is over
-        the bed if OVER_BED is.
+        the bed if OVER_BED is, without the open sea's whitecaps.
 
         Velocity is per second of the shot.
         """
@@ -157,7 +166,7 @@ def bake(
     _check(shot.parameters, sink, workers, on)
     with_bed = OVER_BED in sink.outputs
     with_memory = ShotSeas(shot, on, with_bed)
-    wanted = sink.outputs & OF_MEMORY if on == TILE else frozenset()
+    wanted = _of_memory(shot, sink.outputs, on)
     own = threading.local()
 
     def make(frame: Frame, started: float, foam: SurfaceFields | None) -> BakedFrame:
@@ -167,6 +176,8 @@ def bake(
         fields, *others = own.surfaces.frames(frame, sink.outputs - wanted)
         if foam is not None:
             fields = fields.including(foam)
+            if with_bed:
+                others[-1] = own.surfaces.with_whitecaps(frame, others[-1], foam)
         return BakedFrame(frame, sink.write(frame, fields, *others), time.perf_counter() - started)
 
     under_way: deque[Future[BakedFrame]] = deque()
@@ -188,6 +199,13 @@ def bake(
         finally:
             for future in under_way:
                 future.cancel()
+
+
+def _of_memory(shot: Shot, outputs: frozenset[str], on: Tile | Area) -> frozenset[str]:
+    """The fields of a tile with a history that outputs need."""
+    if on != TILE or (OVER_BED in outputs and shot.parameters.is_cascade):
+        return frozenset()  # of several tiles the sum has no foam
+    return OF_MEMORY if OVER_BED in outputs else outputs & OF_MEMORY
 
 
 def _foam(

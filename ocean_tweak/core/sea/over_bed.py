@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..foam.model import Whitecaps
 from ..synthesis.channels import CHANNELS, OF_MEMORY
 from ..waves.coast.mesh import CoastMesh, coast_mesh
 from .ocean import Ocean
@@ -34,7 +35,7 @@ def over_bed(
 ) -> dict[str, RealArray]:
     """Some of OVER_BED_CHANNELS of a sea with a coast, at rest positions in m, of one flat shape.
 
-    Foam is that of waves which break for lack of depth.
+    Foam is that of waves which break for lack of depth; see `with_whitecaps`.
     """
     assert sea.coast is not None
     waves = [name for name in OVER_BED_CHANNELS if name in wanted and name in CHANNELS.keys() - OF_MEMORY]
@@ -47,3 +48,17 @@ def over_bed(
     if WET in wanted:
         fields[WET] = sea.coast.wet(x, y, time)
     return fields
+
+
+def with_whitecaps(
+    sea: Ocean, fields: Mapping[str, RealArray], x: Array, y: Array, tile: Whitecaps
+) -> dict[str, RealArray]:
+    """Fields of `over_bed`, those of foam among them, with the open sea's whitecaps.
+
+    tile : whitecaps of the open sea's tile
+    """
+    assert sea.coast is not None
+    open_sea = tile.at(x, y, sea.parameters.domain_size)
+    share = sea.coast.shares(x, y).value.astype(np.float32)
+    left = Whitecaps(open_sea.foam * share, open_sea.breaking * share, open_sea.foam_age)
+    return {**fields, **left.over(*(fields[name] for name in Whitecaps._fields))._asdict()}
