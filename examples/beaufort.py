@@ -36,6 +36,7 @@ class Force(NamedTuple):
     half_life : of foam, s
     visibility : in the air, m, which spray takes from a storm
     spray : its amount; beyond 25 m/s the haze of visibility stands for most of it, which is millions of drops
+    seed : of the waves: where a crest breaks before the camera as often as it does in that wind
     """
 
     wind_speed: float
@@ -47,6 +48,7 @@ class Force(NamedTuple):
     half_life: float = 2.5
     visibility: float = 40e3
     spray: float = 0.0
+    seed: int = 3
 
 
 FORCES = (
@@ -58,11 +60,11 @@ FORCES = (
     Force(9.4, 100e3, 0.2, 800.0, 1.15, spray=1.0),
     Force(12.3, 130e3, 0.25, 1000.0, 1.2, spray=1.0),
     Force(15.5, 155e3, 0.3, 1200.0, 1.2, 1.7, 5.0, 30e3, 1.0),
-    Force(19.0, 195e3, 0.4, 1600.0, 1.2, 1.4, 5.0, 20e3, 1.0),
-    Force(22.6, 230e3, 0.5, 2000.0, 1.25, 1.2, 4.5, 9e3, 1.0),
-    Force(26.5, 280e3, 0.5, 2000.0, 1.25, 4.0, 6.0, 4e3, 0.5),
-    Force(30.6, 345e3, 0.5, 2400.0, 1.25, 4.5, 7.0, 2.2e3, 0.3),
-    Force(36.0, 420e3, 0.5, 2800.0, 1.25, 5.0, 8.0, 900.0, 0.2),
+    Force(19.0, 195e3, 0.4, 1600.0, 1.2, 1.4, 5.0, 20e3, 1.0, seed=5),
+    Force(22.6, 230e3, 0.5, 2000.0, 1.25, 1.2, 4.5, 9e3, 1.0, seed=1),
+    Force(26.5, 280e3, 0.5, 2000.0, 1.25, 2.5, 6.0, 4e3, 0.3),
+    Force(30.6, 345e3, 0.5, 2400.0, 1.25, 2.8, 7.0, 1.5e3, 0.15),
+    Force(36.0, 420e3, 0.5, 2800.0, 1.25, 3.2, 8.0, 350.0, 0.12),
 )
 
 #: waves of the first force that has any stand this far away, m, higher ones in proportion
@@ -115,7 +117,32 @@ def build(extension: Extension, force: Force) -> None:
         eye=3.5, crest_distance=max(CREST / height, CREST_HEIGHTS), lens=38.0, tilt=math.radians(2.2),
         floats="SCALE", vertices=VERTICES,
     )  # fmt: skip
-    surroundings.build(bpy.context.scene, "FORCE", surroundings.Wishes())
+    made = surroundings.build(bpy.context.scene, "FORCE", surroundings.Wishes())
+    put_in_air(extension, made.ocean)
+
+
+def put_in_air(extension: Extension, ocean: bpy.types.Object) -> None:
+    """Have the boat fade in the air that its water fades in: contrast falls as exp(-3.9 d/visibility)."""
+    water = extension.module("scene.water_material").water_node(ocean.active_material)
+    afloat = extension.module("scene.afloat").own_afloat(ocean, bpy.context.scene)
+    parts = {*afloat, *(child for item in afloat for child in item.children_recursive)}
+    for material in {slot.material for item in parts for slot in item.material_slots if slot.material}:
+        tree = material.node_tree
+        end = tree.get_output_node("ALL")
+        depth, clear, air, mixed = (
+            tree.nodes.new(f"ShaderNode{kind}") for kind in ("Math", "Math", "Emission", "MixShader")
+        )
+        depth.operation, clear.operation = "MULTIPLY", "EXPONENT"
+        depth.inputs[1].default_value = -3.912 / water.inputs["Visibility"].default_value
+        air.inputs[0].default_value = water.inputs["Haze Color"].default_value
+        distance = tree.nodes.new("ShaderNodeCameraData").outputs["View Distance"]
+        for source, target in (
+            (distance, depth.inputs[0]), (depth.outputs[0], clear.inputs[0]),
+            (clear.outputs[0], mixed.inputs[0]), (air.outputs[0], mixed.inputs[1]),
+            (end.inputs["Surface"].links[0].from_socket, mixed.inputs[2]),
+            (mixed.outputs[0], end.inputs["Surface"]),
+        ):  # fmt: skip
+            tree.links.new(source, target)
 
 
 def sea(extension: Extension, force: Force) -> Any:
@@ -137,7 +164,7 @@ def sea(extension: Extension, force: Force) -> Any:
     layers = (swell if force.wind_speed < 0.3 else layer,)
     return plan.planned(
         core.OceanParameters(
-            seed=3, layers=layers, choppiness=force.choppiness,
+            seed=force.seed, layers=layers, choppiness=force.choppiness,
             foam=core.Foam(coverage=force.coverage, half_life=force.half_life),
             spray=core.Spray(force.spray) if force.spray else None,
         ),

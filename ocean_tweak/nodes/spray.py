@@ -45,11 +45,11 @@ INPUTS = (
 _LARGEST_DROP, _LARGEST_MIST = 0.003, 0.25
 #: puffs behind each other, from which on fewer and denser ones are drawn in their place, up to some density.
 # Cycles ends light in black after as many as its transparent bounces, and those are slow
-_LAYERS, _DENSEST = 10.0, 8.0
+_LAYERS, _DENSEST = 8.0, 6.0
 #: directions around the camera in which puffs are counted: sectors, and bands of height of equal solid angle
 _SECTORS, _BANDS = 32, 64
 #: radius of a puff, relative to its distance to the camera, beyond which it thins: one alone is like a drop
-# on the lens
+# on the lens; smaller ones may be denser, the smaller they are
 _LARGE_PUFF = 0.02
 #: densities by which a puff comes and goes relative to the mean that they leave: ∫ min(1, 1/x - 1) dx is ln 2
 _FADING = 1.0 / math.log(2.0)
@@ -152,7 +152,8 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     share : of the particles, those that are shown, with the smallest numbers
     """
     crowd = build.math("DIVIDE", layers, _LAYERS)
-    least = build.math("MAXIMUM", build.math("MINIMUM", crowd, _DENSEST), _TINY)
+    densest = build.math("MINIMUM", build.math("DIVIDE", _LARGE_PUFF, seen), _DENSEST)
+    least = build.math("MAXIMUM", build.math("MINIMUM", crowd, densest), _TINY)
     left = build.math("MAXIMUM", left, 0.0)
     number = build.math("DIVIDE", column(build, "number"), build.math("MULTIPLY", share, float(NUMBERS)))
     limit = build.math("MULTIPLY", least, build.math("MAXIMUM", number, _TINY))
@@ -163,4 +164,4 @@ def _density(build: Builder, layers: Socket, left: Socket, seen: Socket, share: 
     return build.math("MULTIPLY", density, build.math("MULTIPLY", near, near))
 
 
-SPRAY = GroupKind("Ocean Tweak Spray", 3, _build)
+SPRAY = GroupKind("Ocean Tweak Spray", 4, _build)
