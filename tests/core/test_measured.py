@@ -110,6 +110,13 @@ def test_each_bin_keeps_its_energy() -> None:
     assert with_tail.m0 == pytest.approx(float(np.sum((energy + 0.1) * WIDTH)) + tail, rel=1e-5)
 
 
+def test_a_tail_begins_as_high_as_the_last_bins_are() -> None:
+    """Even where these fall less steeply than it does; not as high as the spectrum's middle."""
+    table = measured(F**-3.5, tail=True).table(0.0)
+    edge = float(table.edges[-1])
+    assert table.frequency_spectrum(np.array([edge]))[0] == pytest.approx(edge**-3.5, rel=0.15)
+
+
 def test_heights_and_directions_of_a_sea() -> None:
     sea = sea_of(measured(), resolution=256, size=900.0)
     statistics = Ocean(sea).statistics()

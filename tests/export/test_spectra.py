@@ -354,6 +354,7 @@ def test_the_weather_gives_the_wind(tmp_path: Path) -> None:
         ("SWAN 1\nLOCATIONS\n1\n0 x\n", "line 4.*x is no number"),
         ("SWAN 1\nQUANT\n", "line 2.*comes before LOCATIONS"),
         ("SWAN 1\nWIND\n", "line 2.*WIND is none of"),
+        ("SWAN 1\n" + "0 " * 150_000, "line 2.*longer than a line of any such file"),
     ],
 )  # fmt: skip
 def test_bad_files(tmp_path: Path, content: str, what: str) -> None:
