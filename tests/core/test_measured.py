@@ -128,6 +128,29 @@ def test_heights_and_directions_of_a_sea() -> None:
     assert spectrum_state(SeaSpectrum(turned)).mean_direction == pytest.approx(1.7, abs=0.001)
 
 
+def test_a_layer_scales_turns_and_makes_foam_along_what_was_measured() -> None:
+    sea = sea_of(measured(), wind_direction=1.0, amplitude_scale=2.0)
+    plain, scaled = (
+        Ocean(sea.replace(layers=(sea.layers[0].changed(amplitude_scale=scale),))).statistics()
+        for scale in (1.0, 2.0)
+    )
+    assert scaled.spectrum.significant_wave_height == pytest.approx(4.0, rel=0.01)
+    for state in ("resolved", "seed"):
+        before, after = (getattr(each, state).significant_wave_height for each in (plain, scaled))
+        assert after == pytest.approx(2.0 * before, rel=1e-4)
+    wind = sea.layers[0].changed(wind_speed=9.0).wind(sea)
+    assert wind is not None
+    assert (wind.speed, wind.direction) == pytest.approx((9.0, 1.7), abs=1e-3)
+
+
+def test_long_waves_far_below_the_peak_count() -> None:
+    """A low swell at 0.07 Hz under a wind sea at 0.55 Hz has a tenth of the energy."""
+    swell, wind_sea = (np.exp(-((np.log(F / peak) / 0.08) ** 2)) for peak in (0.07, 0.55))
+    energy = 0.01 * swell / (swell @ WIDTH) + 0.09 * wind_sea / (wind_sea @ WIDTH)
+    state = spectrum_state(SeaSpectrum(sea_of(measured(energy))))
+    assert state.significant_wave_height == pytest.approx(4.0 * math.sqrt(0.1), rel=0.005)
+
+
 @pytest.mark.parametrize("towards", [0.0, 45.0, 47.3])
 def test_waves_of_a_single_direction_keep_their_height_on_any_lattice(towards: float) -> None:
     """Directions narrower than the angle between two cells, along its axes, its diagonal, and neither."""
