@@ -44,6 +44,8 @@ def test_bands_are_octaves_of_wavelength_around_the_peak() -> None:
     np.testing.assert_allclose(at_work.gain(0.1 * 2.0**OCTAVES), values, atol=1e-12)
     between = at_work.gain(0.1 * 2.0 ** (OCTAVES[:-1] + 0.5))
     np.testing.assert_allclose(between, 0.5 * (values[:-1] + values[1:]), atol=1e-9)
+    quarter = at_work.gain(0.1 * 2.0 ** (OCTAVES[:-1] + 0.25))  # and smooth, as 3t² - 2t³
+    np.testing.assert_allclose(quarter, values[:-1] + 0.15625 * np.diff(values), atol=1e-9)
     assert at_work.gain(1e-6) == values[0]
     assert at_work.gain(1e6) == values[-1]
     fine = at_work.gain(0.1 * np.geomspace(2.0**-4, 2.0**8, 10_001))
@@ -77,6 +79,21 @@ def test_the_whole_sea_has_one_peak_in_all_patches_and_under_all_masks() -> None
     state = Ocean(parts).statistics()
     whole = Ocean(everywhere.replace(resolution=512)).statistics()
     assert state.resolved.m0 == pytest.approx(whole.resolved.m0, rel=0.02)
+
+
+def test_bands_of_the_sea_count_from_its_peak_and_those_of_a_layer_from_its_own() -> None:
+    """In a patch too, which holds a part of the layer alone."""
+    own = Equaliser(shorter_2=6.0)
+    swell = WaveLayer(definition="SEA_STATE", significant_wave_height=3.0, peak_period=9.0, equaliser=own)
+    sea = SEA.replace(layers=(swell, WaveLayer(wind_speed=6.0, fetch=20e3)), equaliser=own)
+    first, second = SeaSpectrum(sea).layers
+    of_sea = 2.0 * np.pi / 9.0
+    assert (
+        first.equalisers[-1].peak == second.equalisers[-1].peak == pytest.approx(of_sea**2 / 9.81, rel=0.02)
+    )
+    patches = (Patch(domain_size=60.0, resolution=64, longest_wavelength=20.0),)
+    short = OceanParameters(layers=sea.layers, equaliser=own, patches=patches)
+    assert SeaSpectrum(short).layers[0].equalisers[0].peak == first.equalisers[0].peak
 
 
 def test_gains_can_be_keyed() -> None:

@@ -14,7 +14,7 @@ from ocean_tweak.core.foam.threshold import foam_wind, has_windrows
 from ocean_tweak.core.parameters.ocean_parameters import MeasuredSpectra, Patch
 from ocean_tweak.core.parameters.shot import Animation, Shot
 from ocean_tweak.core.spectral.maximum_entropy import feasible, maximum_entropy
-from ocean_tweak.core.spectral.measured import bin_edges, bin_widths
+from ocean_tweak.core.spectral.measured import EnergyTable, bin_edges, bin_widths, table_directions
 from ocean_tweak.core.statistics.sea_spectrum import SeaSpectrum
 from ocean_tweak.core.statistics.sea_statistics import spectrum_state
 
@@ -86,6 +86,20 @@ def test_widths_of_bins_of_which_only_the_middles_are_told() -> None:
     edges = bin_edges(printed, bin_widths(printed))
     assert edges[[0, 13, 39, 46]] == pytest.approx([0.03, 0.095, 0.355, 0.495])
     np.testing.assert_allclose(bin_widths(F), np.gradient(F))
+
+
+def test_the_lowest_bin_ends_above_0() -> None:
+    """Though the next is far: a layer refuses one that does not."""
+    assert bin_widths(np.array([0.01, 0.05, 0.06]))[0] == 0.01
+
+
+def test_directions_change_in_the_middle_between_two_bins() -> None:
+    """Within a quarter of the way from either they are those of the bin."""
+    f, width = np.array([0.1, 0.2, 0.3]), np.full(3, 0.1)
+    theta = table_directions()
+    spread = np.stack([1.0 + np.cos(theta), 1.0 - np.cos(theta), 1.0 - np.cos(theta)]) / (2.0 * np.pi)
+    vectors = EnergyTable(f, width, np.ones(3), spread, False).mean_vector(np.array([0.124, 0.15, 0.176]))
+    np.testing.assert_allclose(vectors, [0.5, 0.0, -0.5], atol=1e-6)
 
 
 def test_each_bin_keeps_its_energy() -> None:
@@ -231,6 +245,8 @@ def test_the_wind_beside_the_waves_makes_the_whitecaps() -> None:
     winds = [foam_wind(each) for each in (sea, late)]
     assert winds[0] == pytest.approx((4.0, 0.0))
     assert winds[1] == pytest.approx((8.0, math.pi / 2))
+    turned = late.replace(layers=(late.layers[0].changed(wind_direction=0.4),))
+    assert foam_wind(turned) == pytest.approx((8.0, math.pi / 2 + 0.4))
     assert foam_wind(sea_of(measured())) is None
     own = sea_of(measured())
     windy = foam_wind(own.replace(layers=(own.layers[0].changed(wind_speed=12.0),)))
@@ -241,6 +257,12 @@ def test_the_wind_beside_the_waves_makes_the_whitecaps() -> None:
 def test_what_a_grid_leaves_out_is_told() -> None:
     long = Ocean(sea_of(measured(), size=60.0)).statistics().warnings
     assert any("longer than the domain of 60 m" in warning for warning in long)
+    lengths, shares = sea_of(measured()).layers[0].plain_spectrum(sea_of(measured())).shares_of_lengths
+    beyond = np.cumsum(shares)  # from the longest on
+    for share, told in ((0.003, False), (0.02, True)):
+        size = float(lengths[np.searchsorted(beyond, share)]) * 1.001
+        warned = sea_of(measured(), size=size).layers[0].warnings(sea_of(measured(), size=size))
+        assert any("longer than the domain" in warning for warning in warned) is told
     coarse = Ocean(sea_of(measured(), resolution=32, size=900.0)).statistics().warnings
     assert any("shorter than two samples, 56.2 m" in warning for warning in coarse)
     assert Ocean(sea_of(measured(), resolution=512, size=900.0)).statistics().warnings == ()
