@@ -26,7 +26,7 @@ from ocean_tweak.core.parameters.ocean_parameters import (
     Water,
     WindKey,
 )
-from ocean_tweak.core.synthesis.channels import CHANNELS, MAPS, Channel
+from ocean_tweak.core.synthesis.channels import CHANNELS, MAPS, STATE, Channel
 from ocean_tweak.core.waves.kinds import shown
 
 from .project import ROOT
@@ -91,7 +91,7 @@ def _channel_row(channel: Channel) -> str:
             if each == channel.name:
                 images.append(f"`{name}` {letters[first : first + count]}")
             first += count
-    where = " of patches" if channel.switch is None else ""
+    where = "" if channel.switch is not None else " over a bed" if channel.source == STATE else " of patches"
     cells = [
         f"`{channel.name}`", channel.text, str(max(channel.components, 1)), channel.unit, ", ".join(images),
         f"`{channel.attribute}`{where}" if channel.attribute else "",

@@ -10,11 +10,11 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Ocean, OceanParameters
+from ..core import Ocean, OceanParameters, Places
 from ..core.foam.model import Whitecaps
 from ..core.sea.memory import ground_of
 from ..core.sea.over_bed import OVER_BED_CHANNELS, mesh_over_bed, over_bed, with_whitecaps
-from ..core.synthesis.channels import CHANNELS
+from ..core.synthesis.channels import CHANNELS, OF_STATE
 from ..core.waves.coast.mesh import CoastMesh, coast_mesh
 from ..export.frame_files import COAST as COAST_POINTS
 from ..export.frame_files import files_start
@@ -24,12 +24,14 @@ from ..nodes.names import COAST_DEPTH, TEXTURE_COORDINATES
 from . import bed_points, evaluation, held_sea, patch_points, vertex_attributes, water_material, wet_bed
 from .ownership import remove_with_meshes
 from .patch_points import Points
-from .plan import Plan, camera_surface_of, sea_over_bed
+from .plan import Plan, camera_surface_of, in_units, sea_over_bed
 from .settings import OceanObjectError, all_oceans, link_beside, settings_of
 
 Array = NDArray[np.float64]
 
 _COAST = "ocean_tweak_coast"
+#: of its mesh: what its height, breaking and direction are of
+_STATE = "ocean_tweak_state"
 #: of an ocean that another mesh shows: its own Render and Display As
 _SHOWN_AS = "ocean_tweak_shown_as"
 _USUALLY = {"hide_render": False, "display_type": "TEXTURED"}
@@ -287,6 +289,19 @@ def _move(mesh: bpy.types.Mesh, sea: Ocean, plan: Plan, whitecaps: Whitecaps | N
     for name, field in fields.items():
         vertex_attributes.put(mesh, CHANNELS[name], field)
     _place(mesh, _at_rest(grid, plan) + fields["displacement"])
+    _describe(mesh, sea, grid, plan)
+
+
+def _describe(mesh: bpy.types.Mesh, sea: Ocean, grid: CoastMesh, plan: Plan) -> None:
+    """Put height, breaking and direction on the vertices, which no time changes."""
+    assert sea.coast is not None
+    tag = f"{sea.coast.state_tag} {grid.tag} {plan.scale!r}"
+    if mesh.get(_STATE) == tag and all(CHANNELS[name].attribute in mesh.attributes for name in OF_STATE):
+        return
+    fields = sea.surface(plan.time, OF_STATE, Places(grid.x[: grid.vertices], grid.y[: grid.vertices]))
+    for name in sorted(OF_STATE):
+        vertex_attributes.put(mesh, CHANNELS[name], fields[name] * np.float32(in_units(CHANNELS[name], plan)))
+    mesh[_STATE] = tag
 
 
 def _place(mesh: bpy.types.Mesh, places: Array) -> None:

@@ -132,7 +132,11 @@ class Plan:
 def sea_over_bed(plan: Plan) -> Ocean:
     """The sea of a plan that has a coast, with what is made once of it."""
     assert plan.over_bed is not None
-    parameters = plan.over_bed
+    return sea_over(plan.over_bed)
+
+
+def sea_over(parameters: OceanParameters) -> Ocean:
+    """The sea of parameters with a coast, with what is made once of it."""
     return MEMO.get("seas over beds", parameters, lambda: Ocean(parameters))
 
 

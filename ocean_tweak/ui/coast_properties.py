@@ -54,6 +54,14 @@ class OCEAN_PG_coast(bpy.types.PropertyGroup):
             description="Depth of the bed below still water in metres, 0 and less on land",
         ),
         "image_channels": channels_property(),
+        "show_height": BoolProperty(
+            name="Wave Height", options=set(), **_OVERRIDE,
+            description="Draw a map of the significant wave height over the bed while the ocean is active",
+        ),
+        "show_direction": BoolProperty(
+            name="Direction", options=set(), **_OVERRIDE,
+            description="Draw arrows of the mean direction of waves over the bed while the ocean is active",
+        ),
     }  # fmt: skip
 
 

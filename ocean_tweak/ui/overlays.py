@@ -18,12 +18,14 @@ from ..scene.animated import clock_of
 from ..scene.refresh import sea_of_settings
 from ..scene.settings import is_ocean, settings_of
 from ..scene.units import metres_per_unit
+from . import coast_overlay
 from .active_ocean import shown_ocean
+from .arrows import arrow_lines
 
 #: arrows along each side of the patch
 _ARROWS = 16
-#: of the distance of two arrows: the length of the strongest, and of an arrow: its head
-_LENGTH, _HEAD = 0.9, 0.3
+#: of the distance of two arrows: the length of the strongest
+_LENGTH = 0.9
 _COLOUR, _WIDTH = (1.0, 0.65, 0.1, 0.9), 1.5
 
 _FONT = 0  # Blender's own
@@ -39,7 +41,10 @@ _handles: list[object] = []
 def register() -> None:
     """Add the draw handlers, if there is a window."""
     if not bpy.app.background:
-        for draw, kind in ((_draw_wind, "POST_VIEW"), (_draw_troubles, "POST_PIXEL")):
+        for draw, kind in (
+            (coast_overlay.draw, "POST_VIEW"), (_draw_wind, "POST_VIEW"),
+            (coast_overlay.draw_legend, "POST_PIXEL"), (_draw_troubles, "POST_PIXEL"),
+        ):  # fmt: skip
             _handles.append(bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", kind))
 
 
@@ -82,13 +87,7 @@ def arrows(layer: WindFieldLayer, time: float, size: float) -> NDArray[np.float6
         return np.zeros((0, 2, 3))
     along = wind * (_LENGTH * step / layer.greatest_speed)
     blowing = np.hypot(*along.T) > 0.0
-    tail, along = np.stack((x, y), axis=-1)[blowing], along[blowing]
-    tip, across = tail + along, np.stack((-along[:, 1], along[:, 0]), axis=-1)
-    strokes = [np.stack((tail, tip), axis=1)]
-    for side in (-0.5, 0.5):
-        strokes.append(np.stack((tip, tip - _HEAD * (along + side * across)), axis=1))
-    flat = np.concatenate(strokes)
-    return np.concatenate((flat, np.zeros((*flat.shape[:2], 1))), axis=-1)
+    return arrow_lines(np.stack((x, y), axis=-1)[blowing], along[blowing])
 
 
 def wind_now(

@@ -401,3 +401,58 @@ def test_the_farm_s_render_of_a_coast_over_a_bake_ends_with_3(
     said = run_script(script, "--pictures", str(tmp_path / "out"), *arguments, blend=elsewhere())
     assert said.returncode == 3, said.stdout + said.stderr
     assert f"moves {coast.name} of " in said.stderr
+
+
+def test_the_mesh_has_height_breaking_and_direction_which_stay(ocean, coast, core):
+    mesh, scene = coast.data, bpy.context.scene
+    sea = core.Ocean(ocean.ocean_tweak.to_parameters(scene))
+    names = {"significant_height": 1, "broken_share": 1, "mean_direction": 2}
+    rest = (values(mesh, "position", 3) - values(mesh, "displacement", 3))[:, :2].astype(np.float64)
+    expected = sea.surface(0.0, set(names), core.Places(rest[:, 0], rest[:, 1]))
+    found = {name: values(mesh, name, count) for name, count in names.items()}
+    for name in names:
+        np.testing.assert_allclose(found[name], expected[name], atol=0.01)
+    assert found["broken_share"].max() > 0.5
+    scene.frame_set(9)
+    np.testing.assert_array_equal(values(mesh, "significant_height"), found["significant_height"])
+    ocean.ocean_tweak.layers[0].wind_speed = 12.0
+    assert values(mesh, "significant_height").max() > 1.1 * found["significant_height"].max()
+    scene.unit_settings.scale_length = 0.5
+    bpy.context.view_layer.update()
+    scene.frame_set(10)
+    scaled = values(coast.data, "significant_height")
+    assert scaled.max() == pytest.approx(
+        2.0 * core.Ocean(ocean.ocean_tweak.to_parameters(scene)).coast.significant_height.max(), rel=0.05
+    )
+
+
+def test_overlays_show_height_and_direction_where_there_is_water(ocean, coast, extension, core):
+    overlay, scene, group = extension("ui.coast_overlay"), bpy.context.scene, ocean.ocean_tweak.coast
+    assert overlay.state_map(ocean, scene) is None
+    group.show_height = group.show_direction = True
+    shown = overlay.state_map(ocean, scene)
+    sea = core.Ocean(ocean.ocean_tweak.to_parameters(scene))
+    assert shown.highest == pytest.approx(sea.coast.significant_height.max(), rel=0.1)
+    # the waterline of the slope is at x = 184.6
+    assert shown.places[shown.triangles.ravel()][:, 0].max() < 185.0
+    assert shown.places[shown.triangles.ravel()][:, 0].min() < -100.0
+    a, b, c = (shown.places[shown.triangles[:, corner]][:, :2] for corner in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    assert np.abs(ux * vy - uy * vx).min() > 0.0
+    highest = shown.places[np.argmax(shown.colours[:, 0])]
+    assert highest[0] < 185.0
+    shafts = shown.lines[: len(shown.lines) // 3]
+    towards = shafts[:, 1] - shafts[:, 0]
+    assert (towards[:, 0] > 0.0).all()  # waves run along +x
+    length = np.hypot(towards[:, 0], towards[:, 1])
+    np.testing.assert_allclose(length, length[0], rtol=0.02)
+    assert shafts[..., 0].max() < 190.0
+    group.use = False
+    assert overlay.state_map(ocean, scene) is None
+
+
+def test_colours_are_those_of_a_ramp(extension):
+    ramp = extension("ui.coast_overlay").ramp
+    light = ramp(np.linspace(0.0, 1.0, 9))[:, :3] @ (0.2126, 0.7152, 0.0722)
+    assert (np.diff(light) > 0.0).all()
+    assert light[-1] - light[0] > 0.6

@@ -73,6 +73,7 @@ def everything(extension, draw, ocean):  # noqa: F811
             operator.poll(bpy.context)
         overlays.trouble_lines(500.0)
         overlays.wind_lines(ocean, bpy.context.scene)
+        overlays.coast_overlay.state_map(ocean, bpy.context.scene)
         return drawn
 
     return run

@@ -40,9 +40,13 @@ def test_shapes_are_those_of_the_table(fields, name):
     assert len(channel.columns) == max(channel.components, 1)
 
 
-def test_metres_and_seconds_are_those_of_displacement_and_velocity():
+def test_metres_and_seconds_are_those_of_displacement_velocity_and_height():
     told = {name: (channel.scales, channel.is_rate) for name, channel in CHANNELS.items()}
-    assert {name for name, (scales, _) in told.items() if scales} == {"displacement", "velocity"}
+    assert {name for name, (scales, _) in told.items() if scales} == {
+        "displacement",
+        "velocity",
+        "significant_height",
+    }
     assert {name for name, (_, is_rate) in told.items() if is_rate} == {"velocity"}
 
 

@@ -129,9 +129,8 @@ def test_maps_hold_what_they_say(tmp_path: Path) -> None:
     paths = sink.write(30, fields)
     assert fields.breaking.max() > 0.1
     assert fields.foam_age.max() > 1.0
-    assert [path.name for path in paths] == [
-        f"sea_{name}.0030.exr" for name in ("disp", "foam", "normal", "vel", "slope", "strain", "foam_age")
-    ]
+    names = "disp foam normal vel slope strain foam_age hs qb direction"
+    assert [path.name for path in paths] == [f"sea_{name}.0030.exr" for name in names.split()]
     images = {name: read_image(sink.path(30, name)) for name in MAPS}
     np.testing.assert_array_equal(images["disp"][0], fields.displacement)
     np.testing.assert_array_equal(images["normal"][0], fields.normal)
@@ -143,10 +142,13 @@ def test_maps_hold_what_they_say(tmp_path: Path) -> None:
     assert not np.any(images["foam_age"][0][..., 1:])
     np.testing.assert_array_equal(images["slope"][0][..., :2], fields.slope)
     assert not np.any(images["slope"][0][..., 2])
+    np.testing.assert_array_equal(images["hs"][0][..., 0], fields.significant_height)
+    np.testing.assert_array_equal(images["qb"][0][..., 0], fields.broken_share)
+    np.testing.assert_array_equal(images["direction"][0][..., :2], fields.mean_direction)
     np.testing.assert_array_equal(images["strain"][0], fields.strain)
     assert {name: metadata["unit"] for name, (_, metadata) in images.items()} == {
         "disp": "m", "foam": "1", "normal": "1", "vel": "m/s", "slope": "1", "strain": "1",
-        "foam_age": "s",
+        "foam_age": "s", "hs": "m", "qb": "1", "direction": "1",
     }  # fmt: skip
     assert images["vel"][1]["map"] == "vel"
 

@@ -13,6 +13,7 @@ does not repeat. Where W is 0, nothing is added and the first factor is 1.
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from functools import cached_property
@@ -33,6 +34,7 @@ from ..waves.coast.ground import Ground
 from ..waves.contribution import OwnFoam
 from .coast_field import OverBed
 from .coast_pictures import Incoming, Pictures, fingerprint, incoming, pictures
+from .coast_state import SeaState, flow_over_bed, open_state, turned_by
 from .coast_swash import Swash
 from .memory import check_coast_memory
 from .part_waves import PartWaves, components, real_type
@@ -193,6 +195,51 @@ class CoastWaves:
         share = self._weights.read(1, where).value.astype(np.float32)
         here = [where.read(each).astype(np.float32) for each in (foam, breaking, age)]
         return OwnFoam(here[0] * share, here[1] * share, here[2])
+
+    def state(self, x: Array, y: Array) -> SeaState:
+        """Height, breaking and direction of all waves at places in m, of one flat shape."""
+        where = self.ground.between(x, y)
+        share = self._weights.read(1, where).value
+        variance, flow = open_state(self._parts)
+        over_bed = (self.significant_height / 4.0) ** 2
+        return SeaState.of(
+            variance + share * (where.read(over_bed) - variance),
+            share * where.read(self.broken_share),
+            np.stack(
+                [
+                    own + share * (where.read(field) - own)
+                    for own, field in zip(flow, self._flow, strict=True)
+                ],
+                -1,
+            ),
+        )
+
+    @cached_property
+    def state_tag(self) -> str:
+        """What tells it from that of other waves or over another bed."""
+        return f"{zlib.crc32(self.significant_height)} {zlib.crc32(self._flow)}"
+
+    @cached_property
+    def _flow(self) -> Array:
+        """(2, rows, columns) m² along the sea's axes, of all waves over the bed, around each place."""
+        period = self._sea.repeats_after
+        assert period is not None
+        # what waves of one frequency come to where they cross is no direction of theirs
+        alone = flow_over_bed(self.pictures, self.ground, float(period), self._sea.water.gravity)
+        alone = np.stack(
+            [smoothed(each, _AROUND / self.ground.step) for each in np.moveaxis(alone, -1, 0)], -1
+        )
+        waves = self.incoming
+        k = np.hypot(waves.along, waves.across)
+        first = self._waves.initial_state
+        expected = np.concatenate([
+            (of * first.grid.multiplicity)[waves.modes[..., side]]
+            for side, of in enumerate((first.expected_plus, first.expected_minus))
+        ])  # fmt: skip
+        follow = np.array([expected @ (waves.along / k), expected @ (waves.across / k)])
+        rest = open_state(self._parts)[1] - turned_by(self.ground.turn, follow)
+        whole = turned_by(self.ground.turn, alone) + rest * self._limit[..., np.newaxis] ** 2
+        return np.ascontiguousarray(np.moveaxis(whole, -1, 0))
 
     def wet(self, x: Array, y: Array, time: float | Fraction) -> NDArray[np.float32]:
         """0…1 at places of the bed and the land in m, of one flat shape: 1 in water, and on land less the

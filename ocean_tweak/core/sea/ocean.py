@@ -20,9 +20,17 @@ from ..foam.threshold import Strains, foam_model, gaussian_strains
 from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.patch_seas import merged_bands, parts, patch_parameters
 from ..statistics.sea_statistics import Statistics, sea_statistics
-from ..synthesis.channels import CHANNELS, OF_MEMORY, SurfaceFields, checked_outputs
+from ..synthesis.channels import (
+    CHANNELS,
+    OF_MEMORY,
+    OF_STATE,
+    OF_WAVES,
+    SurfaceFields,
+    checked_outputs,
+)
 from ..synthesis.coefficients import InitialState
 from ..waves.contribution import MemoryNeed
+from .coast_state import SeaState, open_state
 from .coast_waves import CoastWaves
 from .memory import check_memory, memory_need
 from .part_waves import PRECISIONS, PartWaves, real_type, strain_covariances
@@ -178,14 +186,18 @@ class Ocean:
         if isinstance(on, Tile):
             tile, n = self._tile, self.parameters.resolution
             fields = self._arrays(wanted, (n, n), out or {})
-            tile.fill(time, wanted - OF_MEMORY, fields)
+            tile.fill(time, wanted & OF_WAVES.keys(), fields)
+            if wanted & OF_STATE:
+                _fill(fields, self._state_at(np.zeros(n * n), np.zeros(n * n)))
             if wanted & OF_MEMORY:
                 known = fields.get("cusp") if self.foam_is_of_its_samples else None
                 _fill(fields, self.foam_history.whitecaps(time, known))
         else:
             x, y = on.rest_positions()
             fields = self._arrays(wanted, x.shape, out or {})
-            self._anywhere.fill(x.ravel(), y.ravel(), time, wanted - OF_MEMORY, fields)
+            self._anywhere.fill(x.ravel(), y.ravel(), time, wanted & OF_WAVES.keys(), fields)
+            if wanted & OF_STATE:
+                _fill(fields, self._state_at(x.ravel(), y.ravel()))
             if wanted & OF_MEMORY:
                 _fill(fields, self._whitecaps_at(x.ravel(), y.ravel(), time))
         return SurfaceFields(float(time), fields)
@@ -320,6 +332,13 @@ class Ocean:
         whole = with_own_foam(self.parameters, found, x, y, time, self.coast.afloat)
         return whole.over(*self.coast.foam(x, y, time))
 
+    def _state_at(self, x: Array, y: Array) -> SeaState:
+        """At flat arrays of places in m; in the open sea the same everywhere, without masks."""
+        if self.coast is not None:
+            return self.coast.state(x, y)
+        variance, flow = open_state(self._parts)
+        return SeaState.of(np.full(x.shape, variance), np.zeros(x.shape), np.tile(flow, (len(x), 1)))
+
     def compression_at(self, x: Array, y: Array, time: Fraction) -> RealArray:
         """(places,) float32 compression at flat arrays of rest positions in m, negative where the sea is
         stretched."""
@@ -447,9 +466,9 @@ class Ocean:
         return find_points(x, y, fields.displacement, moving, self._spacing, folded), self._spacing
 
 
-def _fill(fields: Mapping[str, RealArray], made: Whitecaps) -> None:
-    """Fill the foam fields."""
-    for name in fields.keys() & OF_MEMORY:
+def _fill(fields: Mapping[str, RealArray], made: Whitecaps | SeaState) -> None:
+    """Fill the fields that were made together."""
+    for name in fields.keys() & set(made._fields):
         fields[name][...] = getattr(made, name).reshape(fields[name].shape)
 
 

@@ -141,8 +141,9 @@ class UsdAttribute(NamedTuple):
 SCALAR, VECTOR, TENSOR = "scalar", "vector", "tensor"
 _SUFFIXES = {SCALAR: ("",), VECTOR: ("_x", "_y", "_z"), TENSOR: ("_xx", "_yy", "_xy")}
 
-#: what a channel is computed from: the waves at one instant, or the history of the foam
-WAVES, MEMORY = "waves", "foam"
+#: what a channel is computed from: the waves at one instant, the history of the foam, or the energy of all
+# waves at a place, whatever the time
+WAVES, MEMORY, STATE = "waves", "foam", "state"
 
 _PLACE = frozenset({(X, ""), (Y, ""), (Z, "")})
 _MOTION = frozenset({(X, "t"), (Y, "t"), (Z, "t")})
@@ -161,12 +162,12 @@ class Channel:
     turns : SCALAR, VECTOR or TENSOR
     make : function that fills its rows; None unless its source is WAVES
     needs : components of the position and their derivatives that it is computed from
-    source : WAVES, or MEMORY for fields that depend on earlier times
+    source : WAVES, MEMORY for fields that depend on earlier times, or STATE for those that depend on none
     adds : whether the rotated fields of the patches add up to that of the sea
     rest : its values on a flat sea
     attribute : of meshes in Blender; "" for none
     switch : the ocean's setting that enables it on the ocean's own mesh; "" if it is always there, None if
-        only meshes of patches have it
+        only meshes of patches, or over a bed, have it
     usd : None if USD layers do not have it
     """
 
@@ -265,6 +266,18 @@ _ROWS = (
         None, frozenset(), source=MEMORY, attribute="foam_age", switch="use_foam",
         usd=UsdAttribute("primvars:foam_age", "FloatArray", halved=True),
     ),
+    Channel(
+        "significant_height", "of all waves around, 4 √m0; in the open sea the same everywhere", "m", 0,
+        SCALAR, None, frozenset(), source=STATE, attribute="significant_height",
+    ),
+    Channel(
+        "broken_share", "share of waves that are broken for lack of depth, 0 to 1", "1", 0, SCALAR, None,
+        frozenset(), source=STATE, attribute="broken_share",
+    ),
+    Channel(
+        "mean_direction", "unit vector towards which most of the energy runs; 0 where there are no waves",
+        "1", 2, VECTOR, None, frozenset(), source=STATE, attribute="mean_direction",
+    ),
 )  # fmt: skip
 
 #: by name
@@ -280,6 +293,9 @@ MAPS: dict[str, tuple[str, ...]] = {
     "slope": ("slope",),
     "strain": ("strain",),
     "foam_age": ("foam_age",),
+    "hs": ("significant_height",),
+    "qb": ("broken_share",),
+    "direction": ("mean_direction",),
 }
 
 #: maps for which a precision of 2^-11 of the largest value is enough; positions and inputs of normals need
@@ -293,7 +309,10 @@ MOVING_MAP = "disp"
 OF_WAVES = {name: channel for name, channel in CHANNELS.items() if channel.source == WAVES}
 
 #: outputs that depend on earlier times too, and are therefore computed in the order of frames
-OF_MEMORY = frozenset(CHANNELS) - OF_WAVES.keys()
+OF_MEMORY = frozenset(name for name, channel in CHANNELS.items() if channel.source == MEMORY)
+
+#: outputs that depend on no time
+OF_STATE = frozenset(name for name, channel in CHANNELS.items() if channel.source == STATE)
 
 #: outputs of patches that add up, once rotated; normals and eigenvalues are computed from the sums
 ADDING = frozenset(name for name, channel in CHANNELS.items() if channel.adds)

@@ -35,6 +35,8 @@ class OCEAN_PT_coast(SubPanel, bpy.types.Panel):
             layout.progress(factor=progress.share, text=progress.doing)
         draw_image(layout, group)
         draw_fields(layout.column(align=True), group, "spacing", "x", "y")
+        shown = layout.column(align=True, heading="Show")
+        draw_fields(shown, group, "show_height", "show_direction")
         draw_fields(layout, group, "rim", "shortest_wavelength", "step", "breaking", "muted")
 
 
