@@ -56,7 +56,9 @@ def wet_of(bed):
     return values(bed.evaluated_get(bpy.context.evaluated_depsgraph_get()).data, "wet").copy()
 
 
-def test_a_bake_moves_it_as_live(ocean, coast, bed, saved, extension):
+@pytest.mark.parametrize("method", ["NODES", "DISPLACE"])
+def test_a_bake_moves_it_as_live(ocean, coast, bed, saved, extension, method):
+    ocean.ocean_tweak.method = method
     live, wet = {}, {}
     for frame in (3, 1):
         saved.frame_set(frame)
@@ -75,6 +77,7 @@ def test_a_bake_moves_it_as_live(ocean, coast, bed, saved, extension):
             np.testing.assert_allclose(found[name], expected, atol=5e-4, err_msg=f"{name} {frame}")
         # beds are read between the samples of the waves
         assert np.abs(wet_of(bed) - wet[frame]).mean() < 0.02
+    assert ("DISPLACE" in {each.type for each in ocean.modifiers}) == (method == "DISPLACE")
     assert extension("scene.portability").needs_of(ocean) == ()
     assert not [text for modifier in coast.modifiers for text in modifier.node_warnings]
     bpy.ops.ocean.use_live()
@@ -168,3 +171,18 @@ def test_what_reads_a_baked_coast_still_sees_it_and_is_named(ocean, coast, saved
     assert need.text == (
         "Buoy floats on the coast of Ocean, of which a bake moves the mesh only: bake the floating to keys"
     )
+
+
+def test_it_moves_between_frames_by_its_velocity(ocean, coast, saved):
+    """As motion blur in EEVEE asks, and in a slow motion of bakes."""
+    saved.frame_set(2, subframe=0.25)
+    live = shown(coast)["position"]
+    bpy.ops.ocean.bake()
+    saved.frame_set(2)
+    begun = shown(coast)["position"]
+    saved.frame_set(2, subframe=0.25)
+    missed = np.abs(shown(coast)["position"] - live)
+    assert np.abs(live - begun).max() > 0.01
+    # in a hundredth of a second water hardly changes its velocity
+    assert np.percentile(missed, 99) < 1e-3
+    assert missed.max() < 0.2 * np.abs(live - begun).max()
