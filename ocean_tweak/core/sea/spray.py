@@ -154,13 +154,13 @@ class CameraSpray:
 
     def __init__(self, levels: FoamLevels) -> None:
         self._levels = levels
-        self._hulls = HullMotion(levels.parameters)
+        self._hulls: HullMotion | None = None
         self._crests = _Remembered(levels.parameters)
 
     @property
     def nbytes(self) -> int:
         """Bytes of the crests that are remembered, and of what hulls felt."""
-        return self._crests.nbytes + self._hulls.nbytes
+        return self._crests.nbytes + (0 if self._hulls is None else self._hulls.nbytes)
 
     def at(self, time: float | Fraction, spray: Spray, place: tuple[float, float]) -> Particles:
         """All that is in the air at a time in s around a place at rest, in m.
@@ -187,6 +187,8 @@ class CameraSpray:
         rate = torn_rate(_wind(finest.parameters).speed)
         births = rate * np.concatenate([_torn(strength) for _, strength in found])
         height, velocity = water.displacement[:, 2], water.velocity
+        if self._hulls is None:
+            self._hulls = HullMotion(finest.parameters)
         own = own_spray(finest.parameters, x, y, time, height, velocity, self._hulls.at)
         thrown = _OF_A_CREST * own.strength
         more = thrown > births
