@@ -87,8 +87,8 @@ def test_a_beach_that_is_turned_by_20_degrees_has_waves_as_one_along_the_march(b
     assert np.sqrt(np.mean(towards[there] ** 2)) < direction
 
 
-def behind_a_wall(x, y, wavelength):
-    """The wave behind a wall at x = 0 along y < 0, into which waves of amplitude 1 run along x.
+def around_a_wall(x, y, wavelength):
+    """The wave around a wall at x = 0 along y < 0, into which waves of amplitude 1 run along x.
 
     Sommerfeld's solution as Penney and Price (1952, eq. 9) have it, its Fresnel integral by the midpoint rule
     out of which its asymptotic end is taken.
@@ -104,7 +104,9 @@ def behind_a_wall(x, y, wavelength):
         return 0.5 * (1.0 + 1.0j) * (0.5 * (1.0 - 1.0j) + np.sign(s) * whole)
 
     into, back = 2.0 * np.sqrt((r - x) / wavelength), 2.0 * np.sqrt((r + x) / wavelength)
-    return fresnel(np.where(y > 0.0, into, -into)) * np.exp(-1j * k * x) + fresnel(-back) * np.exp(1j * k * x)
+    is_lit, is_mirrored = (y > 0.0) | (x < 0.0), (y < 0.0) & (x < 0.0)
+    ahead = fresnel(np.where(is_lit, into, -into)) * np.exp(-1j * k * x)
+    return ahead + fresnel(np.where(is_mirrored, back, -back)) * np.exp(1j * k * x)
 
 
 _PER_WAVE, _WAVELENGTH, _DEPTH = 10, 40.0, 200.0
@@ -125,11 +127,90 @@ def test_the_shadow_of_a_long_wall_is_sommerfelds():
     found = march_through(y > 0.0)
     rows, near = np.arange(2 * _PER_WAVE, 10 * _PER_WAVE), np.abs(y) < 5.0 * _WAVELENGTH
     x = _WAVELENGTH / _PER_WAVE * rows[:, np.newaxis] * np.ones(near.sum())
-    away = found[rows][:, near] - np.abs(behind_a_wall(x, y[near], _WAVELENGTH))
+    away = found[rows][:, near] - np.abs(around_a_wall(x, y[near], _WAVELENGTH))
     assert np.abs(away).max() <= 0.10
     assert np.sqrt(np.mean(away**2)) <= 0.06
     on_the_edge = found[rows][:, m // 2 - 1 : m // 2 + 1].mean()
     assert on_the_edge == pytest.approx(0.5, abs=0.03)
+
+
+def test_waves_before_a_wall_that_mirrors_are_sommerfelds():
+    """Standing before the wall, and running on beside it, with what its edge scatters between."""
+    m, rows = 1024, 11 * _PER_WAVE
+    spacing = _WAVELENGTH / _PER_WAVE
+    y = spacing * (np.arange(m) - m // 2 + 0.5)
+    h = np.full((rows + 3, m), _DEPTH)
+    h[rows, y < 0.0] = 0.0
+    omega = np.sqrt(G * 2.0 * np.pi / _WAVELENGTH)
+    found = np.abs(propagate(h, spacing, [omega], [0.0], mirror=1.0)[0])
+    # waves turn round on the samples before it
+    before, near = np.arange(2 * _PER_WAVE, 10 * _PER_WAVE), np.abs(y) < 5.0 * _WAVELENGTH
+    x = -spacing * before[:, np.newaxis] * np.ones(near.sum())
+    away = found[rows - 1 - before][:, near] - np.abs(around_a_wall(x, y[near], _WAVELENGTH))
+    assert np.abs(away).max() <= 0.10
+    assert np.sqrt(np.mean(away**2)) <= 0.06
+    assert found[: rows - 1, y < -4.0 * _WAVELENGTH].max() > 1.9
+
+
+@pytest.mark.parametrize("angle", [0.0, 25.0])
+@pytest.mark.parametrize("mirror", [0.0, 0.4, 1.0])
+def test_a_long_wall_lets_waves_stand_as_high_as_it_mirrors(angle, mirror):
+    """|1 + R e^(2iqx)|, x being how far it is to the wall, and nothing behind it."""
+    spacing, omega, depth = 1.0, 2.0 * np.pi / 6.0, 6.0
+    h = np.full((90, 64), depth)
+    h[80:] = -2.0
+    k = float(wave_number(omega, np.array(depth)))
+    ky = k * np.sin(np.radians(angle))
+    (a,) = propagate(h, spacing, [omega], [ky], mirror=mirror)
+    q = np.sqrt(k * k - ky * ky)
+    expected = np.abs(1.0 + mirror * np.exp(2j * q * spacing * (79 - np.arange(80))))
+    assert_allclose(np.abs(a[:80]), np.repeat(expected[:, np.newaxis], 64, axis=1), atol=2e-6)
+    assert not a[80:].any()
+    # along the wall both run the same way
+    along = np.angle(a[:79, 1:] * np.conj(a[:79, :-1]))
+    seen = np.repeat(expected[:79, np.newaxis] > 0.3, 63, axis=1)
+    assert_allclose(along[seen], ky * spacing, atol=1e-4)
+
+
+def test_a_beach_mirrors_nothing():
+    h = plane_beach(120, 16, 2.0, slope=0.2, shallowest=-3.0)
+    assert (h < 0.0).any()
+    calm, mirrored = (propagate(h, 2.0, [0.9], [0.0], mirror=share) for share in (0.0, 1.0))
+    np.testing.assert_array_equal(mirrored, calm)
+
+
+def test_what_is_mirrored_breaks_too():
+    """A wall behind a bar: what comes back over it is not higher than the bar lets it be."""
+    h = np.full((160, 16), 6.0)
+    h[60:90] = 1.2
+    h[140:] = -2.0
+    amplitude = np.full(4, 0.4)
+    omega, zero = 2.0 * np.pi / np.array([6.0, 7.0, 8.0, 9.0]), np.zeros(4)
+    calm, mirrored = (
+        propagate(h, 2.0, omega, zero, breaking=amplitude, mirror=share).astype(complex)
+        for share in (0.0, 1.0)
+    )
+    back = 2.0 * np.sqrt(np.tensordot(amplitude**2, np.abs(mirrored - calm) ** 2, 1))
+    came = 2.0 * np.sqrt(np.tensordot(amplitude**2, np.abs(calm) ** 2, 1))
+    assert (back[62:88] <= 0.6 * h[62:88]).all()
+    assert 0.3 * came[139].mean() < back[139].mean() <= 1.001 * came[139].mean()
+    assert back[2].mean() < 0.95 * back[139].mean()
+
+
+def test_what_breaks_on_the_way_to_a_wall_does_not_come_back():
+    h = np.full((60, 16), 4.0)
+    h[49] = 0.9  # all is lost on this step
+    h[50:] = -3.0
+    amplitude = np.full(3, 0.45)
+    omega, zero = 2.0 * np.pi / np.array([6.0, 7.5, 9.0]), np.zeros(3)
+    calm, mirrored = (
+        propagate(h, 2.0, omega, zero, breaking=amplitude, mirror=share).astype(complex)
+        for share in (0.0, 1.0)
+    )
+    came, back = (np.abs(each[:, 49]).mean() for each in (calm, mirrored - calm))
+    whole = np.abs(propagate(h, 2.0, omega, zero)[:, 49]).mean()
+    assert came < 0.8 * whole
+    assert back == pytest.approx(came, rel=1e-5)
 
 
 @pytest.mark.parametrize("waves", [1, 2, 4])
@@ -141,7 +222,7 @@ def test_a_fan_of_waves_leaves_a_gap_as_penney_and_price_have_it(waves):
     rows, near = np.arange(2 * _PER_WAVE, 10 * _PER_WAVE), np.abs(y) < 5.0 * _WAVELENGTH
     x = _WAVELENGTH / _PER_WAVE * rows[:, np.newaxis] * np.ones(near.sum())
     k = 2.0 * np.pi / _WAVELENGTH
-    both = behind_a_wall(x, y[near] + half, _WAVELENGTH) + behind_a_wall(x, half - y[near], _WAVELENGTH)
+    both = around_a_wall(x, y[near] + half, _WAVELENGTH) + around_a_wall(x, half - y[near], _WAVELENGTH)
     away = found[rows][:, near] - np.abs(both - np.exp(-1j * k * x))
     assert np.abs(away).max() <= 0.10
     assert np.sqrt(np.mean(away**2)) <= 0.06
@@ -323,6 +404,8 @@ def test_waves_that_do_not_run_ashore_and_other_wrong_numbers_are_refused():
             propagate(bed(), 1.0, *arguments)
     with pytest.raises(ValueError, match="spacing"):
         propagate(bed(), 0.0, [1.0], [0.0])
+    with pytest.raises(ValueError, match=r"mirror = 1\.5"):
+        propagate(bed(), 1.0, [1.0], [0.0], mirror=1.5)
     with pytest.raises(ValueError, match="breaking"):
         propagate(bed(), 1.0, [1.0], [0.0], breaking=[-1.0])
     with pytest.raises(ValueError, match=r"breaking = 1e\+300"):

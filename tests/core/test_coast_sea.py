@@ -396,7 +396,7 @@ def test_pictures_that_are_kept_are_the_sea_s_and_are_not_made_again(
 @pytest.mark.parametrize(
     "other",
     [
-        {"rim": 41.0}, {"breaking": False}, {"step": 3.0},
+        {"rim": 41.0}, {"breaking": False}, {"mirror": 0.5}, {"step": 3.0},
         {"shortest_wavelength": 40.0}, {"bed": BEACH + 0.1},
         {"x": 2.0}, {"shore": "-X", "bed": BEACH[:, ::-1]},
     ],
@@ -427,3 +427,42 @@ def fingerprints(*seas: OceanParameters) -> set[str]:
         for each, coast in zip(seas, coasts, strict=True)
         if coast is not None
     }
+
+
+def test_what_a_wall_mirrors_runs_out_to_the_open_sea_and_ends_there() -> None:
+    """A quay in 12 m of water: waves stand before it, and where the coast comes in nothing is added."""
+    quay = np.full((101, 101), 12.0)
+    quay[:, 90:] = -3.0
+    x, y = np.meshgrid(np.arange(-90.0, 178.0, 4.0), np.arange(0.0, 200.0, 5.0))
+    plain, mirrored = (
+        Ocean(sea(quay, mirror=share)).surface(7.0, {"displacement", "slope"}, on=Places(x, y))
+        for share in (0.0, 1.0)
+    )
+    change = np.abs(mirrored.displacement - plain.displacement).max(axis=(0, 2))
+    assert (change[x[0] < -82.0] == 0.0).all()
+    assert change[x[0] > 0.0].min() > 0.1
+    assert mirrored.displacement[:, -1, 2].std() > 1.5 * plain.displacement[:, -1, 2].std()
+    # what came back has the horizontal displacement of waves so long, over the bed and over the rim
+    coasts = [Ocean(sea(quay, mirror=share)).coast for share in (0.0, 1.0)]
+    calm, made = (coast.pictures for coast in coasts if coast is not None)
+    assert coasts[0] is not None
+    depth = coasts[0].ground.depth[coasts[0].ground.depth > 0.0]
+    for index, number in enumerate(made.numbers):
+        height, wide = (
+            getattr(made, each)[index] - getattr(calm, each)[index] for each in ("elevation", "potential")
+        )
+        for flat in (DEEP, 12.0):
+            there = np.abs(depth - flat) < 1e-6
+            assert there.sum() > 500
+            k = waves_k(2.0 * np.pi * number / 512.0, flat)
+            assert_allclose(wide[there], height[there] / k, atol=2e-3 * np.abs(wide).max())
+
+
+def waves_k(omega: float, depth: float) -> float:
+    """rad/m of ω² = g k tanh kh, by bisection."""
+    low, high = 0.0, 10.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        small = 9.81 * middle * np.tanh(middle * depth) < omega**2
+        low, high = (middle, high) if small else (low, middle)
+    return low

@@ -135,7 +135,7 @@ def fingerprint(sea: OceanParameters, waves: Incoming, ground: Ground) -> str:
     """Name of all that pictures follow from, for keeping them on disk."""
     numbers = (
         _EDITION, sea.repeats_after, sea.water.depth, sea.water.gravity, sea.orbital_motion, ground.step,
-        ground.first, ground.rim_rows, ground.coast.breaking,
+        ground.first, ground.rim_rows, ground.coast.breaking, ground.coast.mirror,
     )  # fmt: skip
     of = hashlib.sha256(repr(numbers).encode())
     for array in (ground.depth, ground.late_on_rim, *waves[1:]):
@@ -156,24 +156,32 @@ def pictures(
     omega = numbers.astype(np.float64) * (2.0 * np.pi / float(sea.repeats_after))
     rim, wet = ground.rim_rows, ground.depth > 0.0
     over_rim = _over_rim(waves, of_number, len(numbers), ground, rim)
-    bed = march.Bed.of(ground.depth[rim - 1 :], ground.step, sea.water.gravity)
+    # what walls throw back runs over the rim too
+    mirror = ground.coast.mirror
+    start = 0 if mirror > 0.0 else rim - 1
+    bed = march.Bed.of(ground.depth[start:], ground.step, sea.water.gravity)
     amplitudes = np.ones(len(numbers)) if ground.coast.breaking else None
     workers = default_workers(over_rim[:, -1].size * 64)
-    marched = march.march(bed, omega, over_rim[:, -1], None, amplitudes, workers, tell)
+    marched = march.march(bed, omega, over_rim[:, start], None, amplitudes, mirror, workers, tell)
     deep = sea.water.depth if sea.orbital_motion == "FINITE_DEPTH" else np.inf
     wider = waves._replace(amplitude=waves.amplitude * _wider(np.hypot(waves.along, waves.across), deep))
     own = _over_rim(wider, of_number, len(numbers), ground, rim)
     # each wave's own number on the rim, from there on one for all of a frequency: no step between
     late = ground.late_on_rim[:, np.newaxis]
     elevation, potential = (np.empty((len(numbers), int(wet.sum())), np.complex64) for _ in range(2))
-    depth = np.concatenate((np.broadcast_to(bed.depth[0], (rim, ground.columns)), bed.depth[1:]))
+    depth = np.concatenate((np.broadcast_to(bed.depth[0], (start, ground.columns)), bed.depth))
 
     def finish(index: int) -> None:
-        whole = np.concatenate((over_rim[index], marched[index, 1:]))
+        whole = np.concatenate((over_rim[index], marched[index, rim - start :]))
         k = march.wave_numbers(omega[index], depth, sea.water.gravity)
         k = np.minimum(k, march.MOST_TURN / ground.step)
-        wide = whole * _wider(k, depth if np.isfinite(deep) else np.inf)
+        wider = _wider(k, depth if np.isfinite(deep) else np.inf)
+        wide = whole * wider
         wide[:rim] += (1.0 - late) * (own[index] - wide[:rim])
+        if mirror > 0.0:
+            thrown_back = marched[index, :rim] - over_rim[index]
+            whole[:rim] += thrown_back
+            wide[:rim] += thrown_back * wider[:rim]
         for target, field in ((elevation, whole), (potential, wide)):
             target[index] = field[wet]
 

@@ -37,7 +37,7 @@ class OCEAN_PT_coast(SubPanel, bpy.types.Panel):
         draw_fields(layout.column(align=True), group, "spacing", "x", "y")
         shown = layout.column(align=True, heading="Show")
         draw_fields(shown, group, "show_height", "show_direction")
-        draw_fields(layout, group, "rim", "shortest_wavelength", "step", "breaking", "muted")
+        draw_fields(layout, group, "rim", "shortest_wavelength", "step", "mirror", "breaking", "muted")
 
 
 CLASSES = (OCEAN_PT_coast,)

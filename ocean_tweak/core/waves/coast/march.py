@@ -12,14 +12,17 @@ k differs from place to place. With k̄ the row's mean and δk = k - k̄,
 The first term is a factor of each wave along y, the second one of each place; the last two, by which waves at
 an angle differ from those straight on, are both, made symmetric and applied as an exponential's series to the
 third order.
+
+What arrives before a wall may be thrown back: from there it runs the other way in the same manner.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -50,6 +53,8 @@ _SLOWEST, _QUICKEST, _HIGHEST = 1e-6, 1e6, 1e6
 _DEEPEST = 1e9
 #: waves that are marched together
 _TOGETHER = 24
+#: rise of land over run from which on it is a wall
+_STEEP = 1.0
 
 
 def propagate(
@@ -60,6 +65,7 @@ def propagate(
     *,
     gravity: float = constants.GRAVITY,
     breaking: ArrayLike | None = None,
+    mirror: float = 0.0,
     workers: int = 1,
 ) -> ComplexArray:
     """Complex pictures (C, Nx, Ny) of incident waves of amplitude 1 and phase 0 at row 0 and y = 0.
@@ -68,6 +74,7 @@ def propagate(
     spacing : between samples, m
     omega, ky : (C,) rad/s, and rad/m along y, any real numbers; the phase grows as ky·y
     breaking : (C,) m, amplitudes of the incident waves; with them, all together lose what breaking takes
+    mirror : 0…1, share of their height that walls throw back to where they came from
 
     Raises ValueError for a bed that cannot be marched over and for waves that do not run towards the shore.
 
@@ -86,7 +93,8 @@ def propagate(
     incident = np.exp(1j * (order * base)[:, np.newaxis] * bed.spacing * np.arange(bed.depth.shape[1]))
     amplitudes = None if breaking is None else _amplitudes(breaking, len(w))
     # what is left of ky beside a whole multiple is taken off the field, and put onto each wave along y
-    return march(bed, w, incident, along - order * base, amplitudes, workers)
+    check_range("mirror", mirror, 0.0, 1.0, "")
+    return march(bed, w, incident, along - order * base, amplitudes, mirror, workers)
 
 
 def march(
@@ -95,6 +103,7 @@ def march(
     incident: ComplexArray,
     rest: Array | None = None,
     amplitudes: Array | None = None,
+    mirror: float = 0.0,
     workers: int = 1,
     tell: Callable[[float], None] = lambda done: None,
 ) -> ComplexArray:
@@ -104,10 +113,28 @@ def march(
     incident : (C, Ny) of waves that run towards the shore, periodic along y but for a factor e^(i rest y)
     rest : (C,) rad/m, left off `incident`; none by default
     amplitudes : (C,) by which the pictures must be multiplied to be metres; with them, waves break
+    mirror : 0…1, share of their height that walls throw back, once: what comes back to another wall is lost
     tell : is told again and again which share is done
     """
-    marching = _March(bed, omega, incident, np.zeros(len(omega)) if rest is None else rest, amplitudes)
-    marching.run(workers, tell)
+    rest = np.zeros(len(omega)) if rest is None else rest
+    frequency = 0.0
+    if amplitudes is not None:
+        energy = amplitudes**2 * np.mean(np.abs(incident) ** 2, axis=1)
+        # of all waves by their energy
+        frequency = float(energy @ omega) / (2.0 * np.pi * max(float(energy.sum()), 1e-300))
+    is_mirrored = mirror > 0.0 and bed.walls.any()
+    share = 0.5 if is_mirrored else 1.0
+    marching = _March(bed, omega, incident, rest, amplitudes, frequency)
+    marching.run(workers, lambda done: tell(share * done))
+    if is_mirrored:
+        thrown_back = {
+            len(bed.depth) - 1 - row: (bed.walls[row], mirror * flux)
+            for row, flux in marching.arrived.items()
+        }
+        # what comes back runs the same way over the bed that lies the other way round
+        back = _March(bed.reversed, omega, np.zeros_like(incident), rest, amplitudes, frequency, thrown_back)
+        back.run(workers, lambda done: tell(share + share * done))
+        marching.pictures += back.pictures[:, ::-1]
     return marching.pictures
 
 
@@ -116,14 +143,21 @@ class Bed:
     """What waves run over.
 
     depth : (Nx, Ny) m, of land that of the row's water; water : (Nx, Ny) where there is some
+    walls : (Nx, Ny) where there is water before a wall: land that rises out of it steeply
     spacing : m
     gravity : m/s²
     """
 
     depth: Array
     water: NDArray[np.bool_]
+    walls: NDArray[np.bool_]
     spacing: float
     gravity: float
+
+    @property
+    def reversed(self) -> Bed:
+        """The same from its last row to its first."""
+        return Bed(self.depth[::-1], self.water[::-1], self.walls[::-1], self.spacing, self.gravity)
 
     @classmethod
     def of(cls, depth: ArrayLike, spacing: float, gravity: float) -> Bed:
@@ -156,7 +190,9 @@ class Bed:
         wet = np.where(water, np.maximum(h, SHALLOWEST), 0.0)
         count = water.sum(axis=1, keepdims=True)
         mean = np.where(count > 0, wet.sum(axis=1, keepdims=True) / np.maximum(count, 1), SHALLOWEST)
-        return cls(np.where(water, wet, mean), water, float(spacing), float(gravity))
+        walls = np.zeros(h.shape, np.bool_)
+        walls[:-1] = water[:-1] & ~water[1:] & (h[:-1] - h[1:] >= _STEEP * spacing)
+        return cls(np.where(water, wet, mean), water, walls, float(spacing), float(gravity))
 
 
 def _waves(omega: ArrayLike, ky: ArrayLike) -> tuple[Array, Array]:
@@ -217,9 +253,22 @@ class _March:
     """All waves, a row after another; waves lose to breaking what all of them together tell."""
 
     def __init__(
-        self, bed: Bed, omega: Array, incident: ComplexArray, rest: Array, amplitudes: Array | None
+        self,
+        bed: Bed,
+        omega: Array,
+        incident: ComplexArray,
+        rest: Array,
+        amplitudes: Array | None,
+        frequency: float,
+        sources: Mapping[int, tuple[NDArray[np.bool_], ComplexArray]] = MappingProxyType({}),
     ) -> None:
         self._bed, self._omega, self._amplitudes = bed, omega, amplitudes
+        self._frequency, self._sources = frequency, sources
+        #: by row, (C, places before walls) flux that came to walls
+        self.arrived = {
+            row: np.zeros((len(omega), int(walls.sum())), np.complex128)
+            for row, walls in enumerate(bed.walls) if walls.any()
+        }  # fmt: skip
         rows, columns = bed.depth.shape
         along = 2.0 * np.pi * np.fft.fftfreq(columns, bed.spacing)
         self._ky = along + rest[:, np.newaxis]
@@ -240,10 +289,6 @@ class _March:
             waves = np.fft.fft(self._flux[part]) * np.sqrt(_cosines(self._ky[part] ** 2, mean))
             self._flux[part] = np.fft.ifft(waves) * np.sqrt(speed)
             self._draw(number, 0)
-        if amplitudes is not None:
-            energy = amplitudes**2 * np.mean(np.abs(incident) ** 2, axis=1)
-            #: Hz, of all waves by their energy
-            self._frequency = float(energy @ omega) / (2.0 * np.pi * max(float(energy.sum()), 1e-300))
 
     def run(self, workers: int, tell: Callable[[float], None]) -> None:
         """March to the last row."""
@@ -252,6 +297,8 @@ class _March:
             run_blocks(partial(self._step, row=row), range(len(self._parts)), workers)
             if self._amplitudes is not None:
                 self._left = self._remaining(row)
+                if row in self._sources:  # what begins here has not been on the way
+                    self._left[self._sources[row][0]] = 1.0
             tell((row + 1) / rows)
         self.pictures[:, -1] *= self._left.astype(np.float32)
 
@@ -263,6 +310,9 @@ class _March:
         part, dx = self._parts[number], self._bed.spacing
         if self._amplitudes is not None:
             self.pictures[part, row - 1] *= self._left.astype(np.float32)
+        if row - 1 in self.arrived:
+            walls = self._bed.walls[row - 1]
+            self.arrived[row - 1][part] = self._flux[part][:, walls] * self._left[walls]
         before, after = self._k[part], self._at(part, row)
         k = 0.5 * (before + after)
         self._k[part] = after
@@ -283,6 +333,9 @@ class _March:
         if np.abs(d).max() * dx > 1e-12:
             waves = series(waves, band, d, first, second, dx)
         self._flux[part] = np.fft.ifft(band.whole(waves * turn)) * (screen * self._bed.water[row])
+        if row in self._sources:
+            walls, flux = self._sources[row]
+            self._flux[part, walls] += flux[part]
         self._draw(number, row)
 
     def _draw(self, number: int, row: int) -> None:

@@ -59,6 +59,11 @@ class Coast(Validated):
         0.0, 0.0, 1e3, "m", "Distance between samples of the waves over the bed",
         "from a tank to swell", off=Off(0.0, 1.0, "uses that of the first patch"),
     )  # fmt: skip
+    mirror: float = number(
+        0.0, 0.0, 1.0, "", "Fraction of their height that waves keep when walls throw them back; a wall is "
+            "land that rises steeper than 1:1 out of the water",
+        "from rubble to smooth concrete", off=Off(0.0, 0.01, "lets walls take all of it"),
+    )  # fmt: skip
     breaking: bool = switch(True, "Let waves break where they are too high for the depth")
     muted: bool = switch(False, "Show the open sea instead, with the same waves that reach the coast")
 
