@@ -109,22 +109,40 @@ def preset_sky(key: str, scene: bpy.types.Scene) -> Sky:
 def show(
     scene: bpy.types.Scene, view: float | None = None, collection: bpy.types.Collection | None = None
 ) -> None:
-    """Let a scene that has a sky look as its settings say; one with another world stays as it is."""
+    """Let a scene that has a sky look as its settings say, and with it those that have its world, as its
+    linked copies do; one with another world stays as it is."""
     if not has_sky(scene):
         return
     settings, sky = settings_of(scene), sky_of(scene)
-    view = view_of(scene) if view is None else view
     image = _usable(scene)
     if image is None:
         fill(scene.world, sky)
-        haze, lights = sky.haze(view), (sky.sun_irradiance, sky.moon_irradiance)
     else:
-        # a panorama has its own sun
         fill_with_image(scene.world, image, settings.hdri_rotation, settings.hdri_strength)
-        haze, lights = (
-            panorama.horizon(image, view - settings.hdri_rotation, settings.hdri_strength),
-            (None, None),
-        )
+    copies = _copies(scene)
+    for copy in copies:
+        _tell(copy, scene)
+        _light(copy, image, view_of(copy))
+    # last: copies may share water that looks as this scene's camera sees it
+    _light(scene, image, view_of(scene) if view is None else view, collection)
+
+
+def _light(
+    scene: bpy.types.Scene,
+    image: bpy.types.Image | None,
+    view: float,
+    collection: bpy.types.Collection | None = None,
+) -> None:
+    """Set a scene's lamps, the air over its water and, if it follows, its exposure by its settings.
+
+    image : a panorama in the sky's place
+    view : where the camera looks, rad
+    """
+    settings, sky = settings_of(scene), sky_of(scene)
+    haze, lights = sky.haze(view), (sky.sun_irradiance, sky.moon_irradiance)
+    if image is not None:  # which has its own sun
+        haze = panorama.horizon(image, view - settings.hdri_rotation, settings.hdri_strength)
+        lights = None, None
     sun = _lamp(scene, _SUN, lights[0], sky.sun_elevation, sky.sun_azimuth, collection)
     moon = _lamp(scene, _MOON, lights[1], sky.moon_elevation, sky.moon_azimuth, collection)
     brighter = moon if moon is not None and (sun is None or moon.data.energy > sun.data.energy) else sun
@@ -134,6 +152,22 @@ def show(
             water_material.light_by(material, brighter)
     if settings.use_exposure:
         scene.view_settings.exposure = sky.exposure
+
+
+def _copies(scene: bpy.types.Scene) -> list[bpy.types.Scene]:
+    """Other scenes with a scene's world."""
+    return [
+        each for each in bpy.data.scenes if each != scene and each.world == scene.world and each.is_editable
+    ]
+
+
+def _tell(copy: bpy.types.Scene, scene: bpy.types.Scene) -> None:
+    """Let a scene with another's world have that scene's settings."""
+    own, others = settings_of(copy), settings_of(scene)
+    names = [field.name for field in fields(Sky)] + ["hdri", "hdri_rotation", "hdri_strength", "error"]
+    with own.quiet():
+        for name in names:
+            setattr(own, name, getattr(others, name))
 
 
 def look_for_panoramas() -> None:

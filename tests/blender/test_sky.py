@@ -177,6 +177,27 @@ def test_a_pulled_sun_moves_all_of_it(scene, ocean):
     assert sum(haze_color(ocean)) < sum(before)
 
 
+def test_a_linked_copy_of_a_scene_has_one_sky_with_it(scene, ocean):
+    """The world and the lamps are both scenes': so are the settings, whichever scene's are changed."""
+    bpy.ops.ocean.use_sky(sky="NOON")
+    bpy.ops.scene.new(type="LINK_COPY")
+    copy = next(each for each in bpy.data.scenes if each != scene)
+    assert copy.world == scene.world
+    copy.ocean_tweak_sky.use_exposure = True
+    for changed, other, degrees in ((scene, copy, 4.0), (copy, scene, 12.0)):
+        changed.ocean_tweak_sky.sun_elevation = math.radians(degrees)
+        assert other.ocean_tweak_sky.sun_elevation == pytest.approx(math.radians(degrees), abs=1e-6)
+        assert sky_texture(scene).sun_elevation == pytest.approx(math.radians(degrees), abs=1e-6)
+    scene.ocean_tweak_sky.exposure = 1.5
+    assert copy.view_settings.exposure == pytest.approx(1.5)
+    assert scene.view_settings.exposure == pytest.approx(0.0)  # it does not follow
+    assert list(lamps(copy)) == list(lamps(scene))
+    # one with a world of its own goes its own way
+    copy.world = copy.world.copy()
+    copy.ocean_tweak_sky.sun_elevation = math.radians(30.0)
+    assert scene.ocean_tweak_sky.sun_elevation == pytest.approx(math.radians(12.0), abs=1e-6)
+
+
 def test_a_world_of_ones_own_stays_until_a_sky_is_chosen(scene):
     own = bpy.data.worlds.new("Mine")
     scene.world = own
