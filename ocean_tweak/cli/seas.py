@@ -22,6 +22,7 @@ from ..core.parameters.presets import built_in
 from ..core.parameters.shot import Shot
 from ..core.sea.patch_plan import planned
 from ..export.files import LARGEST_JSON
+from ..export.hulls import with_hulls
 from ..export.images import with_rasters
 from ..export.sea_files import read_sea, sea_of_text
 from .outcome import UsageError
@@ -122,7 +123,7 @@ def changed(shot: Shot, arguments: argparse.Namespace) -> Shot:
         value = getattr(arguments, key)
         if value is not None:
             data["timing"][key] = _value(value)
-    made = Shot.from_dict(with_rasters(OceanParameters, data, Path()))
+    made = Shot.from_dict(with_rasters(OceanParameters, with_hulls(data, Path()), Path()))
     if arguments.plan is None:
         return made
     return Shot(planned(made.parameters, arguments.plan), made.animation)

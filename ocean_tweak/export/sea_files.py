@@ -13,6 +13,7 @@ from ..core.parameters.former_json import modern
 from ..core.parameters.ocean_parameters import OceanParameters
 from ..core.parameters.shot import Shot
 from .files import LARGEST_JSON, read_bytes, write_text
+from .hulls import with_hulls
 from .images import read_raster, with_rasters
 from .images.references import Reader
 from .usd import isolated
@@ -22,7 +23,8 @@ from .usd.reading import SUFFIXES
 def read_sea(path: str | os.PathLike[str]) -> Shot:
     """Read a sea and its animation from a file.
 
-    path : a JSON file, in which {"file": "lee.png"} may stand for an image or a wind, or a USD layer
+    path : a JSON file, in which {"file": "lee.png"} may stand for an image or a wind and
+        {"file": "hull.obj"} for a footprint, or a USD layer
 
     Raises ParameterError, which names the field, its value and what is allowed, for an invalid sea, OSError
     or UnicodeDecodeError for a file that cannot be read, and UsdError, a RuntimeError, for an invalid layer.
@@ -48,7 +50,8 @@ def sea_of_text(text: str, folder: Path, read: Reader = read_raster) -> Shot:
 
     Raises ParameterError.
     """
-    return Shot.from_dict(with_rasters(OceanParameters, modern(parse_json(text)), folder, read))
+    data = with_hulls(modern(parse_json(text)), folder)
+    return Shot.from_dict(with_rasters(OceanParameters, data, folder, read))
 
 
 def write_sea(path: str | os.PathLike[str], sea: Shot | OceanParameters) -> None:

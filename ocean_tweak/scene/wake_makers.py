@@ -21,8 +21,7 @@ from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
 from ..core import PathSample, Raster
-from ..core.sea.hull_plan import hull_plan
-from ..core.sea.underwater_hull import draughts_below
+from ..core.sea.underwater_hull import shares_of_draught
 from ..core.waves.wake.parameters import MOST_SAMPLES
 from . import float_path
 from .animated import curves_of, has_own_time, shown_settings
@@ -41,9 +40,6 @@ _followed: dict[int, object] = {}
 
 #: of a path, by which a sample may be left out: m a metre of hull, and rad
 _ASIDE, _TURNED = 0.002, 0.01
-#: of a footprint, rows and columns, steps from 0 to the greatest draught, and the least block coefficient:
-#: a capsized hull displaces its planking
-_SHAPE, _STEPS, _LEAST_BLOCK = (24, 64), 255.0, 0.05
 
 #: custom property of an object that moves with the end ahead that its -x or -y points to
 _REVERSED = "ocean_tweak_bow_reversed"
@@ -144,23 +140,13 @@ def footprint_of(wetted: InWater) -> Raster:
 
     Raises ValueError, with the reason, for one that encloses nothing below the water.
     """
-    hull, low, high = wetted.hull, wetted.low, wetted.high
-    if not len(hull.triangles):
-        raise ValueError("it has no faces")
-    plan = hull_plan(hull.vertices, hull.triangles)
-    along_y = high[1] - low[1] > high[0] - low[0]
-    shape = _SHAPE[::-1] if along_y else _SHAPE
-    shares = draughts_below(plan, wetted.level, low, high, shape) / wetted.draught
-    if shares.mean() < _LEAST_BLOCK:
-        raise ValueError(
-            f"it displaces {100.0 * shares.mean():.2g} % of its length, width and draught: it may be upside "
-            "down, or have gaps below the water"
-        )
-    if along_y:
-        shares = shares.T[::-1]  # x ahead, y to port
-    if math.cos(wetted.ahead) < -0.5 or math.sin(wetted.ahead) < -0.5:
-        shares = shares[::-1, ::-1]
-    return Raster(np.rint(_STEPS * np.clip(shares, 0.0, 1.0)) / _STEPS)
+    cosine, sine = round(math.cos(wetted.ahead)), round(math.sin(wetted.ahead))
+    to_bow = np.array([[cosine, -sine], [sine, cosine]])  # of rows: x ahead, y to port
+    vertices = wetted.hull.vertices.copy()
+    vertices[:, :2] = vertices[:, :2] @ to_bow
+    corners = np.array([wetted.low, wetted.high]) @ to_bow
+    low, high = (tuple(end.tolist()) for end in (corners.min(axis=0), corners.max(axis=0)))
+    return Raster(shares_of_draught(vertices, wetted.hull.triangles, wetted.level, low, high))
 
 
 def path_of(

@@ -46,3 +46,25 @@ def test_frames_of_an_area_are_the_same_alone_and_in_a_row(tmp_path: Path) -> No
     hull = np.abs(alone - calm)[28:36, 28:37]  # where it presses the water down
     assert hull.max() > 3.0
     assert np.abs(alone - calm).mean() > 0.02
+
+
+def test_a_hull_s_mesh_takes_the_place_of_the_ellipse(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """A box of 30 by 6 m, 2 m deep in the water: F = U/√(gL) follows from its length."""
+    corners = [(x, y, z) for z in (-2.0, 3.0) for x in (-15.0, 15.0) for y in (-3.0, 3.0)]
+    faces = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 3, 7, 5), (2, 6, 8, 4), (1, 5, 6, 2), (3, 4, 8, 7))
+    lines = [
+        *("v {} {} {}".format(*each) for each in corners),
+        *("f {} {} {} {}".format(*each) for each in faces),
+    ]
+    (tmp_path / "box.obj").write_text("\n".join(lines))
+    given = ("--params", str(EXAMPLE), "--set", f"layers.1.footprint.file={tmp_path / 'box.obj'}")
+    (wake,) = described(capsys, *given)["wake"]
+    assert wake["froude"] == pytest.approx(8.5 / np.sqrt(9.81 * 30.0), rel=1e-3)
+    assert wake["draught"] == pytest.approx(2.0)
+    assert wake["narrow"] == pytest.approx(6.0)
+    (tmp_path / "box.obj").write_text("\n".join(lines[:8]))
+    assert main(["info", *given]) == 2
+    assert "layers.1.footprint.file" in (told := capsys.readouterr().err)
+    assert "no faces" in told

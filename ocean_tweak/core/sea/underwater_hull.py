@@ -10,9 +10,37 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .hull_plan import LEVELS, HullPlan
+from .hull_plan import LEVELS, HullPlan, Integers, hull_plan
 
 Array = NDArray[np.float64]
+
+#: of a footprint, rows and columns, steps from 0 to the greatest draught, and the least block coefficient: a
+#: capsized hull displaces its planking
+_SHAPE, _STEPS, _LEAST_BLOCK = (24, 64), 255.0, 0.05
+
+
+def shares_of_draught(
+    vertices: Array, triangles: Integers, level: float, low: tuple[float, float], high: tuple[float, float]
+) -> Array:
+    """(24, 64) draughts of a hull in the cells of a rectangle, [y, x], as shares of the greatest.
+
+    vertices, triangles : (N, 3), z up, and (M, 3) of their numbers
+    level : height of calm water, above the keel
+    low, high : corners (x, y) of the rectangle around the part below it
+
+    Raises ValueError, with the reason, for one that encloses nothing below the water.
+    """
+    if not len(triangles):
+        raise ValueError("it has no faces")
+    draught = level - float(np.min(vertices[:, 2]))
+    shares = draughts_below(hull_plan(vertices, triangles), level, low, high, _SHAPE) / draught
+    if shares.mean() < _LEAST_BLOCK:
+        raise ValueError(
+            f"it displaces {100.0 * shares.mean():.2g} % of its length, width and draught: it may be upside "
+            "down, or have gaps below the water"
+        )
+    found: Array = np.rint(_STEPS * np.clip(shares, 0.0, 1.0)) / _STEPS
+    return found
 
 
 def draughts_below(
