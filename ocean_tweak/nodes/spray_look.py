@@ -2,7 +2,8 @@
 """The shader group "Ocean Tweak Spray Look": spume and drops that scatter light, and mist with soft rims.
 
 Each particle stands for many drops. Light comes off them as off foam, and through them where the sun stands
-behind. The farther they are in haze, the more of what lies behind them is seen: that is in the same haze.
+behind. The farther they are in haze, the more they have its colour. They hide as much as in clear air: light
+that goes on through hundreds of them is ended in black.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ _PANELS = (
             ("Spume", "NodeSocketFloat", 0.45, "Opacity of a piece of a sheet of spume in its middle"),
             ("Mist", "NodeSocketFloat", 0.15, "Opacity of new mist in its middle"),
             ("Visibility", "NodeSocketFloat", 0.0, "In the air, in metres; 0 for clear air"),
+            ("Haze Color", "NodeSocketColor", (0.6, 0.65, 0.7, 1.0), "The sky's at the horizon"),
         ),
     ),
 )
@@ -52,12 +54,15 @@ def _build(tree: bpy.types.NodeTree) -> None:
         shade.math("MAXIMUM", given["Visibility"], 1e-3),
     )
     is_hazy = shade.math("GREATER_THAN", given["Visibility"], 0.0)
-    seen = shade.mix(is_hazy, 1.0, shade.math("EXPONENT", path))
-    opacity = shade.math("MULTIPLY", shade.mix(is_mist, spume, mist), seen, clamp=True)
+    haze = shade.math("MULTIPLY", is_hazy, shade.math("SUBTRACT", 1.0, shade.math("EXPONENT", path)))
+    haze = shade.math("MULTIPLY", haze, shade.node("ShaderNodeLightPath").outputs[0])
+    opacity = shade.math("MINIMUM", shade.mix(is_mist, spume, mist), 1.0)
     off = shade.node("ShaderNodeBsdfDiffuse", {0: given["Color"]}).outputs[0]
     through = shade.node("ShaderNodeBsdfTranslucent", {0: given["Color"]}).outputs[0]
+    air = shade.node("ShaderNodeEmission", {0: given["Haze Color"], 1: 1.0}).outputs[0]
     clear = shade.node("ShaderNodeBsdfTransparent").outputs[0]
-    shade.finish({"Surface": shade.mix_shaders(opacity, clear, shade.mix_shaders(_THROUGH, off, through))})
+    seen = shade.mix_shaders(haze, shade.mix_shaders(_THROUGH, off, through), air)
+    shade.finish({"Surface": shade.mix_shaders(opacity, clear, seen)})
 
 
-SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 4, _build, "ShaderNodeTree")
+SPRAY_LOOK = GroupKind("Ocean Tweak Spray Look", 5, _build, "ShaderNodeTree")

@@ -16,7 +16,7 @@ from typing import Protocol
 
 import bpy
 
-from . import panorama, water_material
+from . import panorama, spray, water_material
 from .panorama import PanoramaError
 from .settings import oceans_in
 from .skies import SKIES, VIEW
@@ -150,6 +150,8 @@ def _light(
         water_material.set_air(material, sky.visibility, haze)
         if brighter is not None:
             water_material.light_by(material, brighter)
+    for ocean in oceans_in(scene):
+        spray.put_in_air(ocean)
     if settings.use_exposure:
         scene.view_settings.exposure = sky.exposure
 

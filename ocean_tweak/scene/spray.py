@@ -221,11 +221,20 @@ def _material(ocean: bpy.types.Object) -> bpy.types.Material:
     look = shade.node("ShaderNodeGroup", node_tree=node_group(SPRAY_LOOK))
     shade.tree.links.new(look.outputs["Surface"], shade.node("ShaderNodeOutputMaterial").inputs["Surface"])
     lay_out(shade.tree)
-    water = water_material.water_node(ocean.active_material)
-    if water is not None and "Visibility" in water.inputs:
-        look.inputs["Visibility"].default_value = water.inputs["Visibility"].default_value
     ocean[_MATERIAL] = material
+    put_in_air(ocean)
     return material
+
+
+def put_in_air(ocean: bpy.types.Object) -> None:
+    """Give an ocean's spray the air of its water."""
+    material, water = ocean.get(_MATERIAL), water_material.water_node(ocean.active_material)
+    if not isinstance(material, bpy.types.Material) or water is None:
+        return
+    nodes = (node for node in material.node_tree.nodes if node.type == "GROUP")
+    for look in (node for node in nodes if is_of_kind(node.node_tree, SPRAY_LOOK)):
+        for name in {"Visibility", "Haze Color"} & {*look.inputs.keys()} & {*water.inputs.keys()}:
+            look.inputs[name].default_value = water.inputs[name].default_value
 
 
 def _write(mesh: bpy.types.Mesh, values: NDArray[np.float32], plan: Plan) -> None:

@@ -265,6 +265,23 @@ def test_a_place_next_to_zero_is_no_option(extension, around, empty_scene):
     assert read.spray_place == pytest.approx((-1.25e-7, -2e-5), rel=1e-3)
 
 
+def test_spray_is_in_the_air_of_the_scene_s_sky(extension, empty_scene):
+    assert bpy.ops.ocean.add_scene(mood="CALM", engine="CYCLES", use_buoy=False) == {"FINISHED"}
+    ocean = next(item for item in empty_scene.objects if item.ocean_tweak.is_ocean)
+    ocean.ocean_tweak.layers[0].wind_speed = 12.0
+    ocean.ocean_tweak.use_spray = True
+    (look,) = (
+        node for node in bpy.data.materials["Ocean Tweak Spray"].node_tree.nodes if node.type == "GROUP"
+    )
+    water = extension("scene.water_material").water_node(ocean.active_material)
+    for visibility in (None, 700.0):
+        if visibility is not None:
+            empty_scene.ocean_tweak_sky.visibility = visibility
+        for name in ("Visibility", "Haze Color"):
+            assert np.array_equal(look.inputs[name].default_value, water.inputs[name].default_value)
+    assert look.inputs["Visibility"].default_value == 700.0
+
+
 def test_a_sea_without_spray_says_why(ocean, empty_scene, caplog):
     ocean.ocean_tweak.layers[0].wind_speed = 6.0
     assert spray_of(ocean) is None
