@@ -48,6 +48,10 @@ def test_bands_are_octaves_of_wavelength_around_the_peak() -> None:
     np.testing.assert_allclose(quarter, values[:-1] + 0.15625 * np.diff(values), atol=1e-9)
     assert at_work.gain(1e-6) == values[0]
     assert at_work.gain(1e6) == values[-1]
+    with np.errstate(divide="raise", invalid="raise"):
+        assert at_work.gain(0.0) == values[0]
+        # beside a wavelength of which the wave number is beyond all floats, all are long
+        assert Equalising(Equaliser(**gains), np.inf).gain(0.1) == values[0]
     fine = at_work.gain(0.1 * np.geomspace(2.0**-4, 2.0**8, 10_001))
     assert np.abs(np.diff(fine)).max() < 0.1  # smooth: no step
 

@@ -76,7 +76,7 @@ class Equalising(NamedTuple):
 
     def gain(self, k: ArrayLike) -> Array:
         """Gain in dB over k in rad/m: smoothsteps from band to band, constant beyond the ends."""
-        octaves = np.log2(np.maximum(np.asarray(k, np.float64), 1e-300) / self.peak)
+        octaves = np.log2(np.maximum(np.asarray(k, np.float64) / self.peak, 1e-300))
         position = np.clip(octaves - OCTAVES[0], 0.0, len(OCTAVES) - 1.0)
         below = np.minimum(position.astype(np.int64), len(OCTAVES) - 2)
         x = position - below
