@@ -59,7 +59,7 @@ def kept() -> int:
 
 
 def test_a_wind_that_changes_over_many_frames(small_budget: int, no_collector: None) -> None:
-    frames, speeds = range(1, 41), np.linspace(5.0, 15.0, 40).tolist()
+    frames, speeds = range(1, 21), np.linspace(5.0, 15.0, 20).tolist()
     timing = Timing(fps=24, start_frame=1)
     animation = Animation(1, (("layers.0.wind_speed", tuple(speeds)),))
     surfaces = ShotSeas(Shot(sea(timing=timing), animation))
@@ -73,7 +73,7 @@ def test_a_wind_that_changes_over_many_frames(small_budget: int, no_collector: N
         grown = tracemalloc.get_traced_memory()[0] - first
     finally:
         tracemalloc.stop()
-    # forty seas of 128² take forty times 0.5 MB; what Python holds beside arrays is little
+    # twenty seas of 128² take twenty times 0.5 MB; what Python holds beside arrays is little
     assert grown < small_budget + MB // 2
     assert MEMO.report()["waves"] > 0.3 * MB, "the last is kept"
 
