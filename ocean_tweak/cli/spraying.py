@@ -9,9 +9,9 @@ from collections.abc import Sequence
 
 from ..core.data.frames import Frame
 from ..core.sea.bake import BakedFrame
-from ..core.sea.placed_waves import has_tile, is_seen_around
+from ..core.sea.placed_waves import has_tile
 from ..core.sea.shot_spray import ShotSpray
-from ..core.sea.spray import check_spray
+from ..core.sea.spray import check_spray, is_around
 from ..export.cache.locks import claimed
 from ..export.spray import SpraySequence, WantedSpray
 from .outcome import DONE, FAILED, UsageError
@@ -31,20 +31,21 @@ def spray_of(arguments: argparse.Namespace, sea: FileSea) -> WantedSpray | None:
             raise UsageError("--spray-place: is where --spray is made, and that is missing")
         return None
     parameters = sea.shot.parameters
-    is_around = is_seen_around(parameters)
-    if arguments.spray_place is not None and not is_around:
+    around = is_around(parameters)
+    if arguments.spray_place is not None and not around:
         raise UsageError(
-            "--spray-place: is for a sea of patches or with wakes; this one has it on its tile: leave it out"
+            "--spray-place: is for a sea of patches, with wakes or a coast; this one has it on its tile: "
+            "leave it out"
         )
     place = sea.place if arguments.spray_place is None else tuple(arguments.spray_place)
-    if is_around and place is None and not has_tile(parameters):
+    if around and place is None and not has_tile(parameters):
         raise UsageError(
-            "--spray: neither the sum of patches nor a wake repeats: say where it is seen, --spray-place 0 0"
+            "--spray: no sum of patches, wake or coast repeats: say where it is seen, --spray-place 0 0"
         )
     spray = parameters.spray
     assert spray is not None  # set by the command's changes
     check_spray(parameters, spray)
-    return WantedSpray(spray, place if is_around else None)
+    return WantedSpray(spray, place if around else None)
 
 
 def bake_spray(arguments: argparse.Namespace, files: SpraySequence, frames: Sequence[Frame]) -> int:

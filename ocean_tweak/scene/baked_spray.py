@@ -22,7 +22,7 @@ from ..export.frame_files import SPRAY, files_start
 from ..export.ply import told_by_ply
 from ..export.spray import WantedSpray, spray_files
 from .patch_points import files_of
-from .plan import camera_place, camera_surface_of
+from .plan import camera_place, camera_surface_of, scene_camera_place
 from .settings import OceanSettings, settings_of
 from .units import metres_per_unit
 
@@ -83,7 +83,9 @@ def _baked_in(folder: Path, name: str, stored: str, _changed: int) -> BakedSpray
 
 def spray_to_bake(ocean: bpy.types.Object, scene: bpy.types.Scene) -> WantedSpray | None:
     """The spray that a bake of an ocean makes; None where there is none."""
-    parameters = repeating(settings_of(ocean).to_parameters(scene))
+    parameters = settings_of(ocean).to_parameters(scene)
+    if camera_surface_of(ocean) is not None:  # as its shot is
+        parameters = repeating(parameters)
     if parameters.spray is None or why_none(parameters) is not None:
         return None
     return WantedSpray(parameters.spray, bake_place(ocean, scene))
@@ -108,11 +110,15 @@ def spray_numbers(ocean: bpy.types.Object, scene: bpy.types.Scene) -> list[str]:
 
 
 def bake_place(ocean: bpy.types.Object, scene: bpy.types.Scene) -> tuple[float, float] | None:
-    """Where the camera is now around which an ocean of patches is shown, m; None for another ocean.
+    """Where the camera is now around which an ocean of patches or with a coast is shown, m; None for another
+    ocean.
 
-    A bake is without what does not repeat: one of a single patch has its spray on its tile.
+    A bake is without what does not repeat, but a coast that no camera surface shows: one of a single patch
+    has its spray on its tile.
     """
+    settings, scale = settings_of(ocean), float(1 / metres_per_unit(scene))
     surface = camera_surface_of(ocean)
-    if surface is None or not len(settings_of(ocean).patches):
-        return None
-    return camera_place(surface, scene, float(1 / metres_per_unit(scene)))
+    if surface is None:
+        has_coast = settings.to_parameters(scene).has_coast
+        return scene_camera_place(ocean, scene, scale) if has_coast else None
+    return camera_place(surface, scene, scale) if len(settings.patches) else None

@@ -15,15 +15,13 @@ from numpy.typing import NDArray
 
 from ..core import Ocean, OceanParameters
 from ..core.numerics.memo import MEMO
-from ..core.parameters.patch_seas import open_sea
 from ..core.parameters.spray import Spray
-from ..core.sea.foam_levels import FoamLevels
 from ..core.sea.placed_waves import is_seen_around, repeating
-from ..core.sea.spray import CameraSpray, TileSpray, squares, why_none
+from ..core.sea.spray import CameraSpray, TileSpray, above_bed, why_none
 from ..core.spray.columns import columns
 from ..core.spray.particles import Particles
 from . import water_material
-from .plan import Plan, camera_place, camera_surface_of
+from .plan import Plan, camera_place, camera_surface_of, scene_camera_place
 from .units import frame_rate
 
 _KIND = "spray"
@@ -39,8 +37,7 @@ class _Maker:
     """Spray of a sea, and of which time and where it was made last."""
 
     def __init__(self, sea: OceanParameters, is_around: bool) -> None:
-        self._levels = FoamLevels(sea) if is_around else None
-        self._source = TileSpray(Ocean(sea)) if self._levels is None else CameraSpray(self._levels)
+        self._source = CameraSpray.of(sea) if is_around else TileSpray(Ocean(sea))
         self._last: tuple[Fraction, Place] | None = None
         self._busy = threading.Lock()
 
@@ -65,7 +62,7 @@ class _Maker:
         if self._last is None or self._busy.locked():
             return False
         last, there = self._last
-        is_there = self._levels is None or squares(self._levels, place) == squares(self._levels, there)
+        is_there = isinstance(self._source, TileSpray) or self._source.is_there(place, there)
         return is_there and 0 <= time - last <= _IS_NEAR
 
 
@@ -77,6 +74,7 @@ class Wanted:
     place : x and y of the camera, in the ocean's space, m
     is_around : whether it is made around the camera, and not on the sea's own tile
     repeats : of the tile along x and y; 0 where it goes on to the horizon
+    ends : whether the coast is shown by its mesh, which ends beside the bed
     """
 
     sea: OceanParameters
@@ -85,6 +83,7 @@ class Wanted:
     place: Place
     is_around: bool
     repeats: tuple[int, int]
+    ends: bool
 
     @property
     def is_near(self) -> bool:
@@ -98,7 +97,7 @@ class Wanted:
         maker = MEMO.get(_KIND, key, lambda: _Maker(*key))
         made = maker.at(self.time, self.spray, self.place)
         MEMO.put(_KIND, key, maker)  # it has grown
-        return made
+        return above_bed(made, self.sea) if self.ends else made
 
     def columns(self) -> NDArray[np.float32]:
         """Columns of the particles, each where it is nearest to the camera, of all places where the tile is
@@ -127,12 +126,13 @@ def wanted(
         return None
     shown = dataclasses.replace(spray, amount=spray.amount * share, size=min(spray.size / share**0.5, 1.0))
     surface = camera_surface_of(ocean)
-    is_around = surface is not None and is_seen_around(plan.whole)
+    is_around = plan.over_bed is not None or (surface is not None and is_seen_around(plan.whole))
     # a tile has no waves that do not repeat
-    sea = open_sea(plan.whole) if is_around else repeating(plan.parameters)
+    sea = plan.whole if is_around else repeating(plan.parameters)
     goes_on = surface is not None or any(water_material.is_far(child) for child in ocean.children)
     repeats = (0, 0) if goes_on else plan.render.repeats
-    return Wanted(sea, _time(plan, scene), shown, _place(ocean, surface, plan, scene), is_around, repeats)
+    place, ends = _place(ocean, surface, plan, scene), plan.over_bed is not None and surface is None
+    return Wanted(sea, _time(plan, scene), shown, place, is_around, repeats, ends)
 
 
 def _time(plan: Plan, scene: bpy.types.Scene) -> Fraction:
@@ -146,7 +146,4 @@ def _place(
 ) -> Place:
     if surface is not None:
         return camera_place(surface, scene, plan.scale)
-    if scene.camera is None:
-        return 0.0, 0.0
-    x, y, _ = ocean.matrix_world.inverted_safe() @ scene.camera.matrix_world.translation
-    return x / plan.scale, y / plan.scale
+    return scene_camera_place(ocean, scene, plan.scale)

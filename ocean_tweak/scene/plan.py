@@ -267,6 +267,17 @@ def camera_place(surface: bpy.types.Object, scene: bpy.types.Scene, scale: float
     return x / scale, y / scale
 
 
+def scene_camera_place(ocean: bpy.types.Object, scene: bpy.types.Scene, scale: float) -> tuple[float, float]:
+    """x and y in m, in an ocean's space, of the scene's camera; its origin without one.
+
+    scale : Blender units in a metre
+    """
+    if scene.camera is None:
+        return 0.0, 0.0
+    x, y, _ = ocean.matrix_world.inverted_safe() @ scene.camera.matrix_world.translation
+    return x / scale, y / scale
+
+
 def camera_matrix(surface: bpy.types.Object, scene: bpy.types.Scene) -> Matrix:
     """Of the camera around which a surface shows its ocean, in the world."""
     matrix = camera_of(surface, scene).matrix_world.copy()

@@ -50,6 +50,7 @@ def camera(empty_scene):
     item.rotation_euler = (1.4, 0.0, 1.6)
     empty_scene.collection.objects.link(item)
     empty_scene.camera = item
+    bpy.context.view_layer.update()
     return item
 
 
@@ -188,3 +189,23 @@ def test_whitecaps_of_the_open_sea_are_where_they_were_without_a_coast(ocean, co
     for found, field in zip(shown, expected, strict=True):
         np.testing.assert_allclose(found[offshore], field, atol=1e-5)
     assert shown[0][rest[:, 0] > 192.0].max() < 0.01
+
+
+@pytest.mark.parametrize("surface", [False, True])
+def test_breakers_throw_up_spray(ocean, camera, extension, empty_scene, surface):
+    settings = ocean.ocean_tweak
+    settings.use_spray = True
+    if surface:
+        bpy.ops.ocean.add_camera_surface()
+    empty_scene.frame_set(FRAME)
+    assert settings.error == ""
+    item = extension("scene.spray").spray_of(ocean)
+    found = numbers(item.data, "position", 3)
+    whole = settings.to_parameters(empty_scene)
+    time = whole.timing.time(FRAME)
+    expected = extension("core.sea.spray").CameraSpray.of(whole).at(time, whole.spray, (100.0, 100.0))
+    # the mesh ends beside the bed, and a camera surface does not
+    there = surface | ((expected.position[:, 1] > 0.0) & (expected.position[:, 1] < SIDE))
+    assert len(found) == there.sum() > 50
+    np.testing.assert_allclose(found, expected.position[there], atol=1e-3)
+    assert (found[:, 0] > 80.0).mean() > 0.5

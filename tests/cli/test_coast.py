@@ -118,8 +118,7 @@ def test_spray_has_no_tile_and_nothing_is_begun(
                     ["usd", "--form", "points", "--out", str(tmp_path / "out" / "sea.usd")]):  # fmt: skip
         assert main([*command, *given]) == 2
         told = capsys.readouterr().err
-        assert "spray = '': is made on the tile" in told
-        assert "give the sea patches" in told
+        assert "say where it is seen, --spray-place 0 0" in told
         assert not (tmp_path / "out").exists()
 
 

@@ -132,13 +132,18 @@ class OverBed:
         key = (self._pictures, self._of_breaking, index, self._sea.foam.coverage)
         return MEMO.get(_BIRTHS, key, lambda: self._white(Fraction(index, _LOOKS)))
 
+    def fronts(self, time: float | Fraction) -> tuple[RealArray, RealArray]:
+        """Whiteness of the fronts of broken waves, 0…1, and the height of each wave in m, (rows, columns)."""
+        signal = self.signal(time)
+        return self._spread(self._whiteness(signal)), self._spread(2.0 * np.abs(signal))
+
     def _white(self, time: float | Fraction) -> RealArray:
-        white = np.zeros(len(self._least), np.float32)
-        there = self._breaks
-        strength = min(1.0, self._sea.foam.coverage)
-        white[there] = (
-            strength * self._strength[there] * whiteness(self.signal(time)[there], self._least[there])
-        )
+        strength = np.float32(min(1.0, self._sea.foam.coverage))
+        return strength * self._whiteness(self.signal(time))
+
+    def _whiteness(self, signal: ComplexArray) -> RealArray:
+        white, there = np.zeros(len(self._least), np.float32), self._breaks
+        white[there] = self._strength[there] * whiteness(signal[there], self._least[there])
         return white
 
     @cached_property

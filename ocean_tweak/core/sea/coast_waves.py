@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
@@ -29,9 +29,9 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..statistics.sea_spectrum import SeaSpectrum
 from ..statistics.sea_statistics import continuous_state
 from ..synthesis.transforms import Synthesis, Z
-from ..waves.coast.breakers import broken_share
+from ..waves.coast.breakers import breaker_spray, broken_share
 from ..waves.coast.ground import Ground
-from ..waves.contribution import OwnFoam
+from ..waves.contribution import OwnFoam, OwnSpray
 from .coast_field import OverBed
 from .coast_pictures import Incoming, Pictures, fingerprint, incoming, pictures
 from .coast_state import SeaState, flow_over_bed, open_state, turned_by
@@ -127,6 +127,19 @@ class CoastWaves:
     def at(self, x: Array, y: Array, time: float | Fraction, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """What is added at rest positions in m, of one flat shape."""
         return self._added(x, y, self.ground.between(x, y), time, keys)
+
+    def over(
+        self, open_sea: Mapping[str, RealArray], x: Array, y: Array, time: float | Fraction
+    ) -> dict[str, Array]:
+        """ADDING over the bed, float64, from those of the open sea, at flat rest positions in m."""
+        share = self.shares(x, y)
+        added = adding_fields(Summed([self.at(x, y, time, ADDED)]), x.shape)
+        whole = {name: share.value[:, np.newaxis] * open_sea[name] + added[name] for name in added}
+        dx, dy, dz = np.asarray(open_sea["displacement"], np.float64).T
+        whole["slope"] += np.stack((dz * share.by_x, dz * share.by_y), axis=-1)
+        shear = 0.5 * (dx * share.by_y + dy * share.by_x)
+        whole["strain"] += np.stack((dx * share.by_x, dy * share.by_y, shear), axis=-1)
+        return whole
 
     def on_samples(self, time: float | Fraction) -> dict[str, RealArray]:
         """ADDING of what is added, on the bed's samples: (rows, columns, …) float32 each."""
@@ -240,6 +253,26 @@ class CoastWaves:
         rest = open_state(self._parts)[1] - turned_by(self.ground.turn, follow)
         whole = turned_by(self.ground.turn, alone) + rest * self._limit[..., np.newaxis] ** 2
         return np.ascontiguousarray(np.moveaxis(whole, -1, 0))
+
+    def breaks(self, x: Array, y: Array, time: float | Fraction) -> NDArray[np.bool_]:
+        """Whether fronts of broken waves are at rest positions in m, of one flat shape."""
+        white, _ = self._fronts(time)
+        return np.asarray(self.ground.between(x, y).read(white) > 0.0)
+
+    def spray(self, x: Array, y: Array, time: float | Fraction, velocity: Array) -> OwnSpray:
+        """What waves that break for lack of depth throw up at rest positions in m, of one flat shape.
+
+        velocity : of the water there, (places, 3) m/s
+        """
+        where = self.ground.between(x, y)
+        white, height = (where.read(field).astype(np.float64) for field in self._fronts(time))
+        share = self._weights.read(1, where).value
+        depth = where.read(self.ground.depth).astype(np.float64)
+        return breaker_spray(white * share, height, depth, velocity, self._sea.water.gravity)
+
+    def _fronts(self, time: float | Fraction) -> tuple[RealArray, RealArray]:
+        key = (self._sea, self._waves.precision, time, "fronts")
+        return MEMO.get(_FIELDS, key, lambda: _Fronts(*self.over_bed.fronts(time)))
 
     def wet(self, x: Array, y: Array, time: float | Fraction) -> NDArray[np.float32]:
         """0…1 at places of the bed and the land in m, of one flat shape: 1 in water, and on land less the
@@ -369,6 +402,18 @@ class _BedGrid:
     def read(self, where: Between | _Samples, keys: Iterable[Key]) -> dict[Key, RealArray]:
         """Some of them at flat places."""
         return {key: where.read(self._values[key]).astype(self._values[key].dtype) for key in keys}
+
+
+class _Fronts(NamedTuple):
+    """Of broken waves, on the bed's samples: whiteness, and the height of waves."""
+
+    white: RealArray
+    height: RealArray
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of both."""
+        return total_bytes(self)
 
 
 class _FoamOverBed(NamedTuple):

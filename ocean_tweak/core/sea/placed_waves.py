@@ -270,12 +270,17 @@ def own_spray(
     for waves in placed_waves(sea):
         own = waves.spray(x, y, time, height, velocity, lifts)
         if own is not None:
-            more = own.strength > strongest.strength
-            strongest = OwnSpray(
-                np.where(more, own.strength, strongest.strength),
-                np.where(more[:, np.newaxis], own.velocity, strongest.velocity),
-            )
+            strongest = stronger(strongest, own)
     return strongest
+
+
+def stronger(one: OwnSpray, other: OwnSpray) -> OwnSpray:
+    """Of two that are thrown up at the same places, that of which there is more."""
+    more = other.strength > one.strength
+    return OwnSpray(
+        np.where(more, other.strength, one.strength),
+        np.where(more[:, np.newaxis], other.velocity, one.velocity),
+    )
 
 
 def check_repeats(sea: OceanParameters) -> None:

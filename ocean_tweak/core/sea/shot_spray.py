@@ -10,9 +10,8 @@ from ..parameters.ocean_parameters import OceanParameters
 from ..parameters.shot import Shot
 from ..parameters.spray import Spray
 from ..spray.particles import Particles
-from .foam_levels import FoamLevels
 from .ocean import Ocean
-from .spray import CameraSpray, TileSpray
+from .spray import CameraSpray, TileSpray, above_bed
 
 
 class ShotSpray:
@@ -39,6 +38,7 @@ class ShotSpray:
         else:
             assert self._place is not None
             made = source.at(moment.time, self._spray, self._place)
+            made = above_bed(made, moment.parameters) if moment.parameters.has_coast else made
         return made if moment.rate == 1.0 else made._replace(velocity=made.velocity * np.float32(moment.rate))
 
     def outlook(self, frame: Frame) -> float:
@@ -56,5 +56,5 @@ class ShotSpray:
     def _source(self, sea: OceanParameters) -> TileSpray | CameraSpray:
         if self._made is None or self._made[0] != sea:
             around = self._place is not None
-            self._made = sea, CameraSpray(FoamLevels(sea)) if around else TileSpray(Ocean(sea))
+            self._made = sea, CameraSpray.of(sea) if around else TileSpray(Ocean(sea))
         return self._made[1]

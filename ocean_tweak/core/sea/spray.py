@@ -24,14 +24,17 @@ from ..foam.threshold import foam_outlook, foam_wind
 from ..numerics import random
 from ..numerics.machine import usable_memory
 from ..parameters.ocean_parameters import OceanParameters
+from ..parameters.patch_seas import open_sea
 from ..parameters.spray import Spray
 from ..spray.drops import LEAST_WIND, torn_rate
 from ..spray.particles import BYTES, Crests, Particles, expected, in_the_air, joined, longest_life, mean_life
 from ..waves.contribution import Wind
+from .coast_waves import CoastWaves
 from .foam_levels import FoamLevels
 from .hull_motion import HullMotion
+from .memory import ground_of
 from .ocean import Ocean
-from .placed_waves import check_repeats, has_tile, is_seen_around, makes_foam, own_spray, throws
+from .placed_waves import check_repeats, has_tile, is_seen_around, makes_foam, own_spray, stronger, throws
 from .regions import TILE, Places
 from .spray_squares import STANDS_FOR, Square, area_of_squares, outside, squares
 
@@ -59,7 +62,7 @@ class SprayError(ParameterError):
 
 def why_none(parameters: OceanParameters) -> str | None:
     """Why a sea has no spray; None if it has."""
-    if makes_foam(parameters):  # a bow throws up water in any wind
+    if makes_foam(parameters) or breaks_ashore(parameters):  # bows and breakers throw up water in any wind
         return None
     wind = foam_wind(parameters)
     if wind is None:
@@ -76,6 +79,16 @@ def why_none(parameters: OceanParameters) -> str | None:
     return None
 
 
+def breaks_ashore(parameters: OceanParameters) -> bool:
+    """Whether waves break over the bed of a sea's coast."""
+    return parameters.coast is not None and parameters.has_coast and parameters.coast.breaking
+
+
+def is_around(parameters: OceanParameters) -> bool:
+    """Whether a sea's spray is made around a camera, not on its tile."""
+    return is_seen_around(parameters) or parameters.has_coast
+
+
 def check_spray(parameters: OceanParameters, spray: Spray) -> None:
     """Raise SprayError, before computing any, if a sea's spray needs too much memory.
 
@@ -84,7 +97,7 @@ def check_spray(parameters: OceanParameters, spray: Spray) -> None:
     """
     if (why := why_none(parameters)) is not None:
         raise ParameterError("spray", "", why)
-    if not is_seen_around(parameters):
+    if not is_around(parameters):
         try:
             check_repeats(parameters)
         except ParameterError as error:
@@ -98,6 +111,7 @@ def expected_count(parameters: OceanParameters, spray: Spray) -> float:
     rate = torn_rate(_wind(parameters).speed)
     if rate == 0.0 or why_none(parameters) is not None:
         return 0.0
+    parameters = open_sea(parameters)
     area = parameters.domain_size**2 if has_tile(parameters) else area_of_squares(FoamLevels(parameters))
     tears = _TEARS * Ocean(parameters).mean_breaking
     return area * tears * rate * spray.amount * mean_life(spray)
@@ -150,12 +164,23 @@ class TileSpray:
 
 
 class CameraSpray:
-    """Spray of a sea of patches around a camera, in nested squares. Creating it is cheap."""
+    """Spray of a sea of patches around a camera, in nested squares. Creating it is cheap.
 
-    def __init__(self, levels: FoamLevels) -> None:
+    levels : of the open sea
+    over_bed : the sea with its coast, if it has one
+    """
+
+    def __init__(self, levels: FoamLevels, over_bed: Ocean | None = None) -> None:
         self._levels = levels
+        self._over_bed = over_bed
         self._hulls: HullMotion | None = None
-        self._crests = _Remembered(levels.parameters)
+        self._crests = _Remembered(levels.parameters if over_bed is None else over_bed.parameters)
+
+    @classmethod
+    def of(cls, sea: OceanParameters) -> CameraSpray:
+        """That of a sea."""
+        levels = FoamLevels(open_sea(sea), far=sea.has_coast)
+        return cls(levels, Ocean(sea) if sea.has_coast else None)
 
     @property
     def nbytes(self) -> int:
@@ -170,6 +195,10 @@ class CameraSpray:
         model = self._levels.seas[0].foam_model
         return self._crests.in_the_air(model, time, spray, squares(self._levels, place), self._look)
 
+    def is_there(self, place: tuple[float, float], there: tuple[float, float]) -> bool:
+        """Whether spray around two places is made in the same squares."""
+        return squares(self._levels, place) == squares(self._levels, there)
+
     def outlook(self, time: Fraction, spray: Spray, place: tuple[float, float]) -> float:
         """Particles in the air where crests always break as at one moment: of that alone, it is quick."""
         model = self._levels.seas[0].foam_model
@@ -179,17 +208,20 @@ class CameraSpray:
         """Visible crests in each square, on the water of all waves, and what hulls throw up."""
         finest = self._levels.seas[0]
         time = finest.foam_model.reduced(index * finest.foam_model.step)
-        found = [_broken(self._levels.seas[square.level], square, time) for square in missing]
+        coast = None if self._over_bed is None else self._over_bed.coast
+        found = [_broken(self._levels.seas[square.level], square, time, coast) for square in missing]
         rest = [np.stack((cells.column + 0.5, cells.row + 0.5), axis=-1) * cells.size for cells, _ in found]
         x, y = np.concatenate(rest).T
-        fields = finest.surface(time, _OF_WATER, Places(x, y))
-        water = _Water(*(fields[name].astype(np.float64) for name in _Water._fields))
+        water = _water(finest, x, y, time, coast)
         rate = torn_rate(_wind(finest.parameters).speed)
         births = rate * np.concatenate([_torn(strength) for _, strength in found])
         height, velocity = water.displacement[:, 2], water.velocity
         if self._hulls is None:
             self._hulls = HullMotion(finest.parameters)
         own = own_spray(finest.parameters, x, y, time, height, velocity, self._hulls.at)
+        if coast is not None:
+            births = births * coast.shares(x, y).value
+            own = stronger(own, coast.spray(x, y, time, velocity))
         thrown = _OF_A_CREST * own.strength
         more = thrown > births
         births = np.where(more, thrown, births)
@@ -203,6 +235,15 @@ class CameraSpray:
             crests = _crests(sea.foam_model, sea.parameters, index, cells, at, of_part, births[part])
             made.append(_Looked(cells, crests))
         return made
+
+
+def above_bed(made: Particles, sea: OceanParameters) -> Particles:
+    """The particles between the ends of a coast's bed: beside it the coast repeats, and its mesh does not."""
+    ground = ground_of(sea)
+    x, y, _ = made.position.T
+    across = math.cos(ground.turn) * y - math.sin(ground.turn) * x - ground.first[1]
+    there = (across >= 0.0) & (across <= ground.step * ground.columns)
+    return Particles._make(each[there] for each in made)
 
 
 #: all of a sea's one tile
@@ -327,15 +368,26 @@ class _Water(NamedTuple):
     strain: Array
 
 
-def _broken(sea: Ocean, square: Square, time: Fraction) -> tuple[_Cells, RealArray]:
-    """The cell parts of a square in which crests are torn, with strengths, or layers throw up spray."""
+def _water(sea: Ocean, x: Array, y: Array, time: Fraction, coast: CoastWaves | None) -> _Water:
+    """Water of all waves at rest positions in m, over the bed where there is a coast."""
+    fields = sea.surface(time, _OF_WATER, Places(x, y))
+    whole = fields if coast is None else coast.over({name: fields[name] for name in _OF_WATER}, x, y, time)
+    return _Water(*(whole[name].astype(np.float64) for name in _Water._fields))
+
+
+def _broken(sea: Ocean, square: Square, time: Fraction, coast: CoastWaves | None) -> tuple[_Cells, RealArray]:
+    """The cell parts of a square in which crests are torn, with strengths, or layers or breakers throw up
+    spray."""
     size = square.size
     column, row = square.cells()
     x, y = ((number.astype(np.float64) + 0.5) * size for number in (column, row))
     strength: RealArray = np.zeros(x.shape, np.float32)
     if torn_rate(_wind(sea.parameters).speed) > 0.0:
         strength = breaking_of(sea.foam_model, sea.compression_at(x, y, time))
-    broken = np.flatnonzero((strength > 0.0) | throws(sea.parameters, x, y, time))
+    thrown = throws(sea.parameters, x, y, time)
+    if coast is not None:
+        thrown |= coast.breaks(x, y, time)
+    broken = np.flatnonzero((strength > 0.0) | thrown)
     cells, of_cell = _in_parts(_Cells(column[broken], row[broken], size, square.level))
     return cells, strength[broken][of_cell]
 
