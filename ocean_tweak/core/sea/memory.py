@@ -144,7 +144,9 @@ def coast_need(parameters: OceanParameters) -> MemoryNeed:
         return MemoryNeed(0, 0, 0)
     ground = ground_of(parameters)
     samples, count = ground.rows * ground.columns, most_frequencies(parameters)
-    return MemoryNeed(16 * count * samples, 24 * count * samples, _OVER_BED * samples)
+    # what walls throw back is marched beside what arrived
+    building = 24 if parameters.coast is None or parameters.coast.mirror == 0.0 else 32
+    return MemoryNeed(16 * count * samples, building * count * samples, _OVER_BED * samples)
 
 
 def _need_in_area(
