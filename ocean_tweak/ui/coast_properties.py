@@ -14,6 +14,7 @@ from ..core.data.plain_data import to_plain
 from ..core.waves.coast.parameters import SHORES
 from ..scene import source_images
 from ..scene.coast_bed import Bed
+from ..scene.refinement import redraw_views
 from ..scene.source_images import ImageSource
 from . import parameter_properties
 from .mask_properties import channels_property
@@ -31,6 +32,10 @@ _TEXTS = {
 
 def _is_mesh(_group: bpy.types.PropertyGroup, item: bpy.types.Object) -> bool:
     return item.type == "MESH"
+
+
+def _redraw(_group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    redraw_views()
 
 
 class OCEAN_PG_coast(bpy.types.PropertyGroup):
@@ -55,11 +60,11 @@ class OCEAN_PG_coast(bpy.types.PropertyGroup):
         ),
         "image_channels": channels_property(),
         "show_height": BoolProperty(
-            name="Wave Height", options=set(), **_OVERRIDE,
+            name="Wave Height", options=set(), update=_redraw, **_OVERRIDE,
             description="Draw a map of the significant wave height over the bed while the ocean is active",
         ),
         "show_direction": BoolProperty(
-            name="Direction", options=set(), **_OVERRIDE,
+            name="Direction", options=set(), update=_redraw, **_OVERRIDE,
             description="Draw arrows of the mean direction of waves over the bed while the ocean is active",
         ),
     }  # fmt: skip

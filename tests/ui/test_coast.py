@@ -15,12 +15,13 @@ with over('WINDOW'):
     mesh = bpy.data.meshes.new('Land')
     mesh.from_pydata(places, [], [(0, 2, 3, 1)])
     land = bpy.data.objects.new('Land', mesh)
+    land.location = bpy.context.object.location
     bpy.context.scene.collection.objects.link(land)
     ocean().coast.bed = land
     area().spaces.active.show_gizmo = False
     view = area().spaces.active.region_3d
     view.view_perspective, view.view_distance = 'ORTHO', 2.2 * side
-    view.view_rotation, view.view_location = (1.0, 0.0, 0.0, 0.0), (0.5 * side, 0.5 * side, 0.0)
+    view.view_rotation, view.view_location = (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 """
 MAKE = "with over('WINDOW'): bpy.ops.ocean.make_coast('INVOKE_DEFAULT', True)"
 MAKING = "any(each.bl_idname == 'OCEAN_OT_make_coast' for each in window().modal_operators)"
