@@ -25,7 +25,7 @@ from . import patch_averages
 from .modifiers import is_of_library
 from .ownership import remove_with_meshes
 from .plan import Plan, in_units
-from .settings import link_beside
+from .settings import link_beside, stay_beside
 
 RealArray = NDArray[np.float32]
 
@@ -66,6 +66,7 @@ def refresh(ocean: bpy.types.Object, sea: Ocean, plan: Plan) -> None:
     """
     assert sea.coast is not None
     item = points_of(ocean) or _new(ocean)
+    stay_beside(item, ocean)
     if item.data.users > 1:  # of a duplicate, or of what an override is of
         item.data = item.data.copy()
     _write(item.data, sea.coast, plan)

@@ -25,7 +25,7 @@ from . import bed_points, evaluation, held_sea, patch_points, vertex_attributes,
 from .ownership import remove_with_meshes
 from .patch_points import Points
 from .plan import Plan, camera_surface_of, in_units, sea_over_bed
-from .settings import OceanObjectError, all_oceans, link_beside, settings_of
+from .settings import OceanObjectError, all_oceans, link_beside, settings_of, stay_beside
 
 Array = NDArray[np.float64]
 
@@ -201,6 +201,7 @@ def _ready_mesh(ocean: bpy.types.Object, plan: Plan) -> bpy.types.Object:
     """The mesh over a bed, made where there is none, with data of its own and the ocean's material."""
     assert plan.over_bed is not None
     item = coast_of(ocean) or _new(ocean, plan.over_bed)
+    stay_beside(item, ocean)
     if item.data.is_editmode:
         raise OceanObjectError(f"{item.name} is in Edit Mode: leave Edit Mode to let its waves move")
     if item.data.users > 1:  # of a duplicate, or of what an override is of

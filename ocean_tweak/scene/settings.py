@@ -214,9 +214,31 @@ def scene_of(item: bpy.types.Object) -> bpy.types.Scene:
 
 def link_beside(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
     """Put an object where an ocean is: into its collections, or into its scene where they take in nothing."""
-    own = [each for each in ocean.users_collection if each.is_editable and each.override_library is None]
+    own = [each for each in ocean.users_collection if _takes_in(each)]
     for collection in own or [scene_of(ocean).collection]:
         collection.objects.link(item)
+
+
+def stay_beside(item: bpy.types.Object, ocean: bpy.types.Object) -> None:
+    """Let an object be in each scene that an ocean is in, and in no other; where in it, users choose."""
+    wanted, present = ocean.users_scene, item.users_scene
+    for scene in wanted:
+        if scene not in present:
+            of_scene = {scene.collection, *scene.collection.children_recursive}
+            own = [each for each in ocean.users_collection if each in of_scene and _takes_in(each)]
+            for collection in own or [scene.collection]:
+                collection.objects.link(item)
+    for scene in present if wanted else ():
+        if scene not in wanted:
+            of_scene = {scene.collection, *scene.collection.children_recursive}
+            for collection in [
+                each for each in item.users_collection if each in of_scene and _takes_in(each)
+            ]:
+                collection.objects.unlink(item)
+
+
+def _takes_in(collection: bpy.types.Collection) -> bool:
+    return collection.is_editable and collection.override_library is None
 
 
 def is_ocean(item: bpy.types.Object | None) -> bool:

@@ -209,3 +209,27 @@ def test_breakers_throw_up_spray(ocean, camera, extension, empty_scene, surface)
     assert len(found) == there.sum() > 50
     np.testing.assert_allclose(found, expected.position[there], atol=1e-3)
     assert (found[:, 0] > 80.0).mean() > 0.5
+
+
+@pytest.mark.parametrize("ocean", [False], indirect=True, ids=["one patch"])
+def test_a_coast_is_in_each_scene_that_its_ocean_is_in(ocean, coast_of, extension, empty_scene):
+    """It comes with the ocean and goes with it, and stays in the collection that a user chose."""
+    shore = bpy.data.collections.new("Shore")
+    empty_scene.collection.children.link(shore)
+    mesh, points = coast_of(ocean), extension("scene.bed_points").points_of(ocean)
+    shore.objects.link(mesh)
+    empty_scene.collection.objects.unlink(mesh)
+    other = bpy.data.scenes.new("Other")
+    cove = bpy.data.collections.new("Cove")
+    other.collection.children.link(cove)
+    cove.objects.link(ocean)
+    other.frame_set(5)
+    assert ocean.ocean_tweak.error == ""
+    assert {mesh, points} <= set(cove.objects)
+    assert mesh.name not in empty_scene.collection.objects
+    assert mesh.name in shore.objects
+    empty_scene.collection.objects.unlink(ocean)
+    other.frame_set(6)
+    assert mesh.name not in shore.objects
+    assert {mesh, points} <= set(cove.objects)
+    assert mesh.users_scene == (other,)
